@@ -1,0 +1,1 @@
+"""Published formulas as pure functions: SI or dimensionless arrays in and out."""

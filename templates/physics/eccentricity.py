@@ -1,0 +1,47 @@
+"""Relative eccentricity from load, for any load function that rises with eccentricity.
+
+The unknown is logit(eps), bracketed from eps 1e-20 to 1 − 1e-7, the residual is the logarithm of the
+load: both ends are resolved alike and the search cannot leave its bracket.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize.elementwise import find_root
+from scipy.special import expit, logit
+
+from templates.physics.arrays import ECCENTRICITY_LIMIT, Array, require
+
+_LOWEST = 1e-20
+
+
+def eccentricity(load: Callable[..., Array], So: Array, *parameters: Array) -> Array:
+    """Find eps with load(eps, *parameters) = So [-].
+
+    Args:
+        load: a function of eps and the parameters that rises strictly with eps, elementwise.
+        So: Sommerfeld number, 0 or more; any shape that broadcasts with the parameters [-].
+        parameters: further arguments of the load function, such as the width ratio.
+
+    Returns:
+        eps; 0 where So is 0, NaN where So is more than the film bears at eps 1 − 1e-7.
+
+    Raises:
+        ValueError: if So is negative or not finite, or the load function refuses a parameter.
+
+    Example:
+        >>> from templates.physics.short_bearing import load_Ocvirk_1952
+        >>> round(float(eccentricity(load_Ocvirk_1952, 1.500762164, 1.0)), 8)
+        0.5
+    """
+    So = np.asarray(So, float)
+    require(np.isfinite(So) & (So >= 0), "So must be 0 or more and finite")
+    So, *parameters_ = np.broadcast_arrays(So, *parameters)
+    bracket = np.full(So.shape, logit(_LOWEST)), np.full(So.shape, logit(ECCENTRICITY_LIMIT))
+    arguments = (np.log(np.where(So > 0, So, 1.0)), *parameters_)
+
+    def excess(u: Array, logarithm: Array, *rest: Array) -> Array:
+        return np.log(load(np.minimum(expit(u), ECCENTRICITY_LIMIT), *rest)) - logarithm
+
+    root = find_root(excess, bracket, args=arguments)
+    return np.where(So > 0, np.where(root.success, expit(root.x), np.nan), 0.0)
