@@ -1,4 +1,4 @@
-"""Viscosity of lubricating oil over temperature, after Walther (ASTM D341).
+"""Density and viscosity of lubricating oil over temperature; the viscosity after Walther (ASTM D341).
 
 lg lg(nu + 0.7) = A − B lg T, with nu in mm²/s and T in K. Meant for mineral oils between pour point and
 about 200 °C; nu must exceed 0.3 mm²/s, where the inner logarithm vanishes.
@@ -11,6 +11,17 @@ import numpy as np
 from templates.core.declare import Array, units
 
 MM2_PER_S = 1e-6  # m²/s
+
+
+@units("kg/m**3", "K", "K", returns="kg/m**3")
+def density(rho_ref: Array, T: Array, T_ref: Array) -> Array:
+    """Density [kg/m³] at the temperature T [K], falling by 0.07 % of rho_ref [kg/m³] per kelvin above T_ref.
+
+    References
+    ----------
+    Bhadke, Chaudhari, Sharma: IJETR 3(5), 2015.
+    """
+    return rho_ref * (1 - 0.0007 * (T - T_ref))
 
 
 @units("m**2/s", returns="1", latex=r"\lg\lg\left(\frac{{{0}}}{{\mathrm{{mm^2/s}}}}+0.7\right)")

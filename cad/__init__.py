@@ -1,0 +1,1 @@
+"""Parametric geometry: models that are templates with a shape, checked before anybody sees them."""

@@ -1,0 +1,1 @@
+"""The calculations: knows no HTTP, no database, no CAD."""

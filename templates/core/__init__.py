@@ -1,0 +1,1 @@
+"""The language in which a template is written; knows no physics."""

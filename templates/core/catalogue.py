@@ -1,0 +1,146 @@
+"""Finds every `<id>_v<version>.py` in a list of folders: one file adds a template, nothing is registered.
+
+A released version is a file that nobody edits. Its digest is that of its source without docstrings and
+without the `withdrawn` mark, so a better explanation, or a warning, is no change of the calculation.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import importlib
+import importlib.util
+import inspect
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from types import ModuleType
+from typing import Generic, TypeVar
+
+from templates.core.errors import UnknownTemplate
+from templates.core.template import VERSIONED, Template
+
+T = TypeVar("T", bound=Template)
+
+
+@dataclass(frozen=True)
+class Catalogue(Generic[T]):
+    """All versions of all templates (or models) found; `kind` names them in messages."""
+
+    versions: dict[tuple[str, int], type[T]]
+    kind: str = "template"
+
+    @cached_property
+    def ids(self) -> tuple[str, ...]:
+        """Every id, sorted."""
+        return tuple(sorted({id for id, _ in self.versions}))
+
+    def of(self, id: str) -> dict[int, type[T]]:
+        """The versions of one id, ascending.
+
+        Raises
+        ------
+        UnknownTemplate
+            If there is none.
+        """
+        found = {version: cls for (name, version), cls in sorted(self.versions.items()) if name == id}
+        if not found:
+            raise UnknownTemplate(id, f"there is no {self.kind} {id[:80]!r}; there are {', '.join(self.ids)}")
+        return found
+
+    def get(self, id: str, version: int) -> type[T]:
+        """One version of one id.
+
+        Raises
+        ------
+        UnknownTemplate
+            If there is none.
+        """
+        versions = self.of(id)
+        if version not in versions:
+            known = ", ".join(map(str, versions))
+            raise UnknownTemplate(id, f"{self.kind} {id} has no version {version}; it has {known}")
+        return versions[version]
+
+    def latest(self, id: str) -> type[T]:
+        """The newest version that is not withdrawn, else the newest."""
+        versions = list(self.of(id).values())
+        return next((cls for cls in reversed(versions) if not cls.withdrawn), versions[-1])
+
+    def __iter__(self) -> Iterator[type[T]]:
+        return iter(self.versions.values())
+
+
+def find(folders: Iterable[Path], base: type[T], kind: str = "template") -> Catalogue[T]:
+    """Import every versioned file below the folders and collect the subclass of `base` that it declares.
+
+    Raises
+    ------
+    TypeError
+        If a file declares none or several, or two files claim one version.
+    """
+    versions: dict[tuple[str, int], type[T]] = {}
+    for path in sorted(file for folder in folders for file in folder.rglob("*_v*.py")):
+        if not VERSIONED.match(path.stem):
+            continue
+        cls = _declared_in(_imported(path), base)
+        if (cls.id, cls.version) in versions:
+            raise TypeError(f"{path}: {cls.id} version {cls.version} stands in another file already")
+        versions[cls.id, cls.version] = cls
+    return Catalogue(dict(sorted(versions.items())), kind)
+
+
+def _imported(path: Path) -> ModuleType:
+    """The module of a file: by its package's name where it has one, else by its path."""
+    package = _package(path.parent)
+    if package:
+        return importlib.import_module(f"{package}.{path.stem}")
+    name = path.stem
+    if name in sys.modules and getattr(sys.modules[name], "__file__", None) == str(path):
+        return sys.modules[name]
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise ImportError(f"{path} cannot be imported")
+    module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def _package(folder: Path) -> str:
+    if not (folder / "__init__.py").exists():
+        return ""
+    parent = _package(folder.parent)
+    return f"{parent}.{folder.name}" if parent else folder.name
+
+
+def _declared_in(module: ModuleType, base: type[T]) -> type[T]:
+    found = [
+        value
+        for value in vars(module).values()
+        if isinstance(value, type) and issubclass(value, base) and value.__module__ == module.__name__
+    ]
+    if len(found) != 1:
+        raise TypeError(f"{module.__file__} declares {len(found)} of {base.__name__}; it must declare one")
+    return found[0]
+
+
+def digest(cls: type[Template]) -> str:
+    """SHA-256 of the template's file, without docstrings, comments, layout and the mark `withdrawn`."""
+    module = inspect.getmodule(cls)
+    assert module is not None
+    tree = _Bare().visit(ast.parse(inspect.getsource(module)))
+    return hashlib.sha256(ast.unparse(tree).encode()).hexdigest()
+
+
+class _Bare(ast.NodeTransformer):
+    """Takes away what does not calculate."""
+
+    def visit_Expr(self, node: ast.Expr) -> ast.AST | None:
+        is_text = isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
+        return None if is_text else node
+
+    def visit_Assign(self, node: ast.Assign) -> ast.AST | None:
+        names = {target.id for target in node.targets if isinstance(target, ast.Name)}
+        return None if names == {"withdrawn"} else node

@@ -1,0 +1,295 @@
+"""What a template is made of: givens, choices, curves, derived givens, formulas and requirements.
+
+Each is declared once. Its words make the API name, the label and the line in the report; its symbol makes
+the formula on paper; its bounds make the check, the schema and the message.
+
+Two kinds of bounds are told apart. The *domain* is where a quantity means anything: outside it a value is
+refused. The *published* range is where the source claims its formula: outside it the answer carries a
+warning that names the limit.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Generic, Self, TypeVar, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.quantity import Typed, Unit, read, unit
+from templates.core.syntax import attributes_used, returned
+
+Array = NDArray[np.float64]
+Truth = bool | NDArray[np.bool_]
+T = TypeVar("T")
+F = TypeVar("F", bound=Callable[..., Any])
+
+_RELATIONS = (("gt", ">"), ("ge", "≥"), ("lt", "<"), ("le", "≤"))
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Limits of a value, in its declared unit; None leaves a side open."""
+
+    gt: float | None = None
+    ge: float | None = None
+    lt: float | None = None
+    le: float | None = None
+
+    def in_si(self, scale: Unit) -> Bounds:
+        """The same limits in SI."""
+        limits = (getattr(self, side) for side, _ in _RELATIONS)
+        return Bounds(*(None if limit is None else float(scale.to_si(limit)) for limit in limits))
+
+    def admits(self, value: Any) -> Any:
+        """Where the value (scalar or array) lies within the limits; NaN does not."""
+        inside = value == value
+        if self.gt is not None:
+            inside = inside & (value > self.gt)
+        if self.ge is not None:
+            inside = inside & (value >= self.ge)
+        if self.lt is not None:
+            inside = inside & (value < self.lt)
+        if self.le is not None:
+            inside = inside & (value <= self.le)
+        return inside
+
+    def text(self, name: str) -> str:
+        """In words: `> 0 mm and ≤ 5 mm`."""
+        scale = "" if name == "1" else f" {name}"
+        limits = ((sign, getattr(self, side)) for side, sign in _RELATIONS)
+        return " and ".join(f"{sign} {limit:.6g}{scale}" for sign, limit in limits if limit is not None)
+
+    @property
+    def open(self) -> bool:
+        """Whether there is no limit at all."""
+        return all(getattr(self, side) is None for side, _ in _RELATIONS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Meaning:
+    """What a number means: its words, unit, symbol, bounds and source."""
+
+    words: str
+    unit: str
+    name: str
+    symbol: str | None = None
+    source: str | None = None
+    domain: Bounds = Bounds()
+    published: Bounds = Bounds()
+    remedy: str | None = None
+    also: tuple[str, ...] = ()
+    integer: bool = False
+
+    @cached_property
+    def scale(self) -> Unit:
+        """The declared unit, reduced to SI."""
+        return unit(self.unit)
+
+    @cached_property
+    def domain_si(self) -> Bounds | None:
+        """The domain in SI, or None where every finite value means something."""
+        return None if self.domain.open else self.domain.in_si(self.scale)
+
+    @cached_property
+    def published_si(self) -> Bounds | None:
+        """The published range in SI, or None where the source states none."""
+        return None if self.published.open else self.published.in_si(self.scale)
+
+
+def api_name(words: str) -> str:
+    """The words as an API name: `minimum film thickness` → `minimum_film_thickness`."""
+    return re.sub(r"[^a-z0-9]+", "_", words.lower()).strip("_")
+
+
+def meaning(
+    unit: str,
+    words: str,
+    *,
+    name: str | None = None,
+    symbol: str | None = None,
+    source: str | None = None,
+    gt: float | None = None,
+    ge: float | None = None,
+    lt: float | None = None,
+    le: float | None = None,
+    published: tuple[float | None, float | None] = (None, None),
+    remedy: str | None = None,
+    also: tuple[str, ...] = (),
+    integer: bool = False,
+) -> Meaning:
+    """The keywords that every declaration shares, as a `Meaning`; bounds are in the declared unit."""
+    return Meaning(
+        words=words,
+        unit=unit,
+        name=name or api_name(words),
+        symbol=symbol,
+        source=source,
+        domain=Bounds(gt, ge, lt, le),
+        published=Bounds(ge=published[0], le=published[1]),
+        remedy=remedy,
+        also=tuple(api_name(other) for other in also),
+        integer=integer,
+    )
+
+
+class Declaration:
+    """One named thing of a template; knows the attribute under which it stands in the code."""
+
+    attribute: str
+
+    def __init__(self, meaning: Meaning) -> None:
+        self.meaning = meaning
+        self.name = meaning.name
+
+    def __set_name__(self, owner: type, attribute: str) -> None:
+        self.attribute = attribute
+
+
+class Given(Declaration):
+    """An input: a quantity that the user gives, or its default."""
+
+    def __init__(self, meaning: Meaning, default: Any = None) -> None:
+        super().__init__(meaning)
+        self.default: Typed | None = None if default is None else read(default, meaning.unit)
+
+    @property
+    def required(self) -> bool:
+        """Whether the template cannot do without it."""
+        return self.default is None
+
+
+class Curve(Given):
+    """An input that is an array along the crank angle: its last axis is the cycle."""
+
+
+class Choice(Declaration):
+    """An input that is one of several words."""
+
+    def __init__(self, meaning: Meaning, options: tuple[str, ...], default: str | None) -> None:
+        super().__init__(meaning)
+        self.options, self.default = options, default
+
+    @property
+    def required(self) -> bool:
+        """Whether the template cannot do without it."""
+        return self.default is None
+
+
+class Formula(Declaration, Generic[T]):
+    """An output: evaluated when first asked for, then kept with the template it belongs to."""
+
+    def __init__(self, function: Callable[[T], Any], meaning: Meaning, latex: str | None = None) -> None:
+        super().__init__(meaning)
+        self.function, self.latex = function, latex
+        self.__doc__ = function.__doc__
+
+    @overload
+    def __get__(self, obj: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, obj: T, owner: type) -> Array: ...
+    def __get__(self, obj: T | None, owner: type) -> Self | Array:
+        if obj is None:
+            return self
+        value = obj.__dict__[self.attribute] = obj.admit(self, self.function(obj))  # type: ignore[attr-defined]
+        return value  # type: ignore[no-any-return]
+
+    @cached_property
+    def expression(self) -> ast.expr:
+        """The syntax tree of what the formula returns."""
+        return returned(self.function)
+
+    @cached_property
+    def uses(self) -> tuple[str, ...]:
+        """The attributes of the template that the formula refers to, in order of appearance."""
+        return attributes_used(self.function)
+
+
+class Derived(Formula[T]):
+    """An optional input: a value given by the user, else this formula of other inputs."""
+
+    required = False
+
+
+class Requirement:
+    """A rule between inputs; where it does not hold, the inputs it names are refused."""
+
+    def __init__(self, function: Callable[[Any], Any], names: tuple[str, ...], remedy: str) -> None:
+        self.function, self.names, self.remedy = function, names, remedy
+        self.sentence = " ".join((inspect.getdoc(function) or "").split()).rstrip(".")
+        if not self.sentence:
+            raise TypeError(f"{function.__qualname__}: the docstring of a requirement is its sentence")
+
+    @cached_property
+    def uses(self) -> tuple[str, ...]:
+        """The attributes of the template that the rule refers to."""
+        return attributes_used(self.function)
+
+
+def given(unit: str, words: str, *, default: Any = None, **keywords: Any) -> Any:
+    """Declare an input in `unit`, with bounds in that unit; without a default it is required."""
+    return Given(meaning(unit, words, **keywords), default)
+
+
+def curve(unit: str, words: str, *, default: Any = None, **keywords: Any) -> Any:
+    """Declare an input that is an array along the crank angle (last axis)."""
+    return Curve(meaning(unit, words, **keywords), default)
+
+
+def choice(*options: str, words: str, default: str | None = None, name: str | None = None) -> Any:
+    """Declare an input that is one of the named options."""
+    return Choice(meaning("1", words, name=name), options, default)
+
+
+def formula(
+    unit: str, words: str, *, latex: str | None = None, **keywords: Any
+) -> Callable[[Callable[[T], Any]], Formula[T]]:
+    """Declare an output in `unit`; `latex` by hand only where the code is opaque."""
+    return lambda function: Formula(function, meaning(unit, words, **keywords), latex)
+
+
+def derived(unit: str, words: str, **keywords: Any) -> Callable[[Callable[[T], Any]], Derived[T]]:
+    """Declare an optional input whose default is this formula of other inputs."""
+    return lambda function: Derived(function, meaning(unit, words, **keywords))
+
+
+def require(*names: str, remedy: str) -> Callable[[Callable[[Any], Any]], Requirement]:
+    """Declare a rule between the inputs `names`; its docstring is the sentence that a user reads."""
+    return lambda function: Requirement(function, names, remedy)
+
+
+def units(*arguments: str, returns: str | tuple[str, ...], latex: str | None = None) -> Callable[[F], F]:
+    """Declare the units in which a physics function takes its arguments and returns its result.
+
+    For functions whose inside is not dimensionally pure, such as Walther's `nu + 0.7`: the catalogue-wide
+    test of dimensions checks calls at this border. Values are in exactly these units, which must be SI
+    (or pure numbers) so that nothing needs converting in the hot path.
+    """
+
+    def mark(function: F) -> F:
+        function.border = (arguments, returns)  # type: ignore[attr-defined]
+        function.latex = latex  # type: ignore[attr-defined]
+        return function
+
+    return mark
+
+
+def by_name(declarations: Mapping[str, Any]) -> dict[str, Any]:
+    """Declarations by API name instead of by attribute.
+
+    Raises
+    ------
+    TypeError
+        If two of them make the same API name; one then needs an explicit `name=`.
+    """
+    named: dict[str, Any] = {}
+    for declaration in declarations.values():
+        if declaration.name in named:
+            raise TypeError(f"two declarations are named {declaration.name!r}; give one a name=")
+        named[declaration.name] = declaration
+    return named

@@ -1,0 +1,77 @@
+"""What can be wrong with a calculation, said so that its user can mend it.
+
+TemplateError
+    InvalidInputs       wrong inputs, all of them at once, each a `Fault`
+    UnknownTemplate     no such template or version in the catalogue
+    Unreachable         `solve` cannot reach the target within the bounds
+    FaultyText          a text that is no quantity, unit or relation
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing that is wrong: which name, a code for programs, a sentence with its remedy for people."""
+
+    name: str
+    code: str
+    detail: str
+
+    def within(self, prefix: str) -> Fault:
+        """The same fault, seen from outside: `speed` becomes `film.speed`."""
+        return replace(self, name=f"{prefix}.{self.name}")
+
+
+class TemplateError(Exception):
+    """Anything that templates refuse."""
+
+
+class InvalidInputs(TemplateError):
+    """Wrong inputs, all of them at once."""
+
+    def __init__(self, faults: Iterable[Fault]) -> None:
+        self.faults = tuple(faults)
+        super().__init__("; ".join(f"{f.name}: {f.detail}" for f in self.faults))
+
+    def __reduce__(self) -> tuple[type[InvalidInputs], tuple[tuple[Fault, ...]]]:
+        return type(self), (self.faults,)
+
+
+class UnknownTemplate(TemplateError):
+    """No such template or version in the catalogue."""
+
+    def __init__(self, name: str, detail: str) -> None:
+        self.name = name
+        super().__init__(detail)
+
+
+class Unreachable(TemplateError):
+    """The target lies outside what can be reached between the bounds, or within a jump of the formula."""
+
+    def __init__(self, name: str, detail: str, reachable: tuple[float, float], unit: str) -> None:
+        self.name, self.reachable, self.unit = name, reachable, unit
+        super().__init__(detail)
+
+
+class FaultyText(TemplateError):
+    """A text that is no quantity, unit or relation; `code` says in which way."""
+
+    def __init__(self, code: str, detail: str) -> None:
+        self.code = code
+        super().__init__(detail)
+
+    def fault(self, name: str) -> Fault:
+        """This error as a fault of the input `name`."""
+        return Fault(name, self.code, str(self))
+
+
+def unknown_name(name: str, known: Iterable[str], kind: str) -> Fault:
+    """A fault for a name that nobody declared, with the nearest that somebody did."""
+    near = get_close_matches(name, known := list(known), n=3)
+    remedy = f"did you mean {', '.join(near)}?" if near else f"known are {', '.join(known)}"
+    return Fault(name, "unknown_name", f"{kind} {name[:80]!r} is unknown; {remedy}")

@@ -1,0 +1,154 @@
+"""From what a user typed to the SI values of a template; everything that is wrong is found at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.admission import warn_if_outside
+from templates.core.declare import Array, Choice, Curve, Declaration, Derived, Given, Requirement
+from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
+from templates.core.ledger import Ledger, Mask
+from templates.core.quantity import Typed, read
+
+Input = Given | Choice | Derived[Any]
+
+if TYPE_CHECKING:
+    from templates.core.template import Template
+
+
+def read_inputs(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, Typed | str], list[Fault]]:
+    """Every input that was given, read in its unit, and what is wrong with the others."""
+    typed: dict[str, Typed | str] = {}
+    faults = [unknown_name(name, cls.inputs, "input") for name in raw if name not in cls.inputs]
+    for name, declared in cls.inputs.items():
+        if name in raw:
+            try:
+                typed[name] = _read_one(declared, raw[name])
+            except FaultyText as error:
+                faults.append(error.fault(name))
+        elif declared.required:
+            faults.append(Fault(name, "missing", f"{declared.meaning.words} is needed{_example(declared)}"))
+    return typed, faults
+
+
+def _read_one(declared: Input, raw: Any) -> Typed | str:
+    if isinstance(declared, Choice):
+        if isinstance(raw, str) and raw in declared.options:
+            return raw
+        raise FaultyText("not_an_option", f"{str(raw)[:60]!r} is none of {', '.join(declared.options)}")
+    return raw if isinstance(raw, Typed) else read(raw, declared.meaning.unit)
+
+
+def _example(declared: Input) -> str:
+    if isinstance(declared, Choice):
+        return f"; one of {', '.join(declared.options)}"
+    unit = declared.meaning.unit
+    return "" if unit == "1" else f", in {unit} or a unit of that kind"
+
+
+def admitted(
+    cls: type[Template], typed: Mapping[str, Typed | str], ledger: Ledger, faults: list[Fault]
+) -> Iterator[tuple[str, Any]]:
+    """The SI value of every input that was given or has a constant default, faults put aside."""
+    for name, declared in cls.inputs.items():
+        source = typed.get(name) or (None if isinstance(declared, Derived) else declared.default)
+        if isinstance(source, Typed):
+            yield declared.attribute, _bounded(declared, source, ledger, faults)
+        elif source is not None:
+            yield declared.attribute, source
+
+
+def _bounded(declared: Input, typed: Typed, ledger: Ledger, faults: list[Fault]) -> Any:
+    meaning, value = declared.meaning, typed.si
+    if isinstance(value, np.ndarray) != isinstance(declared, Curve) and isinstance(declared, Curve):
+        faults.append(
+            Fault(declared.name, "not_a_curve", f"{meaning.words} is a curve: give an array over the cycle")
+        )
+    inside = True if meaning.domain_si is None else meaning.domain_si.admits(value)
+    if meaning.integer:
+        inside = inside & (np.round(value) == value)
+    if isinstance(value, np.ndarray):
+        value = _mask_given(declared, value, np.asarray(inside), ledger)
+    else:
+        value = np.float64(value)
+        if not inside:
+            faults.append(_out_of_bounds(declared, typed))
+    if meaning.published_si is not None:
+        warn_if_outside(ledger, declared, value)
+    return value
+
+
+def _out_of_bounds(declared: Declaration, typed: Typed) -> Fault:
+    meaning = declared.meaning
+    shown = f"{typed.value:.6g} {typed.unit}" if typed.unit != "1" else f"{typed.value:.15g}"
+    whole = "a whole number " if meaning.integer else ""
+    return Fault(
+        declared.name,
+        "out_of_range",
+        f"{meaning.words} is {shown}; it must be {whole}{meaning.domain.text(meaning.unit)}",
+    )
+
+
+def _mask_given(declared: Declaration, value: Array, inside: NDArray[np.bool_], ledger: Ledger) -> Array:
+    if inside.all():
+        return value
+    meaning = declared.meaning
+    whole = "a whole number " if meaning.integer else ""
+    reason = f"{declared.name} must be {whole}{meaning.domain.text(meaning.unit)}"
+    ledger.masks.append(Mask((declared.attribute,), ~np.broadcast_to(inside, value.shape), reason))
+    return np.where(inside, value, np.nan)
+
+
+def as_typed(cls: type[Template], name: str, value: Any) -> Any:
+    """An SI value as if it had been typed in the declared unit."""
+    declared = cls.inputs.get(name)
+    if declared is None or isinstance(declared, Choice):
+        return value
+    si = np.asarray(value, dtype=float) if np.ndim(value) else float(value)
+    shown = declared.meaning.scale.from_si(si)
+    return Typed(shown.tolist() if isinstance(shown, np.ndarray) else shown, declared.meaning.unit, si, {})
+
+
+def check_shapes(self: Template) -> None:
+    """Refuse arrays that cannot be broadcast together.
+
+    Raises
+    ------
+    InvalidInputs
+        Naming the arrays and their shapes.
+    """
+    arrays = {n: v for n, v in vars(self).items() if isinstance(v, np.ndarray)}
+    try:
+        np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        names = {self.declarations[n].name: v.shape for n, v in arrays.items()}
+        told = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
+        detail = (
+            f"arrays of different shapes do not fit together ({told}); give equal lengths or a single value"
+        )
+        raise InvalidInputs([Fault(name, "shape", detail) for name in names]) from None
+
+
+def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
+    """The faults of inputs that break a rule; points of arrays are masked instead."""
+    holds = rule.function(self)
+    if isinstance(holds, np.ndarray):
+        if not holds.all():
+            names = tuple(self.inputs[name].attribute for name in rule.names)
+            self.ledger.masks.append(Mask(names, ~holds, f"{rule.sentence}: {rule.remedy}"))
+    elif not holds:
+        told = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in rule.names)
+        detail = f"{rule.sentence}, but {told}; {rule.remedy}"
+        yield from (Fault(name, "inconsistent", detail) for name in rule.names)
+
+
+def _shown(self: Template, declared: Declaration) -> str:
+    value = getattr(self, declared.attribute)
+    if isinstance(value, str):
+        return value
+    unit = declared.meaning.unit
+    return f"{declared.meaning.scale.from_si(value):.6g}{'' if unit == '1' else ' ' + unit}"

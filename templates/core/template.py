@@ -1,0 +1,149 @@
+"""Template: declare once what is given and what follows; everything else is derived.
+
+A template is a class in a file `<id>_v<version>.py`. Its instance holds SI values: givens as attributes,
+formulas evaluated when first asked for and then kept. The same code runs for one point and for 10⁶.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+import re
+from collections.abc import Mapping
+from typing import Any, ClassVar, NoReturn, Self
+
+import numpy as np
+
+from templates.core.admission import masked, refusal, warn_if_outside
+from templates.core.declare import (
+    Array,
+    Choice,
+    Declaration,
+    Derived,
+    Formula,
+    Given,
+    Requirement,
+    Truth,
+    by_name,
+    choice,
+    curve,
+    derived,
+    formula,
+    given,
+    require,
+    units,
+)
+from templates.core.errors import InvalidInputs
+from templates.core.intake import Input, admitted, as_typed, check_shapes, read_inputs, violations
+from templates.core.ledger import Ledger
+
+__all__ = [
+    "Array", "Template", "Truth", "choice", "curve", "derived", "formula", "given", "require", "units",
+]  # fmt: skip
+
+VERSIONED = re.compile(r"(?:^|.*\.)([a-z][a-z0-9_]*)_v([1-9][0-9]*)$")
+
+
+class Template:
+    """Base of all templates and CAD models."""
+
+    id: ClassVar[str] = ""
+    version: ClassVar[int] = 0
+    withdrawn: ClassVar[str | None] = None
+    example: ClassVar[Mapping[str, Any]] = {}
+
+    inputs: ClassVar[dict[str, Input]] = {}
+    formulas: ClassVar[dict[str, Formula[Any]]] = {}
+    requirements: ClassVar[tuple[Requirement, ...]] = ()
+    declarations: ClassVar[dict[str, Declaration]] = {}
+
+    ledger: Ledger
+
+    def __init_subclass__(cls) -> None:
+        if match := VERSIONED.match(cls.__module__):
+            cls.id, cls.version = match[1], int(match[2])
+        everything = {name: v for base in reversed(cls.__mro__) for name, v in vars(base).items()}
+        declared = {name: v for name, v in everything.items() if isinstance(v, Declaration)}
+        cls.declarations = declared
+        named = by_name(declared)
+        cls.inputs = {name: v for name, v in named.items() if isinstance(v, (Given, Choice, Derived))}
+        cls.formulas = {name: v for name, v in named.items() if name not in cls.inputs}
+        cls.requirements = tuple(v for v in everything.values() if isinstance(v, Requirement))
+
+    def __init__(self, values: Mapping[str, Any], ledger: Ledger | None = None) -> None:
+        """Take SI values by attribute, unchecked; a user's input comes in by `from_quantities`."""
+        self.__dict__.update(values)
+        self.__dict__["ledger"] = ledger or Ledger()
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"a {type(self).__name__} is a record of one calculation; make a new one")
+
+    @classmethod
+    def title(cls) -> str:
+        """The first sentence of the docstring."""
+        return cls.summary().split(". ")[0].rstrip(".")
+
+    @classmethod
+    def summary(cls) -> str:
+        """The first paragraph of the docstring, or of its module."""
+        return " ".join(cls.documentation().split("\n\n")[0].split())
+
+    @classmethod
+    def documentation(cls) -> str:
+        """The docstring of the class, or of its module."""
+        return inspect.cleandoc(cls.__dict__.get("__doc__") or inspect.getmodule(cls).__doc__ or cls.__name__)
+
+    @classmethod
+    def from_quantities(cls, raw: Mapping[str, Any]) -> Self:
+        """A template from what a user typed: read, convert to SI, check; once, before any formula runs.
+
+        Raises
+        ------
+        InvalidInputs
+            Naming all that is wrong at once.
+        """
+        typed, faults = read_inputs(cls, raw)
+        ledger = Ledger(typed=typed)
+        values = dict(admitted(cls, typed, ledger, faults))
+        if faults:
+            raise InvalidInputs(faults)
+        return cls._checked(values, ledger)
+
+    @classmethod
+    def from_si(cls, values: Mapping[str, Any]) -> Self:
+        """A template from SI values by API name, checked like a user's."""
+        return cls.from_quantities({name: as_typed(cls, name, value) for name, value in values.items()})
+
+    @classmethod
+    def _checked(cls, values: Mapping[str, Any], ledger: Ledger) -> Self:
+        self = cls(values, ledger)
+        check_shapes(self)
+        with np.errstate(all="ignore"):
+            faults = [fault for rule in cls.requirements for fault in violations(self, rule)]
+        if faults:
+            raise InvalidInputs(faults)
+        return self
+
+    @classmethod
+    def ancestors(cls, attribute: str) -> frozenset[str]:
+        """The attributes on which this one depends, directly or not, itself included."""
+        declared = cls.declarations.get(attribute)
+        uses = declared.uses if isinstance(declared, Formula) else ()
+        return frozenset({attribute}).union(*(cls.ancestors(name) for name in uses))
+
+    def inputs_si(self) -> dict[str, Any]:
+        """Every input in SI by API name, defaults included."""
+        with np.errstate(all="ignore"):
+            return {name: getattr(self, declared.attribute) for name, declared in self.inputs.items()}
+
+    def admit(self, declaration: Formula[Any], value: Any) -> Any:
+        """Check a formula's result against its bounds: refuse a point, mask points of an array, or warn."""
+        meaning = declaration.meaning
+        if isinstance(value, float):
+            if not (math.isfinite(value) and (meaning.domain_si is None or meaning.domain_si.admits(value))):
+                raise InvalidInputs([refusal(self, declaration, value)])
+        elif isinstance(value, np.ndarray) and value.dtype.kind == "f":
+            value = masked(self, declaration, value)
+        if meaning.published_si is not None:
+            warn_if_outside(self.ledger, declaration, value)
+        return value
