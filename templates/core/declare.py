@@ -197,7 +197,7 @@ class Formula(Declaration, Generic[T]):
         if obj is None:
             return self
         value = obj.__dict__[self.attribute] = obj.admit(self, self.function(obj))  # type: ignore[attr-defined]
-        return value  # type: ignore[no-any-return]
+        return value
 
     @cached_property
     def expression(self) -> ast.expr:

@@ -1,0 +1,175 @@
+"""A formula on paper, from its code: LaTeX by walking the syntax tree, MathML from the LaTeX.
+
+Calls of physics functions are written out where they are one expression, or by the LaTeX they carry.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from typing import Any
+
+import latex2mathml.converter
+
+from templates.core.declare import Declaration, Formula
+from templates.core.quantity import registry
+from templates.core.syntax import returned, syntax
+from templates.core.template import Template
+
+SUM, PRODUCT, POWER, ATOM = range(4)
+Written = tuple[str, int]  # LaTeX, and how tightly its outermost operation binds
+
+_GREEK = {
+    "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "pi",
+    "rho", "sigma", "tau", "phi", "psi", "omega",
+}  # fmt: skip
+_SPECIAL = {"eps": r"\varepsilon"}
+_FUNCTIONS = {"log10": r"\lg", "log": r"\ln", "exp": r"\exp", "sin": r"\sin", "cos": r"\cos", "tan": r"\tan"}
+
+
+def symbol(declared: Declaration) -> str:
+    """The symbol on paper: as declared, else from the attribute, as `nu_1` → `\\nu_{1}`."""
+    return declared.meaning.symbol or _from_attribute(declared.attribute)
+
+
+def _from_attribute(attribute: str) -> str:
+    head, _, index = attribute.partition("_")
+    letter = _SPECIAL.get(head) or (f"\\{head}" if head in _GREEK else head)
+    if not index:
+        return letter if len(head) == 1 or letter != head else rf"\mathrm{{{head}}}"
+    subscript = index if len(index) == 1 else rf"\mathrm{{{index}}}"
+    return f"{letter}_{{{subscript}}}"
+
+
+def number(value: float) -> str:
+    """A number with five significant digits, as LaTeX."""
+    mantissa, _, exponent = f"{value:.5g}".partition("e")
+    return rf"{mantissa}\,\cdot 10^{{{int(exponent)}}}" if exponent else mantissa
+
+
+def unit_symbol(text: str) -> str:
+    """A unit as it is printed: `mm**2/s` → `mm²/s`; nothing for a pure number."""
+    return "" if text == "1" else f"{registry.Unit(text):~P}"
+
+
+def amount(value: float, unit: str) -> str:
+    """A number with its unit, as LaTeX."""
+    printed = unit_symbol(unit)
+    return number(value) + (rf"\,\text{{{printed}}}" if printed else "")
+
+
+def expression(formula: Formula[Any], symbols: Mapping[str, str], times: str = r"\,") -> str:
+    """The right-hand side of a formula, as LaTeX, with the given symbols (or numbers) for its names."""
+    if formula.latex is not None:
+        return formula.latex
+    attributes = {
+        name: (text, PRODUCT if r"\," in text or "cdot" in text else ATOM) for name, text in symbols.items()
+    }
+    return Writer(formula.function.__globals__, attributes, {}, times).write(formula.expression)[0]
+
+
+def symbols(cls: type[Template]) -> dict[str, str]:
+    """The symbol of every declaration, by attribute."""
+    return {attribute: symbol(declared) for attribute, declared in cls.declarations.items()}
+
+
+@lru_cache(maxsize=4096)
+def mathml(latex: str) -> str:
+    """LaTeX as MathML that browsers draw themselves."""
+    return latex2mathml.converter.convert(latex)
+
+
+class Writer:
+    """Writes expressions; `attributes` stand for `self.x`, `names` for a physics function's arguments."""
+
+    def __init__(
+        self,
+        scope: Mapping[str, Any],
+        attributes: Mapping[str, Written],
+        names: Mapping[str, Written],
+        times: str,
+    ) -> None:
+        self.scope, self.attributes, self.names, self.times = scope, attributes, names, times
+
+    def write(self, node: ast.expr) -> Written:
+        """The LaTeX of a node.
+
+        Raises
+        ------
+        TypeError
+            For syntax that has no place in a formula.
+        """
+        match node:
+            case ast.Constant(value=int() | float() as value):
+                return number(value), ATOM
+            case ast.Attribute(value=ast.Name(id="self"), attr=name):
+                return self.attributes[name]
+            case ast.Attribute(attr="pi") | ast.Name(id="pi"):
+                return r"\pi", ATOM
+            case ast.Name(id=name):
+                return self.names.get(name) or self._constant(name)
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return f"-{self._in(operand, PRODUCT)}", SUM
+            case ast.BinOp():
+                return self._operation(node)
+            case ast.Call():
+                return self._call(node)
+        raise TypeError(f"{ast.unparse(node)!r} has no place in a formula; move it to a physics function")
+
+    def _in(self, node: ast.expr, tightness: int) -> str:
+        """The LaTeX of a node, in parentheses where it binds more loosely than its place needs."""
+        text, own = self.write(node)
+        return text if own >= tightness else rf"\left({text}\right)"
+
+    def _operation(self, node: ast.BinOp) -> Written:
+        match node.op:
+            case ast.Div():
+                return rf"\frac{{{self.write(node.left)[0]}}}{{{self.write(node.right)[0]}}}", PRODUCT
+            case ast.Pow():
+                return f"{self._in(node.left, ATOM)}^{{{self.write(node.right)[0]}}}", POWER
+            case ast.Mult():
+                return f"{self._in(node.left, PRODUCT)}{self.times}{self._in(node.right, PRODUCT)}", PRODUCT
+            case ast.Add():
+                return f"{self._in(node.left, SUM)}+{self._in(node.right, SUM)}", SUM
+            case ast.Sub():
+                return f"{self._in(node.left, SUM)}-{self._in(node.right, PRODUCT)}", SUM
+        raise TypeError(f"{ast.unparse(node)!r} has no place in a formula")
+
+    def _call(self, node: ast.Call) -> Written:
+        name = node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
+        if name in ("sqrt", "abs"):
+            inside = self.write(node.args[0])[0]
+            return (rf"\sqrt{{{inside}}}" if name == "sqrt" else rf"\left|{inside}\right|"), ATOM
+        if name in _FUNCTIONS:
+            return rf"{_FUNCTIONS[name]}\left({self.write(node.args[0])[0]}\right)", ATOM
+        return self._physics(name, [self.write(argument) for argument in node.args])
+
+    def _physics(self, name: str, arguments: list[Written]) -> Written:
+        function = self.scope.get(name)
+        latex = getattr(function, "latex", None)
+        if latex:
+            return latex.format(*(text for text, _ in arguments)), PRODUCT
+        body = _one_expression(function) if callable(function) else None
+        if function is None or body is None:
+            listed = ", ".join(text for text, _ in arguments)
+            words = name.replace("_", r"\ ")
+            return rf"\operatorname{{{words}}}\left({listed}\right)", ATOM
+        parameters = [argument.arg for argument in syntax(function).args.args]
+        names = dict(zip(parameters, arguments, strict=False))
+        return Writer(function.__globals__, {}, names, self.times).write(body)
+
+    def _constant(self, name: str) -> Written:
+        value = self.scope.get(name)
+        if isinstance(value, (int, float)) and math.isfinite(value):
+            return number(value), ATOM
+        return rf"\mathrm{{{name}}}", ATOM
+
+
+def _one_expression(function: Callable[..., Any]) -> ast.expr | None:
+    """What a function returns, if returning it is all it does."""
+    try:
+        return returned(function)
+    except (TypeError, OSError):
+        return None

@@ -1,0 +1,72 @@
+"""The lines of a calculation report: symbol = expression = numbers = result, for every formula used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.declare import Choice
+from templates.core.mathml import amount, expression, mathml, symbol, symbols
+from templates.core.template import Template
+
+
+@dataclass(frozen=True)
+class Row:
+    """One formula on paper; `numbers` and `result` are empty where an array has no single value."""
+
+    name: str
+    words: str
+    symbol: str
+    expression: str
+    numbers: str
+    result: str
+    source: str | None
+
+    @property
+    def latex(self) -> str:
+        """The whole line as LaTeX."""
+        return "=".join(part for part in (self.symbol, self.expression, self.numbers, self.result) if part)
+
+    @property
+    def mathml(self) -> str:
+        """The whole line as MathML."""
+        return mathml(self.latex)
+
+
+def rows(template: Template) -> Iterator[Row]:
+    """The report lines of every formula that the template has evaluated so far."""
+    cls = type(template)
+    names = symbols(cls)
+    values = {attribute: _shown(template, attribute) for attribute in cls.declarations}
+    result = {attribute: _shown(template, attribute, absolute=True) for attribute in cls.declarations}
+    for formula in cls.formulas.values():
+        if formula.attribute in vars(template):
+            complete = all(values[used] for used in formula.uses)
+            yield Row(
+                name=formula.name,
+                words=formula.meaning.words,
+                symbol=symbol(formula),
+                expression=expression(formula, names),
+                numbers=expression(formula, values, r"\cdot ") if complete and formula.latex is None else "",
+                result=result[formula.attribute],
+                source=formula.meaning.source,
+            )
+
+
+def _shown(template: Template, attribute: str, *, absolute: bool = False) -> str:
+    """The value of a declaration with its unit, as LaTeX; empty where it has none or is an array.
+
+    A temperature inside an expression stands in kelvin: only there do sums and ratios hold.
+    """
+    declared = template.declarations[attribute]
+    if isinstance(declared, Choice):
+        return rf"\text{{{getattr(template, attribute)}}}"
+    value = vars(template).get(attribute)
+    if value is None or isinstance(value, np.ndarray):
+        return ""
+    scale = declared.meaning.scale
+    if scale.absolute and not absolute:
+        return amount(float(value), "K")
+    return amount(float(scale.from_si(value)), scale.text)

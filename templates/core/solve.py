@@ -1,0 +1,220 @@
+"""Find the input that gives a wanted output: scan between bounds, then close in on the crossing.
+
+The scan is one array call, so a formula that is not monotone, or jumps, is seen and said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from templates.core.declare import Choice, Curve, Formula
+from templates.core.errors import Fault, FaultyText, InvalidInputs, Unreachable, unknown_name
+from templates.core.evaluate import Evaluation, evaluate
+from templates.core.intake import Input
+from templates.core.ledger import Notice
+from templates.core.quantity import Typed, read
+from templates.core.template import Template
+
+SAMPLES = 513  # of the scan; finer than any feature of a fit, cheap as one array call
+JUMP = 1e-6  # relative residual at a crossing beyond which it is a jump, not a solution
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The value found [declared unit of the unknown], and the evaluation there."""
+
+    unknown: float
+    unit: str
+    evaluation: Evaluation
+    warnings: list[Notice]
+
+
+def solve(
+    cls: type[Template],
+    raw: Mapping[str, Any],
+    unknown: str,
+    bounds: Sequence[Any],
+    target: Mapping[str, Any],
+    **options: Any,
+) -> Solution:
+    """Find the input `unknown` between `bounds` for which the one output in `target` has its value.
+
+    `options` go to `evaluate`. Where several solutions exist the lowest is returned and a warning tells of
+    the others.
+
+    Raises
+    ------
+    InvalidInputs
+        If anything of the question is wrong.
+    Unreachable
+        If no value between the bounds gives the target, with the range that is reachable.
+    """
+    declared, (low, high), formula, wanted = _question(cls, raw, unknown, bounds, target)
+    curve = _Curve(cls, dict(raw), declared, formula, wanted)
+    grid = _grid(low, high)
+    residual = curve.residual(grid)
+    roots = curve.roots(grid, residual)
+    if not roots:
+        raise curve.unreachable(grid, residual)
+    unit = declared.meaning.unit
+    found = float(declared.meaning.scale.from_si(roots[0]))
+    evaluation = evaluate(cls, {**raw, unknown: {"value": found, "unit": unit}}, **options)
+    return Solution(
+        found, unit, evaluation, [*_not_monotone(declared, formula, residual), *_others(declared, roots)]
+    )
+
+
+def _question(
+    cls: type[Template],
+    raw: Mapping[str, Any],
+    unknown: str,
+    bounds: Sequence[Any],
+    target: Mapping[str, Any],
+) -> tuple[Input, tuple[float, float], Formula[Any], float]:
+    """The declarations and SI values that the question is about; everything wrong with it at once."""
+    faults: list[Fault] = []
+    declared, formula = cls.inputs.get(unknown), None
+    if declared is None or isinstance(declared, (Choice, Curve)):
+        faults.append(unknown_name(unknown, cls.inputs, "unknown input").within("unknown"))
+    if unknown in raw:
+        faults.append(Fault(f"inputs.{unknown}", "solved_for", "this input is solved for; leave it out"))
+    ends = _ends(declared, bounds, faults) if declared and not isinstance(declared, Choice) else (0.0, 1.0)
+    wanted = 0.0
+    if len(target) != 1:
+        faults.append(Fault("target", "one_output", "name exactly one output and its wanted value"))
+    for name, value in list(target.items())[:1]:
+        formula = cls.formulas.get(name)
+        if formula is None:
+            faults.append(unknown_name(name, cls.formulas, "output").within("target"))
+        else:
+            wanted = _scalar(value, formula.meaning.unit, f"target.{name}", faults)
+    faults += _faulty_inputs(cls, raw, unknown, declared, ends)
+    if faults or declared is None or formula is None:
+        raise InvalidInputs(faults)
+    return declared, ends, formula, wanted
+
+
+def _ends(declared: Input, bounds: Sequence[Any], faults: list[Fault]) -> tuple[float, float]:
+    if len(bounds) != 2:
+        faults.append(Fault("bounds", "two_values", "give the lowest and the highest value to try"))
+        return 0.0, 1.0
+    low, high = (_scalar(end, declared.meaning.unit, "bounds", faults) for end in bounds)
+    if not low < high:
+        faults.append(Fault("bounds", "not_ascending", "the first bound must be below the second"))
+    return low, high
+
+
+def _scalar(raw: Any, unit: str, name: str, faults: list[Fault]) -> float:
+    try:
+        typed = read(raw, unit)
+        if np.ndim(typed.si):
+            raise FaultyText("not_a_number", "one value is wanted here, not an array")
+        return float(typed.si)
+    except FaultyText as error:
+        faults.append(error.fault(name))
+        return np.nan
+
+
+def _faulty_inputs(
+    cls: type[Template],
+    raw: Mapping[str, Any],
+    unknown: str,
+    declared: Input | None,
+    ends: tuple[float, float],
+) -> list[Fault]:
+    """What is wrong with the other inputs, seen with the unknown in the middle of its bounds."""
+    if declared is None or isinstance(declared, Choice) or not np.all(np.isfinite(ends)):
+        probe: dict[str, Any] = {}
+    else:
+        probe = {unknown: _typed(declared, np.array(ends))}
+    try:
+        cls.from_quantities({**raw, **probe})
+    except InvalidInputs as error:
+        return [fault.within("inputs") for fault in error.faults if fault.name != unknown or probe]
+    arrays = [name for name, value in raw.items() if isinstance(value, list) or _has_array(value)]
+    return [Fault(f"inputs.{n}", "not_a_number", "solve takes single values, not arrays") for n in arrays]
+
+
+def _has_array(value: Any) -> bool:
+    return isinstance(value, Mapping) and isinstance(value.get("value"), list)
+
+
+def _typed(declared: Input, si: NDArray[np.float64]) -> Typed:
+    return Typed(None, declared.meaning.unit, si, {})
+
+
+def _grid(low: float, high: float) -> NDArray[np.float64]:
+    """Samples between the bounds: even in the logarithm where both are positive and far apart."""
+    if low > 0 and high / low > 10:
+        return np.geomspace(low, high, SAMPLES)
+    return np.linspace(low, high, SAMPLES)
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """The output as a function of the unknown, both in SI."""
+
+    cls: type[Template]
+    raw: dict[str, Any]
+    declared: Input
+    formula: Formula[Any]
+    wanted: float
+
+    def residual(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Output minus target [SI] at these values of the unknown; NaN where the template refuses."""
+        typed = _typed(self.declared, values)
+        evaluation = evaluate(self.cls, {**self.raw, self.declared.name: typed}, outputs=[self.formula.name])
+        answer = evaluation.outputs[self.formula.name].value
+        si = self.formula.meaning.scale.to_si(np.asarray(answer, dtype=float))
+        return np.broadcast_to(si - self.wanted, values.shape)
+
+    def roots(self, grid: NDArray[np.float64], residual: NDArray[np.float64]) -> list[float]:
+        """Every crossing of the target, closed in to rounding; jumps across it are none."""
+        exact = [float(grid[i]) for i in np.flatnonzero(residual == 0)]
+        with np.errstate(invalid="ignore"):
+            change = np.flatnonzero(residual[:-1] * residual[1:] < 0)
+        closed = (float(brentq(self._at, grid[i], grid[i + 1], xtol=1e-300, rtol=4e-15)) for i in change)
+        size = max(abs(self.wanted), float(np.nanmax(np.abs(residual))) * JUMP)
+        return sorted([*exact, *(root for root in closed if abs(self._at(root)) <= JUMP * size)])
+
+    def _at(self, value: float) -> float:
+        return float(self.residual(np.array([value]))[0])
+
+    def unreachable(self, grid: NDArray[np.float64], residual: NDArray[np.float64]) -> Unreachable:
+        """The error that tells what can be reached between the bounds, and why the target cannot."""
+        meaning, name = self.formula.meaning, self.formula.name
+        if np.isnan(residual).all():
+            detail = f"{name} has no value anywhere between the bounds; give other bounds or inputs"
+            return Unreachable(name, detail, (np.nan, np.nan), meaning.unit)
+        ends = np.nanmin(residual) + self.wanted, np.nanmax(residual) + self.wanted
+        low, high = (float(meaning.scale.from_si(end)) for end in ends)
+        shown = f"{low:.6g} … {high:.6g} {meaning.unit}"
+        target = f"{float(meaning.scale.from_si(self.wanted)):.6g} {meaning.unit}"
+        if low < float(meaning.scale.from_si(self.wanted)) < high:
+            detail = f"{target} lies in a jump of {name}: this version is not monotone, as published"
+        else:
+            detail = f"{target} is out of reach: between the bounds {name} is {shown}"
+        return Unreachable(name, detail, (low, high), meaning.unit)
+
+
+def _not_monotone(declared: Input, formula: Formula[Any], residual: NDArray[np.float64]) -> list[Notice]:
+    steps = np.diff(residual[np.isfinite(residual)])
+    if (steps >= 0).all() or (steps <= 0).all():
+        return []
+    detail = f"{formula.name} is not monotone in {declared.name} between the bounds, as published"
+    return [Notice("not_monotone", declared.name, detail)]
+
+
+def _others(declared: Input, roots: list[float]) -> list[Notice]:
+    if len(roots) == 1:
+        return []
+    unit = declared.meaning.unit
+    others = ", ".join(f"{declared.meaning.scale.from_si(root):.6g} {unit}" for root in roots[1:5])
+    detail = f"{others} give the target too; the lowest is returned"
+    return [Notice("several_solutions", declared.name, detail)]
