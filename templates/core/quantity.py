@@ -174,6 +174,29 @@ def read(raw: Any, declared: str) -> Typed:
     raise _no_quantity(raw, declared)
 
 
+def read_any(raw: Any) -> Typed:
+    """Read a quantity of whatever kind its own unit says.
+
+    Raises
+    ------
+    FaultyText
+        With a code and a remedy.
+    """
+    return read(raw, _own_unit(raw))
+
+
+def _own_unit(raw: Any) -> str:
+    match raw:
+        case str():
+            match = _QUANTITY_PATTERN.fullmatch(raw) if len(raw) <= _LONGEST_TEXT else None
+            return (match[2] if match else None) or "1"
+        case {"unit": str() as name}:
+            return name
+        case [first, *_]:
+            return _own_unit(first)
+    return "1"
+
+
 def _read_text(text: str, declared: str) -> Typed:
     match = _QUANTITY_PATTERN.fullmatch(text) if len(text) <= _LONGEST_TEXT else None
     if match is None:
