@@ -1,0 +1,17 @@
+"""Which models there are: every `<id>_v<version>.py` in the built-in folder and in those of a team."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from cad.model import CadModel
+from templates.core.catalogue import Catalogue, find
+
+BUILT_IN = Path(__file__).parent / "models"
+
+
+@cache
+def models(*folders: Path) -> Catalogue[CadModel]:
+    """The built-in models and those in further folders."""
+    return find((BUILT_IN, *folders), CadModel, "model")

@@ -1,0 +1,96 @@
+"""Whether a finished solid is the one that was asked for. OpenCASCADE calls wrong solids valid; these do not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isclose, isfinite
+
+from cad.errors import GeometryError
+from cad.inspect import Measured
+from cad.model import Box, CadModel, Part
+from cad.step import Body
+from cad.surfaces import Seen
+
+_BOX_TOLERANCE = 1e-5  # [mm]; the kernel's own boxes of cut faces are good to some 1e-7
+_DIMENSION_TOLERANCE = 1e-6  # in the declared unit: 1 nm of a length in mm
+
+
+def check_bodies(
+    model: CadModel, parts: Sequence[Part], bodies: Sequence[Body], measured: Sequence[Measured]
+) -> None:
+    """Every part is there as often as drawn, and is one valid solid of the volume of its closed form.
+
+    Raises
+    ------
+    GeometryError
+        `not_one_solid`, `invalid_solid`, `not_finite` or `volume`.
+    """
+    wanted = {part.name: len(part.places) for part in parts}
+    found = {body.name: len(body.places) for body in bodies}
+    if wanted != found:
+        raise GeometryError(
+            "not_one_solid", f"{model.id} should have the parts {wanted}; the file has {found}", model.inputs
+        )
+    by_name = {part.name: part for part in parts}
+    for body, one in zip(bodies, measured, strict=True):
+        _check_body(model, by_name[body.name], one)
+
+
+def check_box(model: CadModel, found: Box) -> None:
+    """The parts together fill the box that they should.
+
+    Raises
+    ------
+    GeometryError
+        `bounding_box`.
+    """
+    wanted = model.bounding_box()
+    pairs = zip((*wanted.low, *wanted.high), (*found.low, *found.high), strict=True)
+    if not all(isclose(a, b, rel_tol=1e-9, abs_tol=_BOX_TOLERANCE) for a, b in pairs):
+        detail = f"{model.id} should fill the box {_box(wanted)}; it fills {_box(found)}"
+        raise GeometryError("bounding_box", detail, model.inputs)
+
+
+def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, float]:
+    """Every parameter that the solid shows is the one requested; returns them as read back, by API name.
+
+    Raises
+    ------
+    GeometryError
+        `dimension`, naming the parameters that are not as requested.
+    """
+    try:
+        found = {name: round(value, 9) for name, value in model.dimensions(seen).items()}
+    except LookupError as error:
+        detail = f"{model.id} does not show the surfaces from which its dimensions are read ({error})"
+        raise GeometryError("dimension", detail, model.inputs) from error
+    wanted = {name: _requested(model, name) for name in found}
+    wrong = {n: v for n, v in found.items() if not isclose(v, wanted[n], rel_tol=1e-12, abs_tol=_DIMENSION_TOLERANCE)}
+    if wrong:
+        unit = {name: model.inputs[name].meaning.unit for name in wrong}
+        told = (f"{n} should be {wanted[n]:.9g} {unit[n]}, it is {v:.9g} {unit[n]}" for n, v in wrong.items())
+        raise GeometryError("dimension", "; ".join(told), wrong)
+    return found
+
+
+def _check_body(model: CadModel, part: Part, one: Measured) -> None:
+    def refuse(code: str, detail: str) -> GeometryError:
+        return GeometryError(code, f"{part.name} of {model.id} {detail}", part.shaped_by or model.inputs)
+
+    if one.solids != 1:
+        raise refuse("not_one_solid", f"should be one solid; it is {one.solids}")
+    if not one.valid:
+        raise refuse("invalid_solid", "is no valid solid: its faces do not close or cross each other")
+    if not (isfinite(one.volume) and isfinite(part.volume)):
+        raise refuse("not_finite", f"has no finite volume (expected {part.volume} mm³, found {one.volume} mm³)")
+    if not isclose(one.volume, part.volume, rel_tol=part.tolerance):
+        raise refuse("volume", f"should have a volume of {part.volume:.9g} mm³; it has {one.volume:.9g} mm³")
+
+
+def _requested(model: CadModel, name: str) -> float:
+    declared = model.inputs[name]
+    return float(declared.meaning.scale.from_si(getattr(model, declared.attribute)))
+
+
+def _box(box: Box) -> str:
+    return " × ".join(f"{low:.7g}…{high:.7g}" for low, high in zip(box.low, box.high, strict=True)) + " mm"

@@ -1,0 +1,28 @@
+"""What can go wrong with a shape after its parameters were found to be in order.
+
+Wrong parameters are refused earlier, as `templates.core.errors.InvalidInputs`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+class GeometryError(Exception):
+    """The kernel made no solid, or not the one that was asked for.
+
+    `code` is one of `not_finite`, `not_one_solid`, `invalid_solid`, `bounding_box`, `volume`, `dimension`,
+    `kernel`; `parameters` are the API names of the parameters concerned. It survives pickling, because it
+    is raised in a worker process.
+    """
+
+    def __init__(self, code: str, detail: str, parameters: Iterable[str] = ()) -> None:
+        self.code, self.detail, self.parameters = code, detail, tuple(parameters)
+        super().__init__(code, detail, self.parameters)
+
+    def __str__(self) -> str:
+        return self.detail
+
+
+class UnreadableStep(ValueError):
+    """Bytes that are no STEP file, or one without a shape."""

@@ -1,0 +1,1 @@
+"""The built-in models, one file each: `<id>_v<version>.py`."""

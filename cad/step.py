@@ -1,0 +1,158 @@
+"""STEP (AP242): parts to bytes that are the same for the same parts, and back to bodies with names and colours.
+
+The kernel's writer leaves three marks of its process in a file: the time, its name as author, and a counter of
+assembly usages. The header is therefore written by `cad.header`, and the counter begins at 1.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from itertools import count
+from typing import Any
+
+from cadquery import Location, Shape
+from OCP.IFSelect import IFSelect_ReturnStatus
+from OCP.Interface import Interface_Static
+from OCP.Message import Message
+from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
+from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Reader, STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_StepModelType
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label, TDF_LabelSequence
+from OCP.TDocStd import TDocStd_Document
+from OCP.XCAFApp import XCAFApp_Application
+from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+from OCP.XSControl import XSControl_WorkSession
+
+from cad.errors import UnreadableStep
+from cad.header import Header, write_header
+from cad.model import STEEL, Colour, Part
+
+SCHEMA = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }"
+KERNEL = f"CadQuery {version('cadquery')}, Open CASCADE {version('cadquery-ocp')}"
+
+STEPCAFControl_Controller.Init_s()  # the writer's settings exist only from here on
+Message.DefaultMessenger_s().ChangePrinters().Clear()  # what is wrong is raised, not printed
+
+_USAGE = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\(')\d+'")
+
+
+@dataclass(frozen=True)
+class Body:
+    """A part as it is found in a STEP file: its shape in its own coordinates, and where it stands."""
+
+    name: str
+    shape: Shape
+    colour: Colour
+    places: tuple[Location, ...]
+
+
+def write_step(parts: Sequence[Part], header: Header) -> bytes:
+    """The parts as an assembly, in millimetres, with product names and colours; equal bytes for equal parts."""
+    Interface_Static.SetCVal_s("write.step.schema", "AP242DIS")
+    Interface_Static.SetCVal_s("write.step.unit", "MM")
+    writer = STEPCAFControl_Writer(XSControl_WorkSession(), False)
+    document = _new_document()
+    _fill(document, header.model, parts)
+    stream = io.BytesIO()
+    if not writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
+        raise RuntimeError("the kernel could not translate the parts to STEP")
+    if writer.WriteStream(stream) != IFSelect_ReturnStatus.IFSelect_RetDone:
+        raise RuntimeError("the kernel could not write the STEP file")
+    return _reproducible(stream.getvalue().decode("latin-1"), header).encode("latin-1")
+
+
+def read_step(step: bytes) -> tuple[Body, ...]:
+    """The bodies in a STEP file, each once, in the order of the file.
+
+    Raises
+    ------
+    UnreadableStep
+        If the bytes are no STEP file or hold no shape.
+    """
+    reader = STEPCAFControl_Reader()
+    document = _new_document()
+    if reader.ReadStream("model.step", io.BytesIO(step)) != IFSelect_ReturnStatus.IFSelect_RetDone:
+        raise UnreadableStep("this is no STEP file")
+    if not reader.Transfer(document):
+        raise UnreadableStep("this STEP file holds no shape")
+    return tuple(_bodies(document))
+
+
+def _reproducible(text: str, header: Header) -> str:
+    """The kernel's text with our header, and with assembly usages counted from 1."""
+    data = text[text.index("ENDSEC;") + len("ENDSEC;") :]
+    number = count(1)
+    data = _USAGE.sub(lambda usage: f"{usage[1]}{next(number)}'", data)
+    return f"ISO-10303-21;\n{write_header(header, SCHEMA, KERNEL)}{data}"
+
+
+def _new_document() -> TDocStd_Document:
+    document = TDocStd_Document(TCollection_ExtendedString("XmlOcaf"))
+    XCAFApp_Application.GetApplication_s().InitDocument(document)
+    return document
+
+
+def _fill(document: TDocStd_Document, title: str, parts: Sequence[Part]) -> None:
+    shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    colours = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
+    shapes.SetAutoNaming_s(False)
+    assembly = _named(shapes.NewShape(), title)
+    for part in parts:
+        product = _named(shapes.NewShape(), part.name)
+        shapes.SetShape(product, part.shape.wrapped)
+        colour = Quantity_Color(*part.colour, Quantity_TypeOfColor.Quantity_TOC_sRGB)
+        colours.SetColor(product, colour, XCAFDoc_ColorType.XCAFDoc_ColorGen)
+        for name, place in zip(part.names, part.places, strict=True):
+            _named(shapes.AddComponent(assembly, product, place.wrapped), name)
+    shapes.UpdateAssemblies()
+
+
+def _named(label: TDF_Label, name: str) -> TDF_Label:
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
+    return label
+
+
+def _bodies(document: TDocStd_Document) -> Iterator[Body]:
+    shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    colours = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
+    roots = TDF_LabelSequence()
+    shapes.GetFreeShapes(roots)
+    names: dict[Shape, str] = {}
+    places: dict[Shape, list[Location]] = {}
+    for root in roots:
+        for label, place in _instances(root, Location()):
+            shape = Shape.cast(XCAFDoc_ShapeTool.GetShape_s(label))
+            names[shape] = _name(label)
+            places.setdefault(shape, []).append(place)
+    for shape, name in names.items():
+        yield Body(name, shape, _colour(colours, shape), tuple(places[shape]))
+
+
+def _instances(label: TDF_Label, place: Location) -> Iterator[tuple[TDF_Label, Location]]:
+    """The products below a label that are no assemblies, each time that they are used."""
+    components = TDF_LabelSequence()
+    if not XCAFDoc_ShapeTool.GetComponents_s(label, components):
+        yield label, place
+    for component in components:
+        product = TDF_Label()
+        XCAFDoc_ShapeTool.GetReferredShape_s(component, product)
+        yield from _instances(product, place * Location(XCAFDoc_ShapeTool.GetLocation_s(component)))
+
+
+def _name(label: TDF_Label) -> str:
+    name = TDataStd_Name()
+    return name.Get().ToExtString() if label.FindAttribute(TDataStd_Name.GetID_s(), name) else ""
+
+
+def _colour(colours: Any, shape: Shape) -> Colour:
+    colour = Quantity_Color()
+    kinds = (XCAFDoc_ColorType.XCAFDoc_ColorSurf, XCAFDoc_ColorType.XCAFDoc_ColorGen)
+    if not any(colours.GetColor(shape.wrapped, kind, colour) for kind in kinds):
+        return STEEL
+    return tuple(colour.Values(Quantity_TypeOfColor.Quantity_TOC_sRGB))

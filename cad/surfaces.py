@@ -1,0 +1,82 @@
+"""What a finished solid shows of itself: its planes, cylinders and spheres, from which dimensions are read back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from cadquery import Shape, Vector
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
+
+X, Y, Z = Vector(1, 0, 0), Vector(0, 1, 0), Vector(0, 0, 1)
+
+_COINCIDENT = 1e-6  # [mm], and as the sine of an angle: ten times the kernel's own precision
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A plane or a cylinder: a point on it or on its axis, its normal or axis, its diameter unless it is flat."""
+
+    point: Vector
+    direction: Vector
+    diameter: float = 0.0  # [mm]
+
+    def along(self, axis: Vector) -> bool:
+        """Whether the surface's direction is that of the axis, either way round."""
+        return bool(self.direction.cross(axis).Length < _COINCIDENT)
+
+    def about(self, axis: Vector) -> bool:
+        """Whether the surface turns about that axis through the origin."""
+        return self.along(axis) and bool(self.point.cross(axis).Length < _COINCIDENT)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """The surfaces of one part, in its own coordinates, and how many of it there are."""
+
+    count: int
+    planes: tuple[Surface, ...]
+    cylinders: tuple[Surface, ...]
+    spheres: tuple[float, ...]  # diameters [mm]
+
+    def levels(self, axis: Vector) -> list[float]:
+        """Where planes cross the axis at a right angle [mm], ascending."""
+        return _distinct(plane.point.dot(axis) for plane in self.planes if plane.along(axis))
+
+    def length(self, axis: Vector) -> float:
+        """From the first to the last plane across the axis [mm]."""
+        levels = self.levels(axis)
+        return levels[-1] - levels[0]
+
+    def diameters(self, axis: Vector) -> list[float]:
+        """Diameters of the cylinders about the axis [mm], ascending."""
+        return _distinct(cylinder.diameter for cylinder in self.cylinders if cylinder.about(axis))
+
+
+def look(solid: Shape, count: int = 1) -> Seen:
+    """Look at every face of a solid of which there are `count`."""
+    adaptors = [BRepAdaptor_Surface(face.wrapped) for face in solid.Faces()]
+    of = {kind: [a for a in adaptors if a.GetType() == kind] for kind in set(a.GetType() for a in adaptors)}
+    return Seen(
+        count,
+        planes=tuple(_surface(a.Plane().Axis()) for a in of.get(Kind.GeomAbs_Plane, ())),
+        cylinders=tuple(_cylinder(a.Cylinder()) for a in of.get(Kind.GeomAbs_Cylinder, ())),
+        spheres=tuple(2 * a.Sphere().Radius() for a in of.get(Kind.GeomAbs_Sphere, ())),
+    )
+
+
+def _cylinder(cylinder: Any) -> Surface:
+    return _surface(cylinder.Axis(), 2 * cylinder.Radius())
+
+
+def _surface(axis: Any, diameter: float = 0.0) -> Surface:
+    return Surface(Vector(axis.Location()), Vector(axis.Direction()), diameter)
+
+
+def _distinct(values: Iterable[float]) -> list[float]:
+    """Values in ascending order, those that coincide once."""
+    ordered = sorted(values)
+    return ordered[:1] + [high for low, high in pairwise(ordered) if high - low > _COINCIDENT]
