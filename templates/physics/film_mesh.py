@@ -75,10 +75,7 @@ def journal_mesh(eps: float, ratio: float, n: int, m: int) -> Mesh:
 
 def ring_mesh(eps: float, ratio: float, n: int, m: int) -> Mesh:
     """Mesh of the whole circle; its first and last nodes are the same place."""
-    mesh = _mesh(eps, ratio, n, m, np.pi)
-    slope = mesh.weight_phi / gregory(n)
-    slope[[0, -1]] /= 2
-    return Mesh(mesh.phi, mesh.zeta, slope, mesh.weight_zeta)
+    return _mesh(eps, ratio, n, m, np.pi)
 
 
 def land_mesh(start: float, end: float, n: int, m: int) -> Mesh:
