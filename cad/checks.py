@@ -1,4 +1,4 @@
-"""Whether a finished solid is the one that was asked for. OpenCASCADE calls wrong solids valid; these do not."""
+"""Whether a finished solid is the one asked for: OpenCASCADE calls wrong solids valid, these do not."""
 
 from __future__ import annotations
 
@@ -65,7 +65,11 @@ def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, flo
         detail = f"{model.id} does not show the surfaces from which its dimensions are read ({error})"
         raise GeometryError("dimension", detail, model.inputs) from error
     wanted = {name: _requested(model, name) for name in found}
-    wrong = {n: v for n, v in found.items() if not isclose(v, wanted[n], rel_tol=1e-12, abs_tol=_DIMENSION_TOLERANCE)}
+    wrong = {
+        n: v
+        for n, v in found.items()
+        if not isclose(v, wanted[n], rel_tol=1e-12, abs_tol=_DIMENSION_TOLERANCE)
+    }
     if wrong:
         unit = {name: model.inputs[name].meaning.unit for name in wrong}
         told = (f"{n} should be {wanted[n]:.9g} {unit[n]}, it is {v:.9g} {unit[n]}" for n, v in wrong.items())
@@ -82,7 +86,9 @@ def _check_body(model: CadModel, part: Part, one: Measured) -> None:
     if not one.valid:
         raise refuse("invalid_solid", "is no valid solid: its faces do not close or cross each other")
     if not (isfinite(one.volume) and isfinite(part.volume)):
-        raise refuse("not_finite", f"has no finite volume (expected {part.volume} mm³, found {one.volume} mm³)")
+        raise refuse(
+            "not_finite", f"has no finite volume (expected {part.volume} mm³, found {one.volume} mm³)"
+        )
     if not isclose(one.volume, part.volume, rel_tol=part.tolerance):
         raise refuse("volume", f"should have a volume of {part.volume:.9g} mm³; it has {one.volume:.9g} mm³")
 

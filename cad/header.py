@@ -1,8 +1,8 @@
 """The header of a STEP file, in which a model says what it is: its id, version, parameters and build.
 
-Written and read as ISO 10303-21 says: a quote is doubled, a backslash too, what is not ASCII is written as \\X2\\…\\X0\\,
-and no string of FILE_DESCRIPTION is longer than 256 characters, so each parameter has one of its own. The time is a
-fixed one: the same parameters must give the same bytes.
+Written and read as ISO 10303-21 says: a quote is doubled, a backslash too, what is not ASCII is written as
+\\X2\\…\\X0\\, and no string of FILE_DESCRIPTION is longer than 256 characters, so each parameter has one of
+its own. The time is a fixed one: the same parameters must give the same bytes.
 """
 
 from __future__ import annotations
@@ -61,7 +61,11 @@ def read_header(step: bytes) -> Header | None:
 def _quoted(text: str) -> str:
     """A Part 21 string."""
     doubled = text.replace("\\", "\\\\").replace("'", "''")
-    return "'" + re.sub(r"[^ -~]+", lambda m: f"\\X2\\{m[0].encode('utf-16-be').hex().upper()}\\X0\\", doubled) + "'"
+    return (
+        "'"
+        + re.sub(r"[^ -~]+", lambda m: f"\\X2\\{m[0].encode('utf-16-be').hex().upper()}\\X0\\", doubled)
+        + "'"
+    )
 
 
 def _plain(text: str) -> str:

@@ -32,7 +32,7 @@ MEASURES = {
 }
 """Every measure of a model with its unit.
 
-Inertia is the tensor about the centre of mass, so that inertia_xy = -∫ x y dm; low and high are the bounding box.
+Inertia is the tensor about the centre of mass: inertia_xy = -∫ x y dm. Low and high are the bounding box.
 """
 
 _PAIRS = [(i, j) for i in range(3) for j in range(i, 3)]
@@ -81,8 +81,8 @@ def summarise(
         for place in body.places
     ]
     mass = sum(weight for weight, _, _ in standing)
-    centre = sum(weight * point for weight, point, _ in standing) / mass
-    inertia = sum(spin + _steiner(weight, point - centre) for weight, point, spin in standing)
+    centre = np.sum([weight * point for weight, point, _ in standing], axis=0) / mass
+    inertia = np.sum([spin + _steiner(weight, point - centre) for weight, point, spin in standing], axis=0)
     return {
         "mass": mass,
         "volume": sum(one.volume * len(body.places) for body, one in zip(bodies, measured, strict=True)),
@@ -98,7 +98,7 @@ def bounding_box(bodies: Iterable[Body]) -> Box:
     faces = [face.moved(place) for body in bodies for face in body.shape.Faces() for place in body.places]
     loose = [(_box(face, close=False), face) for face in faces]
     whole = Bnd_Box()
-    # The close box of a torus takes 10 ms, its loose one 10 µs: find it only where it can matter, outermost first.
+    # The close box of a torus takes 10 ms, its loose one 10 µs: find it only where it can matter.
     for around, face in sorted(loose, key=lambda pair: -pair[0].SquareExtent()):
         if whole.IsVoid() or not _within(around, whole):
             whole.Add(_box(face, close=True))

@@ -1,11 +1,11 @@
 """CadModel: a template with a shape.
 
-A model is one file, `<id>_v<version>.py`, with one class. Its parameters are declared as in any template. Beyond
-them it says four things, and only the first of them draws:
+A model is one file, `<id>_v<version>.py`, with one class. Its parameters are declared as in any template.
+Beyond them it says four things, and only the first of them draws:
 
-- `build()`: its parts, each one solid with the volume that it must have, from a closed form that knows nothing of
-  the kernel. OpenCASCADE may return a wrong solid that calls itself valid (a drilling 10 nm wider than its groove
-  took 12 % off a bearing shell); the volume tells.
+- `build()`: its parts, each one solid with the volume that it must have, from a closed form that knows
+  nothing of the kernel. OpenCASCADE may return a wrong solid that calls itself valid (a drilling 10 nm wider
+  than its groove took 12 % off a bearing shell); the volume tells.
 - `bounding_box()`: the box that the parts together must fill.
 - `dimensions(seen)`: its parameters, as they are read back from the surfaces of the finished STEP file.
 - `example`: a valid set of parameters.
@@ -15,11 +15,10 @@ Shapes are drawn in millimetres, z along the shaft, +y towards the crown.
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from cadquery import Location, Solid
+from cadquery import Location, Shape
 
 from cad.surfaces import Seen
 from templates.core.template import Array, Template
@@ -37,7 +36,7 @@ class Part:
     """One solid of a model, at one or several places."""
 
     name: str
-    shape: Solid
+    shape: Shape
     volume: float  # [mm³], in closed form
     colour: Colour = STEEL
     density: float = STEEL_DENSITY  # [kg/m³]
@@ -64,17 +63,17 @@ class Box:
 class CadModel(Template):
     """Base of all models."""
 
-    @abstractmethod
     def build(self) -> tuple[Part, ...]:
         """The parts, drawn from the parameters alone."""
+        raise NotImplementedError
 
-    @abstractmethod
     def bounding_box(self) -> Box:
         """The box [mm] that the parts together must fill."""
+        raise NotImplementedError
 
-    @abstractmethod
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
-        """The parameters [mm, or 1 for a count] by API name, as far as the parts seen in the file, by name, show them."""
+        """Parameters by API name [mm, a count as 1], as far as the parts seen in the file show them."""
+        raise NotImplementedError
 
 
 def mm(length: Array | float) -> float:

@@ -1,8 +1,8 @@
-"""Parameters → model → solid → STEP → the same STEP read again → checks → a build: a pure function for a worker.
+"""Parameters → model → solid → STEP → the same STEP read again → checks → a build: a pure function of them.
 
-A build is accepted only after its checks, and the checks look at the bytes that a user will get: one valid solid per
-part, its volume that of the closed form, the box filled, and every parameter read back from the surfaces to a millionth
-of a millimetre. Equal parameters give equal bytes, in this process and in any other.
+A build is accepted only after its checks, and the checks look at the bytes that a user will get: one valid
+solid per part, its volume that of the closed form, the box filled, and every parameter read back from the
+surfaces to a millionth of a millimetre. Equal parameters give equal bytes, in this process and in any other.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def ignore(done: float, what: str) -> None:
 
 
 def as_text(model: CadModel) -> dict[str, str]:
-    """Every parameter, defaults included, as the text that stands in the STEP file: `{"inner_diameter": "50 mm"}`.
+    """Every parameter, defaults included, as it stands in the STEP file: `{"inner_diameter": "50 mm", …}`.
 
     Twelve digits: what differs less is the same model, and gets the same bytes.
     """
@@ -69,7 +69,7 @@ def regenerate(
     folders: Sequence[Path] = (),
     report: Report = ignore,
 ) -> Build:
-    """Build a model from its parameters (SI), export it, and accept it if all checks on the exported file hold.
+    """Build a model from its parameters (SI), export it, and accept it if all checks on the file hold.
 
     Raises
     ------

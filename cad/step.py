@@ -1,7 +1,7 @@
-"""STEP (AP242): parts to bytes that are the same for the same parts, and back to bodies with names and colours.
+"""STEP (AP242): parts to bytes, the same for the same parts, and back to bodies with names and colours.
 
-The kernel's writer leaves three marks of its process in a file: the time, its name as author, and a counter of
-assembly usages. The header is therefore written by `cad.header`, and the counter begins at 1.
+The kernel's writer leaves three marks of its process in a file: the time, its name as author, and a counter
+of assembly usages. The header is therefore written by `cad.header`, and the counter begins at 1.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Body:
 
 
 def write_step(parts: Sequence[Part], header: Header) -> bytes:
-    """The parts as an assembly, in millimetres, with product names and colours; equal bytes for equal parts."""
+    """The parts as an assembly in millimetres, with product names and colours; equal parts, equal bytes."""
     Interface_Static.SetCVal_s("write.step.schema", "AP242DIS")
     Interface_Static.SetCVal_s("write.step.unit", "MM")
     writer = STEPCAFControl_Writer(XSControl_WorkSession(), False)
@@ -139,6 +139,7 @@ def _instances(label: TDF_Label, place: Location) -> Iterator[tuple[TDF_Label, L
     components = TDF_LabelSequence()
     if not XCAFDoc_ShapeTool.GetComponents_s(label, components):
         yield label, place
+        return
     for component in components:
         product = TDF_Label()
         XCAFDoc_ShapeTool.GetReferredShape_s(component, product)

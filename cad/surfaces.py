@@ -1,4 +1,4 @@
-"""What a finished solid shows of itself: its planes, cylinders and spheres, from which dimensions are read back."""
+"""What a finished solid shows of itself: planes, cylinders, spheres, from which dimensions are read back."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _COINCIDENT = 1e-6  # [mm], and as the sine of an angle: ten times the kernel's 
 
 @dataclass(frozen=True)
 class Surface:
-    """A plane or a cylinder: a point on it or on its axis, its normal or axis, its diameter unless it is flat."""
+    """A plane or a cylinder: a point on it or its axis, normal or axis, diameter unless it is flat."""
 
     point: Vector
     direction: Vector
@@ -59,7 +59,7 @@ class Seen:
 def look(solid: Shape, count: int = 1) -> Seen:
     """Look at every face of a solid of which there are `count`."""
     adaptors = [BRepAdaptor_Surface(face.wrapped) for face in solid.Faces()]
-    of = {kind: [a for a in adaptors if a.GetType() == kind] for kind in set(a.GetType() for a in adaptors)}
+    of = {kind: [a for a in adaptors if a.GetType() == kind] for kind in {a.GetType() for a in adaptors}}
     return Seen(
         count,
         planes=tuple(_surface(a.Plane().Axis()) for a in of.get(Kind.GeomAbs_Plane, ())),

@@ -1,15 +1,16 @@
 """Single-row deep groove ball bearing: two rings and their balls, with standard boundary dimensions.
 
-For main and big-end bearings of small engines, and as the stand-in of a bought part in an assembly. At a standard
-bore the outer diameter and the width are those of dimension series 02 of ISO 15 (50 mm: 6210, 90 × 20); between
-standard bores they are interpolated, beyond the table they keep the proportions of its ends. The standard leaves the
-inside to the maker: balls, grooves and chamfers are drawn in proportions common among makers, right for looks, mass
-and clearances, not for a life calculation. There is no cage.
+For main and big-end bearings of small engines, and as the stand-in of a bought part in an assembly. At a
+standard bore the outer diameter and the width are those of dimension series 02 of ISO 15 (50 mm: 6210, 90 ×
+20); between standard bores they are interpolated, beyond the table they keep the proportions of its ends. The
+standard leaves the inside to the maker: balls, grooves and chamfers are drawn in proportions common among
+makers, right for looks, mass and clearances, not for a life calculation. There is no cage.
 
 References
 ----------
 ISO 15:2017, Rolling bearings, radial bearings, boundary dimensions, general plan.
-Harris and Kotzalas, Essential Concepts of Bearing Technology, 5th ed. 2006, ch. 2: osculation, pitch diameter.
+Harris and Kotzalas, Essential Concepts of Bearing Technology, 5th ed. 2006, ch. 2: osculation, pitch
+    diameter.
 """
 
 from __future__ import annotations
@@ -25,8 +26,8 @@ from cadquery import Edge, Face, Location, Solid, Vector
 from cadquery.func import face, segment, sphere, wire
 
 from cad.model import BRIGHT_STEEL, Box, CadModel, Part, mm
-from cad.surfaces import Z, Seen
-from templates.core.template import Array, derived, formula, given, require, units
+from cad.surfaces import Seen, Z
+from templates.core.template import Array, Truth, derived, formula, given, require, units
 
 SIZES = np.genfromtxt(
     Path(__file__).with_name("deep_groove_sizes.csv"),
@@ -38,7 +39,7 @@ INWARDS, OUTWARDS = -1, 1
 
 @dataclass(frozen=True)
 class Section:
-    """Cross-section of a ring [mm]: `s` is counted from the pitch circle away from the ball's centre, `z` from mid-width."""
+    """Cross-section of a ring [mm]: `s` counts from the pitch circle towards its back, `z` from mid-width."""
 
     shoulder: float  # s of the shoulder
     back: float  # s of the bore or the outside
@@ -90,7 +91,7 @@ class Section:
 
 
 def ring(section: Section, pitch_radius: float, side: int) -> Solid:
-    """The section turned about the z axis, as one profile: cut by a torus, its bytes would differ from run to run."""
+    """The section turned about z, as one profile: cut by a torus, its bytes would differ between runs."""
     outline = section.outline(lambda s, z: Vector(pitch_radius + side * s, 0, z))
     return Solid.revolve(outline, 360, Vector(0, 0, 0), Vector(0, 0, 1))
 
@@ -120,7 +121,7 @@ def _standard(column: str, bore: Array) -> Array:
 
 
 class BallBearing(CadModel):
-    """Deep groove ball bearing of standard outside dimensions at a standard bore, and of any other size between."""
+    """Deep groove ball bearing, of standard outside dimensions at a standard bore, and of any other size."""
 
     example = {"inner_diameter": "50 mm"}
 
@@ -132,7 +133,15 @@ class BallBearing(CadModel):
     def D(self) -> Array:
         return standard_outer_diameter(self.d)
 
-    @derived("mm", "width", symbol="B", gt=0, le=2000, also=("bearing width",), source="ISO 15, dimension series 02")
+    @derived(
+        "mm",
+        "width",
+        symbol="B",
+        gt=0,
+        le=2000,
+        also=("bearing width",),
+        source="ISO 15, dimension series 02",
+    )
     def B(self) -> Array:
         return standard_width(self.d)
 
@@ -165,22 +174,29 @@ class BallBearing(CadModel):
         return 0.05 * np.minimum(self.h, self.B)
 
     @require("outer_diameter", "inner_diameter", remedy="make the outer diameter larger, or leave it out")
-    def has_section(self) -> Array:
+    def has_section(self) -> Truth:
         """The outer diameter is at least 2 % larger than the bore."""
         return self.D >= 1.02 * self.d
 
-    @require("ball_diameter", "outer_diameter", "inner_diameter", remedy="take smaller balls or a larger outer diameter")
-    def balls_fit_between_rings(self) -> Array:
-        """A ball takes at most 90 % of the height between bore and outside, so that no groove cuts through its ring."""
+    @require(
+        "ball_diameter",
+        "outer_diameter",
+        "inner_diameter",
+        remedy="take smaller balls or a larger outer diameter",
+    )
+    def balls_fit_between_rings(self) -> Truth:
+        """A ball takes at most 90 % of the height from bore to outside, so that no groove cuts a ring."""
         return self.D_w <= 0.9 * self.h
 
     @require("ball_diameter", "width", remedy="take smaller balls or a wider bearing")
-    def balls_fit_in_width(self) -> Array:
+    def balls_fit_in_width(self) -> Truth:
         """A ball is not wider than the bearing, so that the rings hold the whole groove."""
         return self.D_w <= self.B
 
-    @require("balls", "ball_diameter", "outer_diameter", "inner_diameter", remedy="take fewer or smaller balls")
-    def balls_do_not_touch(self) -> Array:
+    @require(
+        "balls", "ball_diameter", "outer_diameter", "inner_diameter", remedy="take fewer or smaller balls"
+    )
+    def balls_do_not_touch(self) -> Truth:
         """Between neighbouring balls on the pitch circle there is at least 1 % of a ball's diameter."""
         return 1.01 * self.D_w <= self.D_pw * np.sin(pi / self.n)
 

@@ -1,12 +1,15 @@
-"""Plain bearing shell: a half or a full cylinder, with an oil groove around the bore and an oil hole at the crown.
+"""Plain bearing shell: a half or a full cylinder, with an oil groove around the bore and an oil hole at the
+crown.
 
-For crankshaft main, big-end and small-end bearings. The bore is the finished one: the caller adds the clearance. The
-half shell stands on the side +y, its joint in the plane y = 0; the hole points along +y in either shell. A hole of no
-diameter is no hole, a groove of no width or no depth is no groove. No crush height, locating lug or relief is drawn.
+For crankshaft main, big-end and small-end bearings. The bore is the finished one: the caller adds the
+clearance. The half shell stands on the side +y, its joint in the plane y = 0; the hole points along +y in
+either shell. A hole of no diameter is no hole, a groove of no width or no depth is no groove. No crush
+height, locating lug or relief is drawn.
 
 References
 ----------
-ISO 3548-1:2014, Plain bearings, thin-walled half bearings, part 1: tolerances, design features and methods of test.
+ISO 3548-1:2014, Plain bearings, thin-walled half bearings, part 1: tolerances, design features and methods of
+    test.
 """
 
 from __future__ import annotations
@@ -21,8 +24,8 @@ from cadquery.func import cut, face, polyline, revolve
 from scipy.integrate import quad
 
 from cad.model import BRONZE, Box, CadModel, Part, mm
-from cad.surfaces import Y, Z, Seen
-from templates.core.template import Array, choice, derived, formula, given, require
+from cad.surfaces import Seen, Y, Z
+from templates.core.template import Array, Truth, choice, derived, formula, given, require
 
 
 @dataclass(frozen=True)
@@ -40,11 +43,11 @@ class Shell:
     def outline(self) -> list[tuple[float, float]]:
         """The cross-section as a closed line through (r, z)."""
         r, g, R, b, w = self.bore, self.groove, self.outside, self.half_width, self.half_groove
-        groove = [(r, w), (g, w), (g, -w), (r, -w)] if g > r else []
+        groove = [(r, w), (g, w), (g, -w), (r, -w)] if g > r and w > 0 else []
         return [(r, -b), (R, -b), (R, b), (r, b), *groove, (r, -b)]
 
     def solid(self) -> Shape:
-        """The outline turned about z, from +x over +y; a full turn begins at -y, so that its seam keeps off the hole."""
+        """The outline turned about z from +x over +y; a full turn begins at -y, its seam off the hole."""
         start = (0, -1) if self.turn == 360 else (1, 0)
         points = (Vector(r * start[0], r * start[1], z) for r, z in self.outline())
         turned = revolve(face(polyline(*points)), (0, 0, 0), (0, 0, 1), self.turn)
@@ -63,15 +66,15 @@ class Shell:
     def hole_volume(self) -> float:
         """What the hole takes out of the wall [mm³]: its chords along y, summed over the hole's circle.
 
-        With x = a sin t and z = a cos t on the circle of radius a the integrand is smooth; it has one kink, where the
-        circle crosses the edge of the groove.
+        With x = a sin t and z = a cos t on the circle of radius a the integrand is smooth; it has one kink,
+        where the circle crosses the edge of the groove.
         """
         a, w = self.hole, self.half_groove
         if a == 0:
             return 0.0
         kink = acos(min(w / a, 1.0))
-        pieces = [quad(self._slice, *ends, epsabs=0, epsrel=1e-11)[0] for ends in ((0, kink), (kink, pi / 2))]
-        return float(2 * sum(pieces))
+        pieces = ((0.0, kink), (kink, pi / 2))
+        return 2 * sum(quad(self._slice, low, high, epsabs=0, epsrel=1e-11)[0] for low, high in pieces)
 
     def _slice(self, t: float) -> float:
         """Area of the hole's section at x = a sin t within the wall, times dx/dt [mm³]."""
@@ -115,38 +118,42 @@ class PlainBearing(CadModel):
         return self.d + 2 * self.t
 
     @require("oil_groove_width", "width", remedy="make the groove narrower or the bearing wider")
-    def groove_within_width(self) -> Array:
+    def groove_within_width(self) -> Truth:
         """The oil groove takes at most 90 % of the width."""
         return self.w_g <= 0.9 * self.B
 
     @require("oil_groove_depth", "wall", remedy="make the groove shallower or the wall thicker")
-    def groove_within_wall(self) -> Array:
+    def groove_within_wall(self) -> Truth:
         """The oil groove takes at most 80 % of the wall."""
         return self.t_g <= 0.8 * self.t
 
     @require("oil_groove_depth", "oil_groove_width", remedy="give the groove a width, or no depth")
-    def groove_has_width(self) -> Array:
+    def groove_has_width(self) -> Truth:
         """An oil groove that has a depth has a width."""
         return (self.t_g == 0) | (self.w_g > 0)
 
     @require("oil_hole_diameter", "width", remedy="make the hole smaller or the bearing wider")
-    def hole_within_width(self) -> Array:
+    def hole_within_width(self) -> Truth:
         """The oil hole takes at most 90 % of the width, so that the shell stays one piece."""
         return self.d_h <= 0.9 * self.B
 
     @require("oil_hole_diameter", "inner_diameter", remedy="make the hole smaller")
-    def hole_within_bore(self) -> Array:
+    def hole_within_bore(self) -> Truth:
         """The oil hole takes at most 80 % of the bore, so that it has a wall all around."""
         return self.d_h <= 0.8 * self.d
 
-    @require("oil_hole_diameter", "oil_groove_width", remedy="make the hole as wide as the groove, or change it by 1 %")
-    def hole_clears_groove_edge(self) -> Array:
-        """An oil hole wider than its groove is wider by 1 % at least: closer, OpenCASCADE returns wrong solids."""
+    @require(
+        "oil_hole_diameter",
+        "oil_groove_width",
+        remedy="make the hole as wide as the groove, or change it by 1 %",
+    )
+    def hole_clears_groove_edge(self) -> Truth:
+        """An oil hole wider than its groove is wider by 1 %; for less, OpenCASCADE returns wrong solids."""
         return (self.t_g == 0) | (self.w_g == 0) | (self.d_h <= self.w_g) | (self.d_h >= 1.01 * self.w_g)
 
     @require("oil_hole_diameter", "oil_groove_width", "oil_groove_depth", remedy="use 0 for none")
-    def features_are_drawable(self) -> Array:
-        """The oil hole and the oil groove measure 0, or 10 µm at least, which is what the kernel draws reliably."""
+    def features_are_drawable(self) -> Truth:
+        """The oil hole and the oil groove measure 0, or at least the 10 µm that the kernel draws reliably."""
         return drawable(self.d_h) & drawable(self.w_g) & drawable(self.t_g)
 
     def build(self) -> tuple[Part, ...]:
@@ -158,7 +165,7 @@ class PlainBearing(CadModel):
         """The parameters as radii and halves."""
         return Shell(
             bore=mm(self.d) / 2,
-            groove=mm(self.d) / 2 + mm(self.t_g) * (self.w_g > 0),
+            groove=mm(self.d) / 2 + mm(self.t_g),
             outside=mm(self.D) / 2,
             half_width=mm(self.B) / 2,
             half_groove=mm(self.w_g) / 2,
@@ -187,6 +194,6 @@ class PlainBearing(CadModel):
         return found
 
 
-def drawable(length: Array) -> Array:
+def drawable(length: Array) -> Truth:
     """Whether a length [m] is none, or one that the kernel can tell from none."""
     return (length == 0) | (length >= 1e-5)
