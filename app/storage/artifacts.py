@@ -1,0 +1,88 @@
+"""Files named by the SHA-256 of their bytes: written once, whole or not at all, never changed."""
+
+import hashlib
+import os
+import re
+import tempfile
+from pathlib import Path
+
+from app.storage.errors import ArtifactMissing
+
+_SHA256 = re.compile(r"[0-9a-f]{64}")
+_TEMPORARY = ".tmp-"
+
+
+class ArtifactStore:
+    """Artifacts in a local folder, spread over 256 folders by the first two digits of their names.
+
+    One process writes at a time (see `DataFolder`), so temporary files found at the start are left-overs.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        folder.mkdir(parents=True, exist_ok=True)
+        for stale in folder.glob(f"*/{_TEMPORARY}*"):
+            stale.unlink()
+
+    def put(self, data: bytes) -> str:
+        """Store the bytes durably and return their SHA-256; the same bytes are stored once."""
+        sha = hashlib.sha256(data).hexdigest()
+        target = self._location(sha)
+        # A file of another size was torn by a failing disk: the good bytes in hand replace it.
+        if not target.is_file() or target.stat().st_size != len(data):
+            target.parent.mkdir(exist_ok=True)
+            _write_whole(target, data)
+        # Even for a file found: the writer that renamed it may not have synced its folder yet.
+        _sync_folder(target.parent)
+        _sync_folder(self._folder)
+        return sha
+
+    def path(self, sha: str) -> Path:
+        """Where an artifact lies.
+
+        Raises:
+            ArtifactMissing: nothing is stored under this name, or it is no SHA-256.
+        """
+        location = self._location(sha)
+        if not location.is_file():
+            raise ArtifactMissing(sha)
+        return location
+
+    def read(self, sha: str) -> bytes:
+        """Return the bytes of an artifact; raises ArtifactMissing as `path` does."""
+        return self.path(sha).read_bytes()
+
+    def check(self, sha: str) -> bool:
+        """Whether the artifact exists and its bytes still have this hash."""
+        try:
+            return hashlib.sha256(self.read(sha)).hexdigest() == sha
+        except ArtifactMissing:
+            return False
+
+    def _location(self, sha: str) -> Path:
+        # A name comes from a URL: anything but a hash could lead out of the folder.
+        if not _SHA256.fullmatch(sha):
+            raise ArtifactMissing(sha)
+        return self._folder / sha[:2] / sha
+
+
+def _write_whole(target: Path, data: bytes) -> None:
+    """Write beside the target, sync, then rename, so that the target never shows half its bytes."""
+    descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=_TEMPORARY)
+    try:
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(temporary, target)
+    except BaseException:
+        os.unlink(temporary)
+        raise
+
+
+def _sync_folder(folder: Path) -> None:
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,143 @@
+"""The database of the process: many readers, one writer thread that commits waiting units of work in groups.
+
+SQLite takes one writer at a time and syncs the disk at every commit. One thread that runs all waiting units
+in one transaction pays one sync for all of them, and nobody ever meets a locked database.
+"""
+
+import asyncio
+import queue
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+from sqlalchemy import Connection
+from sqlalchemy.orm import Session
+
+from app.storage.engines import reading_engine, writing_engine
+from app.storage.errors import CommitFailed, DatabaseClosed
+
+T = TypeVar("T")
+Unit = Callable[[Session], T]
+
+GROUP = 256  # units in one transaction: bounds how long the first of them waits for the last
+
+
+class Database:
+    """Reads in snapshots, writes by units of work.
+
+    Rows stay readable after their session has ended; what was not loaded by then cannot be loaded later.
+    """
+
+    def __init__(self, url: str) -> None:
+        self._reader = reading_engine(url)
+        self._writer = writing_engine(url)
+        self._waiting: queue.SimpleQueue[_Pending | None] = queue.SimpleQueue()
+        self._closing = threading.Lock()
+        self._closed = False
+        self._thread = threading.Thread(target=self._serve, name="database-writer", daemon=True)
+        self._thread.start()
+
+    @contextmanager
+    def read(self) -> Iterator[Session]:
+        """Open a session on a snapshot of the database; it cannot write."""
+        with Session(self._reader, expire_on_commit=False) as session:
+            yield session
+
+    def write(self, unit: Unit[T]) -> T:
+        """Run a unit of work in the writer thread and return its result once that is durable.
+
+        Raises:
+            CommitFailed: the unit ran, but its group could not be committed; nothing of it is stored.
+            DatabaseClosed: the database has been closed.
+            Exception: whatever the unit raises; its changes, and no others, are undone.
+        """
+        if threading.current_thread() is self._thread:
+            raise RuntimeError("A unit of work may not wait for another: use its session.")
+        return self._submit(unit).result()
+
+    async def awrite(self, unit: Unit[T]) -> T:
+        """Like `write`, for a caller in an event loop."""
+        return await asyncio.wrap_future(self._submit(unit))
+
+    def close(self) -> None:
+        """Commit what waits, then close all connections. A second call does nothing."""
+        with self._closing:
+            if not self._closed:
+                self._waiting.put(None)
+            self._closed = True
+        self._thread.join()
+        self._reader.dispose()
+        self._writer.dispose()
+
+    def _submit(self, unit: Unit[T]) -> "Future[T]":
+        pending = _Pending(unit)
+        with self._closing:  # nothing may enter the queue behind its end
+            if self._closed:
+                raise DatabaseClosed("The database is closed.")
+            self._waiting.put(pending)
+        return pending.future
+
+    def _serve(self) -> None:
+        more = True
+        while more:
+            group, more = self._next_group()
+            wanted = [pending for pending in group if pending.future.set_running_or_notify_cancel()]
+            if wanted:
+                self._commit(wanted)
+
+    def _next_group(self) -> "tuple[list[_Pending], bool]":
+        """Wait for a unit, then take those that came meanwhile; also tell whether more may come."""
+        group: list[_Pending] = []
+        while not group or (len(group) < GROUP and not self._waiting.empty()):
+            pending = self._waiting.get()
+            if pending is None:
+                return group, False
+            group.append(pending)
+        return group, True
+
+    def _commit(self, group: "list[_Pending]") -> None:
+        try:
+            with self._writer.begin() as connection:
+                for pending in group:
+                    pending.run(connection)
+        except Exception as error:
+            for pending in group:
+                pending.refuse(error)
+        else:
+            for pending in group:
+                pending.settle()
+
+
+class _Pending:
+    """A unit of work on its way through the writer thread."""
+
+    def __init__(self, unit: Unit[Any]) -> None:
+        self.future: Future[Any] = Future()
+        self._unit = unit
+        self._result: Any = None
+        self._error: BaseException | None = None
+
+    def run(self, connection: Connection) -> None:
+        """Run the unit in a savepoint of its own; what it raises is kept for its caller."""
+        session = Session(connection, join_transaction_mode="create_savepoint", expire_on_commit=False)
+        try:
+            with session:
+                self._result = self._unit(session)
+                session.commit()  # releases the savepoint; raises if the unit has hidden a failed statement
+        except BaseException as error:  # even SystemExit belongs to the caller, not to the writer thread
+            self._error = error
+
+    def settle(self) -> None:
+        """Hand the outcome to the caller: the group is durable."""
+        if self._error is None:
+            self.future.set_result(self._result)
+        else:
+            self.future.set_exception(self._error)
+
+    def refuse(self, cause: Exception) -> None:
+        """Tell the caller that the group is lost."""
+        lost = CommitFailed("The changes could not be committed; nothing was stored.")
+        lost.__cause__ = cause
+        self.future.set_exception(self._error or lost)

@@ -1,0 +1,64 @@
+"""Where the kinds of database differ: engines that read and engines that write, for SQLite and PostgreSQL."""
+
+import sqlite3
+from typing import Any
+
+from sqlalchemy import Connection, Engine, create_engine, event, make_url
+from sqlalchemy.exc import OperationalError
+
+_SHARED = ("busy_timeout = 10000", "foreign_keys = on")
+_WRITER = (*_SHARED, "journal_mode = wal", "synchronous = full")
+_READER = (*_SHARED, "query_only = on")
+# Batch migrations drop and rename tables, which enforced foreign keys would take for deletions.
+_MIGRATOR = ("busy_timeout = 10000", "journal_mode = wal")
+
+
+def writing_engine(url: str) -> Engine:
+    """Engine of the writer thread: transactions take the write lock first and are synced at commit."""
+    return _sqlite_engine(url, _WRITER, "BEGIN IMMEDIATE") if _is_sqlite(url) else create_engine(url)
+
+
+def migrating_engine(url: str) -> Engine:
+    """Engine on which the schema may be changed."""
+    return _sqlite_engine(url, _MIGRATOR, "BEGIN IMMEDIATE") if _is_sqlite(url) else create_engine(url)
+
+
+def reading_engine(url: str) -> Engine:
+    """Engine whose transactions are snapshots and cannot write."""
+    if _is_sqlite(url):
+        return _sqlite_engine(url, _READER, "BEGIN")
+    options = {"postgresql_readonly": True, "isolation_level": "REPEATABLE READ"}
+    return create_engine(url, execution_options=options)
+
+
+def _is_sqlite(url: str) -> bool:
+    return make_url(url).get_backend_name() == "sqlite"
+
+
+def _sqlite_engine(url: str, pragmas: tuple[str, ...], begin: str) -> Engine:
+    engine = create_engine(url)
+
+    @event.listens_for(engine, "connect")
+    def configure(connection: sqlite3.Connection, record: Any) -> None:
+        connection.isolation_level = None  # the driver shall not begin transactions by itself
+        for pragma in pragmas:
+            connection.execute(f"PRAGMA {pragma}")
+
+    @event.listens_for(engine, "begin")
+    def start(connection: Connection) -> None:
+        connection.exec_driver_sql(begin)
+
+    event.listen(engine, "savepoint", _expect_transaction)
+    event.listen(engine, "commit", _expect_transaction)
+    return engine
+
+
+def _expect_transaction(connection: Connection, name: str | None = None) -> None:
+    """Refuse to go on in a transaction that SQLite has rolled back by itself, as it does on a full disk.
+
+    What follows would be committed alone, and the driver would take the final commit for a success.
+    """
+    driver = connection.connection.driver_connection
+    if isinstance(driver, sqlite3.Connection) and not driver.in_transaction:
+        error = sqlite3.OperationalError("SQLite has rolled the transaction back")
+        raise OperationalError("COMMIT", None, error)

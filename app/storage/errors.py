@@ -1,0 +1,62 @@
+"""What can go wrong in storage.
+
+StorageError
+ ├── DataFolderInUse     another process holds the data folder
+ ├── DatabaseNewer       the database was written by a newer program
+ ├── DatabaseClosed      a unit of work came after `close`
+ ├── CommitFailed        a unit of work ran, but its group could not be made durable
+ └── ArtifactMissing     no artifact has this hash
+"""
+
+from pathlib import Path
+
+
+class StorageError(Exception):
+    """Any error of storage."""
+
+
+class DataFolderInUse(StorageError):
+    """Another process holds the data folder."""
+
+    def __init__(self, folder: Path, owner: str) -> None:
+        super().__init__(folder, owner)
+        self.folder = folder
+        self.owner = owner
+
+    def __str__(self) -> str:
+        return (
+            f"The data folder {self.folder} is in use by process {self.owner or 'unknown'}. "
+            "Stop that server, or give this one a folder of its own by CRANKWRIGHT_DATA."
+        )
+
+
+class DatabaseNewer(StorageError):
+    """The database has a schema that this program does not know."""
+
+    def __init__(self, version: str) -> None:
+        super().__init__(version)
+        self.version = version
+
+    def __str__(self) -> str:
+        return (
+            f"The database has schema {self.version}, which is newer than this program. Upgrade the program."
+        )
+
+
+class DatabaseClosed(StorageError):
+    """A unit of work came after the database was closed."""
+
+
+class CommitFailed(StorageError):
+    """The group of a unit of work could not be committed: nothing of it is stored. Raised from the cause."""
+
+
+class ArtifactMissing(StorageError):
+    """No artifact has this hash."""
+
+    def __init__(self, sha: str) -> None:
+        super().__init__(sha)
+        self.sha = sha
+
+    def __str__(self) -> str:
+        return f"There is no artifact {self.sha}."

@@ -1,0 +1,48 @@
+"""The data folder of a server: held by one process at a time."""
+
+import fcntl
+import os
+from pathlib import Path
+
+from app.storage.errors import DataFolderInUse
+
+
+class DataFolder:
+    """A folder that this process alone may use until it ends or calls `release`.
+
+    The lock belongs to the process, so a killed server leaves nothing to clean up. Because of it whatever the
+    database calls running at the start has died.
+
+    Raises:
+        DataFolderInUse: another process holds the folder.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path.absolute()
+        self.path.mkdir(parents=True, exist_ok=True)
+        self._lock = os.open(self.path / "crankwright.lock", os.O_RDWR | os.O_CREAT, 0o644)
+        self._acquire()
+
+    @property
+    def database_url(self) -> str:
+        """The SQLAlchemy URL of the SQLite file in this folder."""
+        return f"sqlite:///{self.path / 'crankwright.sqlite'}"
+
+    @property
+    def artifacts(self) -> Path:
+        """The folder of the artifact store."""
+        return self.path / "artifacts"
+
+    def release(self) -> None:
+        """Let another process have the folder."""
+        os.close(self._lock)
+
+    def _acquire(self) -> None:
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            owner = os.pread(self._lock, 20, 0).decode(errors="replace")
+            self.release()
+            raise DataFolderInUse(self.path, owner) from None
+        os.ftruncate(self._lock, 0)
+        os.pwrite(self._lock, str(os.getpid()).encode(), 0)

@@ -1,0 +1,162 @@
+"""The tables. Times are ISO 8601 texts in UTC; JSON is stored canonically: equal values are equal texts."""
+
+import json
+from typing import Any
+
+from sqlalchemy import Dialect, ForeignKey, ForeignKeyConstraint, Index, MetaData, Text, TypeDecorator
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship
+
+NAMING = {
+    "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+    "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+    "ck": "ck_%(table_name)s_%(constraint_name)s",
+    "fk": "fk_%(table_name)s_%(column_0_N_name)s_%(referred_table_name)s",
+    "pk": "pk_%(table_name)s",
+}
+
+
+def canonical_json(value: Any) -> str:
+    """Write a JSON value in its one canonical form.
+
+    Raises:
+        ValueError: the value holds NaN or an infinity, which JSON does not know.
+    """
+    return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+
+
+class Json(TypeDecorator[Any]):
+    """A JSON value in a text column; None is NULL. Replace a value whole: a change inside it is not seen."""
+
+    impl = Text
+    cache_ok = True
+
+    def process_bind_param(self, value: Any, dialect: Dialect) -> str | None:
+        """From Python to the column."""
+        return None if value is None else canonical_json(value)
+
+    def process_result_value(self, value: str | None, dialect: Dialect) -> Any:
+        """From the column to Python."""
+        return None if value is None else json.loads(value)
+
+
+class Base(DeclarativeBase):
+    """All tables share one metadata and one way to name constraints, which migrations rely on."""
+
+    metadata = MetaData(naming_convention=NAMING)
+    type_annotation_map = {str: Text, dict[str, Any]: Json, list[str]: Json}
+
+
+class DesignRow(Base):
+    """A design; what it holds is in its revisions."""
+
+    __tablename__ = "design"
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    name: Mapped[str]
+    created: Mapped[str]
+    deleted: Mapped[str | None]
+    head: Mapped[int]  # the number of the newest revision
+
+    revisions: Mapped[list["RevisionRow"]] = relationship(order_by="RevisionRow.number")
+
+
+class RevisionRow(Base):
+    """One state of a design: the document never changes, the results are attached once."""
+
+    __tablename__ = "revision"
+
+    design_id: Mapped[str] = mapped_column(ForeignKey("design.id"), primary_key=True)
+    number: Mapped[int] = mapped_column(primary_key=True)
+    note: Mapped[str | None]
+    created: Mapped[str]
+    document: Mapped[dict[str, Any]] = mapped_column(Json)  # as typed by the user
+    results: Mapped[dict[str, Any] | None] = mapped_column(Json)  # the evaluated steps
+    state: Mapped[str]  # current, regenerating, failed
+    problem: Mapped[dict[str, Any] | None] = mapped_column(Json)
+
+    models: Mapped[list["RevisionModelRow"]] = relationship(order_by="RevisionModelRow.name")
+
+
+class RevisionModelRow(Base):
+    """A CAD model in a revision, with its parameters resolved."""
+
+    __tablename__ = "revision_model"
+    __table_args__ = (
+        ForeignKeyConstraint(["design_id", "number"], ["revision.design_id", "revision.number"]),
+    )
+
+    design_id: Mapped[str] = mapped_column(primary_key=True)
+    number: Mapped[int] = mapped_column(primary_key=True)
+    name: Mapped[str] = mapped_column(primary_key=True)
+    model: Mapped[str]
+    model_version: Mapped[int]
+    parameters: Mapped[dict[str, Any]] = mapped_column(Json)
+    relations: Mapped[dict[str, Any]] = mapped_column(Json)
+    # No foreign key: the key follows from the parameters and is known before the build is made.
+    build_key: Mapped[str | None] = mapped_column(index=True)
+
+
+class BuildRow(Base):
+    """A solid that was built, found again by the hash of all that determines it."""
+
+    __tablename__ = "build"
+
+    key: Mapped[str] = mapped_column(primary_key=True)
+    model: Mapped[str]
+    version: Mapped[int]
+    parameters: Mapped[dict[str, Any]] = mapped_column(Json)
+    measurements: Mapped[dict[str, Any]] = mapped_column(Json)
+    created: Mapped[str]
+
+    artifacts: Mapped[list["ArtifactRow"]] = relationship(order_by="ArtifactRow.kind")
+
+
+class ArtifactRow(Base):
+    """A file of a build; its bytes are in the artifact store."""
+
+    __tablename__ = "artifact"
+
+    build_key: Mapped[str] = mapped_column(ForeignKey("build.key"), primary_key=True)
+    kind: Mapped[str] = mapped_column(primary_key=True)  # step, glb, …
+    sha256: Mapped[str] = mapped_column(index=True)
+    size: Mapped[int]
+    created: Mapped[str]
+
+
+class JobRow(Base):
+    """A piece of long work. Identities grow with time, so the queue is the order of the identities."""
+
+    __tablename__ = "job"
+    __table_args__ = (
+        ForeignKeyConstraint(["design_id", "revision"], ["revision.design_id", "revision.number"]),
+        Index(None, "state", "id"),
+        Index(None, "design_id", "revision"),
+    )
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    kind: Mapped[str]
+    state: Mapped[str]  # queued, running, done, failed, cancelled
+    design_id: Mapped[str | None]
+    revision: Mapped[int | None]
+    payload: Mapped[dict[str, Any]] = mapped_column(Json)
+    attempt: Mapped[int]  # how often it was claimed: only the newest claim may write
+    crashes: Mapped[int]  # how often it took its process down
+    progress: Mapped[float]
+    log: Mapped[list[str]] = mapped_column(Json)
+    problem: Mapped[dict[str, Any] | None] = mapped_column(Json)
+    result: Mapped[str | None]  # a link
+    created: Mapped[str]
+    updated: Mapped[str]
+
+
+class IdempotencyRow(Base):
+    """What was answered to a request that may be sent again."""
+
+    __tablename__ = "idempotency"
+
+    key: Mapped[str] = mapped_column(primary_key=True)
+    scope: Mapped[str] = mapped_column(primary_key=True)  # method and path
+    fingerprint: Mapped[str]  # SHA-256 of the body
+    status: Mapped[int]
+    location: Mapped[dict[str, Any]] = mapped_column(Json)  # what to render again
+    created: Mapped[str]
