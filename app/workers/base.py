@@ -1,0 +1,45 @@
+"""What every worker can do."""
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol, TypeVar, TypeVarTuple
+
+from app.workers.progress import Reporter
+
+T = TypeVar("T")
+Ts = TypeVarTuple("Ts")
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How long one run may take [s] and how much memory it may have beside the program itself [MiB]."""
+
+    deadline: float = 60.0
+    memory_mb: int = 3072
+
+
+class Worker(Protocol):
+    """Runs functions one by one, each on its own, from any number of threads."""
+
+    def run(
+        self,
+        function: Callable[[*Ts], T],
+        *args: *Ts,
+        limits: Limits = ...,
+        on_progress: Reporter | None = None,
+        cancelled: threading.Event | None = None,
+    ) -> T:
+        """Return what the function returns, or raise what it raises.
+
+        The function is found by its module and name, arguments and result are pickled. `on_progress` is
+        called in this thread.
+
+        Raises:
+            WorkerError: the function did not come to its end; the kind of error says why.
+        """
+        ...
+
+    def close(self) -> None:
+        """End what runs and let no more run."""
+        ...

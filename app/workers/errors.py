@@ -1,0 +1,68 @@
+"""What can happen to a function that a worker runs, beside what the function itself raises.
+
+WorkerError
+ ├── JobCrashed         its process died
+ ├── DeadlineExceeded   it took too long
+ ├── MemoryExceeded     it wanted too much memory
+ ├── JobCancelled       it was told to stop
+ └── RemoteError        it raised or returned what cannot be sent between processes
+
+All of them can be pickled.
+"""
+
+import signal
+
+
+class WorkerError(Exception):
+    """A function could not be brought to its end."""
+
+
+class JobCrashed(WorkerError):
+    """The process died; a negative exit code is the signal that killed it, None is unknown."""
+
+    def __init__(self, exit_code: int | None) -> None:
+        super().__init__(exit_code)
+        self.exit_code = exit_code
+
+    def __str__(self) -> str:
+        if self.exit_code is not None and self.exit_code < 0:
+            return f"The process was killed by {signal.Signals(-self.exit_code).name}."
+        return f"The process ended early with exit code {self.exit_code}."
+
+
+class DeadlineExceeded(WorkerError):
+    """The function took longer than its deadline [s] and was killed."""
+
+    def __init__(self, seconds: float) -> None:
+        super().__init__(seconds)
+        self.seconds = seconds
+
+    def __str__(self) -> str:
+        return f"The work took longer than {self.seconds:g} s and was stopped."
+
+
+class MemoryExceeded(WorkerError):
+    """The function wanted more memory than its limit [MiB]."""
+
+    def __init__(self, megabytes: int) -> None:
+        super().__init__(megabytes)
+        self.megabytes = megabytes
+
+    def __str__(self) -> str:
+        return f"The work needed more than {self.megabytes} MiB of memory and was stopped."
+
+
+class JobCancelled(WorkerError):
+    """The function was told to stop, and its process killed."""
+
+
+class RemoteError(WorkerError):
+    """An exception or a result that cannot be pickled, told by the name of its class and its text."""
+
+    def __init__(self, kind: str, text: str) -> None:
+        super().__init__(kind, text)
+        self.kind = kind
+        self.text = text
+
+    def __str__(self) -> str:
+        return f"{self.kind}: {self.text}"

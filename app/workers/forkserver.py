@@ -1,0 +1,83 @@
+"""The process from which job processes are forked: it has imported the geometry kernel and does nothing else.
+
+A fork of it is ready in milliseconds, where an import takes seconds. It is a plain process of its own: the
+children of `multiprocessing`'s would import the server's main module again.
+
+It ends when the server's end of its channel closes, however the server died, and its children die with it.
+Unlike a parent-death signal to this process, that does not depend on the thread which started it.
+"""
+
+import gc
+import importlib
+import logging
+import os
+import signal
+import socket
+from collections.abc import Iterable
+from contextlib import suppress
+from multiprocessing.connection import Connection
+
+from app.workers.job_process import serve_one_job
+
+Nursery = dict[int, Connection]  # process id of a living job -> where its exit code is told
+
+
+def main(channel: int, modules: Iterable[str]) -> None:
+    """Import the modules, then fork a job process for each pair of connections that the channel brings."""
+    for module in modules:
+        _preload(module)
+    gc.freeze()  # collections in the children shall not copy what is shared
+    with socket.socket(fileno=channel) as server:
+        _serve(server)
+
+
+def _preload(module: str) -> None:
+    try:
+        importlib.import_module(module)
+    except ImportError as error:
+        logging.getLogger(__name__).warning("%s is not preloaded: %s", module, error)
+
+
+def _serve(server: socket.socket) -> None:
+    nursery: Nursery = {}
+    signal.signal(signal.SIGCHLD, lambda *_: _bury(nursery))
+    while descriptors := socket.recv_fds(server, 1, 2)[1]:
+        job, status = descriptors
+        _fork(Connection(job), Connection(status), server, nursery)
+    for pid in list(nursery):
+        with suppress(ProcessLookupError):
+            os.killpg(pid, signal.SIGKILL)
+
+
+def _fork(job: Connection, status: Connection, server: socket.socket, nursery: Nursery) -> None:
+    """Fork a job process in a process group of its own and tell its id."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGCHLD})  # it shall not die before it is registered
+    parent = os.getpid()
+    pid = os.fork()
+    if pid == 0:
+        _become_job(job, (server, status, *nursery.values()), parent)
+    with suppress(OSError):  # the server may have gone
+        os.setpgid(pid, pid)
+        status.send(pid)
+    nursery[pid] = status
+    job.close()
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGCHLD})
+
+
+def _become_job(job: Connection, foreign: Iterable[socket.socket | Connection], parent: int) -> None:
+    """Turn a fork of this process into a job process; does not return."""
+    for other in foreign:  # a copy left open here would hide the end of its owner
+        other.close()
+    os.set_inheritable(job.fileno(), False)
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGCHLD})
+    serve_one_job(job, parent)
+
+
+def _bury(nursery: Nursery) -> None:
+    """Collect the exit codes of the jobs that have died and tell them to the server."""
+    for pid in list(nursery):
+        ended, status = os.waitpid(pid, os.WNOHANG)
+        if ended:
+            with nursery.pop(pid) as connection, suppress(OSError):
+                connection.send(os.waitstatus_to_exitcode(status))

@@ -1,0 +1,33 @@
+"""A worker without processes, for tests and debuggers: no limits, no way to stop what has begun."""
+
+import threading
+from collections.abc import Callable
+from typing import TypeVar, TypeVarTuple
+
+from app.workers.base import Limits
+from app.workers.errors import JobCancelled
+from app.workers.progress import Reporter, reporting
+
+T = TypeVar("T")
+Ts = TypeVarTuple("Ts")
+
+
+class Inline:
+    """Runs functions in the thread that asks."""
+
+    def run(
+        self,
+        function: Callable[[*Ts], T],
+        *args: *Ts,
+        limits: Limits = Limits(),  # noqa: B008 - frozen
+        on_progress: Reporter | None = None,
+        cancelled: threading.Event | None = None,
+    ) -> T:
+        """Call the function; see `Worker.run`."""
+        if cancelled is not None and cancelled.is_set():
+            raise JobCancelled
+        with reporting(on_progress):
+            return function(*args)
+
+    def close(self) -> None:
+        """Nothing to end."""

@@ -1,0 +1,150 @@
+"""The server's side of job processes: the forkserver, and one process for one job."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import cached_property
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from typing import Any
+
+from app.workers.base import Limits
+from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed
+from app.workers.messages import Progress, Raised, Request, Returned
+from app.workers.progress import Reporter
+
+_BOOT = (
+    "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
+    "from app.workers.forkserver import main; main(int(sys.argv[2]), sys.argv[3:])"
+)
+_GLANCE = 0.05  # how often a waiting thread looks whether its job was cancelled [s]
+_PATIENCE = 1.0  # how long the forkserver may take to end by itself [s]
+
+
+class JobProcess:
+    """A process that waits for one job, runs it, and is gone."""
+
+    def __init__(self, connection: Connection, status: Connection) -> None:
+        self._connection = connection
+        self._status = status
+
+    def start(self, request: Request) -> None:
+        """Send the process its job.
+
+        Raises:
+            OSError: the process died while it was waiting.
+        """
+        self._connection.send(request)
+
+    def finish(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event | None) -> Any:
+        """Wait for the end of the job and return its result; see `Worker.run` for what it raises."""
+        try:
+            _ = self._pid  # the clock starts when the process exists, not while the forkserver is importing
+            return self._converse(limits, on_progress, cancelled or threading.Event())
+        finally:
+            self.kill()
+
+    def kill(self) -> None:
+        """End the process, and those which it has started."""
+        with suppress(ProcessLookupError, JobCrashed):
+            os.killpg(self._pid, signal.SIGKILL)
+        self._connection.close()
+        self._status.close()
+
+    @cached_property
+    def _pid(self) -> int:
+        try:
+            return int(self._status.recv())
+        except EOFError:
+            raise JobCrashed(None) from None
+
+    def _converse(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event) -> Any:
+        end = time.monotonic() + limits.deadline
+        while True:
+            self._await_message(end, limits, cancelled)
+            match self._receive():
+                case Progress(fraction, text):
+                    if on_progress is not None:
+                        on_progress(fraction, text)
+                case Returned(value):
+                    return value
+                case Raised(error):
+                    raise error
+
+    def _await_message(self, end: float, limits: Limits, cancelled: threading.Event) -> None:
+        waiting = True
+        while waiting:
+            if cancelled.is_set():
+                raise JobCancelled
+            left = end - time.monotonic()
+            if left <= 0:
+                raise DeadlineExceeded(limits.deadline)
+            waiting = not self._connection.poll(min(left, _GLANCE))
+
+    def _receive(self) -> Any:
+        try:
+            return self._connection.recv()
+        except (EOFError, ConnectionResetError):
+            raise JobCrashed(self._exit_code()) from None
+
+    def _exit_code(self) -> int | None:
+        try:
+            return int(self._status.recv())
+        except EOFError:
+            return None
+
+
+class ForkServer:
+    """Starts the forkserver, starts it anew if it has died, and asks it for processes."""
+
+    def __init__(self, preload: Sequence[str]) -> None:
+        self._preload = preload
+        self._lock = threading.Lock()
+        self._start()
+
+    def fork(self) -> JobProcess:
+        """Ask for a process; it may come to life later, and takes its job even before."""
+        connection, theirs = Pipe()
+        status, told = Pipe(duplex=False)
+        with theirs, told:
+            self._send([theirs.fileno(), told.fileno()])
+        return JobProcess(connection, status)
+
+    def close(self) -> None:
+        """End the forkserver and all its processes."""
+        with self._lock:
+            self._end()
+
+    def _send(self, descriptors: list[int]) -> None:
+        with self._lock:
+            try:
+                socket.send_fds(self._channel, [b"."], descriptors)
+            except (BrokenPipeError, ConnectionResetError):
+                self._end()
+                self._start()
+                socket.send_fds(self._channel, [b"."], descriptors)
+
+    def _start(self) -> None:
+        self._channel, theirs = socket.socketpair()
+        with theirs:
+            self._process = subprocess.Popen(
+                [sys.executable, "-c", _BOOT, json.dumps(sys.path), str(theirs.fileno()), *self._preload],
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                start_new_session=True,  # Ctrl-C in a terminal is for the server, which ends its jobs itself
+            )
+
+    def _end(self) -> None:
+        self._channel.close()
+        try:
+            self._process.wait(_PATIENCE)
+        except subprocess.TimeoutExpired:  # it is still importing, and has no children yet
+            self._process.kill()
+            self._process.wait()

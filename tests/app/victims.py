@@ -1,0 +1,91 @@
+"""Job functions that behave badly, each in its own way; found by name from the job processes."""
+
+import ctypes
+import os
+import subprocess
+import sys
+import time
+
+from app.workers.progress import report
+
+
+class Awkward(Exception):
+    """Pickles, but cannot be unpickled."""
+
+    def __init__(self, first, second):
+        super().__init__(f"{first} and {second}")
+
+
+def process_id():
+    return os.getpid()
+
+
+def main_module_file():
+    return getattr(sys.modules["__main__"], "__file__", None)
+
+
+def double(number):
+    return 2 * number
+
+
+def count_to(number):
+    for step in range(number):
+        report(step / number, f"step {step}")
+    return number
+
+
+def large(size):
+    return b"x" * size
+
+
+def bad_value(text):
+    raise ValueError(text)
+
+
+def awkward():
+    raise Awkward("this", "that")
+
+
+def unpicklable():
+    return lambda: None
+
+
+def endless_sum():
+    return sum(range(10**15))  # one call into C: no signal handler of Python's would ever run
+
+
+def sleep(seconds):
+    time.sleep(seconds)
+    return seconds
+
+
+def chatter_for_ever():
+    while True:
+        report(0.5, "still here")
+
+
+def memory_bomb():
+    return len(bytearray(4 * 2**30))
+
+
+def segfault():
+    ctypes.string_at(0)
+
+
+def abort():
+    os.abort()
+
+
+def leave(code):
+    os._exit(code)
+
+
+def with_grandchild(file):
+    child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+    file.write_text(f"{os.getpid()} {child.pid}")
+    return child.wait()
+
+
+def tell_and_sleep(file):
+    file.write_text(str(os.getpid()))
+    time.sleep(60)
