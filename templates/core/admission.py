@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from templates.core.declare import Array, Declaration, Formula, Given
+from templates.core.declare import Array, Declaration, Formula
 from templates.core.errors import Fault
 from templates.core.ledger import Ledger, Mask, Notice
 
@@ -18,28 +18,23 @@ def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:
     """The fault of a formula's result outside its domain, with the inputs that it follows from."""
     meaning = declaration.meaning
     used = (self.declarations[n] for n in sorted(self.ancestors(declaration.attribute)))
-    inputs = ", ".join(d.name for d in used if isinstance(d, Given))
+    inputs = ", ".join(d.name for d in used if d.name in self.inputs) or "constants alone"
     if np.isfinite(value):
-        what = f"would be {meaning.scale.from_si(value):.6g}; it must be {meaning.domain.text(meaning.unit)}"
+        what = f"would be {meaning.told(value)}; it must be {meaning.wanted}"
     else:
         what = "has no finite value here"
     remedy = f"; {meaning.remedy}" if meaning.remedy else ""
-    return Fault(
-        declaration.name, "outside_domain", f"{meaning.words} {what}{remedy} (it follows from {inputs})"
-    )
+    detail = f"{meaning.words} {what}{remedy} (it follows from {inputs})"
+    return Fault(declaration.name, "outside_domain", detail)
 
 
 def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
     """The results with NaN where they mean nothing, the reason noted."""
     meaning = declaration.meaning
-    inside = np.isfinite(value)
-    if meaning.domain_si is not None:
-        inside &= meaning.domain_si.admits(value)
-    known = ~np.isnan(value)
+    inside, known = meaning.admits(value), ~np.isnan(value)
     if (known & ~inside).any():
-        limit = "finite" if meaning.domain.open else meaning.domain.text(meaning.unit)
         remedy = f"; {meaning.remedy}" if meaning.remedy else ""
-        reason = f"{declaration.name} must be {limit}{remedy}"
+        reason = f"{declaration.name} must be {meaning.wanted}{remedy}"
         self.ledger.masks.append(Mask((declaration.attribute,), known & ~inside, reason))
     return value if inside.all() else np.where(inside, value, np.nan)
 
@@ -53,7 +48,9 @@ def warn_if_outside(ledger: Ledger, declaration: Declaration, value: Any) -> Non
     if np.ndim(value):
         where = f"leaves it at {int(outside.sum())} of {outside.size} points"
     else:
-        where = f"is {meaning.scale.from_si(value):.6g}"
+        where = f"is {meaning.told(value)}"
     source = f" ({meaning.source})" if meaning.source else ""
-    detail = f"published for {meaning.words} {meaning.published.text(meaning.unit)}{source}; here it {where}"
+    remedy = f"; {meaning.remedy}" if meaning.remedy and meaning.domain.open else ""
+    limits = meaning.published.text(meaning.unit)
+    detail = f"published for {meaning.words} {limits}{source}; here it {where}{remedy}"
     ledger.warnings.append(Notice("outside_published_range", declaration.name, detail))

@@ -19,7 +19,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Generic, TypeVar
 
-from templates.core.errors import UnknownTemplate
+from templates.core.errors import UnknownTemplate, plain
 from templates.core.template import VERSIONED, Template
 
 T = TypeVar("T", bound=Template)
@@ -47,7 +47,9 @@ class Catalogue(Generic[T]):
         """
         found = {version: cls for (name, version), cls in sorted(self.versions.items()) if name == id}
         if not found:
-            raise UnknownTemplate(id, f"there is no {self.kind} {id[:80]!r}; there are {', '.join(self.ids)}")
+            raise UnknownTemplate(
+                id, f"there is no {self.kind} {plain(id)!r}; there are {', '.join(self.ids)}"
+            )
         return found
 
     def get(self, id: str, version: int) -> type[T]:
@@ -97,14 +99,19 @@ def _imported(path: Path) -> ModuleType:
     package = _package(path.parent)
     if package:
         return importlib.import_module(f"{package}.{path.stem}")
-    name = path.stem
-    if name in sys.modules and getattr(sys.modules[name], "__file__", None) == str(path):
+    path = path.resolve()
+    name = f"_outside.{hashlib.sha256(bytes(path.parent)).hexdigest()[:12]}.{path.stem}"
+    if name in sys.modules:
         return sys.modules[name]
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
         raise ImportError(f"{path} cannot be imported")
     module = sys.modules[name] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
     return module
 
 
@@ -142,5 +149,7 @@ class _Bare(ast.NodeTransformer):
         return None if is_text else node
 
     def visit_Assign(self, node: ast.Assign) -> ast.AST | None:
-        names = {target.id for target in node.targets if isinstance(target, ast.Name)}
-        return None if names == {"withdrawn"} else node
+        return None if [ast.unparse(target) for target in node.targets] == ["withdrawn"] else node
+
+    def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.AST | None:
+        return None if ast.unparse(node.target) == "withdrawn" else node

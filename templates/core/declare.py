@@ -12,130 +12,21 @@ from __future__ import annotations
 
 import ast
 import inspect
-import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Generic, Self, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.quantity import Typed, Unit, read, unit
+from templates.core.meaning import Meaning, meaning
+from templates.core.quantity import Typed, read, unit
 from templates.core.syntax import attributes_used, returned
 
 Array = NDArray[np.float64]
 Truth = bool | NDArray[np.bool_]
 T = TypeVar("T")
 F = TypeVar("F", bound=Callable[..., Any])
-
-_RELATIONS = (("gt", ">"), ("ge", "≥"), ("lt", "<"), ("le", "≤"))
-
-
-@dataclass(frozen=True)
-class Bounds:
-    """Limits of a value, in its declared unit; None leaves a side open."""
-
-    gt: float | None = None
-    ge: float | None = None
-    lt: float | None = None
-    le: float | None = None
-
-    def in_si(self, scale: Unit) -> Bounds:
-        """The same limits in SI."""
-        limits = (getattr(self, side) for side, _ in _RELATIONS)
-        return Bounds(*(None if limit is None else float(scale.to_si(limit)) for limit in limits))
-
-    def admits(self, value: Any) -> Any:
-        """Where the value (scalar or array) lies within the limits; NaN does not."""
-        inside = value == value
-        if self.gt is not None:
-            inside = inside & (value > self.gt)
-        if self.ge is not None:
-            inside = inside & (value >= self.ge)
-        if self.lt is not None:
-            inside = inside & (value < self.lt)
-        if self.le is not None:
-            inside = inside & (value <= self.le)
-        return inside
-
-    def text(self, name: str) -> str:
-        """In words: `> 0 mm and ≤ 5 mm`."""
-        scale = "" if name == "1" else f" {name}"
-        limits = ((sign, getattr(self, side)) for side, sign in _RELATIONS)
-        return " and ".join(f"{sign} {limit:.6g}{scale}" for sign, limit in limits if limit is not None)
-
-    @property
-    def open(self) -> bool:
-        """Whether there is no limit at all."""
-        return all(getattr(self, side) is None for side, _ in _RELATIONS)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Meaning:
-    """What a number means: its words, unit, symbol, bounds and source."""
-
-    words: str
-    unit: str
-    name: str
-    symbol: str | None = None
-    source: str | None = None
-    domain: Bounds = Bounds()
-    published: Bounds = Bounds()
-    remedy: str | None = None
-    also: tuple[str, ...] = ()
-    integer: bool = False
-
-    @cached_property
-    def scale(self) -> Unit:
-        """The declared unit, reduced to SI."""
-        return unit(self.unit)
-
-    @cached_property
-    def domain_si(self) -> Bounds | None:
-        """The domain in SI, or None where every finite value means something."""
-        return None if self.domain.open else self.domain.in_si(self.scale)
-
-    @cached_property
-    def published_si(self) -> Bounds | None:
-        """The published range in SI, or None where the source states none."""
-        return None if self.published.open else self.published.in_si(self.scale)
-
-
-def api_name(words: str) -> str:
-    """The words as an API name: `minimum film thickness` → `minimum_film_thickness`."""
-    return re.sub(r"[^a-z0-9]+", "_", words.lower()).strip("_")
-
-
-def meaning(
-    unit: str,
-    words: str,
-    *,
-    name: str | None = None,
-    symbol: str | None = None,
-    source: str | None = None,
-    gt: float | None = None,
-    ge: float | None = None,
-    lt: float | None = None,
-    le: float | None = None,
-    published: tuple[float | None, float | None] = (None, None),
-    remedy: str | None = None,
-    also: tuple[str, ...] = (),
-    integer: bool = False,
-) -> Meaning:
-    """The keywords that every declaration shares, as a `Meaning`; bounds are in the declared unit."""
-    return Meaning(
-        words=words,
-        unit=unit,
-        name=name or api_name(words),
-        symbol=symbol,
-        source=source,
-        domain=Bounds(gt, ge, lt, le),
-        published=Bounds(ge=published[0], le=published[1]),
-        remedy=remedy,
-        also=tuple(api_name(other) for other in also),
-        integer=integer,
-    )
 
 
 class Declaration:
@@ -165,7 +56,10 @@ class Given(Declaration):
 
 
 class Curve(Given):
-    """An input that is an array along the crank angle: its last axis is the cycle."""
+    """An input that is an array along the crank angle: its last axis is the cycle.
+
+    A curve means something only as a whole: one point out of its domain refuses it.
+    """
 
 
 class Choice(Declaration):
@@ -206,7 +100,7 @@ class Formula(Declaration, Generic[T]):
 
     @cached_property
     def uses(self) -> tuple[str, ...]:
-        """The attributes of the template that the formula refers to, in order of appearance."""
+        """The attributes that the formula refers to, in order of appearance."""
         return attributes_used(self.function)
 
 
@@ -269,7 +163,15 @@ def units(*arguments: str, returns: str | tuple[str, ...], latex: str | None = N
     For functions whose inside is not dimensionally pure, such as Walther's `nu + 0.7`: the catalogue-wide
     test of dimensions checks calls at this border. Values are in exactly these units, which must be SI
     (or pure numbers) so that nothing needs converting in the hot path.
+
+    Raises
+    ------
+    TypeError
+        If a unit is not SI.
     """
+    for name in (*arguments, *([returns] if isinstance(returns, str) else returns)):
+        if (scale := unit(name)).factor != 1 or scale.absolute:
+            raise TypeError(f"{name} is not SI; a physics function takes and returns SI values")
 
     def mark(function: F) -> F:
         function.border = (arguments, returns)  # type: ignore[attr-defined]

@@ -12,6 +12,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from reprlib import Repr
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,10 @@ class UnknownTemplate(TemplateError):
 
 
 class Unreachable(TemplateError):
-    """The target lies outside what can be reached between the bounds, or within a jump of the formula."""
+    """The target lies outside what can be reached between the bounds, or within a jump of the formula.
+
+    `reachable` is the range [unit] of the output between the bounds; NaN if it has no value there at all.
+    """
 
     def __init__(self, name: str, detail: str, reachable: tuple[float, float], unit: str) -> None:
         self.name, self.reachable, self.unit = name, reachable, unit
@@ -72,6 +77,22 @@ class FaultyText(TemplateError):
 
 def unknown_name(name: str, known: Iterable[str], kind: str) -> Fault:
     """A fault for a name that nobody declared, with the nearest that somebody did."""
-    near = get_close_matches(name, known := list(known), n=3)
+    near = get_close_matches(name[:80], known := list(known), n=3)
     remedy = f"did you mean {', '.join(near)}?" if near else f"known are {', '.join(known)}"
-    return Fault(name, "unknown_name", f"{kind} {name[:80]!r} is unknown; {remedy}")
+    return Fault(plain(name), "unknown_name", f"{kind} {plain(name)!r} is unknown; {remedy}")
+
+
+_brief = Repr()
+_brief.maxlevel, _brief.maxlist, _brief.maxdict, _brief.maxstring, _brief.maxother = 2, 3, 3, 60, 60
+
+
+def excerpt(raw: Any) -> str:
+    """Anything that was sent, in a few ASCII characters: short however long or deep it is, fit for JSON."""
+    if isinstance(raw, int) and raw.bit_length() > 200:
+        return "a number of more than 60 digits"
+    return ascii(_brief.repr(raw))[1:-1][:80] if not isinstance(raw, str) else ascii(raw[:60])
+
+
+def plain(name: str) -> str:
+    """A name that was sent, short and fit for JSON: lone surrogates are escaped, other letters kept."""
+    return name[:80].encode("utf-8", "backslashreplace").decode("utf-8")

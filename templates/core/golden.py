@@ -1,4 +1,4 @@
-"""Frozen versions: a digest of the code, some inputs, every result; so a change beneath is caught by its results.
+"""Frozen versions: a digest of the code, some inputs, every result; so a change beneath shows in its results.
 
 `crankwright freeze` writes the record of a released version once; a test compares for ever after. A file that
 exists is never overwritten: a change to a released version is a new version.
@@ -6,14 +6,17 @@ exists is never overwritten: a change to a released version is a new version.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from templates.core.catalogue import digest
-from templates.core.declare import Given
+from templates.core.declare import Choice
 from templates.core.errors import InvalidInputs
+from templates.core.intake import Input
 from templates.core.template import Template
 
 STEPS = (0.9, 1.1)  # every numeric input in turn, around the example
@@ -21,19 +24,55 @@ STEPS = (0.9, 1.1)  # every numeric input in turn, around the example
 
 def record(cls: type[Template]) -> dict[str, Any]:
     """The golden record of one version: SI inputs and SI results of the example and of steps around it."""
-    return {"id": cls.id, "version": cls.version, "digest": digest(cls), "cases": list(_cases(cls))}
+    return {
+        "id": cls.id,
+        "version": cls.version,
+        "digest": digest(cls),
+        "precision": cls.precision,
+        "cases": list(_cases(cls)),
+    }
+
+
+def golden_file(cls: type[Template], folder: Path) -> Path:
+    """Where the record of a version stands."""
+    return folder / f"{cls.id}_v{cls.version}.json"
+
+
+def freeze(cls: type[Template], folder: Path) -> Path:
+    """Write the record of a version that is to be released; where it stands.
+
+    Raises
+    ------
+    FileExistsError
+        If the version is frozen already.
+    """
+    path = golden_file(cls, folder)
+    text = json.dumps(record(cls), indent=1, ensure_ascii=False, allow_nan=False)
+    folder.mkdir(parents=True, exist_ok=True)
+    with path.open("x", encoding="utf-8") as file:
+        file.write(text + "\n")
+    return path
 
 
 def _cases(cls: type[Template]) -> Iterator[dict[str, Any]]:
     example = cls.from_quantities(cls.example).inputs_si()
     yield {"inputs": _plain(example), "outputs": results(cls, example)}
     for name, declared in cls.inputs.items():
-        for step in STEPS if isinstance(declared, Given) and not declared.meaning.integer else ():
-            inputs = {**example, name: example[name] * step}
+        for value in _steps(declared, example[name]):
+            inputs = {**example, name: value}
             try:
                 yield {"inputs": _plain(inputs), "outputs": results(cls, inputs)}
             except InvalidInputs as refusal:
                 yield {"inputs": _plain(inputs), "refused": sorted(fault.code for fault in refusal.faults)}
+
+
+def _steps(declared: Input, value: Any) -> list[Any]:
+    """Other values of one input: the other options, a number more or fewer, 10 % below and above."""
+    if isinstance(declared, Choice):
+        return [option for option in declared.options if option != value]
+    if declared.meaning.integer:
+        return [value - 1, value + 1]
+    return [value * step for step in STEPS]
 
 
 def results(cls: type[Template], inputs: Mapping[str, Any]) -> dict[str, Any]:

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from templates.core.admission import warn_if_outside
 from templates.core.declare import Array, Choice, Curve, Declaration, Derived, Given, Requirement
-from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
+from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_name
 from templates.core.ledger import Ledger, Mask
-from templates.core.quantity import Typed, read
+from templates.core.quantity import Typed, read, unit
 
 Input = Given | Choice | Derived[Any]
 
@@ -39,15 +39,15 @@ def _read_one(declared: Input, raw: Any) -> Typed | str:
     if isinstance(declared, Choice):
         if isinstance(raw, str) and raw in declared.options:
             return raw
-        raise FaultyText("not_an_option", f"{str(raw)[:60]!r} is none of {', '.join(declared.options)}")
+        raise FaultyText("not_an_option", f"{excerpt(raw)} is none of {', '.join(declared.options)}")
     return raw if isinstance(raw, Typed) else read(raw, declared.meaning.unit)
 
 
 def _example(declared: Input) -> str:
     if isinstance(declared, Choice):
         return f"; one of {', '.join(declared.options)}"
-    unit = declared.meaning.unit
-    return "" if unit == "1" else f", in {unit} or a unit of that kind"
+    scale = declared.meaning.unit
+    return "; give a number" if scale == "1" else f"; give it in {scale} or its like"
 
 
 def admitted(
@@ -63,43 +63,38 @@ def admitted(
 
 
 def _bounded(declared: Input, typed: Typed, ledger: Ledger, faults: list[Fault]) -> Any:
+    """The value, checked: a faulty single value or curve is refused, a faulty point of an array is masked."""
     meaning, value = declared.meaning, typed.si
-    if isinstance(value, np.ndarray) != isinstance(declared, Curve) and isinstance(declared, Curve):
-        faults.append(
-            Fault(declared.name, "not_a_curve", f"{meaning.words} is a curve: give an array over the cycle")
-        )
-    inside = True if meaning.domain_si is None else meaning.domain_si.admits(value)
-    if meaning.integer:
-        inside = inside & (np.round(value) == value)
-    if isinstance(value, np.ndarray):
-        value = _mask_given(declared, value, np.asarray(inside), ledger)
+    is_curve, inside = isinstance(declared, Curve), meaning.admits(value)
+    if is_curve and not isinstance(value, np.ndarray):
+        told = f"{meaning.words} is a curve: give an array over the cycle, in {meaning.unit}"
+        faults.append(Fault(declared.name, "not_a_curve", told))
+    elif is_curve or not isinstance(value, np.ndarray):
+        value = value if is_curve else np.float64(value)
+        if not np.all(inside):
+            faults.append(_out_of_bounds(declared, typed, inside))
     else:
-        value = np.float64(value)
-        if not inside:
-            faults.append(_out_of_bounds(declared, typed))
+        value = _mask_given(declared, value, inside, ledger)
     if meaning.published_si is not None:
         warn_if_outside(ledger, declared, value)
     return value
 
 
-def _out_of_bounds(declared: Declaration, typed: Typed) -> Fault:
+def _out_of_bounds(declared: Declaration, typed: Typed, inside: Any) -> Fault:
     meaning = declared.meaning
-    shown = f"{typed.value:.6g} {typed.unit}" if typed.unit != "1" else f"{typed.value:.15g}"
-    whole = "a whole number " if meaning.integer else ""
-    return Fault(
-        declared.name,
-        "out_of_range",
-        f"{meaning.words} is {shown}; it must be {whole}{meaning.domain.text(meaning.unit)}",
-    )
+    first = np.atleast_1d(typed.si)[~np.atleast_1d(inside)][0]
+    scale = unit(typed.unit)
+    shown = f"{scale.from_si(float(first)):.9g}{'' if typed.unit == '1' else ' ' + typed.unit}"
+    where = f" at {int(np.sum(~inside))} of its points" if np.ndim(inside) else ""
+    detail = f"{meaning.words} is {shown}{where}; it must be {meaning.wanted}"
+    return Fault(declared.name, "out_of_range", detail)
 
 
 def _mask_given(declared: Declaration, value: Array, inside: NDArray[np.bool_], ledger: Ledger) -> Array:
     if inside.all():
         return value
-    meaning = declared.meaning
-    whole = "a whole number " if meaning.integer else ""
-    reason = f"{declared.name} must be {whole}{meaning.domain.text(meaning.unit)}"
-    ledger.masks.append(Mask((declared.attribute,), ~np.broadcast_to(inside, value.shape), reason))
+    reason = f"{declared.name} must be {declared.meaning.wanted}"
+    ledger.masks.append(Mask((declared.attribute,), ~inside, reason))
     return np.where(inside, value, np.nan)
 
 
@@ -148,7 +143,4 @@ def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
 
 def _shown(self: Template, declared: Declaration) -> str:
     value = getattr(self, declared.attribute)
-    if isinstance(value, str):
-        return value
-    unit = declared.meaning.unit
-    return f"{declared.meaning.scale.from_si(value):.6g}{'' if unit == '1' else ' ' + unit}"
+    return value if isinstance(value, str) else declared.meaning.told(value)

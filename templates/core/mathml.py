@@ -64,10 +64,15 @@ def expression(formula: Formula[Any], symbols: Mapping[str, str], times: str = r
     """The right-hand side of a formula, as LaTeX, with the given symbols (or numbers) for its names."""
     if formula.latex is not None:
         return formula.latex
-    attributes = {
-        name: (text, PRODUCT if r"\," in text or "cdot" in text else ATOM) for name, text in symbols.items()
-    }
+    attributes = {name: (text, _tightness(text)) for name, text in symbols.items()}
     return Writer(formula.function.__globals__, attributes, {}, times).write(formula.expression)[0]
+
+
+def _tightness(text: str) -> int:
+    """How tightly a symbol or a number with its unit binds."""
+    if text.startswith("-"):
+        return SUM
+    return PRODUCT if r"\," in text or "cdot" in text else ATOM
 
 
 def symbols(cls: type[Template]) -> dict[str, str]:
@@ -103,7 +108,7 @@ class Writer:
         """
         match node:
             case ast.Constant(value=int() | float() as value):
-                return number(value), ATOM
+                return (text := number(value)), _tightness(text)
             case ast.Attribute(value=ast.Name(id="self"), attr=name):
                 return self.attributes[name]
             case ast.Attribute(attr="pi") | ast.Name(id="pi"):
@@ -138,6 +143,8 @@ class Writer:
         raise TypeError(f"{ast.unparse(node)!r} has no place in a formula")
 
     def _call(self, node: ast.Call) -> Written:
+        if node.keywords:
+            raise TypeError(f"{ast.unparse(node)!r}: in a formula, arguments are given by position")
         name = node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
         if name in ("sqrt", "abs"):
             inside = self.write(node.args[0])[0]
@@ -163,7 +170,7 @@ class Writer:
     def _constant(self, name: str) -> Written:
         value = self.scope.get(name)
         if isinstance(value, (int, float)) and math.isfinite(value):
-            return number(value), ATOM
+            return (text := number(value)), _tightness(text)
         return rf"\mathrm{{{name}}}", ATOM
 
 

@@ -43,7 +43,7 @@ def rows(template: Template) -> Iterator[Row]:
     result = {attribute: _shown(template, attribute, absolute=True) for attribute in cls.declarations}
     for formula in cls.formulas.values():
         if formula.attribute in vars(template):
-            complete = all(values[used] for used in formula.uses)
+            complete = all(values.get(used) for used in formula.uses)
             yield Row(
                 name=formula.name,
                 words=formula.meaning.words,
@@ -62,7 +62,7 @@ def _shown(template: Template, attribute: str, *, absolute: bool = False) -> str
     """
     declared = template.declarations[attribute]
     if isinstance(declared, Choice):
-        return rf"\text{{{getattr(template, attribute)}}}"
+        return rf"\text{{{getattr(template, attribute).replace('_', ' ')}}}"
     value = vars(template).get(attribute)
     if value is None or isinstance(value, np.ndarray):
         return ""

@@ -8,9 +8,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from templates.core.catalogue import digest
-from templates.core.declare import Bounds, Choice, Curve, Declaration, Derived, Formula
+from templates.core.declare import Choice, Curve, Declaration, Derived, Formula
 from templates.core.intake import Input
 from templates.core.mathml import expression, mathml, symbol, symbols
+from templates.core.meaning import Bounds
 from templates.core.template import Template
 
 _KEYWORDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}

@@ -21,7 +21,8 @@ from templates.core.ledger import Notice
 from templates.core.quantity import Typed, read
 from templates.core.template import Template
 
-SAMPLES = 513  # of the scan; finer than any feature of a fit, cheap as one array call
+SAMPLES = 1025  # of the scan, and again of each interval in which something happens; cheap as array calls
+INTERVALS = 20  # that are looked at again
 JUMP = 1e-6  # relative residual at a crossing beyond which it is a jump, not a solution
 
 
@@ -57,8 +58,7 @@ def solve(
     """
     declared, (low, high), formula, wanted = _question(cls, raw, unknown, bounds, target)
     curve = _Curve(cls, dict(raw), declared, formula, wanted)
-    grid = _grid(low, high)
-    residual = curve.residual(grid)
+    grid, residual = curve.scan(low, high)
     roots = curve.roots(grid, residual)
     if not roots:
         raise curve.unreachable(grid, residual)
@@ -79,12 +79,10 @@ def _question(
 ) -> tuple[Input, tuple[float, float], Formula[Any], float]:
     """The declarations and SI values that the question is about; everything wrong with it at once."""
     faults: list[Fault] = []
-    declared, formula = cls.inputs.get(unknown), None
-    if declared is None or isinstance(declared, (Choice, Curve)):
-        faults.append(unknown_name(unknown, cls.inputs, "unknown input").within("unknown"))
+    declared, formula = _unknown(cls, unknown, faults), None
     if unknown in raw:
         faults.append(Fault(f"inputs.{unknown}", "solved_for", "this input is solved for; leave it out"))
-    ends = _ends(declared, bounds, faults) if declared and not isinstance(declared, Choice) else (0.0, 1.0)
+    ends = _ends(declared, bounds, faults) if declared else (0.0, 1.0)
     wanted = 0.0
     if len(target) != 1:
         faults.append(Fault("target", "one_output", "name exactly one output and its wanted value"))
@@ -100,12 +98,30 @@ def _question(
     return declared, ends, formula, wanted
 
 
+def _unknown(cls: type[Template], name: str, faults: list[Fault]) -> Input | None:
+    """The declaration of the unknown, if it is a quantity that can take any value."""
+    declared = cls.inputs.get(name)
+    if declared is None:
+        known = unknown_name(name, _solvable(cls), "input")
+        faults.append(Fault("unknown", known.code, known.detail))
+    elif name not in _solvable(cls):
+        detail = f"{name} takes no continuous values; one of {', '.join(_solvable(cls))} can be solved for"
+        faults.append(Fault("unknown", "not_solvable", detail))
+        return None
+    return declared
+
+
+def _solvable(cls: type[Template]) -> list[str]:
+    discrete = (Choice, Curve)
+    return [n for n, d in cls.inputs.items() if not (isinstance(d, discrete) or d.meaning.integer)]
+
+
 def _ends(declared: Input, bounds: Sequence[Any], faults: list[Fault]) -> tuple[float, float]:
     if len(bounds) != 2:
         faults.append(Fault("bounds", "two_values", "give the lowest and the highest value to try"))
         return 0.0, 1.0
     low, high = (_scalar(end, declared.meaning.unit, "bounds", faults) for end in bounds)
-    if not low < high:
+    if low >= high:
         faults.append(Fault("bounds", "not_ascending", "the first bound must be below the second"))
     return low, high
 
@@ -129,14 +145,13 @@ def _faulty_inputs(
     ends: tuple[float, float],
 ) -> list[Fault]:
     """What is wrong with the other inputs, seen with the unknown in the middle of its bounds."""
-    if declared is None or isinstance(declared, Choice) or not np.all(np.isfinite(ends)):
-        probe: dict[str, Any] = {}
-    else:
+    probe: dict[str, Any] = {}
+    if declared and np.all(np.isfinite(ends)):
         probe = {unknown: _typed(declared, np.array(ends))}
     try:
         cls.from_quantities({**raw, **probe})
     except InvalidInputs as error:
-        return [fault.within("inputs") for fault in error.faults if fault.name != unknown or probe]
+        return [fault.within("inputs") for fault in error.faults if fault.name != unknown]
     arrays = [name for name, value in raw.items() if isinstance(value, list) or _has_array(value)]
     return [Fault(f"inputs.{n}", "not_a_number", "solve takes single values, not arrays") for n in arrays]
 
@@ -151,9 +166,14 @@ def _typed(declared: Input, si: NDArray[np.float64]) -> Typed:
 
 def _grid(low: float, high: float) -> NDArray[np.float64]:
     """Samples between the bounds: even in the logarithm where both are positive and far apart."""
-    if low > 0 and high / low > 10:
+    if low > 0 and high > 10 * low:
         return np.geomspace(low, high, SAMPLES)
     return np.linspace(low, high, SAMPLES)
+
+
+def _crosses(residual: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether the residual changes its sign between each sample and the next."""
+    return np.asarray(np.sign(residual[:-1]) * np.sign(residual[1:]) < 0)
 
 
 @dataclass(frozen=True)
@@ -174,14 +194,30 @@ class _Curve:
         si = self.formula.meaning.scale.to_si(np.asarray(answer, dtype=float))
         return np.broadcast_to(si - self.wanted, values.shape)
 
+    def scan(self, low: float, high: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Values of the unknown and their residuals; dense where the target is crossed or the domain ends.
+
+        So a jump is told from a crossing, and the end of the reachable range is found.
+        """
+        grid = _grid(low, high)
+        residual = self.residual(grid)
+        edge = np.isnan(residual[:-1]) != np.isnan(residual[1:])
+        found = np.flatnonzero(edge | _crosses(residual))[:INTERVALS]
+        if not found.size:
+            return grid, residual
+        fine = (np.linspace(grid[i], grid[i + 1], SAMPLES) for i in found)
+        grid = np.unique(np.concatenate([grid, *fine]))
+        return grid, self.residual(grid)
+
     def roots(self, grid: NDArray[np.float64], residual: NDArray[np.float64]) -> list[float]:
         """Every crossing of the target, closed in to rounding; jumps across it are none."""
+        if np.isnan(residual).all():
+            return []
         exact = [float(grid[i]) for i in np.flatnonzero(residual == 0)]
-        with np.errstate(invalid="ignore"):
-            change = np.flatnonzero(residual[:-1] * residual[1:] < 0)
-        closed = (float(brentq(self._at, grid[i], grid[i + 1], xtol=1e-300, rtol=4e-15)) for i in change)
+        change = np.flatnonzero(_crosses(residual))
+        closed = (brentq(self._at, grid[i], grid[i + 1], xtol=1e-300, rtol=4e-15, disp=False) for i in change)
         size = max(abs(self.wanted), float(np.nanmax(np.abs(residual))) * JUMP)
-        return sorted([*exact, *(root for root in closed if abs(self._at(root)) <= JUMP * size)])
+        return sorted([*exact, *(float(root) for root in closed if abs(self._at(root)) <= JUMP * size)])
 
     def _at(self, value: float) -> float:
         return float(self.residual(np.array([value]))[0])
@@ -194,27 +230,28 @@ class _Curve:
             return Unreachable(name, detail, (np.nan, np.nan), meaning.unit)
         ends = np.nanmin(residual) + self.wanted, np.nanmax(residual) + self.wanted
         low, high = (float(meaning.scale.from_si(end)) for end in ends)
-        shown = f"{low:.6g} … {high:.6g} {meaning.unit}"
-        target = f"{float(meaning.scale.from_si(self.wanted)):.6g} {meaning.unit}"
-        if low < float(meaning.scale.from_si(self.wanted)) < high:
-            detail = f"{target} lies in a jump of {name}: this version is not monotone, as published"
+        shown, target = f"{meaning.told(ends[0])} … {meaning.told(ends[1])}", meaning.told(self.wanted)
+        if ends[0] < self.wanted < ends[1]:
+            detail = (
+                f"{target} lies in a jump of {name}, or where it has no value: no input gives exactly this"
+            )
         else:
             detail = f"{target} is out of reach: between the bounds {name} is {shown}"
         return Unreachable(name, detail, (low, high), meaning.unit)
 
 
 def _not_monotone(declared: Input, formula: Formula[Any], residual: NDArray[np.float64]) -> list[Notice]:
-    steps = np.diff(residual[np.isfinite(residual)])
-    if (steps >= 0).all() or (steps <= 0).all():
+    known = residual[np.isfinite(residual)]
+    steps, rounding = np.diff(known), 1e-12 * np.max(np.abs(known), initial=0.0)
+    if (steps >= -rounding).all() or (steps <= rounding).all():
         return []
-    detail = f"{formula.name} is not monotone in {declared.name} between the bounds, as published"
+    detail = f"{formula.name} is not monotone in {declared.name} between the bounds, in this version"
     return [Notice("not_monotone", declared.name, detail)]
 
 
 def _others(declared: Input, roots: list[float]) -> list[Notice]:
     if len(roots) == 1:
         return []
-    unit = declared.meaning.unit
-    others = ", ".join(f"{declared.meaning.scale.from_si(root):.6g} {unit}" for root in roots[1:5])
+    others = ", ".join(declared.meaning.told(root) for root in roots[1:5])
     detail = f"{others} give the target too; the lowest is returned"
     return [Notice("several_solutions", declared.name, detail)]

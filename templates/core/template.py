@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, NoReturn, Self
 
 import numpy as np
@@ -51,12 +51,16 @@ class Template:
     version: ClassVar[int] = 0
     withdrawn: ClassVar[str | None] = None
     example: ClassVar[Mapping[str, Any]] = {}
+    precision: ClassVar[float] = (
+        1e-12  # relative, to which results of a released version are held; solvers: 1e-8
+    )
 
     inputs: ClassVar[dict[str, Input]] = {}
     formulas: ClassVar[dict[str, Formula[Any]]] = {}
     requirements: ClassVar[tuple[Requirement, ...]] = ()
     declarations: ClassVar[dict[str, Declaration]] = {}
 
+    _ancestry: ClassVar[dict[str, frozenset[str]]] = {}
     ledger: Ledger
 
     def __init_subclass__(cls) -> None:
@@ -64,7 +68,10 @@ class Template:
             cls.id, cls.version = match[1], int(match[2])
         everything = {name: v for base in reversed(cls.__mro__) for name, v in vars(base).items()}
         declared = {name: v for name, v in everything.items() if isinstance(v, Declaration)}
-        cls.declarations = declared
+        if reserved := sorted(name for name in declared if name in cls._own_words()):
+            told = ", ".join(reserved)
+            raise TypeError(f"{cls.__name__}: {told} has a meaning in every template; name it otherwise")
+        cls.declarations, cls._ancestry = declared, {}
         named = by_name(declared)
         cls.inputs = {name: v for name, v in named.items() if isinstance(v, (Given, Choice, Derived))}
         cls.formulas = {name: v for name, v in named.items() if name not in cls.inputs}
@@ -77,6 +84,12 @@ class Template:
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
         raise AttributeError(f"a {type(self).__name__} is a record of one calculation; make a new one")
+
+    @classmethod
+    def _own_words(cls) -> set[str]:
+        """The attributes of the bases that are part of the language."""
+        bases = (vars(base) for base in cls.__mro__[1:])
+        return {name for own in bases for name, v in own.items() if not isinstance(v, Declaration)}
 
     @classmethod
     def title(cls) -> str:
@@ -127,9 +140,18 @@ class Template:
     @classmethod
     def ancestors(cls, attribute: str) -> frozenset[str]:
         """The attributes on which this one depends, directly or not, itself included."""
-        declared = cls.declarations.get(attribute)
-        uses = declared.uses if isinstance(declared, Formula) else ()
-        return frozenset({attribute}).union(*(cls.ancestors(name) for name in uses))
+        if attribute not in cls._ancestry:
+            cls._ancestry[attribute] = frozenset(cls._beneath(attribute))
+        return cls._ancestry[attribute]
+
+    @classmethod
+    def _beneath(cls, attribute: str) -> Iterator[str]:
+        found, waiting = {attribute}, [attribute]
+        while waiting:
+            yield (name := waiting.pop())
+            new = dict.fromkeys(n for n in getattr(cls.declarations.get(name), "uses", ()) if n not in found)
+            found |= new.keys()
+            waiting += new
 
     def inputs_si(self) -> dict[str, Any]:
         """Every input in SI by API name, defaults included."""
@@ -139,11 +161,14 @@ class Template:
     def admit(self, declaration: Formula[Any], value: Any) -> Any:
         """Check a formula's result against its bounds: refuse a point, mask points of an array, or warn."""
         meaning = declaration.meaning
-        if isinstance(value, float):
+        if np.ndim(value) == 0 and not isinstance(value, str):
+            value = np.float64(value)
             if not (math.isfinite(value) and (meaning.domain_si is None or meaning.domain_si.admits(value))):
                 raise InvalidInputs([refusal(self, declaration, value)])
-        elif isinstance(value, np.ndarray) and value.dtype.kind == "f":
+        elif isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
             value = masked(self, declaration, value)
         if meaning.published_si is not None:
             warn_if_outside(self.ledger, declaration, value)
+        for assumed in meaning.assumes:
+            getattr(self, assumed)
         return value

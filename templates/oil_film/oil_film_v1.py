@@ -92,7 +92,10 @@ class OilFilm(Template):
     def C(self) -> Array:
         return self.c / self.d
 
-    @formula("1", "width ratio", source=PAPER, published=(0.99 * WIDTH_RATIO, 1.01 * WIDTH_RATIO))
+    @formula(
+        "1", "width ratio", source=PAPER, published=(0.99 * WIDTH_RATIO, 1.01 * WIDTH_RATIO),
+        remedy="the fit was made on one bearing, W/D = 32/85 = 0.376",
+    )  # fmt: skip
     def b(self) -> Array:
         return self.W / self.D
 
@@ -137,7 +140,7 @@ class OilFilm(Template):
         return exponent_k2(self.S_0)
 
     @formula(
-        "1", "relative eccentricity", source=PAPER, ge=0, lt=1,
+        "1", "relative eccentricity", source=PAPER, ge=0, lt=1, assumes=("b",),
         remedy="the fit ends at So of about 1360: lower load or clearance, or raise speed or viscosity",
     )  # fmt: skip
     def eps(self) -> Array:
