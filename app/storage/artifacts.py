@@ -40,8 +40,10 @@ class ArtifactStore:
     def path(self, sha: str) -> Path:
         """Where an artifact lies.
 
-        Raises:
-            ArtifactMissing: nothing is stored under this name, or it is no SHA-256.
+        Raises
+        ------
+        ArtifactMissing
+            Nothing is stored under this name, or it is no SHA-256.
         """
         location = self._location(sha)
         if not location.is_file():

@@ -48,10 +48,14 @@ class Database:
     def write(self, unit: Unit[T]) -> T:
         """Run a unit of work in the writer thread and return its result once that is durable.
 
-        Raises:
-            CommitFailed: the unit ran, but its group could not be committed; nothing of it is stored.
-            DatabaseClosed: the database has been closed.
-            Exception: whatever the unit raises; its changes, and no others, are undone.
+        Raises
+        ------
+        CommitFailed
+            The unit ran, but its group could not be committed; nothing of it is stored.
+        DatabaseClosed
+            The database has been closed.
+        Exception
+            Whatever the unit raises; its changes, and no others, are undone.
         """
         if threading.current_thread() is self._thread:
             raise RuntimeError("A unit of work may not wait for another: use its session.")

@@ -13,8 +13,10 @@ class DataFolder:
     The lock belongs to the process, so a killed server leaves nothing to clean up. Because of it whatever the
     database calls running at the start has died.
 
-    Raises:
-        DataFolderInUse: another process holds the folder.
+    Raises
+    ------
+    DataFolderInUse
+        Another process holds the folder.
     """
 
     def __init__(self, path: Path) -> None:

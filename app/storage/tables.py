@@ -18,8 +18,10 @@ NAMING = {
 def canonical_json(value: Any) -> str:
     """Write a JSON value in its one canonical form.
 
-    Raises:
-        ValueError: the value holds NaN or an infinity, which JSON does not know.
+    Raises
+    ------
+    ValueError
+        The value holds NaN or an infinity, which JSON does not know.
     """
     return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 

@@ -35,8 +35,10 @@ class Worker(Protocol):
         The function is found by its module and name, arguments and result are pickled. `on_progress` is
         called in this thread.
 
-        Raises:
-            WorkerError: the function did not come to its end; the kind of error says why.
+        Raises
+        ------
+        WorkerError
+            The function did not come to its end; the kind of error says why.
         """
         ...
 

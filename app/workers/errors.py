@@ -55,6 +55,9 @@ class MemoryExceeded(WorkerError):
 class JobCancelled(WorkerError):
     """The function was told to stop, and its process killed."""
 
+    def __str__(self) -> str:
+        return "The work was cancelled."
+
 
 class RemoteError(WorkerError):
     """An exception or a result that cannot be pickled, told by the name of its class and its text."""

@@ -38,8 +38,10 @@ class JobProcess:
     def start(self, request: Request) -> None:
         """Send the process its job.
 
-        Raises:
-            OSError: the process died while it was waiting.
+        Raises
+        ------
+        OSError
+            The process died while it was waiting.
         """
         self._connection.send(request)
 

@@ -15,8 +15,10 @@ from app.storage.errors import DatabaseNewer
 def migrate(url: str) -> None:
     """Bring the database to the schema of this program, in one transaction.
 
-    Raises:
-        DatabaseNewer: the database has been migrated by a newer program.
+    Raises
+    ------
+    DatabaseNewer
+        The database has been migrated by a newer program.
     """
     config = Config()
     config.set_main_option("script_location", str(Path(__file__).parent).replace("%", "%%"))

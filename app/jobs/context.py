@@ -1,0 +1,72 @@
+"""What a handler can do while its job runs."""
+
+import threading
+import time
+from collections.abc import Callable
+from typing import TypeVar, TypeVarTuple
+
+from app.jobs import repository
+from app.jobs.events import Events
+from app.jobs.job import Job
+from app.storage.database import Database
+from app.workers.base import Limits, Worker
+
+T = TypeVar("T")
+Ts = TypeVarTuple("Ts")
+
+_LINES = 200  # of the log that are kept
+_INTERVAL = 0.5  # between two times that progress is stored [s]
+
+
+class JobContext:
+    """Runs functions in the worker, and tells and stores how far the job is."""
+
+    def __init__(
+        self,
+        job: Job,
+        database: Database,
+        worker: Worker,
+        limits: Limits,
+        events: Events,
+        cancelled: threading.Event,
+    ) -> None:
+        self.log: list[str] = []
+        self._job = job
+        self._database = database
+        self._worker = worker
+        self._limits = limits
+        self._events = events
+        self._cancelled = cancelled
+        self._stored = time.monotonic()
+
+    def run(self, function: Callable[[*Ts], T], *args: *Ts) -> T:
+        """Run a function in the worker, within the limits of jobs; it tells its progress by `report`.
+
+        Raises
+        ------
+        JobCancelled
+            Somebody cancelled the job, or the server stops.
+        WorkerError
+            See `Worker.run`.
+        """
+        return self._worker.run(
+            function, *args, limits=self._limits, on_progress=self.progress, cancelled=self._cancelled
+        )
+
+    def progress(self, fraction: float, text: str) -> None:
+        """Tell how far the job is (0 to 1) and what it does next; it is stored now and then, told at once."""
+        self.log = [*self.log, text][-_LINES:]
+        publish(self._events, self._job, "progress", progress=fraction, text=text)
+        if time.monotonic() - self._stored >= _INTERVAL:
+            self._database.write(
+                lambda session: repository.note_progress(session, self._job, fraction, self.log)
+            )
+            self._stored = time.monotonic()
+
+
+def publish(events: Events, job: Job, name: str, **more: object) -> None:
+    """Tell an event of a job to those who watch it, and to those who watch its design."""
+    event = {"event": name, "job": job.id, "revision": job.revision, **more}
+    events.publish(f"job:{job.id}", event)
+    if job.design is not None:
+        events.publish(f"design:{job.design}", event)

@@ -1,0 +1,176 @@
+"""The threads that take jobs from the queue, have them run, and record how they ended."""
+
+import logging
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from app.jobs import repository
+from app.jobs.context import JobContext, publish
+from app.jobs.errors import JobFailed
+from app.jobs.events import Events
+from app.jobs.job import Job
+from app.storage.database import Database
+from app.workers.base import Limits, Worker
+from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed, MemoryExceeded
+
+logger = logging.getLogger(__name__)
+
+Problem = dict[str, Any]
+Completion = Callable[[Session], str | None]
+Handler = Callable[[Job, JobContext], Completion]
+FailureHook = Callable[[Session, Job, Problem], None]
+
+MAX_CRASHES = 2
+_PAUSE = 1.0  # before the queue is looked at again after the database has failed [s]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What to do with jobs of a kind."""
+
+    handler: Handler
+    on_failure: FailureHook
+
+
+class Dispatcher:
+    """Runs the queued jobs, as many at a time as there are threads."""
+
+    def __init__(
+        self,
+        database: Database,
+        worker: Worker,
+        limits: Limits,
+        events: Events,
+        describe: Callable[[Exception], Problem],
+    ) -> None:
+        self.kinds: dict[str, Kind] = {}
+        self._database = database
+        self._worker = worker
+        self._limits = limits
+        self._events = events
+        self._describe = describe
+        self._awake = threading.Semaphore(0)
+        self._stopping = threading.Event()
+        self._running: dict[str, threading.Event] = {}  # job id -> set to stop it
+        self._threads: list[threading.Thread] = []
+
+    def start(self, threads: int) -> None:
+        """Begin to take jobs from the queue."""
+        for number in range(threads):
+            thread = threading.Thread(target=self._work, name=f"jobs-{number}", daemon=True)
+            self._threads.append(thread)
+            thread.start()
+            self.wake()
+
+    def wake(self) -> None:
+        """Have a thread look at the queue."""
+        self._awake.release()
+
+    def interrupt(self, id: str) -> None:
+        """Kill the process of a job, if it runs."""
+        if cancelled := self._running.get(id):
+            cancelled.set()
+
+    def stop(self) -> None:
+        """Kill what runs, put it back into the queue, and wait for the threads."""
+        self._stopping.set()
+        for id in list(self._running):
+            self.interrupt(id)
+        for _ in self._threads:
+            self.wake()
+        for thread in self._threads:
+            thread.join()
+
+    def _work(self) -> None:
+        while not self._stopping.is_set():
+            self._awake.acquire()
+            try:
+                self._empty_queue()
+            except Exception:
+                logger.exception("The queue of jobs could not be read or written; trying again")
+                self._stopping.wait(_PAUSE)
+                self.wake()
+
+    def _empty_queue(self) -> None:
+        while not self._stopping.is_set() and (job := self._database.write(self._claim)):
+            try:
+                self._execute(job)
+            finally:
+                del self._running[job.id]
+
+    def _claim(self, session: Session) -> Job | None:
+        job = repository.claim(session)
+        if (
+            job is not None
+        ):  # registered in the writer thread: a cancellation that sees it running finds it here
+            self._running[job.id] = threading.Event()
+        return job
+
+    def _execute(self, job: Job) -> None:
+        """Run a claimed job to whatever end."""
+        cancelled = self._running[job.id]
+        if self._stopping.is_set():  # it was claimed while `stop` went through the running jobs
+            cancelled.set()
+        context = JobContext(job, self._database, self._worker, self._limits, self._events, cancelled)
+        publish(self._events, job, "running")
+        try:
+            completion = self.kinds[job.kind].handler(job, context)
+            self._complete(job, context, completion)
+        except JobCancelled:
+            self._give_back(job, job.crashes)  # unless somebody has cancelled it: then it is no longer held
+        except JobCrashed as error:
+            self._crashed(job, context, error)
+        except JobFailed as verdict:
+            self._fail(job, context, verdict.problem, verdict.completion)
+        except (DeadlineExceeded, MemoryExceeded) as error:
+            self._fail(job, context, self._describe(error))
+        except Exception as error:
+            logger.exception("Job %s (%s) failed unexpectedly", job.id, job.kind)
+            self._fail(job, context, self._describe(error))
+
+    def _complete(self, job: Job, context: JobContext, completion: Completion) -> None:
+        def unit(session: Session) -> bool:
+            if not repository.end(session, job, "done", context.log, progress=1.0):
+                return False
+            repository.set_result(session, job, completion(session))
+            return True
+
+        if self._database.write(unit):
+            publish(self._events, job, "done")
+
+    def _crashed(self, job: Job, context: JobContext, error: JobCrashed) -> None:
+        """Try again: another process may have been to blame, such as one that took the machine's memory."""
+        crashes = job.crashes + 1
+        logger.warning("Job %s (%s) crashed, time %d: %s", job.id, job.kind, crashes, error)
+        if crashes < MAX_CRASHES:
+            self._give_back(job, crashes)
+        else:
+            self._fail(job, context, self._describe(error), crashes=crashes)
+
+    def _give_back(self, job: Job, crashes: int) -> None:
+        if self._database.write(lambda session: repository.give_back(session, job, crashes)):
+            publish(self._events, job, "queued")
+
+    def _fail(
+        self,
+        job: Job,
+        context: JobContext,
+        problem: Problem,
+        completion: Callable[[Session], None] | None = None,
+        **more: Any,
+    ) -> None:
+        def unit(session: Session) -> bool:
+            if not repository.end(session, job, "failed", context.log, problem=problem, **more):
+                return False
+            if completion is not None:
+                completion(session)
+            if kind := self.kinds.get(job.kind):
+                kind.on_failure(session, job, problem)
+            return True
+
+        if self._database.write(unit):
+            publish(self._events, job, "failed", problem=problem)

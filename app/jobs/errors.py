@@ -1,0 +1,51 @@
+"""What can go wrong with jobs.
+
+JobError
+ ├── JobNotFound    there is no such job
+ ├── JobFinished    the job has ended, so it cannot be cancelled
+ ├── QueueFull      too many jobs are waiting
+ └── JobFailed      raised by a handler: the job ends with this problem
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+
+class JobError(Exception):
+    """Any error of jobs."""
+
+
+class JobNotFound(JobError):
+    """There is no such job."""
+
+    def __init__(self, id: str) -> None:
+        super().__init__(f"There is no job {id}.")
+        self.id = id
+
+
+class JobFinished(JobError):
+    """The job has ended."""
+
+    def __init__(self, id: str, state: str) -> None:
+        super().__init__(f"Job {id} has ended: it is {state}.")
+        self.id = id
+        self.state = state
+
+
+class QueueFull(JobError):
+    """Too many jobs are waiting; it may be worth another try after some time [s]."""
+
+    def __init__(self, retry_after: int) -> None:
+        super().__init__(f"Too many jobs are waiting. Try again in {retry_after} s.")
+        self.retry_after = retry_after
+
+
+class JobFailed(JobError):
+    """A handler's verdict: the job ends with this problem, and `completion` runs in the same transaction."""
+
+    def __init__(self, problem: dict[str, Any], completion: Callable[[Session], None] | None = None) -> None:
+        super().__init__(problem)
+        self.problem = problem
+        self.completion = completion

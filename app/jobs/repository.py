@@ -1,0 +1,116 @@
+"""All SQL about jobs. Every function runs in the transaction of its caller.
+
+What a claimed job writes is fenced: it takes effect only while the row is running at the attempt that was
+claimed, so a job which was cancelled or claimed again cannot write any more.
+"""
+
+from typing import Any, cast
+
+from sqlalchemy import ColumnElement, and_, func, select, update
+from sqlalchemy.orm import Session
+
+from app.jobs.job import Job, State
+from app.storage.identity import new_id, now
+from app.storage.tables import JobRow
+
+
+def add(
+    session: Session, kind: str, payload: dict[str, Any], design: str | None, revision: int | None
+) -> str:
+    """Queue a job and return its id."""
+    session.flush()  # the revision it belongs to comes first
+    row = JobRow(
+        id=new_id(), kind=kind, state="queued", design_id=design, revision=revision, payload=payload,
+        attempt=0, crashes=0, progress=0.0, log=[], created=now(), updated=now(),
+    )  # fmt: skip
+    session.add(row)
+    session.flush()
+    return row.id
+
+
+def count_queued(session: Session) -> int:
+    """Return how many jobs wait."""
+    return session.scalar(select(func.count()).where(JobRow.state == "queued")) or 0
+
+
+def get(session: Session, id: str) -> Job | None:
+    """Return a job, or None."""
+    row = session.get(JobRow, id)
+    return _job(row) if row else None
+
+
+def find_unfinished(session: Session, kind: str, payload: dict[str, Any]) -> str | None:
+    """Return the id of a job that will do, or does, just this."""
+    alike = and_(JobRow.kind == kind, JobRow.payload == payload)
+    unfinished = JobRow.state.in_(("queued", "running"))
+    return session.scalar(select(JobRow.id).where(alike, unfinished).limit(1))
+
+
+def page(session: Session, limit: int, before: str | None) -> list[Job]:
+    """Return the newest jobs, or the newest of those older than `before`."""
+    newest = select(JobRow).order_by(JobRow.id.desc()).limit(limit)
+    rows = session.scalars(newest.where(JobRow.id < before) if before else newest)
+    return [_job(row) for row in rows]
+
+
+def find_waiting(session: Session, kind: str, payload: dict[str, Any]) -> str | None:
+    """Return the id of the job of this kind and payload that has not ended."""
+    same = select(JobRow.id).where(JobRow.kind == kind, JobRow.payload == payload)
+    return session.scalar(same.where(JobRow.state.in_(["queued", "running"])).limit(1))
+
+
+def claim(session: Session) -> Job | None:
+    """Make the oldest queued job a running one and return it."""
+    oldest = select(JobRow.id).where(JobRow.state == "queued").order_by(JobRow.id).limit(1)
+    claimed = update(JobRow).where(JobRow.id == oldest.scalar_subquery())
+    values = {"state": "running", "attempt": JobRow.attempt + 1, "progress": 0.0, "log": [], "updated": now()}
+    row = session.scalar(claimed.values(values).returning(JobRow))
+    return _job(row) if row else None
+
+
+def note_progress(session: Session, job: Job, progress: float, log: list[str]) -> None:
+    """Store how far a claimed job is."""
+    _write(session, _held(job), progress=progress, log=log)
+
+
+def end(session: Session, job: Job, state: State, log: list[str], **more: Any) -> bool:
+    """Give a claimed job its final state; return False, with nothing written, if it is no longer held."""
+    return _write(session, _held(job), state=state, log=log, **more) == 1
+
+
+def set_result(session: Session, job: Job, link: str | None) -> None:
+    """Store the link to what a job has made."""
+    _write(session, JobRow.id == job.id, result=link)
+
+
+def give_back(session: Session, job: Job, crashes: int) -> bool:
+    """Queue a claimed job again; return whether it was still held."""
+    return _write(session, _held(job), state="queued", crashes=crashes) == 1
+
+
+def give_back_all(session: Session) -> int:
+    """Queue all running jobs again, at the start, when none can be alive; return how many there were."""
+    return _write(session, JobRow.state == "running", state="queued")
+
+
+def cancel(session: Session, job: Job, problem: dict[str, Any]) -> None:
+    """Mark a job as cancelled."""
+    _write(session, JobRow.id == job.id, state="cancelled", problem=problem)
+
+
+def _held(job: Job) -> ColumnElement[bool]:
+    return and_(JobRow.id == job.id, JobRow.state == "running", JobRow.attempt == job.attempt)
+
+
+def _write(session: Session, which: ColumnElement[bool], **values: Any) -> int:
+    """Update the jobs that match and return how many did."""
+    statement = update(JobRow).where(which).values(**values, updated=now()).returning(JobRow.id)
+    return len(session.scalars(statement).all())
+
+
+def _job(row: JobRow) -> Job:
+    return Job(
+        id=row.id, kind=row.kind, state=cast(State, row.state), design=row.design_id, revision=row.revision,
+        payload=row.payload, attempt=row.attempt, crashes=row.crashes, progress=row.progress, log=row.log,
+        problem=row.problem, result=row.result, created=row.created, updated=row.updated,
+    )  # fmt: skip
