@@ -143,7 +143,7 @@ class Jobs:
         return self.get(id)
 
     async def wait(self, id: str, seconds: float) -> State:
-        """Wait for the end of a job, but not longer than this [s], and return its state; raises JobNotFound."""
+        """Wait for the end of a job, at most this long [s], and return its state; raises JobNotFound."""
         async with self.events.subscribe(f"job:{id}") as events:
             job = await asyncio.to_thread(self.get, id)
             if job.finished or seconds <= 0:

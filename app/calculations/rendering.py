@@ -1,0 +1,55 @@
+"""Evaluations as the REST interface shows them: plain JSON values, never NaN."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from templates.core.catalogue import digest
+from templates.core.evaluate import Answer, Echo, Evaluation
+from templates.core.template import Template
+
+_digests: dict[Any, str] = {}
+
+
+def identity(cls: type[Template]) -> dict[str, Any]:
+    """Which version calculated: id, version and the digest of its code."""
+    if cls not in _digests:
+        _digests[cls] = digest(cls)
+    return {"id": cls.id, "version": cls.version, "digest": _digests[cls]}
+
+
+def quantity(value: Any, unit: str | None) -> dict[str, Any]:
+    """A value with its unit; a text has none."""
+    return {"value": value} if unit is None else {"value": value, "unit": unit}
+
+
+def answer(result: Answer) -> dict[str, Any]:
+    """An output; what does not exist is null with its reason."""
+    if not isinstance(result.value, np.ndarray):
+        told = quantity(result.value, result.unit)
+        return told if result.reason is None else {**told, "value": None, "reason": result.reason}
+    if result.reasons is None:
+        return quantity(result.value.tolist(), result.unit)
+    holes = result.value.astype(object)
+    holes[np.isnan(result.value)] = None
+    return {**quantity(holes.tolist(), result.unit), "reasons": result.reasons.tolist()}
+
+
+def echo(used: Echo) -> dict[str, Any]:
+    """An input as it was used."""
+    return {**quantity(used.value, used.unit), "from": used.source, **used.extra}
+
+
+def evaluation(made: Evaluation) -> dict[str, Any]:
+    """The whole answer to `evaluate`."""
+    return {
+        "template": identity(type(made.template)),
+        "inputs": {name: echo(used) for name, used in made.inputs.items()},
+        "outputs": {name: answer(result) for name, result in made.outputs.items()},
+        "level": None,
+        "error": dict.fromkeys(made.outputs),
+        "warnings": [{"code": w.code, "name": w.name, "detail": w.detail} for w in made.warnings],
+        "seconds": made.seconds,
+    }

@@ -1,0 +1,64 @@
+"""What the calls of single templates take and give."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+Text = Annotated[str, StringConstraints(max_length=100)]
+
+OIL_FILM: dict[str, Any] = {
+    "radial_load": "25 kN",
+    "diametral_clearance": "0.055 mm",
+    "bearing_diameter": "48 mm",
+    "bearing_width": "18 mm",
+    "speed": "5000 rpm",
+    "oil_inlet_temperature": "80 degC",
+    "oil_outlet_temperature": "87.8 degC",
+}
+
+
+class Asked(BaseModel):
+    """Inputs and what is wanted of them."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+    inputs: dict[str, Any] = Field(
+        description='quantities by name: `"25 kN"` or `{"value": 25, "unit": "kN"}`'
+    )
+    outputs: Annotated[list[Text], Field(max_length=200)] | None = Field(
+        None, description="compute these only; all, if not given"
+    )
+    level: Text | None = Field(None, description="a fidelity by name")
+    tolerance: float | None = Field(None, gt=0, lt=1, description="largest relative error wanted")
+    units: dict[str, Text] = Field({}, description="units in which outputs are wanted")
+
+
+class EvaluateIn(Asked):
+    """Evaluate a template."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"inputs": OIL_FILM, "outputs": ["minimum_film_thickness"]}]}
+    )
+
+
+class SolveIn(Asked):
+    """Find the input that gives a wanted output."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {
+                    "inputs": {name: value for name, value in OIL_FILM.items() if name != "bearing_width"},
+                    "unknown": "bearing_width",
+                    "bounds": ["10 mm", "80 mm"],
+                    "target": {"minimum_film_thickness": "3.2449 um"},
+                }
+            ]
+        }
+    )
+
+    unknown: Text = Field(description="the input to find")
+    bounds: list[Any] = Field(description="the lowest and the highest value to try")
+    target: dict[str, Any] = Field(description="one output and its wanted value")

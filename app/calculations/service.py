@@ -1,0 +1,83 @@
+"""Evaluate and solve: from a request to an answer in plain JSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from app.calculations import rendering
+from app.calculations.schemas import EvaluateIn, SolveIn
+from app.http import TooManyValues
+from templates.core.evaluate import evaluate
+from templates.core.solve import solve
+from templates.core.template import Template
+
+MOST_VALUES = 2_000_000  # in one answer: some 40 MB of JSON
+
+
+def run_evaluate(cls: type[Template], body: EvaluateIn) -> dict[str, Any]:
+    """Evaluate a template.
+
+    Raises
+    ------
+    InvalidInputs
+        With everything that is wrong.
+    TooManyValues
+        If the answer would be too large.
+    """
+    outputs = len(cls.formulas) if body.outputs is None else len(body.outputs)
+    values = points(body.inputs) * max(1, outputs)
+    if values > MOST_VALUES:
+        told = f"{values} values in one answer are more than {MOST_VALUES}; name fewer outputs or points"
+        raise TooManyValues(told)
+    made = evaluate(
+        cls, body.inputs, outputs=body.outputs, units=body.units, level=body.level, tolerance=body.tolerance
+    )
+    return rendering.evaluation(made)
+
+
+def run_solve(cls: type[Template], body: SolveIn) -> dict[str, Any]:
+    """Solve for one input.
+
+    Raises
+    ------
+    InvalidInputs
+        With everything that is wrong.
+    Unreachable
+        With the range that can be reached.
+    """
+    found = solve(
+        cls,
+        body.inputs,
+        body.unknown,
+        body.bounds,
+        body.target,
+        outputs=body.outputs,
+        units=body.units,
+        level=body.level,
+        tolerance=body.tolerance,
+    )
+    warnings = [{"code": w.code, "name": w.name, "detail": w.detail} for w in found.warnings]
+    told = {"unknown": rendering.quantity(found.unknown, found.unit), "warnings": warnings}
+    return {**told, "evaluation": rendering.evaluation(found.evaluation)}
+
+
+def points(inputs: Mapping[str, Any]) -> int:
+    """How many points the arrays among the inputs span together; what does not fit is refused later."""
+    shapes = [shape for raw in inputs.values() if (shape := _shape(raw))]
+    try:
+        return math.prod(np.broadcast_shapes(*shapes))
+    except ValueError:
+        return 1
+
+
+def _shape(raw: Any) -> tuple[int, ...]:
+    items = raw.get("value") if isinstance(raw, Mapping) else raw
+    shape: list[int] = []
+    while isinstance(items, list) and items and len(shape) < 8:
+        shape.append(len(items))
+        items = items[0]
+    return tuple(shape)

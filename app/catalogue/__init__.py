@@ -1,0 +1,1 @@
+"""What there is to use: templates and their versions."""

@@ -1,0 +1,1 @@
+"""Designs: the one place where calculation and shape meet."""

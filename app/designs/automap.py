@@ -1,0 +1,60 @@
+"""Proposals for model parameters that are not set: mapped by name and unit, each with its reason."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from app.designs.graph import Block, Graph
+from templates.core.declare import Choice
+from templates.core.units import compatible, unit
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A relation for a model parameter, and why."""
+
+    target: str
+    relation: str
+    reason: str
+
+
+def proposals(graph: Graph) -> list[Proposal]:
+    """One proposal for every unset model parameter that something fits by name and unit."""
+    models = [block for block in graph.blocks.values() if block.is_model]
+    return [
+        found for model in models for name in model.cls.inputs if (found := _proposal(graph, model, name))
+    ]
+
+
+def _proposal(graph: Graph, model: Block, name: str) -> Proposal | None:
+    declared = model.cls.inputs[name]
+    if name in model.cells or isinstance(declared, Choice):
+        return None
+    target = f"{model.name}.{name}"
+    for called in (name, *declared.meaning.also):
+        fitting = [source for source in _named(graph, called) if _fits(graph, source, declared.meaning.unit)]
+        if fitting:
+            words = called.replace("_", " ")
+            same = (
+                f"both are called {words}" if called == name else f"{declared.meaning.words} is also {words}"
+            )
+            others = f"; {', '.join(fitting[1:])} would fit too" if fitting[1:] else ""
+            reason = f"{same}, and both are given in {declared.meaning.unit} or its like{others}"
+            return Proposal(target, f"= {fitting[0]}", reason)
+    return None
+
+
+def _named(graph: Graph, called: str) -> Iterator[str]:
+    """What is called so: outputs and inputs of steps first, then parameters of the design."""
+    steps = [block for block in graph.blocks.values() if not block.is_model]
+    yield from (f"{step.name}.{called}" for step in steps if called in step.cls.formulas)
+    yield from (f"{step.name}.{called}" for step in steps if called in step.cls.inputs)
+    if called in graph.parameters:
+        yield called
+
+
+def _fits(graph: Graph, source: str, wanted: str) -> bool:
+    if source in graph.parameters:
+        return compatible(graph.kinds[source].base, unit(wanted).base)
+    return compatible(unit(graph.unit_of(source)).base, unit(wanted).base)

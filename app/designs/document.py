@@ -1,0 +1,116 @@
+"""A design as its user wrote it: parameters, steps, models, iterations. This is what a revision keeps.
+
+Values stay as typed: a quantity, a relation that begins with `=`, or a list of both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+
+Word = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
+Version = Annotated[int, Field(ge=1, le=10**6)] | Literal["latest"] | None
+Values = Annotated[dict[Word, Any], Field(max_length=500)]
+
+_STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+
+class Step(BaseModel):
+    """A template at work in a design; without a version the latest is taken, once and for all."""
+
+    model_config = _STRICT
+
+    template: Word
+    version: Version = None
+    level: str | None = None
+    tolerance: float | None = Field(None, gt=0, lt=1)
+    inputs: Values = {}
+    outputs: list[Word] | None = Field(None, description="compute these only; all, if not given")
+
+
+class Model(BaseModel):
+    """A CAD model in a design."""
+
+    model_config = _STRICT
+
+    id: Word
+    version: Version = None
+    parameters: Values = {}
+
+
+class Iteration(BaseModel):
+    """A loop that its user allows: through a value measured on a solid, from a start, to a tolerance."""
+
+    model_config = _STRICT
+
+    through: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*\.[a-z_]+$", examples=["model.mass"])
+    start: Any = Field(examples=["3 kg"])
+    tolerance: float = Field(1e-4, ge=1e-9, lt=1, description="relative")
+    limit: int = Field(20, ge=1, le=100, description="rounds")
+
+
+class Document(BaseModel):
+    """All that a revision keeps of its user's words."""
+
+    model_config = _STRICT
+
+    name: str = Field(min_length=1, max_length=200)
+    parameters: Values = {}
+    steps: Annotated[dict[Word, Step], Field(max_length=100)] = {}
+    models: Annotated[dict[Word, Model], Field(max_length=20)] = {}
+    iterations: Annotated[list[Iteration], Field(max_length=10)] = []
+
+    @model_validator(mode="before")
+    @classmethod
+    def one_model(cls, raw: Any) -> Any:
+        """`model` is short for `models` with one entry of that name."""
+        if isinstance(raw, Mapping) and "model" in raw:
+            if "models" in raw:
+                raise ValueError("give either model or models, not both")
+            return {
+                **{key: value for key, value in raw.items() if key != "model"},
+                "models": {"model": raw["model"]},
+            }
+        return raw
+
+    @model_validator(mode="after")
+    def names_differ(self) -> Self:
+        """Parameters, steps and models share one space of names."""
+        groups = (self.parameters, self.steps, self.models)
+        names = [name for group in groups for name in group]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise ValueError(f"{', '.join(twice)} names more than one parameter, step or model")
+        return self
+
+
+def merge(document: Mapping[str, Any], patch: Mapping[str, Any]) -> dict[str, Any]:
+    """The document with a merge patch applied (RFC 7396); a quantity is replaced whole, never merged into."""
+    patch = dict(patch)
+    if "model" in patch:
+        patch["models"] = {**(patch.get("models") or {}), "model": patch.pop("model")}
+    return dict(_merged(document, patch, ()))
+
+
+def _merged(old: Any, patch: Any, path: tuple[str, ...]) -> Any:
+    if not isinstance(patch, Mapping) or not _is_container(path):
+        return patch
+    result = dict(old) if isinstance(old, Mapping) else {}
+    for key, value in patch.items():
+        if value is None:
+            result.pop(key, None)
+        else:
+            result[key] = _merged(result.get(key), value, (*path, key))
+    return result
+
+
+def _is_container(path: tuple[str, ...]) -> bool:
+    """Whether a patch goes on inside: in the document, its groups, its steps and models, and their inputs."""
+    match path:
+        case () | ("parameters" | "steps" | "models",) | ("steps" | "models", _):
+            return True
+        case ("steps", _, "inputs") | ("models", _, "parameters"):
+            return True
+    return False

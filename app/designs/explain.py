@@ -1,0 +1,96 @@
+"""Where a model parameter comes from: dimension ← relation ← output ← formula ← inputs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from app.calculations import rendering
+from app.designs.calculate import Calculation
+from app.designs.errors import NotFound
+from app.designs.graph import SOLID
+from cad.inspect import MEASURES
+from templates.core.declare import Derived, Formula
+from templates.core.schema import formula_on_paper
+
+
+def explain(calculation: Calculation, name: str) -> dict[str, Any]:
+    """The chain behind a model parameter, as nested `because`; what was told once is named only.
+
+    Raises
+    ------
+    NotFound
+        If no model has this parameter.
+    """
+    return _Telling(calculation).of(_full_name(calculation, name))
+
+
+def _full_name(calculation: Calculation, name: str) -> str:
+    """The name with its model: `inner_diameter` is enough where there is one model."""
+    models = [block for block in calculation.graph.blocks.values() if block.is_model]
+    for block in models:
+        if name in (f"{block.name}.{tail}" for tail in block.cls.inputs) or (
+            len(models) == 1 and name in block.cls.inputs
+        ):
+            return name if "." in name else f"{block.name}.{name}"
+    known = [f"{block.name}.{tail}" for block in models for tail in block.cls.inputs]
+    raise NotFound(f"no model has the parameter {name[:80]!r}; there are {', '.join(known)}")
+
+
+class _Telling:
+    def __init__(self, calculation: Calculation) -> None:
+        self.calculation, self.graph = calculation, calculation.graph
+        self.told: set[str] = set()
+
+    def of(self, name: str) -> dict[str, Any]:
+        """What a name is, and what it follows from."""
+        if name in self.told:
+            return {"name": name, "kind": "told_above"}
+        self.told.add(name)
+        return {"name": name, "value": self._value(name), **self._origin(name)}
+
+    def _origin(self, name: str) -> dict[str, Any]:
+        if name in self.graph.assumed:
+            return {"kind": "iterated", "because": []}
+        if cell := self.graph.cell(name):
+            if cell.relations:
+                because = [self.of(used) for used in sorted(cell.uses)]
+                return {"kind": "relation", "relation": cell.raw, "because": because}
+            return {"kind": "given", "typed": cell.raw, "because": []}
+        head, _, tail = name.partition(".")
+        if (node := self.graph.node(name)) and node.endswith(SOLID):
+            parameters = self.graph.blocks[head].cells
+            return {"kind": "measured", "because": [self.of(f"{head}.{used}") for used in parameters]}
+        return self._declared(head, tail)
+
+    def _declared(self, head: str, tail: str) -> dict[str, Any]:
+        cls = self.graph.blocks[head].cls
+        declared = cls.inputs.get(tail) or cls.formulas[tail]
+        if not isinstance(declared, Formula):
+            return {"kind": "default", "because": []}
+        kind = "default_formula" if isinstance(declared, Derived) else "formula"
+        paper = formula_on_paper(cls, declared)
+        because = [self.of(f"{head}.{used}") for used in paper.pop("uses")]
+        del paper["name"]
+        return {"kind": kind, "template": rendering.identity(cls), **paper, "because": because}
+
+    def _value(self, name: str) -> Any:
+        """The value with its unit; null while it waits for a solid or is not set."""
+        if name in self.graph.parameters:
+            kind = f"{self.graph.kinds[name].base:~}" or "1"
+            si = self.calculation.values.get(name)
+            return None if si is None else {"value": np.asarray(si).tolist(), "unit": kind}
+        try:
+            si = self.calculation.value(name)
+        except (KeyError, AttributeError):
+            return None
+        if isinstance(si, str):
+            return {"value": si}
+        head, _, tail = name.partition(".")
+        cls = self.graph.blocks[head].cls
+        declared = cls.inputs.get(tail) or cls.formulas.get(tail)
+        if declared is None:
+            return {"value": self.calculation.measures[head][tail], "unit": MEASURES[tail]}
+        shown = declared.meaning.scale.from_si(si)
+        return {"value": np.asarray(shown).tolist(), "unit": declared.meaning.unit}

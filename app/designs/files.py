@@ -1,0 +1,71 @@
+"""`/designs/{id}/model` and its kin: the newest good model, or that of a revision, in the kind asked for."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Header, Response
+from starlette.concurrency import run_in_threadpool
+
+from app import problems
+from app.dependencies import TheDatabase, TheJobs, TheModels, TheStore
+from app.designs import views
+from app.designs.errors import NotFound
+from app.designs.routes import Id, Number, Prefer
+from app.http import StrictRoute
+from app.models.routes import send_file
+from app.waiting import accepted, finished
+from cad.export import MEDIA_TYPES
+
+router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
+
+Accept = Annotated[str | None, Header(description=", ".join(MEDIA_TYPES.values()))]
+
+
+@router.get("/{id}/model")
+@router.get("/{id}/model.{kind}")
+@router.get("/{id}/models/{name}/model")
+@router.get("/{id}/models/{name}/model.{kind}")
+@router.get("/{id}/revisions/{number}/model")
+@router.get("/{id}/revisions/{number}/model.{kind}")
+@router.get("/{id}/revisions/{number}/models/{name}/model")
+@router.get("/{id}/revisions/{number}/models/{name}/model.{kind}")
+async def model_file(
+    id: Id,
+    database: TheDatabase,
+    store: TheStore,
+    models: TheModels,
+    jobs: TheJobs,
+    name: Id | None = None,
+    kind: Id | None = None,
+    number: Number | None = None,
+    accept: Accept = None,
+    prefer: Prefer = None,
+) -> Response:
+    """A file of a model; other kinds than STEP are made when first asked for."""
+    wanted = kind or _accepted(accept)
+    if wanted not in MEDIA_TYPES:
+        raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
+
+    def find() -> tuple[Any, str, Any]:
+        with database.read() as session:
+            model = views.good_model(session, id, name, number)
+            return model, model.build_key or "", views.file(session, store, model, wanted)
+
+    model, key, file = await run_in_threadpool(find)
+    if file is None:
+        job = await run_in_threadpool(lambda: models.request(models.shape_of(key), ("step", wanted)))
+        if not await finished(jobs, job, prefer):
+            return accepted(job)
+        if job and (failed := await run_in_threadpool(lambda: jobs.get(job).problem)):
+            return problems.answer(failed)
+        file = await run_in_threadpool(models.file, key, wanted)
+    headers = {"Design-Revision": str(model.number), "Vary": "Accept"}
+    return send_file(file, headers, f"{model.model}_v{model.model_version}.{wanted}")
+
+
+def _accepted(accept: str | None) -> str:
+    """The first kind that the client names; STEP by default."""
+    named = [part.partition(";")[0].strip() for part in (accept or "").split(",")]
+    kinds = {media: kind for kind, media in MEDIA_TYPES.items()}
+    return next((kinds[media] for media in named if media in kinds), "step")

@@ -1,0 +1,276 @@
+"""The net of a design: which value follows from which, checked before anything is calculated.
+
+Nodes are named as their user names them. A cell is a value of the design: `scale`, `film.radial_load`,
+`model.inner_diameter`. A block is a step or a model: `film`, `model`; it follows from its cells, and its
+outputs follow from it. A solid, `model!`, is a model when built: what is measured follows from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from graphlib import CycleError, TopologicalSorter
+from typing import Any
+
+from app.designs.document import Document
+from cad.inspect import MEASURES
+from cad.model import CadModel
+from templates.core.catalogue import Catalogue
+from templates.core.declare import Choice
+from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_name
+from templates.core.quantity import read_any
+from templates.core.relation import Kind, Relation, is_relation, parse
+from templates.core.template import Template
+from templates.core.units import compatible, unit
+
+SOLID = "!"
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One value as its user wrote it, with the relations in it (a list may hold several)."""
+
+    name: str
+    raw: Any
+    relations: tuple[Relation, ...]
+
+    @property
+    def uses(self) -> frozenset[str]:
+        """The names that its relations use."""
+        return frozenset().union(*(relation.names for relation in self.relations))
+
+
+@dataclass(frozen=True)
+class Block:
+    """A step or a model: a template and the cells that are set."""
+
+    name: str
+    cls: type[Template]
+    cells: dict[str, Cell]
+    level: str | None = None
+    tolerance: float | None = None
+    outputs: tuple[str, ...] | None = None
+
+    @property
+    def is_model(self) -> bool:
+        """Whether it has a shape."""
+        return issubclass(self.cls, CadModel)
+
+
+@dataclass(frozen=True)
+class Catalogues:
+    """What a design can be made of."""
+
+    templates: Catalogue[Template]
+    models: Catalogue[CadModel]
+
+
+@dataclass
+class Graph:
+    """The checked net of one document."""
+
+    parameters: dict[str, Cell]
+    blocks: dict[str, Block]
+    assumed: frozenset[str]  # the measures through which a declared iteration runs
+    order: list[str] = field(default_factory=list)
+    kinds: dict[str, Kind] = field(default_factory=dict)
+
+    def cells(self) -> Iterator[Cell]:
+        """Every cell of the design."""
+        yield from self.parameters.values()
+        for block in self.blocks.values():
+            yield from block.cells.values()
+
+    def cell(self, node: str) -> Cell | None:
+        """The cell of this name."""
+        head, _, tail = node.partition(".")
+        if not tail:
+            return self.parameters.get(head)
+        return self.blocks[head].cells.get(tail) if head in self.blocks else None
+
+    def node(self, name: str) -> str | None:
+        """The node from which a name in a relation takes its value; None if nothing is named so."""
+        if name in self.assumed or name in self.parameters:
+            return name
+        head, _, tail = name.partition(".")
+        block = self.blocks.get(head)
+        if block is None or not tail:
+            return None
+        if isinstance(block.cls.inputs.get(tail), Choice):
+            return None  # a word is no value to calculate with
+        if tail in block.cells:
+            return name
+        if tail in block.cls.inputs or tail in block.cls.formulas:
+            return head
+        return head + SOLID if block.is_model and tail in MEASURES else None
+
+    def sources(self, node: str) -> set[str]:
+        """The nodes from which a node follows directly."""
+        if node in self.assumed:
+            return set()
+        if node.endswith(SOLID):
+            return {node.removesuffix(SOLID)}
+        if node in self.blocks:
+            return {cell.name for cell in self.blocks[node].cells.values()}
+        cell = self.cell(node)
+        return {source for name in (cell.uses if cell else ()) if (source := self.node(name))}
+
+    def names(self) -> list[str]:
+        """Every name that a relation may use, for a remedy."""
+        inside = (f"{b.name}.{n}" for b in self.blocks.values() for n in (*b.cls.inputs, *b.cls.formulas))
+        measured = (f"{b.name}.{n}" for b in self.blocks.values() if b.is_model for n in MEASURES)
+        return [*self.parameters, *inside, *measured]
+
+    def unit_of(self, name: str) -> str:
+        """The declared unit of a name inside a block."""
+        head, _, tail = name.partition(".")
+        cls = self.blocks[head].cls
+        declared = cls.inputs.get(tail) or cls.formulas.get(tail)
+        return declared.meaning.unit if declared else MEASURES[tail]
+
+
+def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list[Fault]]:
+    """The net of a document, and everything that is wrong with it before any value is known.
+
+    A graph with faults is good for a preview of what is right, not for a save.
+    """
+    faults: list[Fault] = []
+    parameters = {name: _cell(name, raw, faults) for name, raw in document.parameters.items()}
+    blocks = dict(_blocks(document, catalogues, faults))
+    graph = Graph(parameters, blocks, frozenset(i.through for i in document.iterations))
+    faults += _unknown(graph)
+    if not faults:
+        faults += _ordered(graph)
+    if not faults:
+        faults += _kinds(graph)
+    return graph, faults
+
+
+def _cell(name: str, raw: Any, faults: list[Fault]) -> Cell:
+    items = raw if isinstance(raw, list) else [raw]
+    relations = []
+    for item in items:
+        try:
+            relations += [parse(item)] if is_relation(item) else []
+        except FaultyText as error:
+            faults.append(error.fault(name))
+    return Cell(name, raw, tuple(relations))
+
+
+def _blocks(document: Document, catalogues: Catalogues, faults: list[Fault]) -> Iterator[tuple[str, Block]]:
+    for name, step in document.steps.items():
+        if cls := _class(catalogues.templates, f"steps.{name}", step.template, step.version, faults):
+            cells = _cells(name, step.inputs, cls, faults)
+            outputs = tuple(step.outputs) if step.outputs is not None else None
+            yield name, Block(name, cls, cells, step.level, step.tolerance, outputs)
+    for name, model in document.models.items():
+        if shape := _class(catalogues.models, f"models.{name}", model.id, model.version, faults):
+            yield name, Block(name, shape, _cells(name, model.parameters, shape, faults))
+
+
+def _class(catalogue: Catalogue[Any], place: str, id: str, version: Any, faults: list[Fault]) -> Any:
+    try:
+        return catalogue.get(id, version) if isinstance(version, int) else catalogue.latest(id)
+    except UnknownTemplate as error:
+        faults.append(Fault(place, "unknown_name", str(error)))
+        return None
+
+
+def _cells(
+    block: str, values: Mapping[str, Any], cls: type[Template], faults: list[Fault]
+) -> dict[str, Cell]:
+    unknown = (name for name in values if name not in cls.inputs)
+    faults += (unknown_name(name, cls.inputs, "input").within(block) for name in unknown)
+    known = {name: raw for name, raw in values.items() if name in cls.inputs}
+    return {name: _cell(f"{block}.{name}", raw, faults) for name, raw in known.items()}
+
+
+def _unknown(graph: Graph) -> Iterator[Fault]:
+    for cell in graph.cells():
+        for name in sorted(cell.uses):
+            if graph.node(name) is None:
+                detail = unknown_name(name, graph.names(), "name").detail
+                yield Fault(cell.name, "unknown_name", detail)
+    for through in sorted(graph.assumed):
+        head, _, measure = through.partition(".")
+        if head not in graph.blocks or not graph.blocks[head].is_model or measure not in MEASURES:
+            detail = f"an iteration runs through a measure of a model, such as model.mass, not {through}"
+            yield Fault("iterations", "unknown_name", detail)
+
+
+def _ordered(graph: Graph) -> Iterator[Fault]:
+    nodes = [cell.name for cell in graph.cells()]
+    nodes += [name + end for name, block in graph.blocks.items() for end in ("", SOLID)[: 1 + block.is_model]]
+    try:
+        graph.order = list(TopologicalSorter({node: graph.sources(node) for node in nodes}).static_order())
+    except CycleError as error:
+        path = [node.removesuffix(SOLID) for node in error.args[1]]
+        shown = " → ".join(node for i, node in enumerate(path) if i == 0 or node != path[i - 1])
+        detail = (
+            f"each of these follows from the one before it: {shown}; break the loop or declare an iteration"
+        )
+        cells = [node for node in path if graph.cell(node)]
+        yield Fault(cells[0] if cells else path[0], "loop", detail)
+
+
+def _kinds(graph: Graph) -> Iterator[Fault]:
+    """Check the units of every relation, in order, so that a parameter's unit is known before its use."""
+    broken: set[str] = set()
+    for cell in filter(None, map(graph.cell, graph.order)):
+        if not broken.isdisjoint(cell.uses):
+            broken.add(cell.name)
+            continue
+        try:
+            _check_kind(graph, cell)
+        except FaultyText as error:
+            broken.add(cell.name)
+            yield error.fault(cell.name)
+
+
+def _check_kind(graph: Graph, cell: Cell) -> None:
+    if cell.name in graph.parameters and not cell.relations:
+        graph.kinds[cell.name] = Kind(unit(read_any(cell.raw).unit).base)
+        return
+    kinds = [
+        relation.kind({name: _kind(graph, name) for name in relation.names}) for relation in cell.relations
+    ]
+    if cell.name in graph.parameters:
+        graph.kinds[cell.name] = Kind(kinds[0].base)
+        return
+    for kind, relation in zip(kinds, cell.relations, strict=True):
+        _check_target(graph, cell.name, relation, kind)
+
+
+def _kind(graph: Graph, name: str) -> Kind:
+    if name in graph.parameters:
+        return graph.kinds[name]
+    return Kind(unit(graph.unit_of(name)).base)
+
+
+def _check_target(graph: Graph, name: str, relation: Relation, kind: Kind) -> None:
+    head, _, tail = name.partition(".")
+    declared = graph.blocks[head].cls.inputs[tail]
+    if isinstance(declared, Choice):
+        raise FaultyText(
+            "unit_mismatch", f"{name} is one of {', '.join(declared.options)}; no relation fits it"
+        )
+    want = declared.meaning.scale
+    if compatible(kind.base, want.base) and not (kind.absolute and want.difference):
+        return
+    given = f"{kind.base:~P}" or "a pure number"
+    hint = (
+        "; for a speed multiply by 1 rad" if "rad" in f"{want.base}" and "rad" not in f"{kind.base}" else ""
+    )
+    raise FaultyText("unit_mismatch", f"{relation.text} gives {given}, but {name} is in {want.text}{hint}")
+
+
+def raise_if(faults: list[Fault]) -> None:
+    """Raise what was found, if anything.
+
+    Raises
+    ------
+    InvalidInputs
+        With all faults.
+    """
+    if faults:
+        raise InvalidInputs(faults)

@@ -1,0 +1,91 @@
+"""What a change would do, before it is saved: outputs and model parameters, old beside new."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from app.designs import repository, results
+from app.designs.calculate import Calculation, calculate
+from app.designs.document import Document, merge
+from app.designs.graph import Catalogues, build_graph, raise_if
+from app.designs.service import built, read_document, resolved, starts
+from templates.core.errors import Fault
+
+
+def preview(session: Session, catalogues: Catalogues, id: str, patch: Mapping[str, Any]) -> dict[str, Any]:
+    """Old and new values for a patch of a design; nothing is saved or built.
+
+    Raises
+    ------
+    InvalidInputs
+        With everything that is wrong, except relations of model parameters with wrong units: these are told
+        by their status.
+    """
+    head = repository.head(session, id)
+    old, _ = _calculated(session, catalogues, Document.model_validate(head.document))
+    changed = resolved(read_document(merge(head.document, patch)), catalogues)
+    new, mismatched = _calculated(session, catalogues, changed)
+    return {
+        "revision": head.number,
+        "outputs": _compared(results.outputs(results.steps(old)), results.outputs(results.steps(new))),
+        "warnings": _warnings(new),
+        "model_parameters": _model_parameters(old, new, mismatched),
+    }
+
+
+def _calculated(
+    session: Session, catalogues: Catalogues, document: Document
+) -> tuple[Calculation, dict[str, Fault]]:
+    graph, faults = build_graph(document, catalogues)
+    models = {name for name, block in graph.blocks.items() if block.is_model}
+    mismatched = {
+        f.name: f for f in faults if f.code == "unit_mismatch" and f.name.partition(".")[0] in models
+    }
+    raise_if([fault for fault in faults if fault.name not in mismatched])
+    calculation = calculate(graph, built(session), starts(document), broken=mismatched)
+    raise_if(calculation.faults)
+    return calculation, mismatched
+
+
+def _compared(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
+    names = dict.fromkeys([*old, *new])
+    return {name: {"old": old.get(name), "new": new.get(name)} for name in names}
+
+
+def _warnings(new: Calculation) -> list[dict[str, Any]]:
+    told = results.steps(new).items()
+    return [{**w, "name": f"{step}.{w['name']}"} for step, done in told for w in done.get("warnings", ())]
+
+
+def _model_parameters(old: Calculation, new: Calculation, mismatched: Mapping[str, Fault]) -> dict[str, Any]:
+    told: dict[str, Any] = {}
+    for block in new.graph.blocks.values():
+        if not block.is_model:
+            continue
+        before = _parameters(old, block.name)
+        after = _parameters(new, block.name)
+        for name in block.cls.inputs:
+            full = f"{block.name}.{name}"
+            status = _status(new, block.name, name, before.get(name), after.get(name), full in mismatched)
+            told[full] = {"old": before.get(name), "new": after.get(name), "status": status}
+            if full in mismatched:
+                told[full]["detail"] = mismatched[full].detail
+    return told
+
+
+def _parameters(calculation: Calculation, model: str) -> dict[str, Any]:
+    shape = calculation.shapes.get(model)
+    return results.parameters(shape) if shape else {}
+
+
+def _status(new: Calculation, model: str, name: str, before: Any, after: Any, mismatch: bool) -> str:
+    if mismatch:
+        return "unit_mismatch"
+    if name in new.missing.get(model, ()):
+        return "missing"
+    if after is None:
+        return "pending"
+    return "unchanged" if before == after else "ok"

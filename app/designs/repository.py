@@ -1,0 +1,205 @@
+"""All SQL of designs, revisions and builds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.designs.errors import NotFound
+from app.designs.results import ModelState
+from app.storage.identity import new_id, now
+from app.storage.tables import ArtifactRow, BuildRow, DesignRow, RevisionModelRow, RevisionRow
+
+
+@dataclass(frozen=True)
+class Written:
+    """What a save writes into a new revision."""
+
+    document: dict[str, Any]
+    results: dict[str, Any] | None
+    models: Sequence[ModelState]
+    state: str
+    note: str | None
+
+
+def design(session: Session, id: str) -> DesignRow:
+    """A design that is not deleted.
+
+    Raises
+    ------
+    NotFound
+        If there is none.
+    """
+    row = session.get(DesignRow, id)
+    if row is None or row.deleted:
+        raise NotFound(f"there is no design {id[:80]!r}")
+    return row
+
+
+def revision(session: Session, id: str, number: int) -> RevisionRow:
+    """A revision; those of a deleted design are kept.
+
+    Raises
+    ------
+    NotFound
+        If there is none.
+    """
+    row = session.get(RevisionRow, (id, number))
+    if row is None:
+        raise NotFound(f"design {id[:80]!r} has no revision {number}")
+    return row
+
+
+def head(session: Session, id: str) -> RevisionRow:
+    """The newest revision of a design."""
+    return revision(session, id, design(session, id).head)
+
+
+def designs(session: Session, limit: int, cursor: str | None) -> list[DesignRow]:
+    """One page of designs, newest first, and one more if there are more."""
+    query = select(DesignRow).where(DesignRow.deleted.is_(None)).order_by(DesignRow.id.desc())
+    if cursor:
+        query = query.where(DesignRow.id < cursor)
+    return list(session.scalars(query.limit(limit + 1)))
+
+
+def revisions(session: Session, id: str, limit: int, before: int | None) -> list[RevisionRow]:
+    """One page of a design's revisions, newest first, and one more if there are more."""
+    query = select(RevisionRow).where(RevisionRow.design_id == id).order_by(RevisionRow.number.desc())
+    if before is not None:
+        query = query.where(RevisionRow.number < before)
+    return list(session.scalars(query.limit(limit + 1)))
+
+
+def create(session: Session, name: str, written: Written) -> tuple[str, int]:
+    """A new design with its first revision; its id and the revision's number."""
+    row = DesignRow(id=new_id(), name=name, created=now(), deleted=None, head=0)
+    session.add(row)
+    session.flush()
+    return row.id, append(session, row, written)
+
+
+def append(session: Session, row: DesignRow, written: Written) -> int:
+    """A new revision of a design; its number."""
+    row.head += 1
+    row.name = written.document["name"]
+    session.add(
+        RevisionRow(
+            design_id=row.id,
+            number=row.head,
+            note=written.note,
+            created=now(),
+            document=written.document,
+            results=written.results,
+            state=written.state,
+            problem=None,
+        )
+    )
+    session.flush()
+    session.add_all(_model_row(row.id, row.head, state) for state in written.models)
+    session.flush()
+    return row.head
+
+
+def _model_row(id: str, number: int, state: ModelState) -> RevisionModelRow:
+    return RevisionModelRow(
+        design_id=id,
+        number=number,
+        name=state.name,
+        model=state.id,
+        model_version=state.version,
+        parameters=state.parameters,
+        relations=state.relations,
+        build_key=state.build,
+    )
+
+
+def attach(
+    session: Session, id: str, number: int, results: dict[str, Any], models: Sequence[ModelState]
+) -> None:
+    """Attach what a regeneration found to its revision, which becomes current."""
+    row = revision(session, id, number)
+    row.results, row.state, row.problem = results, "current", None
+    for state in models:
+        session.merge(_model_row(id, number, state))
+
+
+def fail(session: Session, id: str, number: int, problem: dict[str, Any]) -> None:
+    """Say in a revision why its regeneration failed."""
+    row = revision(session, id, number)
+    row.state, row.problem = "failed", problem
+
+
+def delete(session: Session, id: str) -> None:
+    """Take a design from the lists; its revisions are kept."""
+    design(session, id).deleted = now()
+
+
+def build(session: Session, key: str) -> BuildRow | None:
+    """A build by its key, if it was made."""
+    return session.get(BuildRow, key)
+
+
+def artifact(session: Session, key: str, kind: str) -> ArtifactRow | None:
+    """One artifact of a build, if it was made."""
+    return session.get(ArtifactRow, (key, kind))
+
+
+def artifacts(session: Session, key: str | None) -> dict[str, str]:
+    """The SHA-256 of every artifact of a build, by kind."""
+    rows = session.scalars(select(ArtifactRow).where(ArtifactRow.build_key == key))
+    return {row.kind: row.sha256 for row in rows}
+
+
+def add_build(
+    session: Session, key: str, model: str, version: int, parameters: dict[str, Any], measured: dict[str, Any]
+) -> None:
+    """Record a build; the same build made twice is one."""
+    row = BuildRow(
+        key=key, model=model, version=version, parameters=parameters, measurements=measured, created=now()
+    )
+    session.merge(row)
+    session.flush()
+
+
+def add_artifact(session: Session, key: str, kind: str, sha256: str, size: int) -> None:
+    """Record an artifact of a build."""
+    session.merge(ArtifactRow(build_key=key, kind=kind, sha256=sha256, size=size, created=now()))
+
+
+def newest_good(session: Session, id: str, model: str, until: int) -> RevisionModelRow | None:
+    """The newest revision, up to this one, whose model of this name was built and accepted."""
+    query = (
+        select(RevisionModelRow)
+        .join(BuildRow, BuildRow.key == RevisionModelRow.build_key)
+        .join(
+            RevisionRow,
+            (RevisionRow.design_id == RevisionModelRow.design_id)
+            & (RevisionRow.number == RevisionModelRow.number),
+        )
+        .where(RevisionModelRow.design_id == id, RevisionModelRow.name == model)
+        .where(RevisionModelRow.number <= until, RevisionRow.state == "current")
+        .order_by(RevisionModelRow.number.desc())
+    )
+    return session.scalars(query.limit(1)).first()
+
+
+def users_of(session: Session, key: str) -> list[Mapping[str, Any]]:
+    """The revisions that use a build, oldest first, and whether each is its design's newest."""
+    query = (
+        select(RevisionModelRow.design_id, RevisionModelRow.number, DesignRow.head)
+        .join(DesignRow, DesignRow.id == RevisionModelRow.design_id)
+        .where(RevisionModelRow.build_key == key)
+        .order_by(RevisionModelRow.design_id, RevisionModelRow.number)
+    )
+    rows = session.execute(query).all()
+    return [{"design": id, "revision": number, "current": number == head} for id, number, head in rows]
+
+
+def count(session: Session) -> int:
+    """How many designs there are."""
+    return session.scalar(select(func.count()).select_from(DesignRow).where(DesignRow.deleted.is_(None))) or 0

@@ -1,0 +1,107 @@
+"""What a calculated design leaves in its revision: steps with answers, models with parameters, as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.calculations import rendering
+from app.designs.calculate import Calculation
+from app.designs.graph import Block
+from cad.inspect import MEASURES
+from cad.model import CadModel
+from cad.regenerate import build_key
+
+
+@dataclass(frozen=True)
+class ModelState:
+    """A model of a revision with its parameters resolved, as far as they are known."""
+
+    name: str
+    id: str
+    version: int
+    parameters: dict[str, Any]
+    relations: dict[str, Any]
+    missing: tuple[str, ...]
+    build: str | None
+
+
+def steps(calculation: Calculation) -> dict[str, Any]:
+    """Every step: its evaluation, or that it waits for a solid."""
+    return {
+        name: _step(calculation, block)
+        for name, block in calculation.graph.blocks.items()
+        if not block.is_model
+    }
+
+
+def _step(calculation: Calculation, block: Block) -> dict[str, Any]:
+    relations = {n: cell.raw for n, cell in block.cells.items() if cell.relations}
+    if block.name not in calculation.evaluations:
+        return {"template": rendering.identity(block.cls), "relations": relations, "state": "pending"}
+    told = rendering.evaluation(calculation.evaluations[block.name])
+    del told["seconds"]  # equal revisions are equal
+    return {**told, "relations": relations}
+
+
+def models(calculation: Calculation) -> list[ModelState]:
+    """Every model with its resolved parameters and the key of its build."""
+    blocks = (block for block in calculation.graph.blocks.values() if block.is_model)
+    return [_model(calculation, block) for block in blocks]
+
+
+def _model(calculation: Calculation, block: Block) -> ModelState:
+    shape = calculation.shapes.get(block.name)
+    return ModelState(
+        name=block.name,
+        id=block.cls.id,
+        version=block.cls.version,
+        parameters=parameters(shape) if shape else {},
+        relations={n: cell.raw for n, cell in block.cells.items() if cell.relations},
+        missing=tuple(calculation.missing.get(block.name, ())),
+        build=build_key(shape) if shape else None,
+    )
+
+
+def parameters(shape: CadModel) -> dict[str, Any]:
+    """Every parameter of a model in its declared unit, defaults included."""
+    return {name: shown(shape, name, value) for name, value in shape.inputs_si().items()}
+
+
+def shown(shape: CadModel, name: str, si: Any) -> dict[str, Any]:
+    """A parameter as the interface shows it, free of the last digit's noise of unit conversion."""
+    if isinstance(si, str):
+        return {"value": si}
+    meaning = shape.inputs[name].meaning
+    return {"value": float(f"{meaning.scale.from_si(float(si)):.12g}"), "unit": meaning.unit}
+
+
+def outputs(told: Mapping[str, Any]) -> dict[str, Any]:
+    """All outputs of all steps by their names in relations: `film.minimum_film_thickness`."""
+    return {
+        f"{step}.{name}": value
+        for step, done in told.items()
+        for name, value in done.get("outputs", {}).items()
+    }
+
+
+def measurements(measures: Mapping[str, float], dimensions: Mapping[str, Any]) -> dict[str, Any]:
+    """What a solid measures, as `GET …/measurements` shows it."""
+    told = {name: {"value": measures[name], "unit": unit} for name, unit in MEASURES.items()}
+    inertia = ("xx", "yy", "zz", "xy", "xz", "yz")
+    return {
+        "bounding_box": {side: _vector(told, side) for side in ("low", "high")},
+        "volume": told["volume"],
+        "mass": told["mass"],
+        "centre": _vector(told, "centre"),
+        "inertia": {axes: told[f"inertia_{axes}"] for axes in inertia},
+        "dimensions": dict(dimensions),
+    }
+
+
+def _vector(told: Mapping[str, Any], name: str) -> dict[str, Any]:
+    values = [told[f"{name}_{axis}"]["value"] for axis in "xyz"]
+    return {"value": np.asarray(values).tolist(), "unit": told[f"{name}_x"]["unit"]}

@@ -1,0 +1,53 @@
+"""What the calls of designs take, beside the design itself."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.calculations.schemas import OIL_FILM
+from app.designs.document import Document, Model
+
+PAPER: dict[str, Any] = {
+    "name": "435 cc main bearing",
+    "parameters": {"scale": "1"},
+    "steps": {
+        "film": {
+            "template": "oil_film",
+            "version": 1,
+            "inputs": {**OIL_FILM, "bearing_diameter": "= scale * 48 mm"},
+        }
+    },
+    "model": {
+        "id": "ball_bearing",
+        "version": 1,
+        "parameters": {"inner_diameter": "= film.bearing_diameter"},
+    },
+}
+"""The paper's demonstration as a design."""
+
+Note = Field(None, max_length=1000, description="why, for the list of revisions")
+
+
+class DesignIn(Document):
+    """A new design."""
+
+    model_config = ConfigDict(
+        strict=True, extra="forbid", allow_inf_nan=False, json_schema_extra={"examples": [PAPER]}
+    )
+
+    model: Model | None = Field(None, description="short for `models` with one entry named `model`")
+    note: str | None = Note
+
+
+class RestoreIn(BaseModel):
+    """A note for the revision that a restore makes."""
+
+    model_config = ConfigDict(strict=True, extra="forbid")
+    note: str | None = Note
+
+
+class CopyIn(BaseModel):
+    """A name for the copy."""
+
+    model_config = ConfigDict(strict=True, extra="forbid")
+    name: str | None = Field(None, min_length=1, max_length=200)

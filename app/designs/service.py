@@ -1,0 +1,240 @@
+"""What can be done with designs; decides, and leaves SQL to the repository and geometry to the jobs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import ValidationError
+from sqlalchemy.orm import Session
+
+from app.designs import repository, results
+from app.designs.calculate import Calculation, Measured, Measures, calculate
+from app.designs.document import Document, merge
+from app.designs.errors import StaleRevision
+from app.designs.graph import Catalogues, build_graph, raise_if
+from app.designs.repository import Written
+from app.idempotency import Once
+from app.jobs.service import Jobs
+from app.storage.database import Database
+from cad.inspect import MEASURES
+from cad.model import CadModel
+from cad.regenerate import build_key
+from templates.core.errors import Fault, FaultyText, InvalidInputs
+from templates.core.quantity import read
+
+REGENERATE = "regenerate"
+
+
+@dataclass(frozen=True)
+class Saved:
+    """What a change led to: a revision, and the job that regenerates it, if one is needed."""
+
+    design: str
+    revision: int
+    job: str | None
+    created: bool
+
+
+class Designs:
+    """All changes of designs."""
+
+    def __init__(self, database: Database, jobs: Jobs, catalogues: Catalogues) -> None:
+        self.database, self.jobs, self.catalogues = database, jobs, catalogues
+
+    def create(self, raw: Mapping[str, Any], note: str | None, once: Once) -> Saved:
+        """A new design.
+
+        Raises
+        ------
+        InvalidInputs
+            With everything that is wrong; nothing is saved then.
+        """
+        if found := self._repeated(once):
+            return found
+        written, pending = self._written(raw, note)
+
+        def unit(session: Session) -> Saved:
+            if found := _found(session, once):
+                return found
+            design, revision = repository.create(session, written.document["name"], written)
+            return self._enqueued(session, design, revision, pending, once, created=True)
+
+        return self._saved(unit)
+
+    def change(
+        self, id: str, patch: Mapping[str, Any], note: str | None, expected: str | None, once: Once
+    ) -> Saved:
+        """A new revision with a merge patch applied; a patch that changes nothing makes none.
+
+        Raises
+        ------
+        StaleRevision
+            If `expected` (an If-Match) is not the newest revision.
+        InvalidInputs
+            With everything that is wrong; nothing is saved then.
+        """
+        if found := self._repeated(once):
+            return found
+        with self.database.read() as session:
+            row = repository.head(session, id)
+            base, document = row.number, row.document
+        _require_match(expected, base)
+        return self._append(id, base, merge(document, patch), note, once)
+
+    def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> Saved:
+        """A new revision equal to an old one."""
+        if found := self._repeated(once):
+            return found
+        with self.database.read() as session:
+            base = repository.head(session, id).number
+            document = repository.revision(session, id, number).document
+        _require_match(expected, base)
+        return self._append(id, base, document, note or f"as revision {number}", once)
+
+    def copy(self, id: str, name: str | None, once: Once) -> Saved:
+        """A new design with the newest document of another."""
+        with self.database.read() as session:
+            row = repository.head(session, id)
+        document = {**row.document, "name": name or f"{row.document['name'][:190]} (copy)"}
+        return self.create(document, f"copy of {id}, revision {row.number}", once)
+
+    def delete(self, id: str) -> None:
+        """Take a design from the lists; its revisions are kept."""
+        self.database.write(lambda session: repository.delete(session, id))
+
+    def state(self, id: str) -> dict[str, Any]:
+        """At which revision a design is, and how its regeneration stands."""
+        with self.database.read() as session:
+            row = repository.head(session, id)
+            return {"revision": row.number, "state": row.state, "problem": row.problem}
+
+    def prepare(self, raw: Mapping[str, Any]) -> tuple[Document, Calculation]:
+        """A document read and calculated with what is built already; faults are left in the calculation."""
+        document = resolved(read_document(raw), self.catalogues)
+        graph, faults = build_graph(document, self.catalogues)
+        raise_if(faults)
+        with self.database.read() as session:
+            return document, calculate(graph, built(session), starts(document))
+
+    def _append(self, id: str, base: int, raw: Mapping[str, Any], note: str | None, once: Once) -> Saved:
+        written, pending = self._written(raw, note)
+
+        def unit(session: Session) -> Saved:
+            if found := _found(session, once):
+                return found
+            row = repository.design(session, id)
+            if row.head != base:
+                raise StaleRevision(f'"{base}"', row.head)
+            if repository.revision(session, id, base).document == written.document:
+                return Saved(id, base, None, created=False)
+            revision = repository.append(session, row, written)
+            return self._enqueued(session, id, revision, pending, once, created=False)
+
+        return self._saved(unit)
+
+    def _written(self, raw: Mapping[str, Any], note: str | None) -> tuple[Written, bool]:
+        """What to write for a document, and whether geometry has to run first."""
+        document, calculation = self.prepare(raw)
+        raise_if(calculation.faults)
+        pending = bool(document.iterations) or bool(calculation.pending)
+        told = None if pending else {"steps": results.steps(calculation), "iterations": []}
+        state = "regenerating" if pending else "current"
+        plain = document.model_dump(mode="json")
+        return Written(plain, told, results.models(calculation), state, note), pending
+
+    def _enqueued(
+        self, session: Session, design: str, revision: int, pending: bool, once: Once, *, created: bool
+    ) -> Saved:
+        """The job of a revision, if it needs one, and the record of the request; in one transaction."""
+        job = (
+            self.jobs.enqueue(session, REGENERATE, {}, design=design, revision=revision) if pending else None
+        )
+        saved = Saved(design, revision, job, created)
+        once.keep(session, 201 if created else 200, vars(saved))
+        return saved
+
+    def _saved(self, unit: Any) -> Saved:
+        saved: Saved = self.database.write(unit)
+        if saved.job:
+            self.jobs.wake()
+        topic = f"design:{saved.design}"
+        self.jobs.events.publish(topic, {"event": "revision", "revision": saved.revision})
+        state = "regenerating" if saved.job else "current"
+        self.jobs.events.publish(topic, {"event": state, "revision": saved.revision})
+        return saved
+
+    def _repeated(self, once: Once) -> Saved | None:
+        with self.database.read() as session:
+            return _found(session, once)
+
+
+def _found(session: Session, once: Once) -> Saved | None:
+    location = once.find(session)
+    return Saved(**location) if location else None
+
+
+def _require_match(expected: str | None, head: int) -> None:
+    if expected is not None and expected.strip() not in ("*", f'"{head}"'):
+        raise StaleRevision(expected, head)
+
+
+def read_document(raw: Mapping[str, Any]) -> Document:
+    """A document from JSON.
+
+    Raises
+    ------
+    InvalidInputs
+        With everything that has not the shape of a design.
+    """
+    try:
+        return Document.model_validate(raw)
+    except ValidationError as error:
+        faults = (
+            Fault(".".join(map(str, e["loc"])) or "design", e["type"], e["msg"]) for e in error.errors()
+        )
+        raise InvalidInputs(faults) from None
+
+
+def resolved(document: Document, catalogues: Catalogues) -> Document:
+    """The document with every version pinned: latest is resolved once, when a step or model comes in."""
+    plain = document.model_copy(deep=True)
+    for step in plain.steps.values():
+        if not isinstance(step.version, int) and step.template in catalogues.templates.ids:
+            step.version = catalogues.templates.latest(step.template).version
+    for model in plain.models.values():
+        if not isinstance(model.version, int) and model.id in catalogues.models.ids:
+            model.version = catalogues.models.latest(model.id).version
+    return plain
+
+
+def built(session: Session) -> Measured:
+    """What models measure, for those that have been built."""
+
+    def measured(shape: CadModel) -> Measures | None:
+        row = repository.build(session, build_key(shape))
+        return row.measurements["measures"] if row else None
+
+    return measured
+
+
+def starts(document: Document) -> dict[str, float]:
+    """The SI values with which the iterations of a document begin.
+
+    Raises
+    ------
+    InvalidInputs
+        If a start is no quantity of its measure's kind.
+    """
+    faults, values = [], {}
+    for iteration in document.iterations:
+        measure = iteration.through.partition(".")[2]
+        try:
+            values[iteration.through] = float(read(iteration.start, MEASURES[measure]).si)
+        except FaultyText as error:
+            faults.append(error.fault("iterations.start"))
+        except TypeError:
+            faults.append(Fault("iterations.start", "not_a_number", "one value is wanted here, not an array"))
+    raise_if(faults)
+    return values

@@ -1,0 +1,139 @@
+"""Designs and revisions as the REST interface shows them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from app.designs import repository, results
+from app.designs.errors import NotFound
+from app.models.service import File
+from app.storage.artifacts import ArtifactStore
+from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow
+
+STEP = "step"
+
+
+def design(row: DesignRow, revision: RevisionRow) -> dict[str, Any]:
+    """A design as of one revision: what its user wrote, and how its regeneration stands."""
+    document = revision.document
+    return {
+        "id": row.id,
+        "name": document["name"],
+        "revision": revision.number,
+        "state": revision.state,
+        "parameters": document["parameters"],
+        "steps": document["steps"],
+        "models": document["models"],
+        "iterations": document["iterations"],
+        "problem": revision.problem,
+        "created": row.created,
+        "changed": revision.created,
+    }
+
+
+def listed(row: DesignRow, revision: RevisionRow) -> dict[str, Any]:
+    """A design in a list."""
+    shown = design(row, revision)
+    return {name: shown[name] for name in ("id", "name", "revision", "state", "created", "changed")}
+
+
+def revision(session: Session, row: RevisionRow) -> dict[str, Any]:
+    """A revision: its inputs, which never change, and its results."""
+    found = row.results or {"steps": {}, "iterations": []}
+    return {
+        "design": row.design_id,
+        "number": row.number,
+        "note": row.note,
+        "created": row.created,
+        "state": row.state,
+        "problem": row.problem,
+        "name": row.document["name"],
+        "parameters": row.document["parameters"],
+        "steps": {
+            name: _step(step, found["steps"].get(name)) for name, step in row.document["steps"].items()
+        },
+        "models": {model.name: _model(session, model) for model in row.models},
+        "iterations": found["iterations"],
+    }
+
+
+def _step(typed: dict[str, Any], found: dict[str, Any] | None) -> dict[str, Any]:
+    """A step with its results, or as typed while it waits for a solid."""
+    if found is None or "outputs" not in found:
+        template = {"id": typed["template"], "version": typed["version"]}
+        empty: dict[str, Any] = {"outputs": {}, "level": None, "error": {}, "warnings": []}
+        return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
+    return found
+
+
+def _model(session: Session, row: RevisionModelRow) -> dict[str, Any]:
+    return {
+        "id": row.model,
+        "version": row.model_version,
+        "parameters": row.parameters,
+        "relations": row.relations,
+        "build": row.build_key,
+        "artifacts": repository.artifacts(session, row.build_key),
+    }
+
+
+def measurements(session: Session, id: str) -> dict[str, Any]:
+    """What the newest good model of every name measures."""
+    head = repository.head(session, id)
+    told: dict[str, Any] = {}
+    for model in head.models:
+        good = repository.newest_good(session, id, model.name, head.number)
+        if good is None or good.build_key is None:
+            continue
+        row = repository.build(session, good.build_key)
+        assert row is not None
+        told[model.name] = {
+            "revision": good.number,
+            "build": row.key,
+            **results.measurements(**row.measurements),
+        }
+    return told
+
+
+def good_model(session: Session, id: str, name: str | None, number: int | None) -> RevisionModelRow:
+    """The model to serve: of one revision, or the newest good one of the design.
+
+    Raises
+    ------
+    NotFound
+        If there is none; the text says why.
+    """
+    head = repository.head(session, id) if number is None else repository.revision(session, id, number)
+    names = [model.name for model in head.models]
+    wanted = name or (names[0] if len(names) == 1 else None)
+    if wanted is None or wanted not in names:
+        hint = (
+            f"name one of {', '.join(names)} as in models/{names[0]}/model.step"
+            if names
+            else "it has no model"
+        )
+        raise NotFound(f"design {id}: {hint}")
+    if number is None:
+        found = repository.newest_good(session, id, wanted, head.number)
+    else:
+        found = next(model for model in head.models if model.name == wanted)
+        found = found if repository.build(session, found.build_key or "") else None
+    if found is None:
+        raise NotFound(f"design {id}: {wanted} has no finished solid yet; {_why(head)}")
+    return found
+
+
+def _why(row: RevisionRow) -> str:
+    if row.state == "failed":
+        return f"revision {row.number} failed: {(row.problem or {}).get('detail', 'see its problem')}"
+    if row.state == "regenerating":
+        return "it is being regenerated: ask again, or follow /events"
+    return "set or map its parameters first"
+
+
+def file(session: Session, store: ArtifactStore, model: RevisionModelRow, kind: str) -> File | None:
+    """A file of a model's build, or None if it is not made yet."""
+    row = repository.artifact(session, model.build_key or "", kind)
+    return File(store.path(row.sha256), kind, row.sha256) if row else None

@@ -1,0 +1,72 @@
+"""`/healthz`, `/readyz` and `/metrics`, at the root."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from fastapi import APIRouter, Response
+from prometheus_client import (
+    CONTENT_TYPE_LATEST,
+    CollectorRegistry,
+    Counter,
+    Gauge,
+    Histogram,
+    generate_latest,
+)
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.dependencies import TheDatabase, TheJobs
+from app.designs import repository
+
+router = APIRouter(tags=["health"])
+
+REGISTRY = CollectorRegistry()
+REQUESTS = Counter("crankwright_requests_total", "Requests answered", ["status"], registry=REGISTRY)
+SECONDS = Histogram("crankwright_request_seconds", "Time to answer [s]", registry=REGISTRY)
+QUEUED = Gauge("crankwright_jobs_queued", "Jobs that wait", registry=REGISTRY)
+DESIGNS = Gauge("crankwright_designs", "Designs in the lists", registry=REGISTRY)
+
+
+@router.get("/healthz")
+async def healthz() -> dict[str, str]:
+    """The process is alive."""
+    return {"status": "ok"}
+
+
+@router.get("/readyz")
+def readyz(database: TheDatabase) -> dict[str, Any]:
+    """The database answers."""
+    with database.read() as session:
+        return {"status": "ready", "designs": repository.count(session)}
+
+
+@router.get("/metrics")
+def metrics(database: TheDatabase, jobs: TheJobs) -> Response:
+    """Figures for Prometheus."""
+    with database.read() as session:
+        DESIGNS.set(repository.count(session))
+        QUEUED.set(jobs.queued(session))
+    return Response(generate_latest(REGISTRY), media_type=CONTENT_TYPE_LATEST)
+
+
+class Metrics:
+    """ASGI middleware that counts requests and their time."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on, and count."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        start = time.perf_counter()
+
+        async def counted(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                REQUESTS.labels(message["status"]).inc()
+                SECONDS.observe(time.perf_counter() - start)
+            await send(message)
+
+        await self.app(scope, receive, counted)

@@ -1,0 +1,126 @@
+"""What this service asks of every request: a small body, JSON that is JSON, a precondition on changes.
+
+`StrictRoute` replaces FastAPI's lenient reading of bodies: pydantic's parser refuses lone surrogates and deep
+nesting, and nothing is guessed from a missing or wrong content type.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Awaitable, Callable, Coroutine
+from json import JSONDecodeError
+from typing import Any
+
+from fastapi import Request, Response
+from fastapi.routing import APIRoute
+from pydantic_core import from_json
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+JSON_TYPES = {"application/json"}
+PATCH_TYPES = {"application/json", "application/merge-patch+json"}
+
+
+class HttpError(Exception):
+    """A request that is refused before its meaning is looked at."""
+
+
+class BodyTooLarge(HttpError):
+    """The body is larger than the service takes."""
+
+
+class TooManyValues(HttpError):
+    """The answer would hold more values than the service gives at once."""
+
+
+class NotJson(HttpError):
+    """The content type is not one that the path takes."""
+
+
+class PreconditionRequired(HttpError):
+    """A change without If-Match."""
+
+
+class StrictRequest(Request):
+    """A request whose JSON is parsed strictly."""
+
+    async def json(self) -> Any:
+        """The body as JSON.
+
+        Raises
+        ------
+        JSONDecodeError
+            If it is none, no UTF-8, or nested too deep; FastAPI answers it as an invalid input.
+        """
+        if not hasattr(self, "_json"):
+            try:
+                self._json = from_json(await self.body())
+            except ValueError as error:
+                raise JSONDecodeError(str(error)[:200], "", 0) from None
+        return self._json
+
+
+class StrictRoute(APIRoute):
+    """A route that checks precondition and content type, in this order, before anything else."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """FastAPI's handler behind the checks."""
+        handler = super().get_route_handler()
+        takes_json = self.body_field is not None
+        is_patch = "PATCH" in (self.methods or ())
+
+        async def strict(request: Request) -> Response:
+            if is_patch and "if-match" not in request.headers:
+                raise PreconditionRequired('send If-Match with the ETag of the design you read, such as "3"')
+            if takes_json:
+                _check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
+            return await handler(StrictRequest(request.scope, request.receive))
+
+        return strict
+
+
+def _check_type(request: Request, allowed: set[str]) -> None:
+    given = request.headers.get("content-type", "")
+    length = request.headers.get("content-length")
+    if length == "0" or (length is None and "transfer-encoding" not in request.headers):
+        return  # an empty body is judged by what the route needs
+    if given.partition(";")[0].strip().lower() not in allowed:
+        raise NotJson(f"content type {given[:80]!r} is not taken here; send {' or '.join(sorted(allowed))}")
+
+
+class BodyLimit:
+    """ASGI middleware that ends the reading of a body beyond the limit [bytes] with a 413 problem."""
+
+    # FastAPI's own max_body_size answers in plain text, not with a problem.
+    def __init__(self, app: ASGIApp, limit: int, refuse: Callable[[str], Response]) -> None:
+        self.app, self.limit, self.refuse = app, limit, refuse
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Refuse, or pass on."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        told = f"a body may have at most {self.limit / 2**20:g} MiB"
+        length = dict(scope["headers"]).get(b"content-length", b"0")
+        if not length.isdigit() or int(length) > self.limit:
+            await self.refuse(told)(scope, receive, send)
+            return
+        await self.app(scope, self._counted(receive, told) if length == b"0" else receive, send)
+
+    def _counted(self, receive: Receive, told: str) -> Callable[[], Awaitable[Message]]:
+        """For a body of unknown length: raise once it grows beyond the limit."""
+        size = 0
+
+        async def counted() -> Message:
+            nonlocal size
+            message = await receive()
+            size += len(message.get("body", b""))
+            if size > self.limit:
+                raise BodyTooLarge(told)
+            return message
+
+        return counted
+
+
+async def fingerprint(request: Request) -> str:
+    """SHA-256 of a request's body."""
+    return hashlib.sha256(await request.body()).hexdigest()

@@ -1,0 +1,54 @@
+"""Requests that may be sent again: one Idempotency-Key, one change.
+
+The key is kept in the transaction of the change itself, so that after a crash a repeated request finds
+either the change or nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from app.designs.errors import KeyReused
+from app.storage.identity import now
+from app.storage.tables import IdempotencyRow
+
+
+@dataclass(frozen=True)
+class Once:
+    """A request that is to be carried out once; without a key every request is a new one."""
+
+    key: str | None
+    scope: str  # method and path
+    fingerprint: str  # SHA-256 of the body
+
+    def find(self, session: Session) -> dict[str, Any] | None:
+        """What this request led to before, if it did.
+
+        Raises
+        ------
+        KeyReused
+            If the key came with another body.
+        """
+        row = session.get(IdempotencyRow, (self.key, self.scope)) if self.key else None
+        if row is None:
+            return None
+        if row.fingerprint != self.fingerprint:
+            raise KeyReused(row.key)
+        return row.location
+
+    def keep(self, session: Session, status: int, location: dict[str, Any]) -> None:
+        """Remember what this request led to."""
+        if self.key:
+            session.add(
+                IdempotencyRow(
+                    key=self.key,
+                    scope=self.scope,
+                    fingerprint=self.fingerprint,
+                    status=status,
+                    location=location,
+                    created=now(),
+                )
+            )

@@ -1,0 +1,132 @@
+"""The application: `create_app(settings)`. Everything it holds is made in `lifespan` and ends there."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import AsyncIterator
+from contextlib import ExitStack, asynccontextmanager
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from fastapi import FastAPI, Response
+from fastapi_offline import FastAPIOffline
+
+import templates
+from app import health, problems
+from app.calculations.routes import router as calculations
+from app.catalogue.routes import router as catalogue
+from app.designs.events import router as design_events
+from app.designs.files import router as design_files
+from app.designs.graph import Catalogues
+from app.designs.regeneration import Regeneration
+from app.designs.routes import router as designs
+from app.designs.service import REGENERATE, Designs
+from app.health import Metrics
+from app.http import BodyLimit, BodyTooLarge
+from app.jobs.routes import router as jobs
+from app.jobs.service import Jobs
+from app.jobs.shutdown import streams_end_on_signal
+from app.models.builds import Builds
+from app.models.routes import router as models
+from app.models.service import BUILD, ModelBuild, Models
+from app.settings import Settings
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.storage.folder import DataFolder
+from app.storage.migrations import migrate
+from app.workers.local import LocalProcesses
+from cad.catalogue import models as find_models
+from templates.core.catalogue import find
+from templates.core.template import Template
+
+logger = logging.getLogger(__name__)
+
+DESCRIPTION = """Engine-bearing calculations that drive geometry: versioned templates, designs that tie their
+outputs to CAD parameters by relations, and STEP files regenerated whenever an output changes.
+
+Quantities are text with a unit (`"25 kN"`) or objects (`{"value": 25, "unit": "kN"}`). Errors are RFC 9457
+problems that name every wrong input at once."""
+
+BUILT_IN = tuple(Path(folder) for folder in templates.__path__)
+
+
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """The service, ready to be served; it opens its data folder when it starts."""
+    chosen = settings or Settings()
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        with ExitStack() as stack:
+            assemble(app, chosen, stack)
+            stack.enter_context(streams_end_on_signal(app.state.jobs.events))
+            yield
+
+    app: FastAPI = FastAPIOffline(
+        title="Crankwright",
+        version=version("crankwright"),
+        description=DESCRIPTION,
+        lifespan=lifespan,
+        redoc_url=None,
+        swagger_ui_parameters={"validatorUrl": None},  # the default one asks an outside address
+        responses={
+            "4XX": {"description": "a problem", "content": {problems.MEDIA_TYPE: {"schema": PROBLEM}}}
+        },
+    )
+    for router in (catalogue, calculations, designs, design_files, design_events, models, jobs):
+        app.include_router(router)
+    app.include_router(health.router)
+    app.include_router(problems.router)
+    problems.install(app)
+    app.add_middleware(BodyLimit, limit=chosen.body_limit, refuse=_too_large)
+    app.add_middleware(Metrics)
+    return app
+
+
+def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
+    """Make what the routes depend on; the stack undoes it in reverse order."""
+    folder = DataFolder(settings.data)
+    stack.callback(folder.release)
+    url = settings.database_url or folder.database_url
+    migrate(url)
+    database = Database(url)
+    stack.callback(database.close)
+    store = ArtifactStore(folder.artifacts)
+    catalogues = Catalogues(
+        find((*BUILT_IN, *settings.template_folders), Template), find_models(*settings.template_folders)
+    )
+    worker = LocalProcesses()
+    stack.callback(worker.close)
+    queue = Jobs(database, worker, settings, problems.describe)
+    builds = Builds(database, store, settings.template_folders)
+    queue.register(REGENERATE, Regeneration(database, builds, catalogues), Regeneration.failed)
+    queue.register(BUILD, ModelBuild(builds, catalogues.models))
+    queue.start()
+    stack.callback(queue.stop)
+    app.state.database, app.state.store, app.state.jobs = database, store, queue
+    app.state.catalogues, app.state.settings = catalogues, settings
+    app.state.designs = Designs(database, queue, catalogues)
+    app.state.models = Models(database, store, queue, catalogues.models)
+
+
+def _too_large(told: str) -> Response:
+    return problems.answer(problems.describe(BodyTooLarge(told)))
+
+
+PROBLEM: dict[str, Any] = {
+    "type": "object",
+    "required": ["type", "title", "status", "detail"],
+    "properties": {
+        "type": {"type": "string"},
+        "title": {"type": "string"},
+        "status": {"type": "integer"},
+        "detail": {"type": "string"},
+        "errors": {
+            "type": "array",
+            "items": {
+                "type": "object",
+                "properties": {part: {"type": "string"} for part in ("name", "code", "detail")},
+            },
+        },
+    },
+}

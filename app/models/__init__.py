@@ -1,0 +1,1 @@
+"""CAD models on their own: build, artifacts, verify."""

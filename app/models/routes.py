@@ -1,0 +1,136 @@
+"""`/models`, `/builds`, `/artifacts` and `/verify`."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Header, Request, Response
+from fastapi.responses import FileResponse, JSONResponse
+from pydantic import BaseModel, ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
+
+from app import problems
+from app.catalogue.routes import Id, Number, summary
+from app.dependencies import TheCatalogues, TheJobs, TheModels, TheStore
+from app.http import NotJson, StrictRoute
+from app.paging import Cursor, Limit, page_of
+from app.waiting import accepted, finished
+from cad.export import MEDIA_TYPES
+from cad.inspect import MEASURES
+from cad.regenerate import build_key
+from templates.core.errors import Fault, InvalidInputs
+from templates.core.schema import describe
+
+router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
+
+FOR_EVER = "public, max-age=31536000, immutable"
+
+
+class BuildIn(BaseModel):
+    """Build a model from parameters."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"parameters": {"inner_diameter": "48 mm"}, "artifacts": ["step", "glb"]}]
+        },
+    )
+
+    parameters: dict[str, Any] = Field(description='quantities by name: `"48 mm"`; the others have defaults')
+    artifacts: list[str] = Field(list(MEDIA_TYPES), description="the kinds of files wanted")
+
+
+@router.get("/models")
+def list_models(catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None) -> dict[str, Any]:
+    """Every version of every CAD model."""
+    return page_of(list(catalogues.models), limit, cursor, lambda cls: summary(cls, catalogues.models))
+
+
+@router.get("/models/{id}")
+def list_model_versions(id: Id, catalogues: TheCatalogues) -> dict[str, Any]:
+    """The versions of one model."""
+    versions = list(catalogues.models.of(id).values())
+    return {"id": id, **page_of(versions, len(versions), None, lambda cls: summary(cls, catalogues.models))}
+
+
+@router.get("/models/{id}/versions/{number}")
+def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, Any]:
+    """One model: its parameters as JSON Schema, and what is measured on its solid."""
+    told = describe(catalogues.models.get(id, number))
+    picture = f"/api/v1/models/{id}/versions/{number}/picture"
+    return {**told, "parameters": told.pop("inputs"), "measures": MEASURES, "picture": picture}
+
+
+@router.get("/models/{id}/versions/{number}/picture")
+async def picture(
+    id: Id,
+    number: Number,
+    catalogues: TheCatalogues,
+    models: TheModels,
+    jobs: TheJobs,
+    prefer: Annotated[str | None, Header()] = None,
+) -> Response:
+    """A picture (PNG) of the model's example."""
+    cls = catalogues.models.get(id, number)
+    shape = cls.from_quantities(cls.example)
+    job = await run_in_threadpool(models.request, shape, ("step", "png"))
+    if not await finished(jobs, job, prefer):
+        return accepted(job)
+    return send_file(await run_in_threadpool(models.file, build_key(shape), "png"))
+
+
+@router.post("/models/{id}/versions/{number}/build")
+async def build(
+    id: Id,
+    number: Number,
+    body: BuildIn,
+    catalogues: TheCatalogues,
+    models: TheModels,
+    jobs: TheJobs,
+    prefer: Annotated[str | None, Header()] = None,
+) -> Response:
+    """Build a model, check it, measure it on the finished STEP file. Equal parameters are built once."""
+    unknown = [kind for kind in body.artifacts if kind not in MEDIA_TYPES]
+    if unknown:
+        known = ", ".join(MEDIA_TYPES)
+        raise InvalidInputs(
+            Fault("artifacts", "unknown_name", f"{k[:40]!r} is none of {known}") for k in unknown
+        )
+    shape = catalogues.models.get(id, number).from_quantities(body.parameters)
+    kinds = tuple(dict.fromkeys(("step", *body.artifacts)))
+    job = await run_in_threadpool(models.request, shape, kinds)
+    if not await finished(jobs, job, prefer):
+        return accepted(job, {"build": build_key(shape), "artifacts": {}, "measurements": None})
+    if job and (failed := await run_in_threadpool(lambda: jobs.get(job).problem)):
+        return problems.answer(failed)
+    return JSONResponse(await run_in_threadpool(models.show, build_key(shape)))
+
+
+@router.get("/builds/{key}")
+def show_build(key: str, models: TheModels) -> dict[str, Any]:
+    """A build: its files and what was measured on it."""
+    return models.show(key)
+
+
+@router.get("/artifacts/{sha256}")
+def artifact(sha256: str, store: TheStore) -> Response:
+    """The bytes of this hash; they never change."""
+    headers = {"ETag": f'"{sha256}"', "Cache-Control": FOR_EVER}
+    return FileResponse(store.path(sha256), media_type="application/octet-stream", headers=headers)
+
+
+@router.post(
+    "/verify", openapi_extra={"requestBody": {"content": {"model/step": {"schema": {"type": "string"}}}}}
+)
+async def verify(request: Request, models: TheModels) -> dict[str, Any]:
+    """From which build a STEP file is, and which revisions use it."""
+    if request.headers.get("content-type", "").partition(";")[0].strip() not in ("model/step", ""):
+        raise NotJson("send the STEP file itself as model/step")
+    return await run_in_threadpool(models.verify, await request.body())
+
+
+def send_file(file: Any, headers: dict[str, str] | None = None, name: str | None = None) -> Response:
+    """A stored file with its hash as ETag."""
+    sent = {"ETag": f'"{file.sha256}"', **(headers or {})}
+    return FileResponse(file.path, media_type=MEDIA_TYPES[file.kind], headers=sent, filename=name)

@@ -1,0 +1,150 @@
+"""CAD models on their own, and the files of builds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from app.designs import repository, results
+from app.designs.errors import NotFound
+from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.models.builds import Builds
+from app.problems import describe
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.workers.errors import DeadlineExceeded, MemoryExceeded
+from cad.errors import GeometryError
+from cad.export import DERIVED
+from cad.header import read_header
+from cad.model import CadModel
+from cad.regenerate import as_text, build_key
+from templates.core.catalogue import Catalogue
+from templates.core.errors import TemplateError
+
+BUILD = "build"
+
+
+@dataclass(frozen=True)
+class File:
+    """A stored file of a build."""
+
+    path: Path
+    kind: str
+    sha256: str
+
+
+class Models:
+    """Builds outside of any design, and files of builds inside and outside."""
+
+    def __init__(
+        self, database: Database, store: ArtifactStore, jobs: Jobs, catalogue: Catalogue[CadModel]
+    ) -> None:
+        self.database, self.store, self.jobs, self.catalogue = database, store, jobs, catalogue
+
+    def request(self, shape: CadModel, kinds: tuple[str, ...]) -> str | None:
+        """The job that makes a build and its files, or None if all are there."""
+        key = build_key(shape)
+        with self.database.read() as session:
+            if set(kinds) <= repository.artifacts(session, key).keys():
+                return None
+        payload = {
+            "model": shape.id,
+            "version": shape.version,
+            "parameters": as_text(shape),
+            "kinds": [*kinds],
+        }
+
+        def unit(session: Session) -> str:
+            return self.jobs.waiting(session, BUILD, payload) or self.jobs.enqueue(session, BUILD, payload)
+
+        job = self.database.write(unit)
+        self.jobs.wake()
+        return job
+
+    def show(self, key: str) -> dict[str, Any]:
+        """A build: its files and what was measured on it.
+
+        Raises
+        ------
+        NotFound
+            If it was not made.
+        """
+        with self.database.read() as session:
+            row = repository.build(session, key)
+            if row is None:
+                raise NotFound(f"there is no build {key[:80]!r}")
+            measured = results.measurements(**row.measurements)
+            return {
+                "build": key,
+                "model": {"id": row.model, "version": row.version},
+                "parameters": row.parameters,
+                "artifacts": repository.artifacts(session, key),
+                "measurements": measured,
+            }
+
+    def file(self, key: str, kind: str) -> File | None:
+        """A file of a build, or None if it is not made yet."""
+        with self.database.read() as session:
+            row = repository.artifact(session, key, kind)
+        return File(self.store.path(row.sha256), kind, row.sha256) if row else None
+
+    def shape_of(self, key: str) -> CadModel:
+        """The model of a build, with its parameters.
+
+        Raises
+        ------
+        NotFound
+            If it was not made.
+        """
+        told = self.show(key)
+        cls = self.catalogue.get(told["model"]["id"], told["model"]["version"])
+        return cls.from_quantities(
+            {n: p if "unit" in p else p["value"] for n, p in told["parameters"].items()}
+        )
+
+    def verify(self, step: bytes) -> dict[str, Any]:
+        """From which build a STEP file is, which revisions use it, and whether its bytes are still those.
+
+        Raises
+        ------
+        NotFound
+            If it does not say, or the build is not known here.
+        """
+        header = read_header(step)
+        if header is None:
+            raise NotFound("this file does not say that it is one of ours")
+        told = self.show(header.build)
+        with self.database.read() as session:
+            users = repository.users_of(session, header.build)
+        intact = step == self.store.read(told["artifacts"]["step"])
+        return {"build": header.build, "model": told["model"], "revisions": users, "intact": intact}
+
+
+class ModelBuild:
+    """The handler of jobs of the kind `build`: a build and the files of it that are asked for."""
+
+    def __init__(self, builds: Builds, catalogue: Catalogue[CadModel]) -> None:
+        self.builds, self.catalogue = builds, catalogue
+
+    def __call__(self, job: Job, context: JobContext) -> Completion:
+        """Build, then derive.
+
+        Raises
+        ------
+        JobFailed
+            With the problem, for anything that the model itself brings about.
+        """
+        asked = job.payload
+        shape = self.catalogue.get(asked["model"], asked["version"]).from_quantities(asked["parameters"])
+        key = build_key(shape)
+        try:
+            self.builds.make(shape, context)
+            for kind in asked["kinds"]:
+                if kind in DERIVED:
+                    self.builds.derive(key, kind, context)
+        except (TemplateError, GeometryError, DeadlineExceeded, MemoryExceeded) as error:
+            raise JobFailed(describe(error)) from error
+        return lambda session: f"/api/v1/builds/{key}"

@@ -1,0 +1,36 @@
+"""How long an answer waits for its job: a short while, `Prefer: wait=n`, or not at all (`respond-async`)."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from fastapi.responses import JSONResponse, Response
+
+from app.jobs.service import Jobs
+
+LONGEST = 60.0  # s
+
+
+async def finished(jobs: Jobs, job: str | None, prefer: str | None) -> bool:
+    """Whether the job, if there is one, ended within the time that the client waits."""
+    if job is None:
+        return True
+    return await jobs.wait(job, _seconds(prefer, jobs.wait_seconds)) in (
+        "done",
+        "failed",
+        "cancelled",
+    )
+
+
+def _seconds(prefer: str | None, default: float) -> float:
+    if prefer and "respond-async" in prefer:
+        return 0.0
+    asked = re.search(r"\bwait=([0-9]{1,4})\b", prefer or "")
+    return min(float(asked[1]), LONGEST) if asked else default
+
+
+def accepted(job: str | None, body: dict[str, Any] | None = None) -> Response:
+    """202: the work goes on; the job is in Location."""
+    place = f"/api/v1/jobs/{job}"
+    return JSONResponse(body or {"job": place}, 202, headers={"Location": place})
