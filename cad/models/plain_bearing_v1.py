@@ -25,7 +25,7 @@ from scipy.integrate import quad
 
 from cad.model import BRONZE, Box, CadModel, Part, mm
 from cad.surfaces import Seen, Y, Z
-from templates.core.template import Array, Truth, choice, derived, formula, given, require
+from templates.core.template import Array, Truth, choice, derived, formula, given, require, units
 
 
 @dataclass(frozen=True)
@@ -194,6 +194,7 @@ class PlainBearing(CadModel):
         return found
 
 
+@units("m", returns="1")
 def drawable(length: Array) -> Truth:
     """Whether a length [m] is none, or one that the kernel can tell from none."""
     return (length == 0) | (length >= 1e-5)
