@@ -1,0 +1,203 @@
+"""Jobs over HTTP, and a server that stops although somebody watches."""
+
+import asyncio
+import json
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import httpx
+import pytest
+from fastapi import FastAPI
+
+from app.jobs.errors import JobFinished, JobNotFound
+from app.jobs.routes import router
+from app.jobs.service import Jobs
+from app.settings import Settings
+from app.workers.inline import Inline
+
+
+def describe(error):
+    return {"type": type(error).__name__, "detail": str(error)}
+
+
+def handler(job, context):
+    context.progress(0.5, "half way")
+    return lambda session: "/api/v1/designs/1"
+
+
+@pytest.fixture
+def jobs(database):
+    jobs = Jobs(database, Inline(), Settings(), describe)
+    jobs.register("regenerate", handler)
+    yield jobs
+    jobs.stop()
+
+
+@pytest.fixture
+def app(jobs):
+    app = FastAPI()
+    app.include_router(router)
+    app.state.jobs = jobs
+    return app
+
+
+class Client:
+    """Calls an app from outside of any event loop."""
+
+    def __init__(self, app):
+        self.app = app
+
+    async def send(self, method, path, **more):
+        async with httpx.AsyncClient(
+            transport=httpx.ASGITransport(self.app), base_url="http://test"
+        ) as client:
+            return await client.request(method, path, **more)
+
+    def get(self, path, **more):
+        return asyncio.run(self.send("GET", path, **more))
+
+    def delete(self, path):
+        return asyncio.run(self.send("DELETE", path))
+
+
+@pytest.fixture
+def client(app):
+    return Client(app)
+
+
+def put(jobs, database):
+    return database.write(lambda session: jobs.enqueue(session, "regenerate", {"secret": 1}))
+
+
+def test_a_job_is_shown(client, jobs, database):
+    id = put(jobs, database)
+    shown = client.get(f"/api/v1/jobs/{id}").json()
+    assert shown | {"created": "", "updated": ""} == {
+        "id": id,
+        "kind": "regenerate",
+        "state": "queued",
+        "design": None,
+        "revision": None,
+        "progress": 0.0,
+        "log": [],
+        "problem": None,
+        "result": None,
+        "created": "",
+        "updated": "",
+    }
+    assert shown["created"].endswith("Z")
+
+
+def test_jobs_are_listed_in_pages(client, jobs, database):
+    ids = [put(jobs, database) for _ in range(3)]
+    first = client.get("/api/v1/jobs", params={"limit": 2}).json()
+    second = client.get("/api/v1/jobs", params={"limit": 2, "cursor": first["next"]}).json()
+    assert [job["id"] for job in first["items"] + second["items"]] == sorted(ids, reverse=True)
+    assert second["next"] is None
+
+
+def test_a_job_is_cancelled_once(client, jobs, database):
+    id = put(jobs, database)
+    assert client.delete(f"/api/v1/jobs/{id}").json()["state"] == "cancelled"
+    with pytest.raises(JobFinished):
+        client.delete(f"/api/v1/jobs/{id}")
+
+
+@pytest.mark.parametrize("path", ["/api/v1/jobs/nobody", "/api/v1/jobs/nobody/events"])
+def test_an_unknown_job_is_a_domain_error(client, path):
+    with pytest.raises(JobNotFound):
+        client.get(path)
+
+
+def events_of(stream):
+    """Names and data of server-sent events, comments left out."""
+    blocks = [block.split("\n") for block in stream.strip().split("\n\n")]
+    fields = [dict(line.split(": ", 1) for line in block) for block in blocks]
+    return [(field["event"], json.loads(field["data"])) for field in fields if "event" in field]
+
+
+def test_a_job_is_watched_to_its_end(client, jobs, database):
+    gate = threading.Event()
+
+    def gated(job, context):
+        assert gate.wait(10)
+        return handler(job, context)
+
+    jobs.register("regenerate", gated)
+    id = put(jobs, database)
+
+    async def scene():
+        watching = asyncio.create_task(client.send("GET", f"/api/v1/jobs/{id}/events"))
+        while not jobs.events._subscribers:
+            await asyncio.sleep(0.001)
+        for step in (jobs.start, gate.set):
+            await asyncio.sleep(0.2)  # what was told before has been read
+            step()
+        return await watching
+
+    response = asyncio.run(scene())
+    assert response.headers["content-type"].startswith("text/event-stream")
+    events = events_of(response.text)
+    assert [name for name, _ in events] == ["queued", "running", "progress", "done"]
+    assert events[2][1]["text"] == "half way"
+    assert events[3][1]["result"] == "/api/v1/designs/1"
+
+
+def test_a_finished_job_tells_its_state_and_ends(client, jobs, database):
+    id = put(jobs, database)
+    jobs.start()
+    asyncio.run(jobs.wait(id, 10))
+    events = events_of(client.get(f"/api/v1/jobs/{id}/events").text)
+    assert [(name, data["state"]) for name, data in events] == [("done", "done")]
+
+
+SERVER = """
+import sys
+from contextlib import asynccontextmanager
+from pathlib import Path
+import uvicorn
+from fastapi import FastAPI
+from app.jobs.routes import router
+from app.jobs.service import Jobs
+from app.jobs.shutdown import streams_end_on_signal
+from app.settings import Settings
+from app.storage.database import Database
+from app.workers.inline import Inline
+
+@asynccontextmanager
+async def lifespan(app):
+    database = Database(sys.argv[1])
+    app.state.jobs = jobs = Jobs(database, Inline(), Settings(), lambda error: {})
+    with streams_end_on_signal(jobs.events):
+        yield
+    jobs.stop()
+    database.close()
+    print("stopped in order", flush=True)
+
+app = FastAPI(lifespan=lifespan)
+app.include_router(router)
+uvicorn.run(app, fd=int(sys.argv[2]), log_level="warning")
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_watcher_does_not_keep_the_server_from_stopping(jobs, database, url, number):
+    id = put(jobs, database)
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        port = listener.getsockname()[1]
+        command = [sys.executable, "-c", SERVER, url, str(listener.fileno())]
+        server = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, pass_fds=[listener.fileno()],
+            cwd=Path(__file__).parents[2],
+        )  # fmt: skip
+        with server, httpx.stream("GET", f"http://127.0.0.1:{port}/api/v1/jobs/{id}/events") as response:
+            lines = response.iter_lines()
+            assert next(lines) == "event: queued"
+            server.send_signal(number)
+            assert list(lines)[-1] == ""
+            out, _ = server.communicate(timeout=10)
+    assert b"stopped in order" in out
