@@ -154,18 +154,21 @@ class Writer:
         return self._physics(name, [self.write(argument) for argument in node.args])
 
     def _physics(self, name: str, arguments: list[Written]) -> Written:
+        """A physics function: by the LaTeX it carries, written out, or by its name if it cannot be."""
         function = self.scope.get(name)
         latex = getattr(function, "latex", None)
         if latex:
             return latex.format(*(text for text, _ in arguments)), PRODUCT
-        body = _one_expression(function) if callable(function) else None
-        if function is None or body is None:
-            listed = ", ".join(text for text, _ in arguments)
-            words = name.replace("_", r"\ ")
-            return rf"\operatorname{{{words}}}\left({listed}\right)", ATOM
-        parameters = [argument.arg for argument in syntax(function).args.args]
-        names = dict(zip(parameters, arguments, strict=False))
-        return Writer(function.__globals__, {}, names, self.times).write(body)
+        return (callable(function) and self._written_out(function, arguments)) or _named(name, arguments)
+
+    def _written_out(self, function: Callable[..., Any], arguments: list[Written]) -> Written | None:
+        """What a function returns, if returning it is all it does and it is a formula."""
+        try:
+            body, parameters = returned(function), syntax(function).args.args
+            names = dict(zip((p.arg for p in parameters), arguments, strict=True))
+            return Writer(function.__globals__, {}, names, self.times).write(body)
+        except (TypeError, ValueError, OSError):
+            return None
 
     def _constant(self, name: str) -> Written:
         value = self.scope.get(name)
@@ -174,9 +177,6 @@ class Writer:
         return rf"\mathrm{{{name}}}", ATOM
 
 
-def _one_expression(function: Callable[..., Any]) -> ast.expr | None:
-    """What a function returns, if returning it is all it does."""
-    try:
-        return returned(function)
-    except (TypeError, OSError):
-        return None
+def _named(name: str, arguments: list[Written]) -> Written:
+    words = {"minimum": "min", "maximum": "max"}.get(name) or name.strip("_").replace("_", r"\ ")
+    return rf"\operatorname{{{words}}}\left({', '.join(text for text, _ in arguments)}\right)", ATOM

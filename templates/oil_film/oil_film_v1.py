@@ -52,7 +52,7 @@ class OilFilm(Template):
         "bearing_width": "18 mm",
         "speed": "5000 rpm",
         "oil_inlet_temperature": "80 degC",
-        "oil_outlet_temperature": "87.8 degC",
+        "oil_outlet_temperature": "87.762 degC",
     }
 
     F: Array = given("N", "radial load", ge=0, also=("bearing load", "load"))

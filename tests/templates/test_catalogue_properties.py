@@ -1,0 +1,307 @@
+"""Property tests over the whole catalogue: a template or model is covered by its file being there."""
+
+import json
+import re
+from itertools import chain
+from pathlib import Path
+from xml.etree import ElementTree
+
+import jsonschema_rs
+import numpy as np
+import pytest
+
+import templates
+from cad.catalogue import models
+from templates.core import dimensions, golden, report
+from templates.core.catalogue import digest, find
+from templates.core.declare import Choice, Curve, Derived, Given
+from templates.core.errors import InvalidInputs
+from templates.core.evaluate import evaluate
+from templates.core.schema import describe, inputs_schema
+from templates.core.template import Template
+
+GOLDEN = Path(__file__).parents[1] / "golden"
+BUILT_IN = find([Path(templates.__file__).parent], Template)
+EVERY = [pytest.param(cls, id=f"{cls.id}-{cls.version}") for cls in chain(BUILT_IN, models())]
+every_template = pytest.mark.parametrize("cls", EVERY)
+
+SNAKE_CASE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+
+
+def typed(cls, si):
+    """SI values by API name, as a user types them."""
+    return {name: as_typed(cls.inputs[name], value) for name, value in si.items()}
+
+
+def as_typed(declared, value):
+    if isinstance(declared, Choice):
+        return value
+    shown = declared.meaning.scale.from_si(np.asarray(value, dtype=float))
+    return {"value": shown.tolist(), "unit": declared.meaning.unit}
+
+
+def example_si(cls):
+    return cls.from_quantities(cls.example).inputs_si()
+
+
+class TestDeclarations:
+    @every_template
+    def test_property_names_are_snake_case(self, cls):
+        names = [cls.id, *cls.inputs, *cls.formulas]
+        assert all(SNAKE_CASE.fullmatch(name) for name in names), names
+
+    @every_template
+    def test_property_example_covers_required_inputs(self, cls):
+        required = {name for name, declared in cls.inputs.items() if declared.required}
+        assert required <= cls.example.keys() <= cls.inputs.keys()
+
+    @every_template
+    def test_property_defaults_lie_in_their_domain(self, cls):
+        declared = [d for d in cls.inputs.values() if isinstance(d, Given) and d.default]
+        assert all(np.all(d.meaning.admits(d.default.si)) for d in declared)
+
+    @every_template
+    def test_property_formulas_use_what_is_declared_without_loops(self, cls):
+        for formula in cls.formulas.values():
+            assert formula.uses, f"{formula.name} is a constant, no formula"
+            beneath = [cls.ancestors(used) for used in formula.uses]
+            assert all(formula.attribute not in ancestors for ancestors in beneath), formula.name
+
+    @every_template
+    def test_property_dimensions_of_every_formula(self, cls):
+        assert dimensions.faults(cls) == []
+
+
+class TestSchema:
+    @every_template
+    def test_property_example_is_valid(self, cls):
+        validator = jsonschema_rs.validator_for(inputs_schema(cls))
+        assert validator.is_valid(dict(cls.example)), list(validator.iter_errors(dict(cls.example)))
+        assert not validator.is_valid({**cls.example, "no_such_input": "1 mm"})
+
+    @every_template
+    def test_property_echo_is_accepted_again(self, cls):
+        """What `evaluate` says it used, sent again, is valid and gives the same."""
+        first = evaluate(cls, cls.example)
+        echoed = {
+            name: echo.value if echo.unit is None else {"value": echo.value, "unit": echo.unit, **echo.extra}
+            for name, echo in first.inputs.items()
+        }
+        assert jsonschema_rs.is_valid(inputs_schema(cls), echoed)
+        second = evaluate(cls, json.loads(json.dumps(echoed)))
+        for name, answer in first.outputs.items():
+            assert second.outputs[name].value == pytest.approx(answer.value, rel=1e-12, abs=0), name
+
+    @every_template
+    def test_property_description_is_json(self, cls):
+        page = describe(cls)
+        assert json.loads(json.dumps(page, allow_nan=False)) == page
+        assert [formula["name"] for formula in page["formulas"]] == list(cls.formulas)
+        assert page["title"]
+        assert jsonschema_rs.meta.is_valid(page["inputs"])
+        assert jsonschema_rs.meta.is_valid(page["outputs"])
+
+
+class TestReport:
+    @every_template
+    def test_property_every_row_renders(self, cls):
+        template = evaluate(cls, cls.example).template
+        rows = list(report.rows(template))
+        assert [row.name for row in rows] == list(cls.formulas)
+        for row in rows:
+            assert row.expression
+            assert row.result
+            assert balanced(row.latex), row.latex
+            assert ElementTree.fromstring(row.mathml).tag.endswith("math")
+
+    @every_template
+    def test_property_symbols_are_distinct(self, cls):
+        page = describe(cls)
+        used = [p["symbol"] for part in ("inputs", "outputs") for p in page[part]["properties"].values()
+                if "symbol" in p]  # fmt: skip
+        assert len(used) == len(set(used)), sorted(used)
+
+
+def balanced(latex):
+    """Whether braces, and \\left with \\right, come in pairs."""
+    depth = 0
+    for brace in re.findall(r"(?<!\\)[{}]", latex):
+        depth += 1 if brace == "{" else -1
+        if depth < 0:
+            return False
+    return depth == 0 and latex.count(r"\left") == latex.count(r"\right")
+
+
+class TestLaziness:
+    @every_template
+    def test_property_one_output_computes_its_ancestors_only(self, cls):
+        for formula in cls.formulas.values():
+            template = cls.from_quantities(cls.example)
+            before = set(vars(template))
+            getattr(template, formula.attribute)
+            computed = set(vars(template)) - before
+            assert formula.attribute in computed | before
+            assert computed <= with_assumed(cls, formula.attribute), formula.name
+
+
+def with_assumed(cls, attribute):
+    """The ancestors, and what their published ranges rest on."""
+    beneath = cls.ancestors(attribute)
+    assumed = chain.from_iterable(
+        cls.declarations[n].meaning.assumes for n in beneath if n in cls.declarations
+    )
+    return beneath.union(*(cls.ancestors(name) for name in assumed))
+
+
+class TestGolden:
+    @every_template
+    def test_golden_results_are_unchanged(self, cls):
+        path = golden.golden_file(cls, GOLDEN)
+        assert path.exists(), f"not frozen; run: crankwright freeze {cls.id} {cls.version}"
+        record = json.loads(path.read_text(encoding="utf-8"))
+        assert record["digest"] == digest(cls), (
+            f"the code of {cls.id} {cls.version} was edited; a change to a released version is a new version"
+        )
+        assert len(record["cases"]) > len(cls.inputs)
+        for case in record["cases"]:
+            check_case(cls, case, record["precision"])
+
+
+def check_case(cls, case, precision):
+    if "refused" in case:
+        with pytest.raises(InvalidInputs) as refusal:
+            golden.results(cls, case["inputs"])
+        assert sorted(fault.code for fault in refusal.value.faults) == case["refused"]
+        return
+    results = golden.results(cls, case["inputs"])
+    assert results.keys() == case["outputs"].keys()
+    for name, value in case["outputs"].items():
+        assert results[name] == pytest.approx(value, rel=precision, abs=0), (name, case["inputs"])
+
+
+class TestArrays:
+    """One point and many are the same calculation; a point that means nothing harms no other."""
+
+    @every_template
+    def test_property_array_is_pointwise(self, cls):
+        inputs = around_example(cls, np.random.default_rng(1), 9)
+        assert_pointwise(cls, inputs, range(9))
+
+    @every_template
+    def test_property_bad_point_harms_no_neighbour(self, cls):
+        good = around_example(cls, np.random.default_rng(2), 9)
+        clean = evaluate(cls, typed(cls, good)).outputs
+        for name in bounded_givens(cls):
+            bad = {**good, name: with_bad_point(cls.inputs[name], good[name], 4)}
+            outputs = evaluate(cls, typed(cls, bad)).outputs
+            hit = [output for output in outputs if cls.inputs[name].attribute in ancestors_of(cls, output)]
+            assert all(np.isnan(outputs[output].value[4]) and outputs[output].reasons[4] for output in hit)
+            for output, answer in outputs.items():
+                others = np.delete(np.broadcast_to(answer.value, (9,)), 4)
+                expected = np.delete(np.broadcast_to(clean[output].value, (9,)), 4)
+                np.testing.assert_array_equal(others, expected, err_msg=f"{output} with bad {name}")
+
+    @every_template
+    def test_property_extremes_are_finite_or_refused(self, cls):
+        """10⁴ points far outside of common sense: each a finite number, or none with its reason."""
+        inputs = extremes(cls, np.random.default_rng(3), 10_000)
+        for name, answer in evaluate(cls, typed(cls, inputs)).outputs.items():
+            value = np.atleast_1d(answer.value)
+            assert not np.isinf(value).any(), name
+            missing = np.flatnonzero(np.isnan(value))
+            assert all(answer.reasons[i] for i in missing), name
+            assert answer.reasons is None or all(r is None for r in np.delete(answer.reasons, missing)), name
+
+    @every_template
+    def test_property_extremes_agree_with_single_points(self, cls):
+        inputs = extremes(cls, np.random.default_rng(4), 400)
+        assert_pointwise(cls, inputs, range(400))
+
+
+def bounded_givens(cls):
+    plain = (d for d in cls.inputs.values() if type(d) is Given and not d.meaning.integer)
+    return [d.name for d in plain if d.meaning.domain_si is not None]
+
+
+def with_bad_point(declared, values, place):
+    bounds = declared.meaning.domain_si
+    below = next((limit for limit in (bounds.gt, bounds.ge) if limit is not None), None)
+    bad = below - 1 if below is not None else next(x for x in (bounds.lt, bounds.le) if x is not None) + 1
+    return np.where(np.arange(len(values)) == place, bad, values)
+
+
+def ancestors_of(cls, output):
+    return cls.ancestors(cls.formulas[output].attribute)
+
+
+def around_example(cls, rng, size):
+    """Arrays within ±2 % of the example for all inputs but the derived ones, which follow."""
+    return {name: spread(cls.inputs[name], value, rng, size) for name, value in starting(cls).items()}
+
+
+def starting(cls):
+    return {
+        name: value for name, value in example_si(cls).items() if not isinstance(cls.inputs[name], Derived)
+    }
+
+
+def spread(declared, value, rng, size):
+    if isinstance(declared, (Choice, Curve)) or declared.meaning.integer:
+        return value
+    return value * rng.uniform(0.98, 1.02, size)
+
+
+def extremes(cls, rng, size):
+    return {name: extreme(cls.inputs[name], value, rng, size) for name, value in starting(cls).items()}
+
+
+def extreme(declared, value, rng, size):
+    """Near the example, decades away, at and beside the bounds, zero, negative, tiny and huge."""
+    if isinstance(declared, (Choice, Curve)):
+        return value
+    bounds = declared.meaning.domain_si
+    limits = [x for x in (vars(bounds).values() if bounds else ()) if x is not None]
+    edges = [e for x in limits for e in (x, np.nextafter(x, np.inf), np.nextafter(x, -np.inf))]
+    special = rng.choice([*edges, 0.0, -value, 1e-300, 1e300, 1e-9, 1e9], size)
+    near = value * rng.uniform(0.9, 1.1, size)
+    decades = value * 10 ** rng.uniform(-6, 6, size)
+    drawn = np.choose(rng.choice(3, size, p=[0.75, 0.2, 0.05]), [near, decades, special])
+    return np.round(drawn) if declared.meaning.integer else drawn
+
+
+def assert_pointwise(cls, inputs, points):
+    """Each point of an array evaluation against the evaluation of that point alone."""
+    shown = typed(cls, inputs)
+    together = evaluate(cls, shown).outputs
+    compared = 0
+    for i in points:
+        alone = evaluated_alone(cls, {name: point(value, i) for name, value in shown.items()})
+        at = {
+            name: np.atleast_1d(np.broadcast_to(a.value, (len(points),)))[i] for name, a in together.items()
+        }
+        if alone is None:
+            assert any(np.isnan(value) for value in at.values()), i
+        else:
+            compared += 1
+            for name, answer in alone.items():
+                assert at[name] == pytest.approx(answer.value, rel=1e-9, abs=0), (name, i)
+    assert compared > 0
+
+
+def point(value, i):
+    is_array = isinstance(value, dict) and isinstance(value["value"], list)
+    return {**value, "value": value["value"][i]} if is_array else value
+
+
+def evaluated_alone(cls, raw):
+    """The outputs for single values, or None where they are refused by name."""
+    try:
+        outputs = evaluate(cls, raw).outputs
+    except InvalidInputs as refusal:
+        faults = refusal.faults
+    else:
+        assert np.all(np.isfinite([answer.value for answer in outputs.values()]))
+        return outputs
+    assert faults
+    assert all(fault.name in {*cls.inputs, *cls.formulas} and fault.detail for fault in faults)
+    return None
