@@ -25,8 +25,11 @@ class JobCrashed(WorkerError):
         self.exit_code = exit_code
 
     def __str__(self) -> str:
-        if self.exit_code is not None and self.exit_code < 0:
-            return f"The process was killed by {signal.Signals(-self.exit_code).name}."
+        if self.exit_code is None:
+            return "The process disappeared."
+        if self.exit_code < 0:
+            number = -self.exit_code
+            return f"The process was killed by signal {number} ({signal.strsignal(number)})."
         return f"The process ended early with exit code {self.exit_code}."
 
 

@@ -200,6 +200,15 @@ def test_closing_commits_what_waits(url, tmp_path):
     reopened.close()
 
 
+def test_the_writer_syncs_every_commit_and_keeps_foreign_keys(database):
+    def pragmas(session):
+        connection = session.connection()
+        names = ("journal_mode", "synchronous", "foreign_keys")
+        return [connection.exec_driver_sql(f"PRAGMA {name}").scalar() for name in names]
+
+    assert database.write(pragmas) == ["wal", 2, 1]  # 2 is FULL: a power cut cannot be tried here
+
+
 def test_identities_grow_with_time():
     identities = [new_id() for _ in range(3)]
     assert len({len(identity) for identity in identities}) == 1

@@ -266,7 +266,7 @@ def test_a_crash_is_tried_again_and_counted(make, database, failures):
     job = ended(jobs, put(jobs, database))
     assert tries == [(1, 0), (2, 1)]
     assert (job.state, job.crashes) == ("failed", MAX_CRASHES)
-    assert "SIGSEGV" in job.problem["detail"]
+    assert "Segmentation fault" in job.problem["detail"]
     assert builds(database) == ["failure of a"]
 
 

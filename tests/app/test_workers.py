@@ -113,12 +113,12 @@ def test_a_memory_bomb_is_refused(worker):
 
 
 @pytest.mark.parametrize(
-    ("function", "signal_name"), [(victims.segfault, "SIGSEGV"), (victims.abort, "SIGABRT")]
+    ("function", "number"), [(victims.segfault, signal.SIGSEGV), (victims.abort, signal.SIGABRT)]
 )
-def test_a_crash_names_its_signal(worker, function, signal_name):
-    with pytest.raises(JobCrashed, match=signal_name) as caught:
+def test_a_crash_names_its_signal(worker, function, number):
+    with pytest.raises(JobCrashed, match=signal.strsignal(number)) as caught:
         worker.run(function)
-    assert caught.value.exit_code == -signal.Signals[signal_name]
+    assert caught.value.exit_code == -number
 
 
 def test_an_early_exit_is_a_crash(worker):
@@ -165,6 +165,18 @@ def test_a_killed_forkserver_is_replaced(worker):
     worker._forkserver._process.wait()
     assert worker.run(victims.double, 2) == 4
     assert worker.run(victims.double, 3) == 6
+
+
+def test_jobs_die_with_their_forkserver(tmp_path):
+    worker, file = LocalProcesses(preload=()), tmp_path / "pid"
+    with ThreadPoolExecutor(1) as pool:
+        future = pool.submit(worker.run, victims.tell_and_sleep, file)
+        assert eventually(lambda: file.exists() and file.read_text())
+        worker._forkserver._process.kill()
+        with pytest.raises(JobCrashed, match="disappeared"):
+            future.result(5)
+    assert eventually(lambda: not alive(int(file.read_text())))
+    worker.close()
 
 
 def test_a_module_that_is_missing_is_imported_by_no_one():
