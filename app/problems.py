@@ -105,6 +105,8 @@ def _validation(error: RequestValidationError) -> dict[str, Any]:
 
 def _located(found: Mapping[str, Any]) -> dict[str, Any]:
     place = [str(part) for part in found["loc"]]
+    if found["type"] == "json_invalid":
+        place = ["body"]
     inside = place[1:] if place[0] in ("body", "query", "path", "header") else place
     reason = found.get("ctx", {}).get("error", "") if found["type"] == "json_invalid" else ""
     detail = f"{found['msg']}: {reason}" if reason else found["msg"]

@@ -1,0 +1,5 @@
+"""`python -m app …` is `crankwright …`."""
+
+from app.cli import main
+
+main()

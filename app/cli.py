@@ -1,0 +1,163 @@
+"""The command line: `crankwright serve | demo | evaluate | template list | template show | freeze`."""
+
+from __future__ import annotations
+
+import ipaddress
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+import uvicorn
+
+from app.calculations import rendering
+from app.demo import demonstrate
+from app.main import BUILT_IN, create_app
+from app.settings import Settings
+from app.storage.errors import DataFolderInUse
+from app.storage.folder import DataFolder
+from templates.core.catalogue import Catalogue, find
+from templates.core.errors import InvalidInputs, UnknownTemplate
+from templates.core.evaluate import evaluate as evaluate_template
+from templates.core.golden import freeze as freeze_template
+from templates.core.mathml import unit_symbol
+from templates.core.schema import describe
+from templates.core.template import Template
+
+GOLDEN = Path("tests/golden")
+
+
+@click.group()
+@click.version_option(package_name="crankwright")
+def main() -> None:
+    """Engine-bearing calculations that drive geometry."""
+
+
+@main.command()
+@click.option("--host", default="127.0.0.1", show_default=True)
+@click.option("--port", default=8000, show_default=True, type=click.IntRange(0, 65535))
+@click.option("--data", type=click.Path(path_type=Path), default=None, help="folder of designs and artifacts")
+def serve(host: str, port: int, data: Path | None) -> None:
+    """Serve the REST interface; its documentation is at /docs."""
+    settings = Settings(data=data, host=host, port=port) if data else Settings(host=host, port=port)
+    try:
+        DataFolder(settings.data).release()
+    except DataFolderInUse as error:
+        raise click.ClickException(str(error)) from None
+    if not _is_loopback(host):
+        click.secho(
+            f"WARNING: listening on {host} without authentication: whoever reaches this address can read and "
+            "change every design. Use 127.0.0.1, or put a proxy with authentication in front.",
+            fg="yellow",
+            err=True,
+        )
+    click.echo(f"Crankwright at http://{host}:{port}/docs, data in {settings.data.absolute()}", err=True)
+    uvicorn.run(create_app(settings), host=host, port=port, log_level="warning")
+
+
+def _is_loopback(host: str) -> bool:
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+@main.command()
+@click.option("--data", type=click.Path(path_type=Path), default=Path("crankwright-demo"), show_default=True)
+def demo(data: Path) -> None:
+    """The paper's demonstration: SCALE and D drive a ball bearing from 50 mm to 48 mm."""
+    demonstrate(data)
+
+
+@main.command()
+@click.argument("template")
+@click.argument("inputs", nargs=-1, metavar="NAME=QUANTITY…")
+@click.option("--version", type=int, default=None, help="the latest, if not given")
+@click.option("--output", "outputs", multiple=True, help="compute this only (repeatable)")
+@click.option("--json", "as_json", is_flag=True, help="print the whole answer as JSON")
+def evaluate(
+    template: str, inputs: tuple[str, ...], version: int | None, outputs: tuple[str, ...], as_json: bool
+) -> None:
+    """Evaluate TEMPLATE, for example: crankwright evaluate oil_film radial_load="25 kN" …"""
+    cls = _find(template, version)
+    raw = dict(_pair(text) for text in inputs)
+    try:
+        made = evaluate_template(cls, raw, outputs=outputs or None)
+    except InvalidInputs as error:
+        lines = "\n".join(f"  {fault.name}: {fault.detail}" for fault in error.faults)
+        raise click.ClickException(f"{cls.id} version {cls.version} refuses:\n{lines}") from None
+    if as_json:
+        click.echo(json.dumps(rendering.evaluation(made), indent=2, ensure_ascii=False))
+        return
+    for name, answer in made.outputs.items():
+        click.echo(f"{name:32} {answer.value:>14.6g} {unit_symbol(answer.unit or '1')}")
+    for warning in made.warnings:
+        click.secho(f"warning: {warning.name}: {warning.detail}", fg="yellow", err=True)
+
+
+def _pair(text: str) -> tuple[str, Any]:
+    name, sign, value = text.partition("=")
+    if not sign:
+        raise click.BadParameter(f"{text!r} is no NAME=QUANTITY, such as radial_load='25 kN'")
+    return name, value
+
+
+@main.group()
+def template() -> None:
+    """What templates there are."""
+
+
+@template.command("list")
+def list_templates() -> None:
+    """Every version of every template."""
+    for cls in _catalogue():
+        state = f"withdrawn: {cls.withdrawn}" if cls.withdrawn else "released"
+        click.echo(f"{cls.id} {cls.version}  ({state})  {cls.title()}")
+
+
+@template.command("show")
+@click.argument("id")
+@click.option("--version", type=int, default=None, help="the latest, if not given")
+def show_template(id: str, version: int | None) -> None:
+    """Inputs, outputs, limits and errata of one version."""
+    cls = _find(id, version)
+    told = describe(cls)
+    click.echo(f"{cls.id} version {cls.version}, digest {told['digest'][:12]}\n{cls.summary()}\n\nInputs")
+    for name, schema in told["inputs"]["properties"].items():
+        default = f"  [{_shown(schema['default'])}]" if "default" in schema else ""
+        click.echo(f"  {name:32} {schema.get('unit', ''):10} {schema['title']}{default}")
+    click.echo("\nOutputs")
+    for name, schema in told["outputs"]["properties"].items():
+        click.echo(f"  {name:32} {schema['unit']:10} {schema['title']}")
+    for title in ("limits", "errata", "references"):
+        lines = (entry["text"] if isinstance(entry, dict) else entry for entry in told[title])
+        click.echo(f"\n{title.capitalize()}\n" + "\n".join(f"  {line}" for line in lines))
+
+
+def _shown(default: Any) -> str:
+    return f"{default['value']} {default['unit']}" if isinstance(default, dict) else str(default)
+
+
+@main.command()
+@click.argument("id")
+@click.argument("version", type=int)
+@click.option("--folder", type=click.Path(path_type=Path), default=GOLDEN, show_default=True)
+def freeze(id: str, version: int, folder: Path) -> None:
+    """Write the golden record of a version that is about to be released; never over an existing one."""
+    try:
+        click.echo(f"written: {freeze_template(_find(id, version), folder)}")
+    except FileExistsError as error:
+        raise click.ClickException(f"{error}: a released version is not changed; make a new one") from None
+
+
+def _catalogue() -> Catalogue[Template]:
+    return find((*BUILT_IN, *Settings().template_folders), Template)
+
+
+def _find(id: str, version: int | None) -> type[Template]:
+    try:
+        return _catalogue().latest(id) if version is None else _catalogue().get(id, version)
+    except UnknownTemplate as error:
+        raise click.ClickException(str(error)) from None

@@ -1,0 +1,131 @@
+"""The paper's demonstration, through the real interface: what Mathcad and Creo do together there.
+
+A ball bearing of 50 mm; SCALE = 1 as a worksheet input; D = SCALE · 48 mm as the worksheet's bearing
+diameter; a relation ties the model's inner diameter to it; regenerate: the bearing measures 48 mm.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+
+from app.client import Client, Design
+from app.designs.schemas import PAPER
+
+PATIENCE = 30.0  # for the service to start [s]
+HEADER = f"{'':28}{'before':>14}{'after':>14}"
+
+
+def demonstrate(data: Path) -> None:
+    """Run the demonstration on a service of its own; its data and STEP files stay in the folder `data`."""
+    with service(data) as client:
+        before = _created(client)
+        after = _changed(client, before, "tie inner_diameter to the worksheet", MAPPED)
+        _compare(client, before, after)
+        step = _saved(client, after, data)
+        scaled = _changed(client, after, "SCALE = 1.02", {"parameters": {"scale": "1.02"}})
+        loaded = _changed(client, scaled, "radial load = 30 kN", LOADED)
+        _report_rebuild(client, after, scaled)
+        _report_rebuild(client, scaled, loaded)
+        click.echo(f"\nSTEP file: {step.absolute()}")
+
+
+MAPPED = {
+    "models": {"model": {"parameters": {"inner_diameter": "= film.bearing_diameter"}}},
+    "note": "the relation of the paper",
+}
+LOADED = {"steps": {"film": {"inputs": {"radial_load": "30 kN"}}}, "note": "only the load"}
+
+
+@contextmanager
+def service(data: Path) -> Iterator[Client]:
+    """A service in a process of its own on a free port, ended when done."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    click.echo(f"starting the service on port {port}, data in {data.absolute()} …")
+    command = [sys.executable, "-m", "app", "serve", "--port", str(port), "--data", str(data)]
+    process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    try:
+        with Client(f"http://127.0.0.1:{port}") as client:
+            _await(client, process)
+            yield client
+    finally:
+        process.send_signal(signal.SIGTERM)
+        process.wait(PATIENCE)
+
+
+def _await(client: Client, process: subprocess.Popen[bytes]) -> None:
+    end = time.monotonic() + PATIENCE
+    while not client.healthy():
+        if process.poll() is not None or time.monotonic() > end:
+            hint = "run `crankwright serve` to see why"
+            raise click.ClickException(f"the service did not start (exit code {process.poll()}); {hint}")
+        time.sleep(0.1)
+
+
+def _created(client: Client) -> Design:
+    document: dict[str, Any] = json.loads(json.dumps(PAPER))
+    document["model"]["parameters"] = {"inner_diameter": "50 mm"}
+    click.echo("creating the design: ball bearing of 50 mm, SCALE = 1, D = SCALE * 48 mm")
+    return _checked(client.create(document, on_progress=_progress))
+
+
+def _changed(client: Client, design: Design, what: str, patch: dict[str, Any]) -> Design:
+    click.echo(f"changing: {what}")
+    return _checked(client.change(design, patch, on_progress=_progress))
+
+
+def _checked(design: Design) -> Design:
+    if design.state != "current":
+        raise click.ClickException(f"revision {design.revision} is {design.state}: {design.problem}")
+    return design
+
+
+def _progress(fraction: float, text: str) -> None:
+    click.echo(f"  {fraction:4.0%}  {text}")
+
+
+def _compare(client: Client, before: Design, after: Design) -> None:
+    """Print the worksheet and the dimensions of two revisions, as measured on their STEP files."""
+    old, new = (_facts(client, design) for design in (before, after))
+    click.echo(f"\n{HEADER}")
+    for name, (value, unit) in new.items():
+        mark = "  ←" if old[name] != new[name] else ""
+        click.echo(f"{name:28}{old[name][0]:>14.6g}{value:>14.6g} {unit}{mark}")
+    click.echo("(dimensions as measured on the re-imported STEP files)\n")
+
+
+def _facts(client: Client, design: Design) -> dict[str, tuple[float, str]]:
+    revision = client.revision(design.id, design.revision)
+    outputs = revision["steps"]["film"]["outputs"]
+    dimensions = client.build(revision["models"]["model"]["build"])["measurements"]["dimensions"]
+    shown = {"minimum_film_thickness": outputs["minimum_film_thickness"], **dimensions}
+    return {name: (quantity["value"], quantity["unit"]) for name, quantity in shown.items()}
+
+
+def _saved(client: Client, design: Design, data: Path) -> Path:
+    path = data / f"{design.id}-revision-{design.revision}.step"
+    temporary = path.with_suffix(".part")
+    temporary.write_bytes(client.model(design.id, "step"))
+    os.replace(temporary, path)
+    return path
+
+
+def _report_rebuild(client: Client, old: Design, new: Design) -> None:
+    builds = [client.revision(d.id, d.revision)["models"]["model"]["build"] for d in (old, new)]
+    diameter = client.build(builds[1])["measurements"]["dimensions"]["inner_diameter"]
+    same = "the same solid" if builds[0] == builds[1] else "a new solid"
+    measured = f"{diameter['value']:.6g} {diameter['unit']}"
+    click.echo(f"revision {old.revision} → {new.revision}: {same}, inner diameter {measured}")
