@@ -30,7 +30,16 @@ class Fault:
 
 
 class TemplateError(Exception):
-    """Anything that templates refuse."""
+    """Anything that templates refuse; comes whole out of another process."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _remade, (type(self), self.args, vars(self))
+
+
+def _remade(kind: type[TemplateError], args: tuple[Any, ...], state: dict[str, Any]) -> TemplateError:
+    error = kind.__new__(kind, *args)
+    vars(error).update(state)
+    return error
 
 
 class InvalidInputs(TemplateError):
@@ -39,9 +48,6 @@ class InvalidInputs(TemplateError):
     def __init__(self, faults: Iterable[Fault]) -> None:
         self.faults = tuple(faults)
         super().__init__("; ".join(f"{f.name}: {f.detail}" for f in self.faults))
-
-    def __reduce__(self) -> tuple[type[InvalidInputs], tuple[tuple[Fault, ...]]]:
-        return type(self), (self.faults,)
 
 
 class UnknownTemplate(TemplateError):

@@ -143,7 +143,7 @@ class Writer:
         raise TypeError(f"{ast.unparse(node)!r} has no place in a formula")
 
     def _call(self, node: ast.Call) -> Written:
-        if node.keywords:
+        if any(keyword.arg != "axis" for keyword in node.keywords):
             raise TypeError(f"{ast.unparse(node)!r}: in a formula, arguments are given by position")
         name = node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
         if name in ("sqrt", "abs"):

@@ -21,8 +21,8 @@ from templates.core.ledger import Notice
 from templates.core.quantity import Typed, read
 from templates.core.template import Template
 
-SAMPLES = 1025  # of the scan, and again of each interval in which something happens; cheap as array calls
-INTERVALS = 20  # that are looked at again
+SAMPLES = 1025  # of the scan; cheap as one array call
+INTERVALS, FINER, ROUNDS = 20, 65, 5  # where something happens: so many intervals, in so many parts, so often
 JUMP = 1e-6  # relative residual at a crossing beyond which it is a jump, not a solution
 
 
@@ -145,19 +145,21 @@ def _faulty_inputs(
     ends: tuple[float, float],
 ) -> list[Fault]:
     """What is wrong with the other inputs, seen with the unknown in the middle of its bounds."""
-    probe: dict[str, Any] = {}
+    curves = [name for name, d in cls.inputs.items() if isinstance(d, Curve)]
+    arrays = [name for name, value in raw.items() if _is_array(value) and name not in curves]
+    faults = [Fault(f"inputs.{n}", "not_a_number", "solve takes single values, not arrays") for n in arrays]
+    probe = {name: value for name, value in raw.items() if name not in arrays}
     if declared and np.all(np.isfinite(ends)):
-        probe = {unknown: _typed(declared, np.array(ends))}
+        probe[unknown] = _typed(declared, np.array(ends))
     try:
-        cls.from_quantities({**raw, **probe})
+        cls.from_quantities(probe)
     except InvalidInputs as error:
-        return [fault.within("inputs") for fault in error.faults if fault.name != unknown]
-    arrays = [name for name, value in raw.items() if isinstance(value, list) or _has_array(value)]
-    return [Fault(f"inputs.{n}", "not_a_number", "solve takes single values, not arrays") for n in arrays]
+        faults += [fault.within("inputs") for fault in error.faults if fault.name not in (unknown, *arrays)]
+    return faults
 
 
-def _has_array(value: Any) -> bool:
-    return isinstance(value, Mapping) and isinstance(value.get("value"), list)
+def _is_array(value: Any) -> bool:
+    return isinstance(value, list) or (isinstance(value, Mapping) and isinstance(value.get("value"), list))
 
 
 def _typed(declared: Input, si: NDArray[np.float64]) -> Typed:
@@ -200,13 +202,12 @@ class _Curve:
         So a jump is told from a crossing, and the end of the reachable range is found.
         """
         grid = _grid(low, high)
-        residual = self.residual(grid)
-        edge = np.isnan(residual[:-1]) != np.isnan(residual[1:])
-        found = np.flatnonzero(edge | _crosses(residual))[:INTERVALS]
-        if not found.size:
-            return grid, residual
-        fine = (np.linspace(grid[i], grid[i + 1], SAMPLES) for i in found)
-        grid = np.unique(np.concatenate([grid, *fine]))
+        for _ in range(ROUNDS):
+            residual = self.residual(grid)
+            edge = np.isnan(residual[:-1]) != np.isnan(residual[1:])
+            found = np.flatnonzero(edge | _crosses(residual))[:INTERVALS]
+            fine = (np.linspace(grid[i], grid[i + 1], FINER) for i in found)
+            grid = np.unique(np.concatenate([grid, *fine]))
         return grid, self.residual(grid)
 
     def roots(self, grid: NDArray[np.float64], residual: NDArray[np.float64]) -> list[float]:

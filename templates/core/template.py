@@ -85,6 +85,9 @@ class Template:
     def __setattr__(self, name: str, value: object) -> NoReturn:
         raise AttributeError(f"a {type(self).__name__} is a record of one calculation; make a new one")
 
+    def __delattr__(self, name: str) -> NoReturn:
+        self.__setattr__(name, None)
+
     @classmethod
     def _own_words(cls) -> set[str]:
         """The attributes of the bases that are part of the language."""

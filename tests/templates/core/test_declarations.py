@@ -1,0 +1,386 @@
+"""The language of templates, on small ones made here."""
+
+import json
+
+import numpy as np
+import pytest
+
+from templates.core import dimensions
+from templates.core.errors import InvalidInputs
+from templates.core.evaluate import evaluate
+from templates.core.report import rows
+from templates.core.schema import describe, inputs_schema
+from templates.core.template import Template, Truth, choice, curve, derived, formula, given, require, units
+
+
+@units("m", returns="m", latex=r"f\left({0}\right)")
+def rounded_up(x):
+    return np.ceil(x / 1e-3) * 1e-3
+
+
+def doubled(x):
+    return 2 * x
+
+
+def branched(x):
+    if np.any(x > 0):
+        return x
+    return -x
+
+
+class Shaft(Template):
+    """A shaft. It turns.
+
+    Limits
+    ------
+    For shafts only.
+
+    Errata
+    ------
+    The first is said in one line.
+    The second takes
+    two lines.
+
+    References
+    ----------
+    Nobody 1900.
+    """
+
+    example = {"bore": "50 mm", "load": {"value": [1, 3, 2], "unit": "kN"}}
+
+    d = given("mm", "bore", gt=1, le=100, also=("inner diameter",))
+    n = given("1", "balls", default=8, integer=True, ge=3)
+    m = given("kg", "rod mass", default="1 kg", published=(0.5, 2), source="Nobody 1900")
+    load = curve("N", "load")
+    shape = choice("round", "square_cut", words="web shape", default="round")
+
+    @derived("mm", "outer diameter", gt=0)
+    def D(self):
+        return 2 * self.d
+
+    @require("outer_diameter", "bore", remedy="make the outside larger")
+    def has_wall(self) -> Truth:
+        """The outside is larger than the bore."""
+        return self.D > self.d
+
+    @formula("mm", "wall", symbol="t")
+    def t(self):
+        return (self.D - self.d) / 2
+
+    @formula("N", "largest load", symbol=r"F_\max")
+    def F(self):
+        return np.max(self.load, axis=-1)
+
+    @formula("MPa", "pressure", ge=0, lt=1000, remedy="lower the load")
+    def p(self):
+        return self.F / (self.d * rounded_up(doubled(self.t)))
+
+    @formula("kg/mm", "mass per width", name="linear_mass")
+    def q(self):
+        return branched(self.m) / self.t
+
+
+def codes(refusal):
+    return {(fault.name, fault.code) for fault in refusal.value.faults}
+
+
+class TestInputs:
+    def test_property_kinds_and_defaults(self):
+        assert list(Shaft.inputs) == ["bore", "balls", "rod_mass", "load", "web_shape", "outer_diameter"]
+        assert list(Shaft.formulas) == ["wall", "largest_load", "pressure", "linear_mass"]
+        echo = evaluate(Shaft, Shaft.example).inputs
+        assert {name: e.source for name, e in echo.items() if e.source == "given"} == {
+            "bore": "given",
+            "load": "given",
+        }
+        assert (echo["outer_diameter"].value, echo["outer_diameter"].unit) == (pytest.approx(100), "mm")
+        assert (echo["web_shape"].value, echo["web_shape"].unit) == ("round", None)
+        assert echo["balls"].value == 8
+
+    def test_property_derived_gives_way_to_what_is_given(self):
+        given_one = evaluate(Shaft, {**Shaft.example, "outer_diameter": "60 mm"})
+        assert given_one.outputs["wall"].value == pytest.approx(5)
+        assert given_one.inputs["outer_diameter"].source == "given"
+
+    def test_property_curve_reduces_along_its_last_axis(self):
+        assert evaluate(Shaft, Shaft.example).outputs["largest_load"].value == pytest.approx(3000)
+        two = {"value": [[1, 3, 2], [5, 4, 4]], "unit": "kN"}
+        found = evaluate(Shaft, {**Shaft.example, "load": two}, outputs=["largest_load"]).outputs[
+            "largest_load"
+        ]
+        np.testing.assert_allclose(found.value, [3000, 5000])
+
+    @pytest.mark.parametrize(
+        ("inputs", "name", "code", "words"),
+        [
+            ({"bore": "1 mm"}, "bore", "out_of_range", "bore is 1 mm; it must be > 1 mm and ≤ 100 mm"),
+            ({"bore": "5 inch"}, "bore", "out_of_range", "bore is 5 inch; it must be"),
+            ({"balls": 8.5}, "balls", "out_of_range", "it must be a whole number ≥ 3"),
+            ({"balls": 2}, "balls", "out_of_range", "balls is 2"),
+            ({"web_shape": "oval"}, "web_shape", "not_an_option", "'oval' is none of round, square_cut"),
+            ({"web_shape": 5}, "web_shape", "not_an_option", "5 is none of"),
+            ({"load": "5 kN"}, "load", "not_a_curve", "give an array over the cycle"),
+            ({"bor": "5 mm"}, "bor", "unknown_name", "did you mean bore"),
+            ({"\ud800": 1}, "\\ud800", "unknown_name", "known are bore"),
+            (
+                {"outer_diameter": "50 mm"},
+                "bore",
+                "inconsistent",
+                "outer_diameter = 50 mm, bore = 50 mm; make the",
+            ),
+        ],
+    )
+    def test_property_refusals_name_and_mend(self, inputs, name, code, words):
+        with pytest.raises(InvalidInputs) as refusal:
+            Shaft.from_quantities({**Shaft.example, **inputs})
+        detail = next(f.detail for f in refusal.value.faults if (f.name, f.code) == (name, code))
+        assert words in detail
+        detail.encode("utf-8")
+
+    def test_property_missing_inputs_are_named_with_their_unit(self):
+        with pytest.raises(InvalidInputs, match="bore is needed; give it in mm") as refusal:
+            Shaft.from_quantities({})
+        assert codes(refusal) == {("bore", "missing"), ("load", "missing")}
+
+    def test_property_si_values_are_checked_like_typed_ones(self):
+        good = Shaft.from_quantities(Shaft.example).inputs_si()
+        assert Shaft.from_si(good).t == pytest.approx(0.025)
+        with pytest.raises(InvalidInputs) as refusal:
+            Shaft.from_si({**good, "rod_mass": np.nan, "bore": 5.0, "load": np.array([1.0, np.inf])})
+        assert codes(refusal) == {
+            ("rod_mass", "out_of_range"),
+            ("bore", "out_of_range"),
+            ("load", "out_of_range"),
+        }
+
+    def test_property_arrays_must_fit_together(self):
+        wrong = {"bore": {"value": [10, 20], "unit": "mm"}}
+        with pytest.raises(InvalidInputs, match="bore 2, load 3") as refusal:
+            Shaft.from_quantities({**Shaft.example, **wrong})
+        assert codes(refusal) == {("bore", "shape"), ("load", "shape")}
+
+
+class TestLimits:
+    LOAD = {"load": {"value": [[1, 2]], "unit": "kN"}}
+
+    def test_property_rule_masks_points_of_arrays(self):
+        outside = {"value": [60, 40, 70], "unit": "mm"}
+        raw = {**Shaft.example, "outer_diameter": outside}
+        found = evaluate(Shaft, raw, outputs=["wall", "largest_load"]).outputs
+        np.testing.assert_allclose(found["wall"].value, [5, np.nan, 10])
+        assert list(found["wall"].reasons) == [
+            None,
+            "The outside is larger than the bore: make the outside larger",
+            None,
+        ]
+        assert found["largest_load"].value == pytest.approx(3000)
+
+    def test_property_masks_reach_what_is_beneath_only(self):
+        bores = {"value": [50, 500, 20], "unit": "mm"}
+        found = evaluate(
+            Shaft, {**Shaft.example, "bore": bores}, outputs=["wall", "largest_load", "pressure"]
+        ).outputs
+        assert found["wall"].reasons[1] == "bore must be > 1 mm and ≤ 100 mm"
+        assert np.isnan(found["pressure"].value).tolist() == [False, True, False]
+        assert found["largest_load"].reasons is None
+
+    def test_property_result_outside_its_domain(self):
+        heavy = {**Shaft.example, "load": {"value": [1, 9e9], "unit": "N"}}
+        assert evaluate(Shaft, heavy, outputs=["wall"]).outputs["wall"].value == pytest.approx(25)
+        with pytest.raises(
+            InvalidInputs, match=r"would be 3.6e\+06 MPa; it must be ≥ 0 MPa and < 1000 MPa; lower"
+        ) as refusal:
+            evaluate(Shaft, heavy)
+        assert codes(refusal) == {("pressure", "outside_domain")}
+
+    def test_property_published_range_warns(self):
+        (warning,) = evaluate(Shaft, {**Shaft.example, "rod_mass": "3 kg"}).warnings
+        assert warning.detail == "published for rod mass ≥ 0.5 kg and ≤ 2 kg (Nobody 1900); here it is 3 kg"
+        many = {**Shaft.example, "rod_mass": {"value": [1, 3, 4], "unit": "kg"}}
+        (warning,) = evaluate(Shaft, many).warnings
+        assert "leaves it at 2 of 3 points" in warning.detail
+
+    def test_property_withdrawn_is_said(self):
+        class Old(Shaft):
+            withdrawn = "wrong by 2 %, use 2"
+
+        (warning,) = evaluate(Old, Shaft.example).warnings
+        assert (warning.code, "use 2" in warning.detail) == ("withdrawn", True)
+        assert describe(Shaft)["status"] == "released"
+
+    def test_property_tolerance_that_nobody_measured(self):
+        (warning,) = evaluate(Shaft, Shaft.example, tolerance=0.01).warnings
+        assert warning.code == "tolerance_unmet"
+        with pytest.raises(InvalidInputs, match="one level only"):
+            evaluate(Shaft, Shaft.example, level="map")
+
+
+class TestLanguage:
+    def test_property_a_template_is_a_record(self):
+        template = Shaft.from_quantities(Shaft.example)
+        with pytest.raises(AttributeError, match="make a new one"):
+            template.d = 1.0
+        with pytest.raises(AttributeError, match="make a new one"):
+            del template.d
+        assert template.t is template.t
+
+    def test_property_equal_names_are_refused(self):
+        with pytest.raises(TypeError, match="'bore'"):
+
+            class Twice(Template):
+                a = given("mm", "bore")
+                b = given("mm", "Bore")
+
+    def test_property_words_of_the_language_are_refused(self):
+        with pytest.raises(TypeError, match="version has a meaning"):
+
+            class Reserved(Template):
+                version = given("1", "number")
+
+    @pytest.mark.parametrize("keywords", [{"words": "Ø"}, {"words": "2 radii"}, {"words": "x", "name": "aB"}])
+    def test_property_names_must_be_snake_case(self, keywords):
+        with pytest.raises(TypeError, match="snake_case"):
+            given("mm", **keywords)
+
+    def test_property_border_must_be_si(self):
+        with pytest.raises(TypeError, match="mm is not SI"):
+            units("mm", returns="m")
+
+    def test_property_rule_needs_a_sentence(self):
+        with pytest.raises(TypeError, match="docstring"):
+            require("a", remedy="b")(lambda self: True)
+
+    def test_property_branches_have_no_place_in_a_formula(self):
+        class Branching(Template):
+            """Branches."""
+
+            a = given("m", "length")
+
+            @formula("m", "result")
+            def r(self):
+                if self.a > 1:
+                    return self.a
+                return -self.a
+
+        with pytest.raises(TypeError, match="a formula is one return"):
+            describe_formulas(Branching)
+
+
+def describe_formulas(cls):
+    return [f.expression for f in cls.formulas.values()]
+
+
+class TestPaper:
+    def test_property_report(self):
+        written = {row.name: row for row in rows(evaluate(Shaft, Shaft.example).template)}
+        assert written["wall"].latex == (
+            r"t=\frac{D-d}{2}=\frac{100\,\text{mm}-50\,\text{mm}}{2}=25\,\text{mm}"
+        )
+        assert written["pressure"].expression == r"\frac{F_\max}{d\,f\left(2\,t\right)}"
+        assert written["linear_mass"].expression == r"\frac{\operatorname{branched}\left(m\right)}{t}"
+        assert written["largest_load"].numbers == ""
+
+    def test_property_negative_numbers_stand_in_parentheses(self):
+        class Difference(Template):
+            """A difference."""
+
+            a = given("degC", "first")
+            x = given("1", "second")
+
+            @formula("1", "result")
+            def r(self):
+                return 2 - self.x**2
+
+        (row,) = rows(evaluate(Difference, {"first": "5 degC", "second": -3}).template)
+        assert row.latex == r"r=2-x^{2}=2-\left(-3\right)^{2}=-7"
+
+    def test_property_page(self):
+        page = json.loads(json.dumps(describe(Shaft)))
+        assert page["title"] == "A shaft"
+        assert page["errata"] == ["The first is said in one line.", "The second takes two lines."]
+        assert page["references"] == ["Nobody 1900."]
+        limits = {(limit.get("name"), limit["text"]) for limit in page["limits"]}
+        assert (None, "For shafts only.") in limits
+        assert ("bore", "bore > 1 mm and ≤ 100 mm") in limits
+        assert ("outer_diameter", "The outside is larger than the bore") in limits
+
+    def test_property_schema(self):
+        schema = inputs_schema(Shaft)
+        assert schema["required"] == ["bore", "load"]
+        bore, balls, shape = (schema["properties"][name] for name in ("bore", "balls", "web_shape"))
+        assert (bore["unit"], bore["exclusiveMinimum"], bore["maximum"]) == ("mm", 1, 100)
+        assert (balls["multipleOf"], balls["minimum"], balls["default"]) == (
+            1,
+            3,
+            {"value": 8.0, "unit": "1"},
+        )
+        assert (shape["enum"], shape["default"]) == (["round", "square_cut"], "round")
+        assert schema["properties"]["outer_diameter"]["default_formula"] == r"2\,d"
+
+
+def squared(self):
+    return self.d**2
+
+
+def added_to_mass(self):
+    return self.d + self.m
+
+
+def added_to_number(self):
+    return self.d + 1
+
+
+def exponential(self):
+    return np.exp(self.d) * self.d
+
+
+def mass_across_border(self):
+    return rounded_up(self.m)
+
+
+def mass_doubled(self):
+    return doubled(self.m)
+
+
+class TestDimensions:
+    def test_analytic_right_dimensions_pass(self):
+        assert dimensions.faults(Shaft) == []
+
+    @pytest.mark.parametrize(
+        ("calculate", "words"),
+        [
+            (squared, "wrong is declared in m, but its formula gives m²"),
+            (added_to_mass, "wrong: Cannot convert"),
+            (added_to_number, "wrong: Cannot convert"),
+            (exponential, "wrong: Cannot convert"),
+            (mass_across_border, "rounded_up takes x in m, not in kg"),
+            (mass_doubled, "wrong is declared in m, but its formula gives kg"),
+        ],
+    )
+    def test_analytic_wrong_dimensions_are_found(self, calculate, words):
+        class Wrong(Template):
+            """Wrong on purpose."""
+
+            example = {"length": "2 m", "mass": "3 kg"}
+            d = given("m", "length")
+            m = given("kg", "mass")
+            w = formula("m", "wrong")(calculate)
+
+        (fault,) = dimensions.faults(Wrong)
+        assert words in fault
+
+    def test_analytic_wrong_rule_is_found(self):
+        class Wrong(Template):
+            """Wrong on purpose."""
+
+            example = {"length": "2 m", "mass": "3 kg"}
+            d = given("m", "length")
+            m = given("kg", "mass")
+
+            @require("length", "mass", remedy="none")
+            def rule(self) -> Truth:
+                """A length is less than a mass."""
+                return self.d < self.m
+
+        (fault,) = dimensions.faults(Wrong)
+        assert fault.startswith("A length is less than a mass: Cannot convert")
