@@ -161,8 +161,9 @@ def test_a_killed_spare_is_replaced(worker):
 
 
 def test_a_killed_forkserver_is_replaced(worker):
+    spare = worker._spare._pid
     worker._forkserver._process.kill()
-    worker._forkserver._process.wait()
+    assert eventually(lambda: not alive(spare))
     assert worker.run(victims.double, 2) == 4
     assert worker.run(victims.double, 3) == 6
 
