@@ -37,7 +37,7 @@ class Coefficients:
 
 
 def plain_coefficients(eps: float, ratio: float, around: int = 128, across: int = 16) -> Coefficients:
-    """Stiffness and damping of the full-circle film of `reynolds.static_film`, its supply line fixed in space.
+    """Stiffness and damping of the film of `reynolds.static_film`, its supply line fixed in space.
 
     Args:
         eps: relative eccentricity, above 0 to 1 − 1e-7 [-].

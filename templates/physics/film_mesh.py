@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.physics.arrays import Array, require
 from templates.physics.long_bearing import rupture_Swift_Stieber
 
 _MARGIN = 1.03
@@ -47,9 +47,13 @@ def swell(phi: Array, eps: float) -> Array:
 def gregory(n: int) -> Array:
     """Weights of Gregory's fourth-order rule on n + 1 equally spaced points at unit distance.
 
+    Raises:
+        ValueError: if n is less than 6.
+
     References:
         A. Ralston and P. Rabinowitz, A First Course in Numerical Analysis, 1978, section 4.12.
     """
+    require(np.asarray(n >= 6), "a mesh needs at least 6 intervals each way")
     end = np.array([3 / 8, 7 / 6, 23 / 24])
     return np.concatenate([end, np.ones(n - 5), end[::-1]])
 
