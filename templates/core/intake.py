@@ -65,6 +65,11 @@ def admitted(
 def _bounded(declared: Input, typed: Typed, ledger: Ledger, faults: list[Fault]) -> Any:
     """The value, checked: a faulty single value or curve is refused, a faulty point of an array is masked."""
     meaning, value = declared.meaning, typed.si
+    if isinstance(value, float) and not isinstance(declared, Curve) and meaning.admits(value):
+        value = np.float64(value)
+        if meaning.published_si is not None:
+            warn_if_outside(ledger, declared, value)
+        return value
     is_curve, inside = isinstance(declared, Curve), meaning.admits(value)
     if is_curve and not isinstance(value, np.ndarray):
         told = f"{meaning.words} is a curve: give an array over the cycle, in {meaning.unit}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from functools import cached_property
@@ -86,7 +87,7 @@ class Meaning:
 
     def admits(self, value: Any) -> Any:
         """Where an SI value (scalar or array) is finite, within the domain and whole if it must be."""
-        inside = np.isfinite(value)
+        inside = math.isfinite(value) if isinstance(value, float) else np.isfinite(value)
         if self.domain_si is not None:
             inside = inside & self.domain_si.admits(value)
         return inside & (np.round(value) == value) if self.integer else inside

@@ -151,15 +151,20 @@ def _read_bare(raw: float, declared: str) -> Typed:
 
 
 def _quantity(magnitude: Value, name: str, declared: str) -> Typed:
-    given_in = require_same_kind(name, declared)
-    with np.errstate(over="ignore"):
-        si = given_in.to_si(magnitude)
-    if not np.all(np.isfinite(si)):
+    si = _in_si(magnitude, require_same_kind(name, declared))
+    if not (math.isfinite(si) if isinstance(si, float) else np.isfinite(si).all()):
         raise FaultyText(
             "not_finite", f"the value is too large in {name}; give one below 1.8e308 in SI units"
         )
     shown = magnitude.tolist() if isinstance(magnitude, np.ndarray) else magnitude
     return Typed(shown, name, si, {})
+
+
+def _in_si(magnitude: Value, scale: Unit) -> Value:
+    if isinstance(magnitude, float):
+        return scale.to_si(magnitude)
+    with np.errstate(over="ignore"):
+        return scale.to_si(magnitude)
 
 
 def _number(raw: Any) -> float:
