@@ -15,7 +15,7 @@ OIL_FILM: dict[str, Any] = {
     "bearing_width": "18 mm",
     "speed": "5000 rpm",
     "oil_inlet_temperature": "80 degC",
-    "oil_outlet_temperature": "87.8 degC",
+    "oil_outlet_temperature": "87.762 degC",
 }
 
 
