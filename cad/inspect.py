@@ -18,7 +18,7 @@ from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 
 from cad.model import Box
-from cad.step import Body
+from cad.step import Body, rigid
 from cad.surfaces import Seen, look
 
 Matrix = NDArray[np.float64]
@@ -114,9 +114,7 @@ def _rounded(corner: tuple[float, float, float]) -> tuple[float, float, float]:
 
 def _stand(one: Measured, place: Location, density: float) -> tuple[float, Matrix, Matrix]:
     """Mass [kg], centre [mm] and inertia about it [kg·mm²] of a body at a place; density in kg/mm³."""
-    motion = place.wrapped.Transformation()
-    rows = np.array([[motion.Value(i, j) for j in (1, 2, 3, 4)] for i in (1, 2, 3)])
-    turn, shift = rows[:, :3], rows[:, 3]
+    turn, shift = rigid(place)
     return density * one.volume, turn @ one.centre + shift, density * turn @ one.inertia @ turn.T
 
 

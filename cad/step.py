@@ -14,7 +14,9 @@ from importlib.metadata import version
 from itertools import count
 from typing import Any
 
+import numpy as np
 from cadquery import Location, Shape
+from numpy.typing import NDArray
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
@@ -82,6 +84,13 @@ def read_step(step: bytes) -> tuple[Body, ...]:
     if not reader.Transfer(document):
         raise UnreadableStep("this STEP file holds no shape")
     return tuple(_bodies(document))
+
+
+def rigid(place: Location) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Rotation (3, 3) and translation (3,) [mm] of a place."""
+    motion = place.wrapped.Transformation()
+    rows = np.array([[motion.Value(i, j) for j in (1, 2, 3, 4)] for i in (1, 2, 3)])
+    return rows[:, :3], rows[:, 3]
 
 
 def _reproducible(text: str, header: Header) -> str:

@@ -1,0 +1,101 @@
+"""GLB (glTF 2.0, binary): every body once, as a mesh with its colour, and a node for each of its places.
+
+glTF counts in metres and calls y up; the root node turns and scales the model, whose z is up, in millimetres.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad.mesh import Mesh
+from cad.step import rigid
+
+_FLOAT, _UINT = 5126, 5125  # component types
+_ARRAY_BUFFER, _ELEMENT_BUFFER = 34962, 34963
+_Z_UP_MM = [1e-3, 0, 0, 0, 0, 0, -1e-3, 0, 0, 1e-3, 0, 0, 0, 0, 0, 1]  # column by column
+
+
+def write_glb(meshes: Sequence[Mesh]) -> bytes:
+    """The meshes as one GLB file."""
+    buffers = _Buffers()
+    nodes = [_node(i, place) for i, one in enumerate(meshes) for place in one.places]
+    content = {
+        "asset": {"version": "2.0", "generator": "Crankwright"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"matrix": _Z_UP_MM, "children": list(range(1, len(nodes) + 1))}, *nodes],
+        "meshes": [_mesh(one, i, buffers) for i, one in enumerate(meshes)],
+        "materials": [_material(one) for one in meshes],
+        **buffers.described(),
+    }
+    text = json.dumps(content, separators=(",", ":")).encode()
+    return _framed(text, b"".join(buffers.chunks))
+
+
+class _Buffers:
+    """The binary chunk as it grows, with its views and accessors."""
+
+    def __init__(self) -> None:
+        self.chunks: list[bytes] = []
+        self.views: list[dict[str, int]] = []
+        self.accessors: list[dict[str, Any]] = []
+
+    def add(self, values: NDArray[Any], target: int, kind: str, **more: Any) -> int:
+        """Append an array; returns the number of its accessor."""
+        data = values.tobytes()
+        start = sum(map(len, self.chunks))
+        self.views.append({"buffer": 0, "byteOffset": start, "byteLength": len(data), "target": target})
+        component = _FLOAT if values.dtype == np.float32 else _UINT
+        accessor = {"bufferView": len(self.views) - 1, "componentType": component, "type": kind, **more}
+        self.accessors.append(accessor)
+        self.chunks.append(data)
+        return len(self.accessors) - 1
+
+    def described(self) -> dict[str, Any]:
+        """Buffers, views and accessors as glTF names them."""
+        length = sum(map(len, self.chunks))
+        return {
+            "buffers": [{"byteLength": length}],
+            "bufferViews": self.views,
+            "accessors": self.accessors,
+        }
+
+
+def _node(mesh: int, place: Any) -> dict[str, Any]:
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = rigid(place)
+    return {"mesh": mesh, "matrix": matrix.T.ravel().tolist()}
+
+
+def _mesh(one: Mesh, material: int, buffers: _Buffers) -> dict[str, Any]:
+    points = one.points.astype(np.float32)
+    bounds = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
+    position = buffers.add(points, _ARRAY_BUFFER, "VEC3", count=len(points), **bounds)
+    normal = buffers.add(one.normals.astype(np.float32), _ARRAY_BUFFER, "VEC3", count=len(points))
+    corners = one.triangles.astype(np.uint32).ravel()
+    indices = buffers.add(corners, _ELEMENT_BUFFER, "SCALAR", count=len(corners))
+    drawn = {
+        "attributes": {"POSITION": position, "NORMAL": normal}, "indices": indices, "material": material,
+    }  # fmt: skip
+    return {"name": one.name, "primitives": [drawn]}
+
+
+def _material(one: Mesh) -> dict[str, Any]:
+    # glTF wants linear light, colours are given as on a screen (sRGB, here with its usual exponent).
+    linear = [round(channel**2.2, 6) for channel in one.colour]
+    metal = {"baseColorFactor": [*linear, 1.0], "metallicFactor": 0.6, "roughnessFactor": 0.35}
+    return {"name": one.name, "pbrMetallicRoughness": metal}
+
+
+def _framed(text: bytes, binary: bytes) -> bytes:
+    """The 12-byte header and both chunks, padded to four bytes."""
+    text += b" " * (-len(text) % 4)
+    binary += b"\0" * (-len(binary) % 4)
+    chunks = [(text, b"JSON"), (binary, b"BIN\0")]
+    body = b"".join(np.uint32(len(data)).tobytes() + kind + data for data, kind in chunks)
+    return b"glTF" + np.array([2, 12 + len(body)], "<u4").tobytes() + body

@@ -1,0 +1,155 @@
+"""PNG: a shaded picture of the meshes, drawn with NumPy alone, as OpenGL may be absent or crash.
+
+Triangles are split into the rows of samples that they cover, rows into samples, and of all samples at one
+place the nearest wins (a depth buffer). Normals are interpolated, so balls look round; where one face meets
+another, a line is drawn.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from cad.mesh import Mesh, placed
+from cad.view import RIGHT, TOWARDS, UP
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+SIZE = (640, 480)  # [pixels]
+_SAMPLES = 2  # along each side of a pixel
+_MARGIN = 0.06  # of the picture, on each side
+_PAPER = 1.0
+_LINE = 0.45  # brightness of the lines between faces, of what they cross
+
+# Lights in the frame of the picture (right, up, towards the eye), and how much each gives.
+_KEY, _FILL = np.array([-0.45, 0.70, 0.55]), np.array([0.60, -0.10, 0.80])
+_AMBIENT, _KEY_SHARE, _FILL_SHARE, _GLOSS = 0.36, 0.52, 0.42, 0.30
+_SHININESS = 40
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Triangles that face the eye; corners in samples, y downwards, z towards the eye."""
+
+    corners: Floats  # (t, 3, 3)
+    normals: Floats  # (t, 3, 3)
+    colours: Floats  # (t, 3)
+    faces: Ints  # (t,), different for every face of every body
+
+
+def write_png(meshes: Sequence[Mesh], size: tuple[int, int] = SIZE) -> bytes:
+    """A picture of the meshes on white."""
+    width, height = size[0] * _SAMPLES, size[1] * _SAMPLES
+    scene = _scene(meshes, width, height)
+    light, faces = _draw(scene, width, height)
+    light[_borders(faces)] *= _LINE
+    samples = Image.fromarray((np.clip(light, 0, 1) * 255).round().astype(np.uint8))
+    stream = io.BytesIO()
+    samples.resize(size, Image.Resampling.BOX).save(stream, "PNG", optimize=True)
+    return stream.getvalue()
+
+
+def _scene(meshes: Sequence[Mesh], width: int, height: int) -> Scene:
+    frame = np.stack([RIGHT, UP, TOWARDS], axis=1)
+    bodies = [(one, points @ frame, normals @ frame) for one, points, normals in placed(meshes)]
+    corners = np.concatenate([points[one.triangles] for one, points, _ in bodies])
+    normals = np.concatenate([normals[one.triangles] for one, _, normals in bodies])
+    colours = np.concatenate([np.tile(one.colour, (len(one.triangles), 1)) for one, _, _ in bodies])
+    firsts = np.cumsum([0, *(int(one.faces.max()) + 1 for one, _, _ in bodies)])
+    faces = np.concatenate([one.faces + first for (one, _, _), first in zip(bodies, firsts, strict=False)])
+    corners = _fitted(corners, width, height)
+    # y points downwards in a picture: a triangle that faces the eye runs clockwise there.
+    seen = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] < -1e-9
+    return Scene(corners[seen], normals[seen], colours[seen], faces[seen])
+
+
+def _fitted(corners: Floats, width: int, height: int) -> Floats:
+    """Corners [mm; y upwards] as they fill the picture [samples; y downwards]."""
+    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    room = (1 - 2 * _MARGIN) * np.array([width, height])
+    scale = (room / (high - low)[:2]).min()
+    moved: Floats = (corners - (low + high) / 2) * (scale * np.array([1, -1, 1]))
+    return moved + np.array([width / 2, height / 2, 0])
+
+
+def _draw(scene: Scene, width: int, height: int) -> tuple[Floats, Ints]:
+    """Light (height, width, 3) and the face seen (height, width; -1 for none) at every sample."""
+    triangle, column, row = _fragments(scene.corners)
+    weights = _barycentric(scene.corners[triangle], column + 0.5, row + 0.5)
+    depth = np.einsum("fc,fc->f", weights, scene.corners[triangle][:, :, 2])
+    sample = row * width + column
+    nearest = np.full(width * height, -np.inf)
+    np.maximum.at(nearest, sample, depth)
+    wins = depth == nearest[sample]
+    triangle, weights, sample = triangle[wins], weights[wins], sample[wins]
+    light = np.full((width * height, 3), _PAPER)
+    normals = np.einsum("fc,fcx->fx", weights, scene.normals[triangle])
+    light[sample] = _lit(normals, scene.colours[triangle])
+    faces = np.full(width * height, -1)
+    faces[sample] = scene.faces[triangle]
+    return light.reshape(height, width, 3), faces.reshape(height, width)
+
+
+def _fragments(corners: Floats) -> tuple[Ints, Ints, Ints]:
+    """The samples that triangles cover: which triangle, column and row; a sample counts by its middle."""
+    x, y = corners[:, :, 0], corners[:, :, 1]
+    triangle, row = _expand(y.min(axis=1), y.max(axis=1))
+    middle = (row + 0.5)[:, None]
+    x0, y0 = x[triangle], y[triangle]
+    x1, y1 = np.roll(x0, -1, axis=1), np.roll(y0, -1, axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = (middle - y0) / (y1 - y0)
+        crossing = x0 + along * (x1 - x0)
+    crosses = (along >= 0) & (along <= 1)
+    left = np.where(crosses, crossing, np.inf).min(axis=1)
+    right = np.where(crosses, crossing, -np.inf).max(axis=1)
+    span, column = _expand(left, right)
+    return triangle[span], column, row[span]
+
+
+def _expand(low: Floats, high: Floats) -> tuple[Ints, Ints]:
+    """For intervals, the whole numbers n with low ≤ n + 1/2 ≤ high: which interval, and n."""
+    first = np.ceil(np.where(np.isfinite(low), low, 0) - 0.5).astype(np.int64)
+    last = np.floor(np.where(np.isfinite(high), high, -1) - 0.5).astype(np.int64)
+    counts = np.maximum(last - first + 1, 0)
+    which = np.repeat(np.arange(len(counts)), counts)
+    within = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return which, first[which] + within
+
+
+def _barycentric(corners: Floats, x: Any, y: Any) -> Floats:
+    """Weights (n, 3) of the corners of each triangle at its point."""
+    a, b, c = (corners[:, i, :2] for i in range(3))
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    px, py = x - a[:, 0], y - a[:, 1]
+    area = ux * vy - uy * vx
+    second, third = (px * vy - py * vx) / area, (ux * py - uy * px) / area
+    return np.stack([1 - second - third, second, third], axis=1)
+
+
+def _lit(normals: Floats, colours: Floats) -> Floats:
+    """Colours under two lights, with a highlight of the first (Blinn–Phong)."""
+    normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    key, fill = (light / np.linalg.norm(light) for light in (_KEY, _FILL))
+    between = key + np.array([0.0, 0.0, 1.0])
+    gloss = np.clip(normals @ (between / np.linalg.norm(between)), 0, 1) ** _SHININESS
+    diffuse = (
+        _AMBIENT + _KEY_SHARE * np.clip(normals @ key, 0, 1) + _FILL_SHARE * np.clip(normals @ fill, 0, 1)
+    )
+    light: Floats = colours * diffuse[:, None] + _GLOSS * gloss[:, None]
+    return light
+
+
+def _borders(faces: Ints) -> NDArray[np.bool_]:
+    """Samples beside which another face begins."""
+    differs = np.zeros(faces.shape, dtype=bool)
+    differs[:, :-1] |= faces[:, :-1] != faces[:, 1:]
+    differs[:-1, :] |= faces[:-1, :] != faces[1:, :]
+    return differs

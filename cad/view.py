@@ -1,0 +1,16 @@
+"""From where pictures and drawings show a model: from above its front, where a half shell is open."""
+
+from __future__ import annotations
+
+import numpy as np
+
+_SIGHT = np.array([0.55, -1.0, 0.62])
+
+TOWARDS = _SIGHT / np.linalg.norm(_SIGHT)
+"""Unit vector from the model to the eye."""
+
+RIGHT = np.cross([0.0, 0.0, 1.0], TOWARDS) / np.linalg.norm(np.cross([0.0, 0.0, 1.0], TOWARDS))
+"""Unit vector to the right in the picture."""
+
+UP = np.cross(TOWARDS, RIGHT)
+"""Unit vector upwards in the picture."""
