@@ -194,10 +194,16 @@ def test_a_watcher_does_not_keep_the_server_from_stopping(jobs, database, url, n
             command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, pass_fds=[listener.fileno()],
             cwd=Path(__file__).parents[2],
         )  # fmt: skip
-        with server, httpx.stream("GET", f"http://127.0.0.1:{port}/api/v1/jobs/{id}/events") as response:
-            lines = response.iter_lines()
-            assert next(lines) == "event: queued"
-            server.send_signal(number)
-            assert list(lines)[-1] == ""
-            out, _ = server.communicate(timeout=10)
+        try:
+            with httpx.stream(
+                "GET", f"http://127.0.0.1:{port}/api/v1/jobs/{id}/events", timeout=60
+            ) as watched:
+                lines = watched.iter_lines()
+                assert next(lines) == "event: queued"
+                server.send_signal(number)
+                assert list(lines)[-1] == ""
+            out, _ = server.communicate(timeout=20)
+        finally:
+            server.kill()
+            server.communicate()
     assert b"stopped in order" in out

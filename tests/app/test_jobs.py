@@ -363,10 +363,9 @@ def test_progress_is_told_and_logged(make, database, worker):
     jobs.register(KIND, handler)
 
     async def watch():
-        jobs.start()
-        id = await asyncio.to_thread(database.write, lambda session: jobs.enqueue(session, KIND, {}))
+        id = await database.awrite(lambda session: jobs.enqueue(session, KIND, {}))
         async with jobs.events.subscribe(f"job:{id}") as events:
-            jobs.wake()
+            jobs.start()
             names = []
             async for event in events:
                 names.append((event["event"], event.get("text")))
