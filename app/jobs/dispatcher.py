@@ -103,10 +103,9 @@ class Dispatcher:
                 del self._running[job.id]
 
     def _claim(self, session: Session) -> Job | None:
+        """Claim a job and register it still in the writer thread: who sees it running can interrupt it."""
         job = repository.claim(session)
-        if (
-            job is not None
-        ):  # registered in the writer thread: a cancellation that sees it running finds it here
+        if job is not None:
             self._running[job.id] = threading.Event()
         return job
 
