@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -33,8 +34,17 @@ def answer(result: Answer) -> dict[str, Any]:
     if result.reasons is None:
         return quantity(result.value.tolist(), result.unit)
     holes = result.value.astype(object)
-    holes[np.isnan(result.value)] = None
+    holes[np.not_equal(result.value, result.value)] = None
     return {**quantity(holes.tolist(), result.unit), "reasons": result.reasons.tolist()}
+
+
+def _plain(value: Any) -> Any:
+    """A single value or an array as JSON; what was not measured is null."""
+    if isinstance(value, np.ndarray):
+        return (
+            [_plain(item) for item in value.tolist()] if value.ndim == 1 else [_plain(row) for row in value]
+        )
+    return None if isinstance(value, float) and math.isnan(value) else value
 
 
 def echo(used: Echo) -> dict[str, Any]:
@@ -48,8 +58,8 @@ def evaluation(made: Evaluation) -> dict[str, Any]:
         "template": identity(type(made.template)),
         "inputs": {name: echo(used) for name, used in made.inputs.items()},
         "outputs": {name: answer(result) for name, result in made.outputs.items()},
-        "level": None,
-        "error": dict.fromkeys(made.outputs),
+        "level": _plain(made.level),
+        "error": {name: _plain(error) for name, error in made.error.items()},
         "warnings": [{"code": w.code, "name": w.name, "detail": w.detail} for w in made.warnings],
         "seconds": made.seconds,
     }

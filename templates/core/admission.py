@@ -14,6 +14,14 @@ if TYPE_CHECKING:
     from templates.core.template import Template
 
 
+def absence(self: Template, declaration: Formula[Any]) -> str | None:
+    """Why a result may be NaN without being a fault: an optional input is missing, or it does not exist."""
+    missing = sorted(self.ledger.missing & self.ancestors(declaration.attribute))
+    if missing:
+        return f"needs {', '.join(self.declarations[name].name for name in missing)}"
+    return declaration.meaning.absent
+
+
 def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:
     """The fault of a formula's result outside its domain, with the inputs that it follows from."""
     meaning = declaration.meaning
@@ -36,6 +44,8 @@ def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
         remedy = f"; {meaning.remedy}" if meaning.remedy else ""
         reason = f"{declaration.name} must be {meaning.wanted}{remedy}"
         self.ledger.masks.append(Mask((declaration.attribute,), known & ~inside, reason))
+    if not known.all() and (why := absence(self, declaration)):
+        self.ledger.masks.append(Mask((declaration.attribute,), ~known, why))
     return value if inside.all() else np.where(inside, value, np.nan)
 
 

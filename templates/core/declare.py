@@ -43,16 +43,17 @@ class Declaration:
 
 
 class Given(Declaration):
-    """An input: a quantity that the user gives, or its default."""
+    """An input: a quantity that the user gives, its default, or NaN if it is optional and missing."""
 
-    def __init__(self, meaning: Meaning, default: Any = None) -> None:
+    def __init__(self, meaning: Meaning, default: Any = None, *, optional: bool = False) -> None:
         super().__init__(meaning)
         self.default: Typed | None = None if default is None else read(default, meaning.unit)
+        self.optional = optional
 
     @property
     def required(self) -> bool:
         """Whether the template cannot do without it."""
-        return self.default is None
+        return self.default is None and not self.optional
 
 
 class Curve(Given):
@@ -110,11 +111,45 @@ class Derived(Formula[T]):
     required = False
 
 
+class Text(Formula[T]):
+    """An output in words; empty where it does not exist."""
+
+
+class Shared(Generic[T]):
+    """An intermediate result that several formulas use: made when first asked for, then kept; no output."""
+
+    attribute: str
+
+    def __init__(self, function: Callable[[Any], T]) -> None:
+        self.function = function
+        self.__doc__ = function.__doc__
+
+    def __set_name__(self, owner: type, attribute: str) -> None:
+        self.attribute = attribute
+
+    @overload
+    def __get__(self, obj: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, obj: object, owner: type) -> T: ...
+    def __get__(self, obj: object | None, owner: type) -> Self | T:
+        if obj is None:
+            return self
+        value = obj.__dict__[self.attribute] = self.function(obj)
+        return value
+
+    @cached_property
+    def uses(self) -> tuple[str, ...]:
+        """The attributes of the template that it refers to."""
+        return attributes_used(self.function)
+
+
 class Requirement:
     """A rule between inputs; where it does not hold, the inputs it names are refused."""
 
-    def __init__(self, function: Callable[[Any], Any], names: tuple[str, ...], remedy: str) -> None:
-        self.function, self.names, self.remedy = function, names, remedy
+    def __init__(
+        self, function: Callable[[Any], Any], names: tuple[str, ...], remedy: str, missing: bool
+    ) -> None:
+        self.function, self.names, self.remedy, self.missing = function, names, remedy, missing
         self.sentence = " ".join((inspect.getdoc(function) or "").split()).rstrip(".")
         if not self.sentence:
             raise TypeError(f"{function.__qualname__}: the docstring of a requirement is its sentence")
@@ -125,9 +160,12 @@ class Requirement:
         return attributes_used(self.function)
 
 
-def given(unit: str, words: str, *, default: Any = None, **keywords: Any) -> Any:
-    """Declare an input in `unit`, with bounds in that unit; without a default it is required."""
-    return Given(meaning(unit, words, **keywords), default)
+def given(unit: str, words: str, *, default: Any = None, optional: bool = False, **keywords: Any) -> Any:
+    """Declare an input in `unit`, with bounds in that unit; required unless it has a default or is optional.
+
+    An optional input that is missing is NaN; outputs that need it do not exist, and say so.
+    """
+    return Given(meaning(unit, words, **keywords), default, optional=optional)
 
 
 def curve(unit: str, words: str, *, default: Any = None, **keywords: Any) -> Any:
@@ -152,9 +190,22 @@ def derived(unit: str, words: str, **keywords: Any) -> Callable[[Callable[[T], A
     return lambda function: Derived(function, meaning(unit, words, **keywords))
 
 
-def require(*names: str, remedy: str) -> Callable[[Callable[[Any], Any]], Requirement]:
-    """Declare a rule between the inputs `names`; its docstring is the sentence that a user reads."""
-    return lambda function: Requirement(function, names, remedy)
+def text(words: str, **keywords: Any) -> Callable[[Callable[[T], Any]], Text[T]]:
+    """Declare an output in words, without a unit."""
+    return lambda function: Text(function, meaning("1", words, **keywords), None)
+
+
+def shared(function: Callable[[Any], T]) -> Shared[T]:
+    """Declare an intermediate result that several formulas use."""
+    return Shared(function)
+
+
+def require(*names: str, remedy: str, missing: bool = False) -> Callable[[Callable[[Any], Any]], Requirement]:
+    """Declare a rule between the inputs `names`; its docstring is the sentence that a user reads.
+
+    Where an optional input that it uses is missing the rule is not applied, unless it is about `missing`.
+    """
+    return lambda function: Requirement(function, names, remedy, missing)
 
 
 def units(*arguments: str, returns: str | tuple[str, ...], latex: str | None = None) -> Callable[[F], F]:

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.declare import Choice, Formula
+from templates.core.declare import Choice, Formula, Text
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
 from templates.core.intake import Input
 from templates.core.ledger import Notice
+from templates.core.levels import Rung, accuracy, climb
 from templates.core.quantity import Typed, Unit, require_same_kind
 from templates.core.template import Template
 
@@ -41,11 +42,17 @@ class Echo:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """What `evaluate` returns; `template` is the evaluated instance with every SI value it computed."""
+    """What `evaluate` returns; `template` is the evaluated instance with every SI value it computed.
+
+    `level` and `error` (relative; None or NaN where it was not measured) are single values, or arrays of the
+    shape of the outputs.
+    """
 
     template: Template
     inputs: dict[str, Echo]
     outputs: dict[str, Answer]
+    level: Any
+    error: dict[str, Any]
     warnings: list[Notice]
     seconds: float
 
@@ -72,10 +79,7 @@ def evaluate(
     names = list(cls.formulas) if outputs is None else list(outputs)
     faults = [unknown_name(name, cls.formulas, "output") for name in names if name not in cls.formulas]
     shown_in = _units(cls, units or {}, faults)
-    if level is not None:
-        faults.append(
-            Fault("level", "unknown_name", f"{cls.id} {cls.version} has one level only; leave it out")
-        )
+    faults += _level_faults(cls, level)
     try:
         template = cls.from_quantities(raw)
     except InvalidInputs as error:
@@ -83,10 +87,70 @@ def evaluate(
     if faults:
         raise InvalidInputs(faults)
     with np.errstate(all="ignore"):
-        answers = {name: _answer(template, cls.formulas[name], shown_in.get(name)) for name in names}
+        rungs = _rungs(template, names, level, tolerance)
+        parts = [_part(rung.template, names, shown_in) for rung in rungs]
+        whole = parts[0] if rungs[0].where is None else _joined(rungs, parts)
         echoes = {name: _echo(template, declared) for name, declared in cls.inputs.items()}
-    notices = [*_standing(cls, tolerance), *template.ledger.warnings]
-    return Evaluation(template, echoes, answers, notices, time.perf_counter() - start)
+    notices = [*_standing(cls), *_noticed(rungs), *_unmet(cls, whole, names, tolerance)]
+    seconds = time.perf_counter() - start
+    return Evaluation(rungs[0].template, echoes, whole.answers, whole.level, whole.error, notices, seconds)
+
+
+def _level_faults(cls: type[Template], level: str | None) -> list[Fault]:
+    if level is None or level in cls.levels:
+        return []
+    if not cls.levels:
+        return [Fault("level", "unknown_name", f"{cls.id} {cls.version} has one level only; leave it out")]
+    return [unknown_name(level, cls.levels, "level").within("level")]
+
+
+@dataclass(frozen=True)
+class _Part:
+    """The answers at one level, or of all levels joined."""
+
+    answers: dict[str, Answer]
+    level: Any
+    error: dict[str, Any]
+
+
+def _rungs(template: Template, names: list[str], level: str | None, tolerance: float | None) -> list[Rung]:
+    if level is not None:
+        return [Rung(template.at(level), None)]
+    if tolerance is None or not template.levels:
+        return [Rung(template, None)]
+    return list(climb(template, names, tolerance))
+
+
+def _part(template: Template, names: list[str], shown_in: Mapping[str, Unit]) -> _Part:
+    measured = accuracy(type(template))
+    answers = {name: _answer(template, template.formulas[name], shown_in.get(name)) for name in names}
+    error = {name: measured.estimate(template, name) if measured else None for name in names}
+    return _Part(answers, template.level or None, error)
+
+
+def _joined(rungs: list[Rung], parts: list[_Part]) -> _Part:
+    """The answers of several levels, each at its own points, as arrays over all points."""
+    answers = {
+        name: _joined_answer(rungs, [part.answers[name] for part in parts]) for name in parts[0].answers
+    }
+    error = {name: _scattered(rungs, [part.error[name] for part in parts], float) for name in parts[0].error}
+    return _Part(answers, _scattered(rungs, [part.level for part in parts], object), error)
+
+
+def _joined_answer(rungs: list[Rung], answers: list[Answer]) -> Answer:
+    unit = answers[0].unit
+    values = _scattered(rungs, [answer.value for answer in answers], float if unit else object)
+    if all(answer.reasons is None for answer in answers):
+        return Answer(values, unit)
+    return Answer(values, unit, reasons=_scattered(rungs, [answer.reasons for answer in answers], object))
+
+
+def _scattered(rungs: list[Rung], values: list[Any], kind: type) -> NDArray[Any]:
+    assert rungs[0].where is not None
+    whole: NDArray[Any] = np.empty(rungs[0].where.shape, dtype=kind)
+    for rung, value in zip(rungs, values, strict=True):
+        whole[rung.where] = value
+    return whole
 
 
 def _units(cls: type[Template], units: Mapping[str, str], faults: list[Fault]) -> dict[str, Unit]:
@@ -104,11 +168,22 @@ def _units(cls: type[Template], units: Mapping[str, str], faults: list[Fault]) -
 
 def _answer(template: Template, formula: Formula[Any], shown_in: Unit | None) -> Answer:
     si = getattr(template, formula.attribute)
+    if isinstance(formula, Text):
+        return _words(si)
     scale = shown_in or formula.meaning.scale
+    if formula.attribute in template.ledger.absent:
+        return Answer(None, scale.text, reason=template.ledger.absent[formula.attribute])
     if not isinstance(si, np.ndarray):
         return Answer(float(scale.from_si(si)), scale.text)
     value, reasons = _with_reasons(template, formula.attribute, si)
     return Answer(scale.from_si(value), scale.text, reasons=reasons)
+
+
+def _words(value: Any) -> Answer:
+    """An answer in words; an empty word is none."""
+    if isinstance(value, str):
+        return Answer(value or None, None, reason=None if value else "there is nothing to tell here")
+    return Answer(np.where(value == "", None, value), None)
 
 
 def _with_reasons(
@@ -143,14 +218,31 @@ def _echo(template: Template, declared: Input) -> Echo:
     )
 
 
-def _standing(cls: type[Template], tolerance: float | None) -> list[Notice]:
+def _standing(cls: type[Template]) -> list[Notice]:
     """The warnings that hold for every answer of this version."""
-    notices = []
-    if cls.withdrawn:
-        notices.append(
-            Notice("withdrawn", cls.id, f"{cls.id} version {cls.version} is withdrawn: {cls.withdrawn}")
-        )
-    if tolerance is not None:
+    if not cls.withdrawn:
+        return []
+    detail = f"{cls.id} version {cls.version} is withdrawn: {cls.withdrawn}"
+    return [Notice("withdrawn", cls.id, detail)]
+
+
+def _noticed(rungs: list[Rung]) -> list[Notice]:
+    """The warnings of all levels, each once."""
+    return list(dict.fromkeys(notice for rung in rungs for notice in rung.template.ledger.warnings))
+
+
+def _unmet(cls: type[Template], whole: _Part, names: list[str], tolerance: float | None) -> list[Notice]:
+    """A warning for every output whose error is not known to be within the tolerance."""
+    if tolerance is None:
+        return []
+    if accuracy(cls) is None:
         detail = f"the error of {cls.id} version {cls.version} is not measured; no level is known to meet it"
-        notices.append(Notice("tolerance_unmet", "tolerance", detail))
-    return notices
+        return [Notice("tolerance_unmet", "tolerance", detail)]
+    missed = {name: whole.error[name] for name in names if not np.all(whole.error[name] <= tolerance)}
+    return [Notice("tolerance_unmet", name, _missed(name, error)) for name, error in missed.items()]
+
+
+def _missed(name: str, error: Any) -> str:
+    if np.isnan(error).all():
+        return f"the error of {name} was not measured here; the finest level was taken"
+    return f"{name} may be off by {np.nanmax(error):.2g} at the finest level, which is more than asked for"

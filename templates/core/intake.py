@@ -60,6 +60,9 @@ def admitted(
             yield declared.attribute, _bounded(declared, source, ledger, faults)
         elif source is not None:
             yield declared.attribute, source
+        elif isinstance(declared, Given) and declared.optional:
+            ledger.missing.add(declared.attribute)
+            yield declared.attribute, np.float64(np.nan)
 
 
 def _bounded(declared: Input, typed: Typed, ledger: Ledger, faults: list[Fault]) -> Any:
@@ -135,6 +138,8 @@ def check_shapes(self: Template) -> None:
 
 def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
     """The faults of inputs that break a rule; points of arrays are masked instead."""
+    if not rule.missing and not self.ledger.missing.isdisjoint(rule.uses):
+        return
     holds = rule.function(self)
     if isinstance(holds, np.ndarray):
         if not holds.all():

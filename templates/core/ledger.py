@@ -35,3 +35,5 @@ class Ledger:
     typed: dict[str, Typed | str] = field(default_factory=dict)
     warnings: list[Notice] = field(default_factory=list)
     masks: list[Mask] = field(default_factory=list)
+    missing: set[str] = field(default_factory=set)  # attributes of optional inputs that were not given
+    absent: dict[str, str] = field(default_factory=dict)  # attributes of results that do not exist, and why

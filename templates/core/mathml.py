@@ -111,6 +111,8 @@ class Writer:
                 return (text := number(value)), _tightness(text)
             case ast.Attribute(value=ast.Name(id="self"), attr=name):
                 return self.attributes[name]
+            case ast.Attribute(value=ast.Attribute(value=ast.Name(id="self")), attr=name):
+                return _from_attribute(name), ATOM
             case ast.Attribute(attr="pi") | ast.Name(id="pi"):
                 return r"\pi", ATOM
             case ast.Name(id=name):

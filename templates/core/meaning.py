@@ -60,7 +60,8 @@ class Meaning:
 
     `domain` is where it means anything, `published` where its source claims it; `remedy` says what to do
     outside. `also` are other names under which it is known. `assumes` are attributes of the template whose
-    published range bounds this formula too, though it does not use them.
+    published range bounds this formula too, though it does not use them. `absent` says why a result may be
+    NaN without being a fault.
     """
 
     words: str
@@ -74,6 +75,7 @@ class Meaning:
     also: tuple[str, ...] = ()
     integer: bool = False
     assumes: tuple[str, ...] = ()
+    absent: str | None = None
 
     @property
     def wanted(self) -> str:
@@ -146,6 +148,7 @@ def meaning(
     also: tuple[str, ...] = (),
     integer: bool = False,
     assumes: tuple[str, ...] = (),
+    absent: str | None = None,
 ) -> Meaning:
     """The keywords that every declaration shares, as a `Meaning`; bounds are in the declared unit."""
     return Meaning(
@@ -160,4 +163,5 @@ def meaning(
         also=tuple(api_name(other) for other in also),
         integer=integer,
         assumes=assumes,
+        absent=absent,
     )

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from templates.core.catalogue import digest
-from templates.core.declare import Choice, Curve, Declaration, Derived, Formula
+from templates.core.declare import Choice, Curve, Declaration, Derived, Formula, Text
 from templates.core.intake import Input
 from templates.core.mathml import expression, mathml, symbol, symbols
 from templates.core.meaning import Bounds
@@ -31,7 +31,8 @@ def describe(cls: type[Template]) -> dict[str, Any]:
         "inputs": inputs_schema(cls),
         "outputs": outputs_schema(cls),
         "formulas": [formula_on_paper(cls, formula) for formula in cls.formulas.values()],
-        "levels": [],
+        "levels": list(cls.levels),
+        "default_level": cls.default_level or None,
         "limits": [*declared_limits(cls), *({"text": text} for text in sections.get("Limits", []))],
         "references": sections.get("References", []),
         "errata": sections.get("Errata", []),
@@ -51,10 +52,14 @@ def inputs_schema(cls: type[Template]) -> dict[str, Any]:
 
 def outputs_schema(cls: type[Template]) -> dict[str, Any]:
     """JSON Schema of the object `outputs`."""
-    properties = {
-        name: {**_common(formula), **_quantity_out(formula)} for name, formula in cls.formulas.items()
-    }
-    return {"type": "object", "properties": properties}
+    return {"type": "object", "properties": {name: _output(out) for name, out in cls.formulas.items()}}
+
+
+def _output(formula: Formula[Any]) -> dict[str, Any]:
+    if isinstance(formula, Text):
+        value = {"value": {"type": ["string", "array", "null"]}, "reason": {"type": "string"}}
+        return {"title": formula.meaning.words, "type": "object", "required": ["value"], "properties": value}
+    return {**_common(formula), **_quantity_out(formula)}
 
 
 def _input(cls: type[Template], declared: Input) -> dict[str, Any]:

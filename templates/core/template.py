@@ -13,8 +13,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, NoReturn, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
-from templates.core.admission import masked, refusal, warn_if_outside
+from templates.core.admission import absence, masked, refusal, warn_if_outside
 from templates.core.declare import (
     Array,
     Choice,
@@ -23,6 +24,7 @@ from templates.core.declare import (
     Formula,
     Given,
     Requirement,
+    Shared,
     Truth,
     by_name,
     choice,
@@ -31,14 +33,17 @@ from templates.core.declare import (
     formula,
     given,
     require,
+    shared,
+    text,
     units,
 )
 from templates.core.errors import InvalidInputs
 from templates.core.intake import Input, admitted, as_typed, check_shapes, read_inputs, violations
-from templates.core.ledger import Ledger
+from templates.core.ledger import Ledger, Mask
 
 __all__ = [
-    "Array", "Template", "Truth", "choice", "curve", "derived", "formula", "given", "require", "units",
+    "Array", "Template", "Truth", "choice", "curve", "derived", "formula", "given", "require", "shared",
+    "text", "units",
 ]  # fmt: skip
 
 VERSIONED = re.compile(r"(?:^|.*\.)([a-z][a-z0-9_]*)_v([1-9][0-9]*)$")
@@ -59,6 +64,11 @@ class Template:
     formulas: ClassVar[dict[str, Formula[Any]]] = {}
     requirements: ClassVar[tuple[Requirement, ...]] = ()
     declarations: ClassVar[dict[str, Declaration]] = {}
+    intermediates: ClassVar[dict[str, Shared[Any]]] = {}
+
+    levels: ClassVar[tuple[str, ...]] = ()  # fidelities, cheapest first
+    default_level: ClassVar[str] = ""
+    level: str
 
     _ancestry: ClassVar[dict[str, frozenset[str]]] = {}
     ledger: Ledger
@@ -76,10 +86,12 @@ class Template:
         cls.inputs = {name: v for name, v in named.items() if isinstance(v, (Given, Choice, Derived))}
         cls.formulas = {name: v for name, v in named.items() if name not in cls.inputs}
         cls.requirements = tuple(v for v in everything.values() if isinstance(v, Requirement))
+        cls.intermediates = {name: v for name, v in everything.items() if isinstance(v, Shared)}
 
     def __init__(self, values: Mapping[str, Any], ledger: Ledger | None = None) -> None:
         """Take SI values by attribute, unchecked; a user's input comes in by `from_quantities`."""
         self.__dict__.update(values)
+        self.__dict__.setdefault("level", self.default_level)
         self.__dict__["ledger"] = ledger or Ledger()
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
@@ -125,6 +137,22 @@ class Template:
             raise InvalidInputs(faults)
         return cls._checked(values, ledger)
 
+    def at(self, level: str, where: NDArray[np.bool_] | None = None) -> Self:
+        """The same inputs at another level; only those points of arrays where `where` holds, if given."""
+        names = (declared.attribute for declared in self.inputs.values())
+        values = {name: vars(self)[name] for name in names if name in vars(self)}
+        masks = self._own_masks()
+        if where is not None:
+            values = {name: _picked(value, where) for name, value in values.items()}
+            masks = [Mask(m.names, np.broadcast_to(m.where, where.shape)[where], m.reason) for m in masks]
+        ledger = Ledger(typed=self.ledger.typed, masks=masks, missing=self.ledger.missing)
+        return type(self)({**values, "level": level}, ledger)
+
+    def _own_masks(self) -> list[Mask]:
+        """The masks that come from inputs; those of formulas come anew with the level."""
+        inputs = {declared.attribute for declared in self.inputs.values()}
+        return [mask for mask in self.ledger.masks if inputs.issuperset(mask.names)]
+
     @classmethod
     def from_si(cls, values: Mapping[str, Any]) -> Self:
         """A template from SI values by API name, checked like a user's."""
@@ -152,7 +180,8 @@ class Template:
         found, waiting = {attribute}, [attribute]
         while waiting:
             yield (name := waiting.pop())
-            new = dict.fromkeys(n for n in getattr(cls.declarations.get(name), "uses", ()) if n not in found)
+            node = cls.declarations.get(name) or cls.intermediates.get(name)
+            new = dict.fromkeys(n for n in getattr(node, "uses", ()) if n not in found)
             found |= new.keys()
             waiting += new
 
@@ -167,7 +196,10 @@ class Template:
         if isinstance(value, float) or (np.ndim(value) == 0 and not isinstance(value, str)):
             value = np.float64(value)
             if not (math.isfinite(value) and (meaning.domain_si is None or meaning.domain_si.admits(value))):
-                raise InvalidInputs([refusal(self, declaration, value)])
+                why = absence(self, declaration) if math.isnan(value) else None
+                if why is None:
+                    raise InvalidInputs([refusal(self, declaration, value)])
+                self.ledger.absent[declaration.attribute] = why
         elif isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
             value = masked(self, declaration, value)
         if meaning.published_si is not None:
@@ -175,3 +207,7 @@ class Template:
         for assumed in meaning.assumes:
             getattr(self, assumed)
         return value
+
+
+def _picked(value: Any, where: NDArray[np.bool_]) -> Any:
+    return np.broadcast_to(value, where.shape)[where] if isinstance(value, np.ndarray) else value
