@@ -50,6 +50,7 @@ TABLE: dict[type[Exception], Kind] = {
     designs.NotFound: Kind("not-found", 404, "Not found", "GET the list to see what there is"),
     designs.StaleRevision: Kind("stale-revision", 412, "The design has changed", "read it again, then retry"),
     designs.KeyReused: Kind("idempotency-key-reused", 422, "Idempotency-Key reused", "take a new key"),
+    designs.NotConverged: Kind("not-converged", 422, "The iteration did not settle", "see `rounds`"),
     PreconditionRequired: Kind("precondition-required", 428, "If-Match is needed", "send the design's ETag"),
     NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),
     BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
@@ -133,6 +134,7 @@ _CARRIED: dict[type[Exception], Callable[[Any], dict[str, Any]]] = {
     RequestValidationError: _validation,
     templates.Unreachable: _unreachable,
     GeometryError: _geometry,
+    designs.NotConverged: lambda error: {"rounds": error.rounds},
 }
 
 

@@ -4,9 +4,13 @@ DesignError
     NotFound            no such design, revision, model or artifact
     StaleRevision       the design has changed since the client read it
     KeyReused           an Idempotency-Key came again with another request
+    NotConverged        a declared iteration did not settle within its limit
 """
 
 from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 
 class DesignError(Exception):
@@ -33,3 +37,16 @@ class KeyReused(DesignError):
 
     def __init__(self, key: str) -> None:
         super().__init__(f"the Idempotency-Key {key[:80]!r} was used for a different request; take a new one")
+
+
+class NotConverged(DesignError):
+    """A declared iteration did not settle within its limit; `rounds` tells what was assumed and measured."""
+
+    def __init__(self, through: str, tolerance: float, rounds: Sequence[Mapping[str, Any]]) -> None:
+        self.rounds = [dict(done) for done in rounds]
+        last = rounds[-1]
+        super().__init__(
+            f"the iteration through {through} did not settle to {tolerance:g} within {len(rounds)} rounds: "
+            f"last assumed {last['assumed']:.6g}, measured {last['measured']:.6g} {last['unit']}; start nearer, "
+            "allow more rounds, or weaken the feedback"
+        )

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise
 from typing import Any
 
 from app.designs.document import Document
@@ -204,13 +205,19 @@ def _ordered(graph: Graph) -> Iterator[Fault]:
     try:
         graph.order = list(TopologicalSorter({node: graph.sources(node) for node in nodes}).static_order())
     except CycleError as error:
-        path = [node.removesuffix(SOLID) for node in error.args[1]]
-        shown = " → ".join(node for i, node in enumerate(path) if i == 0 or node != path[i - 1])
-        detail = (
-            f"each of these follows from the one before it: {shown}; break the loop or declare an iteration"
-        )
-        cells = [node for node in path if graph.cell(node)]
-        yield Fault(cells[0] if cells else path[0], "loop", detail)
+        path = list(_told(graph, error.args[1]))
+        shown = " → ".join([*path, path[0]])
+        detail = f"each follows from the one before it: {shown}; break the loop or declare an iteration"
+        yield Fault(next(name for name in path if graph.cell(name)), "loop", detail)
+
+
+def _told(graph: Graph, cycle: list[str]) -> Iterator[str]:
+    """A cycle of nodes (its last is its first) in the names that its relations use."""
+    for node, following in pairwise(cycle):
+        if graph.cell(node):
+            yield node
+        elif cell := graph.cell(following):
+            yield next(name for name in sorted(cell.uses) if graph.node(name) == node)
 
 
 def _kinds(graph: Graph) -> Iterator[Fault]:

@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 from app.designs import repository, results
 from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, Iteration
+from app.designs.errors import NotConverged
 from app.designs.graph import Catalogues, Graph, build_graph, raise_if
 from app.designs.service import built, starts
 from app.jobs.service import Completion, Job, JobContext, JobFailed
@@ -21,19 +22,6 @@ from cad.errors import GeometryError
 from cad.inspect import MEASURES
 from templates.core.errors import TemplateError
 from templates.core.units import unit
-
-
-class NotConverged(TemplateError):
-    """A declared iteration did not settle within its limit."""
-
-    def __init__(self, iteration: Iteration, rounds: list[dict[str, Any]]) -> None:
-        self.rounds = rounds
-        last = rounds[-1]
-        super().__init__(
-            f"the iteration through {iteration.through} did not settle to {iteration.tolerance:g} within "
-            f"{iteration.limit} rounds: last assumed {last['assumed']:.6g}, measured {last['measured']:.6g} "
-            f"{last['unit']}; start nearer, allow more rounds, or weaken the feedback"
-        )
 
 
 class Regeneration:
@@ -57,7 +45,7 @@ class Regeneration:
             document = Document.model_validate(repository.revision(session, id, number).document)
         try:
             calculation, rounds = self._settled(document, context)
-        except (TemplateError, GeometryError, DeadlineExceeded, MemoryExceeded) as error:
+        except (NotConverged, TemplateError, GeometryError, DeadlineExceeded, MemoryExceeded) as error:
             raise JobFailed(describe(error)) from error
         told = {"steps": results.steps(calculation), "iterations": rounds}
         models = results.models(calculation)
@@ -89,7 +77,7 @@ class Regeneration:
             for iteration in unsettled:
                 told = [done for done in rounds if done["through"] == iteration.through]
                 if len(told) >= iteration.limit:
-                    raise NotConverged(iteration, told)
+                    raise NotConverged(iteration.through, iteration.tolerance, told)
             assumed = measured
 
     def _built(self, graph: Graph, assumed: Mapping[str, float], context: JobContext) -> Calculation:
