@@ -44,7 +44,7 @@ class Banded:
 
 def _solve_masked(bands: Array, film: Mask, right: Array) -> Array:
     """Solve with the rows and columns outside the film replaced by those of the unit matrix."""
-    bands = bands * film
+    bands = bands[: film.size] * film
     for offset in np.flatnonzero(bands[1:].any(axis=1)) + 1:
         bands[offset, : film.size - offset] *= film[offset:]
         bands[offset, film.size - offset :] = 0

@@ -83,7 +83,8 @@ def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Ca
         fischer = pair.sum(axis=0) - np.hypot(*pair)
         worst = float(np.abs(loss).max())
         if max(worst, np.abs(fischer).max()) < _ACCURACY * flow:
-            return Cavitation(np.maximum(P, 0), np.maximum(void, 0), step, worst / flow)
+            P[free], void[free] = np.where(pair[0] >= pair[1], pair * [[1], [0]], pair * [[0], [1]]) / scale
+            return Cavitation(P, void, step, float(np.abs(network.loss(P, void)[free]).max()) / flow)
         P[free], void[free] = (pair + _newton_step(by_P, by_void, loss, pair, fischer)) / scale
     raise ArithmeticError("the cavities' extent did not settle")
 

@@ -7,10 +7,10 @@ load: both ends are resolved alike and the search cannot leave its bracket.
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize.elementwise import find_root
 from scipy.special import expit, logit
 
 from templates.physics.arrays import ECCENTRICITY_LIMIT, Array, require
+from templates.physics.roots import bracketed_root
 
 _LOWEST = 1e-20
 
@@ -37,11 +37,13 @@ def eccentricity(load: Callable[..., Array], So: Array, *parameters: Array) -> A
     So = np.asarray(So, float)
     require(np.isfinite(So) & (So >= 0), "So must be 0 or more and finite")
     So, *parameters_ = np.broadcast_arrays(So, *parameters)
-    bracket = np.full(So.shape, logit(_LOWEST)), np.full(So.shape, logit(ECCENTRICITY_LIMIT))
-    arguments = (np.log(np.where(So > 0, So, 1.0)), *parameters_)
+    logarithm = np.log(np.where(So > 0, So, 1.0))
 
-    def excess(u: Array, logarithm: Array, *rest: Array) -> Array:
-        return np.log(load(np.minimum(expit(u), ECCENTRICITY_LIMIT), *rest)) - logarithm
+    def excess(u: Array) -> Array:
+        eps = np.minimum(expit(u), ECCENTRICITY_LIMIT)
+        return np.asarray(np.log(load(eps, *parameters_)) - logarithm)
 
-    root = find_root(excess, bracket, args=arguments)
-    return np.where(So > 0, np.where(root.success, expit(root.x), np.nan), 0.0)
+    root = bracketed_root(
+        excess, np.full(So.shape, logit(_LOWEST)), np.full(So.shape, logit(ECCENTRICITY_LIMIT))
+    )
+    return np.where(So > 0, expit(root), 0.0)

@@ -50,7 +50,7 @@ def plain_coefficients(eps: float, ratio: float, around: int = 128, across: int 
     """
     require(np.asarray(eps > 0), "eps must be above 0: without load, coefficients over load do not exist")
     field = static_field(eps, ratio, around, across)
-    return _in_load_axes([_forces(eps, ratio, field.mesh, field.rupture)])
+    return _in_load_axes([linear_forces(eps, ratio, field.mesh, field.rupture)])
 
 
 def grooved_coefficients(
@@ -81,7 +81,7 @@ def grooved_coefficients(
         return float(along * np.sin(attitude) + ahead * np.cos(attitude))
 
     attitude = brentq(across_load, 1e-3, np.pi / 2, xtol=1e-10)
-    return _in_load_axes([_forces(eps, ratio, mesh, film) for mesh, film in films(attitude)])
+    return _in_load_axes([linear_forces(eps, ratio, mesh, film) for mesh, film in films(attitude)])
 
 
 def _lands(grooves: list[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -92,7 +92,7 @@ def _lands(grooves: list[tuple[float, float]]) -> list[tuple[float, float]]:
     return lands
 
 
-def _forces(eps: float, ratio: float, mesh: Mesh, film: Rupture) -> Array:
+def linear_forces(eps: float, ratio: float, mesh: Mesh, film: Rupture) -> Array:
     """So along and ahead of the line of centres, and their derivatives, (2, 5).
 
     Columns: the force itself, by displacement along and ahead, by velocity along and ahead.

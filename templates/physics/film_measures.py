@@ -27,7 +27,7 @@ class Film:
     peak: float
     """Its place, from the narrowest gap in the sense of rotation: negative [rad]."""
     rupture: float
-    """Where the film ruptures at mid-width, from the narrowest gap [rad]."""
+    """Where the film ruptures at mid-width, from the narrowest gap; good to a mesh width [rad]."""
     friction: float
     """Friction on the journal F_f psi/(B D eta omega), shear over the full circle (DIN 31652)."""
     friction_bearing: float

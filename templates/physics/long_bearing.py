@@ -9,9 +9,9 @@ References:
 """
 
 import numpy as np
-from scipy.optimize.elementwise import find_root
 
 from templates.physics.arrays import Array, require_film
+from templates.physics.roots import bracketed_root
 
 
 def load_Sommerfeld_1904(eps: Array) -> Array:
@@ -89,13 +89,12 @@ def rupture_Swift_Stieber(eps: Array) -> Array:
     """
     require_film(eps, np.ones(()))
     eps = np.asarray(eps, float)
-    bracket = np.full_like(eps, np.pi), np.full_like(eps, 1.5 * np.pi)
-    return np.asarray(find_root(_pressure_at_rupture, bracket, args=(eps,)).x)
 
+    def pressure(gamma: Array) -> Array:
+        sin, cos = np.sin(gamma), np.cos(gamma)
+        return np.asarray(eps * (sin * cos - gamma) + 2 * (sin - gamma * cos))
 
-def _pressure_at_rupture(gamma: Array, eps: Array) -> Array:
-    """Pressure at the supposed rupture, up to a positive factor [-]."""
-    return eps * (np.sin(gamma) * np.cos(gamma) - gamma) + 2 * (np.sin(gamma) - gamma * np.cos(gamma))
+    return bracketed_root(pressure, np.full_like(eps, np.pi), np.full_like(eps, 1.5 * np.pi))
 
 
 def force_Swift_Stieber(eps: Array) -> tuple[Array, Array]:

@@ -115,5 +115,5 @@ def peak_pressure_Ocvirk_1952(eps: Array, ratio: Array) -> Array:
         NACA TN 2808, 1952, equation 21.
     """
     require_film(eps, ratio)
-    theta = peak_angle_Ocvirk_1952(eps)
-    return np.asarray(3 * ratio**2 * eps * np.sin(theta) / (1 + eps * np.cos(theta)) ** 3)
+    cos = -6 * eps / (1 + np.sqrt(1 + 24 * eps**2))
+    return np.asarray(3 * ratio**2 * eps * np.sqrt((1 - cos) * (1 + cos)) / (1 + eps * cos) ** 3)
