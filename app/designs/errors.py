@@ -47,6 +47,6 @@ class NotConverged(DesignError):
         last = rounds[-1]
         super().__init__(
             f"the iteration through {through} did not settle to {tolerance:g} within {len(rounds)} rounds: "
-            f"last assumed {last['assumed']:.6g}, measured {last['measured']:.6g} {last['unit']}; start nearer, "
-            "allow more rounds, or weaken the feedback"
+            f"it assumed {last['assumed']:.6g} and measured {last['measured']:.6g} {last['unit']}; "
+            "start nearer, allow more rounds, or weaken the feedback"
         )

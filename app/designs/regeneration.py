@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 from sqlalchemy.orm import Session
@@ -60,7 +61,8 @@ class Regeneration:
     def failed(session: Session, job: Job, problem: dict[str, Any]) -> None:
         """Record in the revision why its regeneration failed; runs in the transaction that ends the job."""
         if job.design is not None and job.revision is not None:
-            repository.fail(session, job.design, job.revision, problem)
+            changed = repository.changed_since_good(session, job.design, job.revision)
+            repository.fail(session, job.design, job.revision, {**problem, "changed": changed})
 
     def _settled(self, document: Document, context: JobContext) -> tuple[Calculation, list[dict[str, Any]]]:
         """The calculation with all solids built and all iterations settled, and the rounds that it took."""
@@ -86,11 +88,22 @@ class Regeneration:
             with self.database.read() as session:
                 calculation = calculate(graph, built(session), assumed)
             raise_if(calculation.faults)
-            waiting = [s for name, s in calculation.shapes.items() if name not in calculation.measures]
+            waiting = calculation.shapes.keys() - calculation.measures.keys()
             if not waiting:
                 return calculation
-            for shape in waiting:
-                self.builds.make(shape, context)
+            for name in sorted(waiting):
+                with _named(name):
+                    self.builds.make(calculation.shapes[name], context)
+
+
+@contextmanager
+def _named(model: str) -> Iterator[None]:
+    """Let a failure of geometry name the model of the design."""
+    try:
+        yield
+    except GeometryError as error:
+        names = (f"{model}.{parameter}" for parameter in error.parameters)
+        raise GeometryError(error.code, f"{model}: {error.detail}", names) from error
 
 
 def _round(done: int, name: str, assumed: float, measured: float) -> dict[str, Any]:

@@ -188,6 +188,16 @@ def newest_good(session: Session, id: str, model: str, until: int) -> RevisionMo
     return session.scalars(query.limit(1)).first()
 
 
+def changed_since_good(session: Session, id: str, number: int) -> list[str]:
+    """The model parameters of a revision that differ from those of the last good model."""
+    changed: list[str] = []
+    for model in revision(session, id, number).models:
+        good = newest_good(session, id, model.name, number - 1)
+        before = good.parameters if good else {}
+        changed += (f"{model.name}.{n}" for n, v in model.parameters.items() if before.get(n) != v)
+    return changed
+
+
 def users_of(session: Session, key: str) -> list[Mapping[str, Any]]:
     """The revisions that use a build, oldest first, and whether each is its design's newest."""
     query = (
