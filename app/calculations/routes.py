@@ -7,7 +7,8 @@ from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
 
 from app.calculations.schemas import EvaluateIn, SolveIn
-from app.calculations.service import points, run_evaluate, run_solve
+from app.calculations.service import run_evaluate, run_solve
+from app.calculations.size import points
 from app.catalogue.routes import Id, Number
 from app.dependencies import TheCatalogues
 from app.http import StrictRoute

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from typing import Any
-
-import numpy as np
 
 from app.calculations import rendering
 from app.calculations.schemas import EvaluateIn, SolveIn
+from app.calculations.size import points
 from app.http import TooManyValues
 from templates.core.evaluate import evaluate
 from templates.core.solve import solve
@@ -63,21 +60,3 @@ def run_solve(cls: type[Template], body: SolveIn) -> dict[str, Any]:
     warnings = [{"code": w.code, "name": w.name, "detail": w.detail} for w in found.warnings]
     told = {"unknown": rendering.quantity(found.unknown, found.unit), "warnings": warnings}
     return {**told, "evaluation": rendering.evaluation(found.evaluation)}
-
-
-def points(inputs: Mapping[str, Any]) -> int:
-    """How many points the arrays among the inputs span together; what does not fit is refused later."""
-    shapes = [shape for raw in inputs.values() if (shape := _shape(raw))]
-    try:
-        return math.prod(np.broadcast_shapes(*shapes))
-    except ValueError:
-        return 1
-
-
-def _shape(raw: Any) -> tuple[int, ...]:
-    items = raw.get("value") if isinstance(raw, Mapping) else raw
-    shape: list[int] = []
-    while isinstance(items, list) and items and len(shape) < 8:
-        shape.append(len(items))
-        items = items[0]
-    return tuple(shape)

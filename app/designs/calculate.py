@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from app.calculations.size import points, spanned
 from app.designs.graph import SOLID, Block, Cell, Graph
 from cad.inspect import MEASURES
 from cad.model import CadModel
@@ -27,6 +28,7 @@ from templates.core.units import Value, unit
 Measures = Mapping[str, float]  # in the units of MEASURES
 Measured = Callable[[CadModel], Measures | None]
 
+MOST_VALUES = 100_000  # of a relation, or of all outputs of a step
 REMEMBERED = 512  # evaluations of steps; a preview changes one of them and finds the others here
 
 
@@ -135,6 +137,7 @@ def _literal(graph: Graph, cell: Cell) -> Value | None:
 def _joined(result: Calculation, cell: Cell, assumed: Mapping[str, float]) -> Value:
     """The value of a relation, or of a list that mixes relations and quantities."""
     names = {name: result.value(name, assumed) for name in cell.uses}
+    _limit(spanned(np.shape(value) for value in names.values()))
     if not isinstance(cell.raw, list):
         return _finite(cell.relations[0].value(names))
     declared = result.graph.unit_of(cell.name) if "." in cell.name else None
@@ -150,6 +153,12 @@ def _item(item: Any, names: Mapping[str, Value], declared: str | None) -> Value:
     if is_relation(item):
         return parse(item).value(names)
     return read(item, declared).si if declared else read_any(item).si
+
+
+def _limit(values: int) -> None:
+    if values > MOST_VALUES:
+        told = f"this makes {values} values, more than the {MOST_VALUES} that a design takes in one place"
+        raise FaultyText("too_many_values", told)
 
 
 def _finite(value: Value) -> Value:
@@ -197,11 +206,15 @@ def _attempt(result: Calculation, block: Block, raw: dict[str, Any], *, evaluabl
                 shape.inputs_si()
             result.shapes[block.name] = shape
         elif evaluable:
-            result.evaluations[block.name] = memory.evaluation(block, raw, _wanted(result.graph, block))
+            wanted = _wanted(result.graph, block)
+            _limit(points(raw) * len(block.cls.formulas if wanted is None else wanted))
+            result.evaluations[block.name] = memory.evaluation(block, raw, wanted)
         else:
             block.cls.from_quantities(raw)
     except InvalidInputs as error:
         return list(error.faults)
+    except FaultyText as error:
+        return [error.fault("inputs")]
     return []
 
 

@@ -66,14 +66,11 @@ class Document(BaseModel):
     @classmethod
     def one_model(cls, raw: Any) -> Any:
         """`model` is short for `models` with one entry of that name."""
-        if isinstance(raw, Mapping) and "model" in raw:
-            if "models" in raw:
-                raise ValueError("give either model or models, not both")
-            return {
-                **{key: value for key, value in raw.items() if key != "model"},
-                "models": {"model": raw["model"]},
-            }
-        return raw
+        if not isinstance(raw, Mapping):
+            return raw
+        if "model" in raw and "models" in raw:
+            raise ValueError("give either model or models, not both")
+        return _in_models(raw)
 
     @model_validator(mode="after")
     def names_differ(self) -> Self:
@@ -86,12 +83,17 @@ class Document(BaseModel):
         return self
 
 
+def _in_models(raw: Mapping[str, Any]) -> Mapping[str, Any]:
+    """With `model` as the entry of that name in `models`; as it is, if it has no `model`, or both."""
+    if "model" not in raw or "models" in raw:
+        return raw
+    rest = {key: value for key, value in raw.items() if key != "model"}
+    return {**rest, "models": {"model": raw["model"]}}
+
+
 def merge(document: Mapping[str, Any], patch: Mapping[str, Any]) -> dict[str, Any]:
     """The document with a merge patch applied (RFC 7396); a quantity is replaced whole, never merged into."""
-    patch = dict(patch)
-    if "model" in patch:
-        patch["models"] = {**(patch.get("models") or {}), "model": patch.pop("model")}
-    return dict(_merged(document, patch, ()))
+    return dict(_merged(document, _in_models(patch), ()))
 
 
 def _merged(old: Any, patch: Any, path: tuple[str, ...]) -> Any:

@@ -28,6 +28,7 @@ def preview(session: Session, catalogues: Catalogues, id: str, patch: Mapping[st
     old, _ = _calculated(session, catalogues, Document.model_validate(head.document))
     changed = resolved(read_document(merge(head.document, patch)), catalogues)
     new, mismatched = _calculated(session, catalogues, changed)
+    raise_if(new.faults)  # not those of the old one: the change may be to mend it
     return {
         "revision": head.number,
         "outputs": _compared(results.outputs(results.steps(old)), results.outputs(results.steps(new))),
@@ -45,9 +46,7 @@ def _calculated(
         f.name: f for f in faults if f.code == "unit_mismatch" and f.name.partition(".")[0] in models
     }
     raise_if([fault for fault in faults if fault.name not in mismatched])
-    calculation = calculate(graph, built(session), starts(document), broken=mismatched)
-    raise_if(calculation.faults)
-    return calculation, mismatched
+    return calculate(graph, built(session), starts(document), broken=mismatched), mismatched
 
 
 def _compared(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:

@@ -72,7 +72,8 @@ class Regeneration:
         while True:
             calculation = self._built(graph, assumed, context)
             measured = {i.through: calculation.measure(i.through) for i in document.iterations}
-            rounds += [_round(len(rounds), name, assumed[name], value) for name, value in measured.items()]
+            number = len(rounds) // max(1, len(measured)) + 1
+            rounds += [_round(number, name, assumed[name], value) for name, value in measured.items()]
             unsettled = [i for i in document.iterations if not _settles(i, assumed, measured)]
             if not unsettled:
                 return calculation, rounds
@@ -106,10 +107,10 @@ def _named(model: str) -> Iterator[None]:
         raise GeometryError(error.code, f"{model}: {error.detail}", names) from error
 
 
-def _round(done: int, name: str, assumed: float, measured: float) -> dict[str, Any]:
+def _round(number: int, name: str, assumed: float, measured: float) -> dict[str, Any]:
     scale = unit(MEASURES[name.partition(".")[2]])
     shown = {"assumed": float(scale.from_si(assumed)), "measured": float(scale.from_si(measured))}
-    return {"round": done + 1, "through": name, **shown, "unit": scale.text}
+    return {"round": number, "through": name, **shown, "unit": scale.text}
 
 
 def _settles(iteration: Iteration, assumed: Mapping[str, float], measured: Mapping[str, float]) -> bool:

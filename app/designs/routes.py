@@ -10,15 +10,15 @@ from starlette.concurrency import run_in_threadpool
 
 from app.dependencies import TheCatalogues, TheDatabase, TheDesigns, TheJobs, TheOnce
 from app.designs import repository, views
-from app.designs.automap import proposals
 from app.designs.explain import explain
 from app.designs.preview import preview
-from app.designs.schemas import CopyIn, DesignIn, RestoreIn
+from app.designs.schemas import LONGEST_NOTE, CopyIn, DesignIn, RestoreIn
 from app.designs.service import Designs, Saved
 from app.http import StrictRoute
 from app.jobs.service import Jobs
 from app.paging import Cursor, Limit, page
 from app.waiting import finished
+from templates.core.errors import Fault, InvalidInputs
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
@@ -40,7 +40,7 @@ async def create_design(
     body: DesignIn, designs: TheDesigns, jobs: TheJobs, once: TheOnce, prefer: Prefer = None
 ) -> Response:
     """A new design; its models are built. 201 when they are ready, 202 while they are being built."""
-    raw = body.model_dump(mode="json")
+    raw = body.model_dump()  # not in JSON's mode, which hides a NaN as null
     note = raw.pop("note")
     raw.pop("model")
     saved = await run_in_threadpool(designs.create, raw, note, once)
@@ -108,19 +108,9 @@ async def auto_map(
     prefer: Prefer = None,
 ) -> Response:
     """Proposals for model parameters that are not set, by name and unit."""
-    with designs.database.read() as session:
-        document = repository.head(session, id).document
-    _, calculation = await run_in_threadpool(designs.prepare, document)
-    found = proposals(calculation.graph)
+    found, saved = await run_in_threadpool(designs.auto_map, id, apply, if_match, once)
     told = {"proposals": [vars(proposal) for proposal in found]}
-    if not (apply and found):
-        return JSONResponse(told)
-    models: dict[str, Any] = {}
-    for proposal in found:
-        model, _, parameter = proposal.target.partition(".")
-        models.setdefault(model, {"parameters": {}})["parameters"][parameter] = proposal.relation
-    saved = await run_in_threadpool(designs.change, id, {"models": models}, "auto-map", if_match, once)
-    return await _answer(designs, jobs, saved, prefer, told)
+    return await _answer(designs, jobs, saved, prefer, told) if saved else JSONResponse(told)
 
 
 @router.post("/{id}/copy", status_code=201)
@@ -194,7 +184,9 @@ def _noted(body: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
     """A patch and its note."""
     patch = {key: value for key, value in body.items() if key != "note"}
     note = body.get("note")
-    return patch, str(note)[:1000] if note is not None else None
+    if note is not None and not (isinstance(note, str) and len(note) <= LONGEST_NOTE):
+        raise InvalidInputs([Fault("note", "string", f"a note is a text of at most {LONGEST_NOTE} letters")])
+    return patch, note
 
 
 async def _answer(

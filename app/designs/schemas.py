@@ -27,7 +27,8 @@ PAPER: dict[str, Any] = {
 }
 """The paper's demonstration as a design."""
 
-Note = Field(None, max_length=1000, description="why, for the list of revisions")
+LONGEST_NOTE = 1000  # letters
+Note = Field(None, max_length=LONGEST_NOTE, description="why, for the list of revisions")
 
 
 class DesignIn(Document):

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from sqlalchemy.orm import Session
 
 from app.designs import repository, results
+from app.designs.automap import Proposal, proposals
 from app.designs.calculate import Calculation, Measured, Measures, calculate
 from app.designs.document import Document, merge
 from app.designs.errors import StaleRevision
@@ -22,7 +23,7 @@ from cad.inspect import MEASURES
 from cad.model import CadModel
 from cad.regenerate import build_key
 from templates.core.errors import Fault, FaultyText, InvalidInputs
-from templates.core.quantity import read
+from templates.core.quantity import Value, read
 
 REGENERATE = "regenerate"
 
@@ -35,6 +36,7 @@ class Saved:
     revision: int
     job: str | None
     created: bool
+    fresh: bool = True  # made by this request, not found from an earlier one
 
 
 class Designs:
@@ -104,6 +106,23 @@ class Designs:
         """Take a design from the lists; its revisions are kept."""
         self.database.write(lambda session: repository.delete(session, id))
 
+    def auto_map(
+        self, id: str, apply: bool, expected: str | None, once: Once
+    ) -> tuple[list[Proposal], Saved | None]:
+        """Proposals for unset model parameters, and the revision with them if they are to be applied."""
+        repeated = self._repeated(once) if apply else None
+        with self.database.read() as session:
+            number = repeated.revision - 1 if repeated else repository.head(session, id).number
+            document = repository.revision(session, id, number).document
+        found = proposals(self.prepare(document)[1].graph)
+        if repeated or not (apply and found):
+            return found, repeated
+        models: dict[str, Any] = {}
+        for proposal in found:
+            model, _, parameter = proposal.target.partition(".")
+            models.setdefault(model, {"parameters": {}})["parameters"][parameter] = proposal.relation
+        return found, self.change(id, {"models": models}, "auto-map", expected or f'"{number}"', once)
+
     def state(self, id: str) -> dict[str, Any]:
         """At which revision a design is, and how its regeneration stands."""
         with self.database.read() as session:
@@ -128,7 +147,9 @@ class Designs:
             if row.head != base:
                 raise StaleRevision(f'"{base}"', row.head)
             if repository.revision(session, id, base).document == written.document:
-                return Saved(id, base, None, created=False)
+                unchanged = Saved(id, base, None, created=False, fresh=False)
+                once.keep(session, 200, vars(unchanged))
+                return unchanged
             revision = repository.append(session, row, written)
             return self._enqueued(session, id, revision, pending, once, created=False)
 
@@ -157,12 +178,12 @@ class Designs:
 
     def _saved(self, unit: Any) -> Saved:
         saved: Saved = self.database.write(unit)
+        if saved.fresh:
+            topic, state = f"design:{saved.design}", "regenerating" if saved.job else "current"
+            for event in ("revision", state):
+                self.jobs.events.publish(topic, {"event": event, "revision": saved.revision})
         if saved.job:
             self.jobs.wake()
-        topic = f"design:{saved.design}"
-        self.jobs.events.publish(topic, {"event": "revision", "revision": saved.revision})
-        state = "regenerating" if saved.job else "current"
-        self.jobs.events.publish(topic, {"event": state, "revision": saved.revision})
         return saved
 
     def _repeated(self, once: Once) -> Saved | None:
@@ -172,7 +193,7 @@ class Designs:
 
 def _found(session: Session, once: Once) -> Saved | None:
     location = once.find(session)
-    return Saved(**location) if location else None
+    return Saved(**{**location, "fresh": False}) if location else None
 
 
 def _require_match(expected: str | None, head: int) -> None:
@@ -231,10 +252,14 @@ def starts(document: Document) -> dict[str, float]:
     for iteration in document.iterations:
         measure = iteration.through.partition(".")[2]
         try:
-            values[iteration.through] = float(read(iteration.start, MEASURES[measure]).si)
+            values[iteration.through] = _single(read(iteration.start, MEASURES[measure]).si)
         except FaultyText as error:
             faults.append(error.fault("iterations.start"))
-        except TypeError:
-            faults.append(Fault("iterations.start", "not_a_number", "one value is wanted here, not an array"))
     raise_if(faults)
     return values
+
+
+def _single(value: Value) -> float:
+    if not isinstance(value, float):
+        raise FaultyText("not_a_number", "one value is wanted here, not an array")
+    return value

@@ -11,6 +11,7 @@ import gc
 import importlib
 import logging
 import os
+import pkgutil
 import signal
 import socket
 from collections.abc import Iterable
@@ -31,11 +32,18 @@ def main(channel: int, modules: Iterable[str]) -> None:
         _serve(server)
 
 
-def _preload(module: str) -> None:
+def _preload(name: str) -> None:
+    """Import a module, or all modules of a package; the kernel is only loaded.
+
+    Once used, it has threads of its own, and a fork that lacks them would wait for them for ever.
+    """
     try:
-        importlib.import_module(module)
+        module = importlib.import_module(name)
     except ImportError as error:
-        logging.getLogger(__name__).warning("%s is not preloaded: %s", module, error)
+        logging.getLogger(__name__).warning("%s is not preloaded: %s", name, error)
+        return
+    for found in pkgutil.iter_modules(getattr(module, "__path__", ()), f"{name}."):
+        _preload(found.name)
 
 
 def _serve(server: socket.socket) -> None:

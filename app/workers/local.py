@@ -13,13 +13,17 @@ T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
 
+# What a geometry job imports: the kernel, every model, and the module of the job function itself.
+GEOMETRY = ("cad.regenerate", "cad.models", "app.models.builds")
+
+
 class LocalProcesses:
     """Runs functions in processes that are forked from one with the geometry modules loaded.
 
     One process is kept waiting for the next job, because a fork of such a large process is not free.
     """
 
-    def __init__(self, preload: Sequence[str] = ("cad.regenerate",)) -> None:
+    def __init__(self, preload: Sequence[str] = GEOMETRY) -> None:
         self._forkserver = ForkServer(preload)
         self._lock = threading.Lock()
         self._spare = self._forkserver.fork()
