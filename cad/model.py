@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 from cadquery import Location, Shape
 
+from cad.errors import GeometryError
 from cad.surfaces import Seen
 from templates.core.template import Array, Template
 
@@ -43,6 +44,21 @@ class Part:
     places: tuple[Location, ...] = (Location(),)
     tolerance: float = 1e-6  # of the volume, relative; larger only where the closed form approximates
     shaped_by: tuple[str, ...] = ()  # the parameters to name if it fails; all of them, if it does not say
+
+    @property
+    def solid(self) -> Shape:
+        """The one solid of the shape, which some operations of the kernel wrap in a compound.
+
+        Raises
+        ------
+        GeometryError
+            `not_one_solid`.
+        """
+        solids = self.shape.Solids()
+        if len(solids) != 1:
+            detail = f"{self.name} should be one solid; it is {len(solids)}"
+            raise GeometryError("not_one_solid", detail, self.shaped_by)
+        return solids[0]
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -76,7 +76,8 @@ def _fitted(corners: Floats, width: int, height: int) -> Floats:
     room = (1 - 2 * _MARGIN) * np.array([width, height])
     scale = (room / (high - low)[:2]).min()
     moved: Floats = (corners - (low + high) / 2) * (scale * np.array([1, -1, 1]))
-    return moved + np.array([width / 2, height / 2, 0])
+    moved += np.array([width / 2, height / 2, 0])
+    return moved
 
 
 def _draw(scene: Scene, width: int, height: int) -> tuple[Floats, Ints]:

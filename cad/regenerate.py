@@ -21,7 +21,8 @@ from cad.errors import GeometryError
 from cad.header import Header
 from cad.inspect import bounding_box, look_at, measure, summarise
 from cad.model import CadModel
-from cad.step import KERNEL, read_step, write_step
+from cad.step import read_step, write_step
+from cad.step_text import KERNEL
 
 __all__ = ["Build", "as_text", "build_key", "regenerate"]
 
@@ -99,7 +100,12 @@ def regenerate(
     densities = {part.name: part.density for part in parts}
     measures = summarise(bodies, measured, densities, box)
     report(1.0, "done")
-    return Build(key, cls.id, cls.version, model.inputs_si(), step, measures, dimensions)
+    return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions)
+
+
+def _plain(model: CadModel) -> dict[str, float | str]:
+    """Every parameter in SI, as plain numbers and words."""
+    return {n: v if isinstance(v, str) else float(v) for n, v in model.inputs_si().items()}
 
 
 def _text(model: CadModel, name: str, value: Any) -> str:
@@ -120,6 +126,10 @@ def _kernel(model: CadModel) -> Iterator[None]:
     """Whatever the kernel raises is a failure of this model's geometry."""
     try:
         yield
+    except GeometryError as error:
+        raise GeometryError(
+            error.code, f"{model.id}: {error.detail}", error.parameters or model.inputs
+        ) from None
     except Exception as error:
         detail = f"the kernel failed on {model.id}: {type(error).__name__}: {error}"
         raise GeometryError("kernel", detail, model.inputs) from error

@@ -1,17 +1,10 @@
-"""STEP (AP242): parts to bytes, the same for the same parts, and back to bodies with names and colours.
-
-The kernel's writer leaves three marks of its process in a file: the time, its name as author, and a counter
-of assembly usages. The header is therefore written by `cad.header`, and the counter begins at 1.
-"""
+"""STEP (AP242): parts to bytes, the same for the same parts, and back to bodies with names and colours."""
 
 from __future__ import annotations
 
 import io
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
-from itertools import count
 from typing import Any
 
 import numpy as np
@@ -32,16 +25,12 @@ from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTo
 from OCP.XSControl import XSControl_WorkSession
 
 from cad.errors import UnreadableStep
-from cad.header import Header, write_header
+from cad.header import Header
 from cad.model import STEEL, Colour, Part
-
-SCHEMA = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }"
-KERNEL = f"CadQuery {version('cadquery')}, Open CASCADE {version('cadquery-ocp')}"
+from cad.step_text import finished
 
 STEPCAFControl_Controller.Init_s()  # the writer's settings exist only from here on
 Message.DefaultMessenger_s().ChangePrinters().Clear()  # what is wrong is raised, not printed
-
-_USAGE = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\(')\d+'")
 
 
 @dataclass(frozen=True)
@@ -66,7 +55,8 @@ def write_step(parts: Sequence[Part], header: Header) -> bytes:
         raise RuntimeError("the kernel could not translate the parts to STEP")
     if writer.WriteStream(stream) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise RuntimeError("the kernel could not write the STEP file")
-    return _reproducible(stream.getvalue().decode("latin-1"), header).encode("latin-1")
+    text = stream.getvalue().decode("latin-1")
+    return finished(text, header, [part.colour for part in parts]).encode("latin-1")
 
 
 def read_step(step: bytes) -> tuple[Body, ...]:
@@ -93,14 +83,6 @@ def rigid(place: Location) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return rows[:, :3], rows[:, 3]
 
 
-def _reproducible(text: str, header: Header) -> str:
-    """The kernel's text with our header, and with assembly usages counted from 1."""
-    data = text[text.index("ENDSEC;") + len("ENDSEC;") :]
-    number = count(1)
-    data = _USAGE.sub(lambda usage: f"{usage[1]}{next(number)}'", data)
-    return f"ISO-10303-21;\n{write_header(header, SCHEMA, KERNEL)}{data}"
-
-
 def _new_document() -> TDocStd_Document:
     document = TDocStd_Document(TCollection_ExtendedString("XmlOcaf"))
     XCAFApp_Application.GetApplication_s().InitDocument(document)
@@ -109,14 +91,11 @@ def _new_document() -> TDocStd_Document:
 
 def _fill(document: TDocStd_Document, title: str, parts: Sequence[Part]) -> None:
     shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    colours = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
     shapes.SetAutoNaming_s(False)
     assembly = _named(shapes.NewShape(), title)
     for part in parts:
         product = _named(shapes.NewShape(), part.name)
-        shapes.SetShape(product, part.shape.wrapped)
-        colour = Quantity_Color(*part.colour, Quantity_TypeOfColor.Quantity_TOC_sRGB)
-        colours.SetColor(product, colour, XCAFDoc_ColorType.XCAFDoc_ColorGen)
+        shapes.SetShape(product, part.solid.wrapped)
         for name, place in zip(part.names, part.places, strict=True):
             _named(shapes.AddComponent(assembly, product, place.wrapped), name)
     shapes.UpdateAssemblies()

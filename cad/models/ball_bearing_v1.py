@@ -129,7 +129,7 @@ class BallBearing(CadModel):
         "mm", "inner diameter", symbol="d", ge=1, le=2000, also=("bearing diameter", "bore", "shaft diameter")
     )
 
-    @derived("mm", "outer diameter", symbol="D", gt=0, le=5000, source="ISO 15, dimension series 02")
+    @derived("mm", "outer diameter", symbol="D", ge=1, le=5000, source="ISO 15, dimension series 02")
     def D(self) -> Array:
         return standard_outer_diameter(self.d)
 
@@ -137,7 +137,7 @@ class BallBearing(CadModel):
         "mm",
         "width",
         symbol="B",
-        gt=0,
+        ge=0.1,
         le=2000,
         also=("bearing width",),
         source="ISO 15, dimension series 02",
@@ -145,9 +145,9 @@ class BallBearing(CadModel):
     def B(self) -> Array:
         return standard_width(self.d)
 
-    @derived("mm", "ball diameter", symbol="D_w", gt=0, le=1000)
+    @derived("mm", "ball diameter", symbol="D_w", ge=0.003, le=1000)
     def D_w(self) -> Array:
-        return np.minimum(0.3 * abs(self.D - self.d), 0.9 * self.B)
+        return np.minimum(np.maximum(0.3 * (self.D - self.d), 0.004 * self.d), 0.9 * self.B)
 
     @derived("1", "balls", symbol="Z", integer=True, ge=3, le=200)
     def n(self) -> Array:

@@ -1,0 +1,62 @@
+"""The text of a STEP file, the same for the same parts: what the kernel's writer leaves to chance is set.
+
+Three things in its text tell of the process that wrote it: the time in the header, a counter of assembly
+usages that never restarts, and the order of colours, which is that of memory addresses. So the header and the
+colours are written here, and usages are counted from 1.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from importlib.metadata import version
+from itertools import count
+
+from cad.header import Header, write_header
+from cad.model import Colour
+
+SCHEMA = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }"
+KERNEL = f"CadQuery {version('cadquery')}, Open CASCADE {version('cadquery-ocp')}"
+
+_USAGE = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\(')\d+'")
+_NUMBER = re.compile(r"^#(\d+) = ", re.MULTILINE)
+_PRODUCT = re.compile(r"ADVANCED_BREP_SHAPE_REPRESENTATION\('[^']*',\(([^)]*)\),(#\d+)\)")
+_SOLID = re.compile(r"^(#\d+) = (?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\(", re.MULTILINE)
+
+
+def finished(text: str, header: Header, colours: Sequence[Colour]) -> str:
+    """The kernel's text with our header, and with colours, one for each product in the order of the file."""
+    data = text[text.index("ENDSEC;") + len("ENDSEC;") :]
+    number = count(1)
+    data = _USAGE.sub(lambda usage: f"{usage[1]}{next(number)}'", data)
+    body, end, rest = data.rpartition("ENDSEC;")
+    return f"ISO-10303-21;\n{write_header(header, SCHEMA, KERNEL)}{body}{_styles(body, colours)}{end}{rest}"
+
+
+def _styles(data: str, colours: Iterable[Colour]) -> str:
+    """Entities that colour the solids of the data section, product by product."""
+    first = int(_NUMBER.findall(data)[-1]) + 1
+    solids = set(_SOLID.findall(data))
+    lines: list[str] = []
+    for product, colour in zip(_PRODUCT.finditer(data), colours, strict=True):
+        for item in re.findall(r"#\d+", product[1]):
+            if item in solids:
+                lines += _style(first + len(lines), item, product[2], colour)
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _style(n: int, solid: str, context: str, colour: Colour) -> Iterator[str]:
+    """The nine entities, numbered from n, by which ISO 10303-46 gives a solid its colour."""
+    red, green, blue = (f"{channel:.6f}" for channel in colour)
+    entities = (
+        f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(#{n + 1}),{context})",
+        f"STYLED_ITEM('color',(#{n + 2}),{solid})",
+        f"PRESENTATION_STYLE_ASSIGNMENT((#{n + 3}))",
+        f"SURFACE_STYLE_USAGE(.BOTH.,#{n + 4})",
+        f"SURFACE_SIDE_STYLE('',(#{n + 5}))",
+        f"SURFACE_STYLE_FILL_AREA(#{n + 6})",
+        f"FILL_AREA_STYLE('',(#{n + 7}))",
+        f"FILL_AREA_STYLE_COLOUR('',#{n + 8})",
+        f"COLOUR_RGB('',{red},{green},{blue})",
+    )
+    return (f"#{n + i} = {entity};" for i, entity in enumerate(entities))

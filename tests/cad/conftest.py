@@ -1,0 +1,35 @@
+from collections.abc import Callable
+
+import pytest
+
+from cad.catalogue import models
+from cad.model import CadModel
+from cad.regenerate import Build, regenerate
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """A test that asks for `model` runs for every model found: a new file is covered when it is there."""
+    if "model" in metafunc.fixturenames:
+        found = list(models())
+        metafunc.parametrize(
+            "model", found, ids=[f"{cls.id}_v{cls.version}" for cls in found], scope="session"
+        )
+
+
+@pytest.fixture(scope="session")
+def example_of() -> Callable[[type[CadModel]], Build]:
+    """The build of a model's example, made once."""
+    builds: dict[type[CadModel], Build] = {}
+
+    def build(cls: type[CadModel]) -> Build:
+        if cls not in builds:
+            builds[cls] = regenerate(cls.id, cls.version, cls.from_quantities(cls.example).inputs_si())
+        return builds[cls]
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def example(model: type[CadModel], example_of: Callable[[type[CadModel]], Build]) -> Build:
+    """The build of this model's example."""
+    return example_of(model)
