@@ -180,6 +180,13 @@ def test_jobs_die_with_their_forkserver(tmp_path):
     worker.close()
 
 
+def test_a_preloaded_package_brings_all_its_modules(worker):
+    warm = LocalProcesses(preload=("wsgiref",))
+    assert warm.run(victims.loaded, "wsgiref.validate")
+    warm.close()
+    assert not worker.run(victims.loaded, "wsgiref.validate")
+
+
 def test_a_module_that_is_missing_is_imported_by_no_one():
     worker = LocalProcesses(preload=("no.such.module",))
     assert worker.run(victims.double, 2) == 4

@@ -24,6 +24,10 @@ def main_module_file():
     return getattr(sys.modules["__main__"], "__file__", None)
 
 
+def loaded(module):
+    return module in sys.modules
+
+
 def double(number):
     return 2 * number
 
