@@ -11,12 +11,13 @@ import click
 import uvicorn
 
 from app.calculations import rendering
+from app.catalogue.finding import find_templates
 from app.demo import demonstrate
-from app.main import BUILT_IN, create_app
+from app.main import create_app
 from app.settings import Settings
 from app.storage.errors import DataFolderInUse
 from app.storage.folder import DataFolder
-from templates.core.catalogue import Catalogue, find
+from templates.core.catalogue import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate
 from templates.core.evaluate import evaluate as evaluate_template
 from templates.core.golden import freeze as freeze_template
@@ -153,7 +154,7 @@ def freeze(id: str, version: int, folder: Path) -> None:
 
 
 def _catalogue() -> Catalogue[Template]:
-    return find((*BUILT_IN, *Settings().template_folders), Template)
+    return find_templates(Settings().template_folders)
 
 
 def _find(id: str, version: int | None) -> type[Template]:

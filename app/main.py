@@ -6,15 +6,14 @@ import logging
 from collections.abc import AsyncIterator
 from contextlib import ExitStack, asynccontextmanager
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
-import templates
 from app import health, problems
 from app.calculations.routes import router as calculations
+from app.catalogue.finding import find_templates
 from app.catalogue.routes import router as catalogue
 from app.designs.events import router as design_events
 from app.designs.files import router as design_files
@@ -37,8 +36,6 @@ from app.storage.folder import DataFolder
 from app.storage.migrations import migrate
 from app.workers.local import LocalProcesses
 from cad.catalogue import models as find_models
-from templates.core.catalogue import find
-from templates.core.template import Template
 
 logger = logging.getLogger(__name__)
 
@@ -47,8 +44,6 @@ outputs to CAD parameters by relations, and STEP files regenerated whenever an o
 
 Quantities are text with a unit (`"25 kN"`) or objects (`{"value": 25, "unit": "kN"}`). Errors are RFC 9457
 problems that name every wrong input at once."""
-
-BUILT_IN = tuple(Path(folder) for folder in templates.__path__)
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -93,7 +88,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     stack.callback(database.close)
     store = ArtifactStore(folder.artifacts)
     catalogues = Catalogues(
-        find((*BUILT_IN, *settings.template_folders), Template), find_models(*settings.template_folders)
+        find_templates(settings.template_folders), find_models(*settings.template_folders)
     )
     worker = LocalProcesses()
     stack.callback(worker.close)

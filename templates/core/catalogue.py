@@ -76,7 +76,7 @@ class Catalogue(Generic[T]):
 
 
 def find(folders: Iterable[Path], base: type[T], kind: str = "template") -> Catalogue[T]:
-    """Import every versioned file below the folders and collect the subclass of `base` that it declares.
+    """Import every versioned file below the folders and collect what it declares, if that is a `base`.
 
     Raises
     ------
@@ -87,7 +87,9 @@ def find(folders: Iterable[Path], base: type[T], kind: str = "template") -> Cata
     for path in sorted(file for folder in folders for file in folder.rglob("*_v*.py")):
         if not VERSIONED.match(path.stem):
             continue
-        cls = _declared_in(_imported(path), base)
+        cls = _declared_in(_imported(path))
+        if not issubclass(cls, base):
+            continue  # a calculation beside models
         if (cls.id, cls.version) in versions:
             raise TypeError(f"{path}: {cls.id} version {cls.version} stands in another file already")
         versions[cls.id, cls.version] = cls
@@ -122,14 +124,14 @@ def _package(folder: Path) -> str:
     return f"{parent}.{folder.name}" if parent else folder.name
 
 
-def _declared_in(module: ModuleType, base: type[T]) -> type[T]:
+def _declared_in(module: ModuleType) -> type[Template]:
     found = [
         value
         for value in vars(module).values()
-        if isinstance(value, type) and issubclass(value, base) and value.__module__ == module.__name__
+        if isinstance(value, type) and issubclass(value, Template) and value.__module__ == module.__name__
     ]
     if len(found) != 1:
-        raise TypeError(f"{module.__file__} declares {len(found)} of {base.__name__}; it must declare one")
+        raise TypeError(f"{module.__file__} declares {len(found)} templates; it must declare one")
     return found[0]
 
 
