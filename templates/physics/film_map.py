@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 
 from templates.physics.arrays import Array, require, require_film
-from templates.physics.eccentricity import eccentricity
 from templates.physics.film_measures import Film
 from templates.physics.film_mesh import sommerfeld_angle
 from templates.physics.short_bearing import attitude_Ocvirk_1952, load_Ocvirk_1952, peak_pressure_Ocvirk_1952
@@ -65,22 +64,6 @@ def mapped_load(eps: Array, ratio: Array) -> Array:
         ValueError: if an argument lies outside its range.
     """
     return load_Ocvirk_1952(eps, ratio) * np.exp(_look_up(film_map().load, eps, ratio)[..., 0])
-
-
-def mapped_eccentricity(So: Array, ratio: Array) -> Array:
-    """Relative eccentricity eps that bears So, see `eccentricity.eccentricity` [-].
-
-    Args:
-        So: Sommerfeld number F psi²/(B D eta omega_h), 0 or more [-].
-        ratio: width over diameter B/D, 0.01 … 100 [-].
-
-    Returns:
-        eps; NaN where So is more than the film bears at eps 1 − 1e-7.
-
-    Raises:
-        ValueError: if an argument lies outside its range.
-    """
-    return eccentricity(mapped_load, So, ratio)
 
 
 def mapped_film(eps: Array, ratio: Array) -> dict[str, Array]:
@@ -183,6 +166,17 @@ def encode_linear(eps: float, forces: Array) -> Array:
     return np.concatenate([K.ravel(), B.ravel()])
 
 
+def require_mapped(eps: Array, ratio: Array) -> None:
+    """Refuse a point outside the map.
+
+    Raises:
+        ValueError: naming the argument and its limit.
+    """
+    require_film(eps, ratio)
+    ratio = np.asarray(ratio)
+    require((ratio >= NARROWEST) & (ratio <= WIDEST), "ratio B/D must lie in [0.01, 100] for the film map")
+
+
 def _place(eps: Array, ratio: Array) -> tuple[Array, Array]:
     """Coordinates of the map."""
     return np.arctanh(eps), np.log(ratio)
@@ -190,9 +184,7 @@ def _place(eps: Array, ratio: Array) -> tuple[Array, Array]:
 
 def _look_up(coefficients: Array, eps: Array, ratio: Array) -> Array:
     """Interpolate at points of any shape, (..., functions)."""
-    require_film(eps, ratio)
-    ratio = np.asarray(ratio)
-    require((ratio >= NARROWEST) & (ratio <= WIDEST), "ratio B/D must lie in [0.01, 100] for the film map")
+    require_mapped(eps, ratio)
     x, y = np.broadcast_arrays(*_place(eps, ratio))
     data = film_map()
     values = surface(coefficients, data.eccentricity, data.width, x.ravel(), y.ravel())

@@ -91,7 +91,7 @@ def land_mesh(start: float, end: float, n: int, m: int) -> Mesh:
 
 def _mesh(eps: float, ratio: float, n: int, m: int, end: float) -> Mesh:
     phi, slope = _graded_around(eps, ratio, n, end)
-    zeta, axial_slope = _graded_across(eps, ratio, m)
+    zeta, axial_slope = graded_across(np.sqrt(1 - eps) / ratio, m)
     return Mesh(phi, zeta, gregory(n) * slope, 2 * gregory(m) * axial_slope)
 
 
@@ -130,10 +130,12 @@ def _inverse(f: Callable[[Array], Array], slope: Callable[[Array], Array], y: Ar
     return x
 
 
-def _graded_across(eps: float, ratio: float, m: int) -> tuple[Array, Array]:
-    """Axial nodes graded to the edge layer, as wide as the thin film, and dzeta per interval."""
+def graded_across(layer: float, m: int) -> tuple[Array, Array]:
+    """Axial nodes graded to an edge layer of a given width, and dzeta per interval.
+
+    The layer is as wide as the film is long where it is thin, over half the bearing's width.
+    """
     t = 1 - np.linspace(0, 1, m + 1)
-    layer = np.sqrt(1 - eps) / ratio
     if layer >= 1:
         return 1 - t, np.full(m + 1, 1 / m)
     stretch = np.arcsinh(1 / layer)

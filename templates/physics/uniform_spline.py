@@ -28,10 +28,11 @@ class Axis:
         """All nodes."""
         return np.linspace(self.first, self.first + self.step * (self.nodes - 1), self.nodes)
 
-    def weights(self, x: Array) -> tuple[NDArray[np.int32], Array]:
-        """First of the four B-splines at x, and their values, (N, 4); beyond the ends the end cubic."""
+    def weights(self, x: Array, cell: NDArray[np.int32] | None = None) -> tuple[NDArray[np.int32], Array]:
+        """First of the four B-splines at x, and their values, (N, 4); beyond a cell its cubic goes on."""
         place = (x - self.first) / self.step
-        cell = np.clip(place.astype(np.int32), 0, self.nodes - 2)
+        if cell is None:
+            cell = np.clip(place.astype(np.int32), 0, self.nodes - 2)
         t: Array = np.subtract(place, cell, dtype=np.float64)
         u = 1 - t
         t2, u2 = t * t, u * u
@@ -75,6 +76,16 @@ def surface(coefficients: Array, first: Axis, second: Axis, x: Array, y: Array) 
         for start in range(0, x.size, _BLOCK)
     ]
     return np.concatenate(blocks) if blocks else np.zeros((0, flat.shape[1]))
+
+
+def line(coefficients: Array, second: Axis, y: Array) -> Array:
+    """B-spline coefficients along the first axis of one function at places of the second, (N, n + 2)."""
+    column, weight = second.weights(y)
+    indices = (column[:, None] + np.arange(4)).ravel()
+    shape = y.size, second.nodes + 2
+    return np.asarray(
+        csr_array((weight.ravel(), indices, np.arange(0, 4 * y.size + 1, 4)), shape=shape) @ coefficients.T
+    )
 
 
 def _block(flat: Array, first: Axis, second: Axis, x: Array, y: Array) -> Array:
