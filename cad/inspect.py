@@ -55,7 +55,7 @@ def measure(body: Body) -> Measured:
     shape = body.shape.wrapped
     properties = GProp_GProps()
     # Shape.Volume() integrates to no stated accuracy and is off by 5e-5 on a half shell. The accuracy here is
-    # that of the volume: stated as 1e-6 it left the inertia of a ring off by 9e-6, at 1e-11 it is within 1e-8.
+    # that of the volume: at 1e-6 the inertia of a ring was still off by 9e-6, at 1e-11 it is within 1e-8.
     BRepGProp.VolumeProperties_s(shape, properties, 1e-11, False)
     centre, inertia = properties.CentreOfMass(), properties.MatrixOfInertia()
     return Measured(
