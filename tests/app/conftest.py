@@ -1,7 +1,11 @@
-"""A migrated database in a folder of its own."""
+"""A migrated database in a folder of its own, and one server for all tests of the interface."""
 
+import httpx
 import pytest
+from serving import folder_of_models, serving
 
+from app.client import Client
+from app.settings import Settings
 from app.storage.database import Database
 from app.storage.migrations import migrate
 
@@ -18,3 +22,32 @@ def database(url):
     database = Database(url)
     yield database
     database.close()
+
+
+@pytest.fixture(scope="session")
+def served(tmp_path_factory):
+    """The real service in a thread; its jobs may take 8 s and little memory, so that bad ones end soon."""
+    folder = tmp_path_factory.mktemp("served")
+    settings = Settings(
+        data=folder / "data",
+        template_folders=(folder_of_models(folder / "templates"),),
+        wait_seconds=20,
+        job_deadline=8,
+        job_memory_mb=800,
+    )
+    with serving(settings) as server:
+        yield server
+
+
+@pytest.fixture(scope="session")
+def http(served):
+    """Plain HTTP to the service; an answer that takes 30 s beyond what a test waits for hangs."""
+    with httpx.Client(base_url=served.url, timeout=90, trust_env=False) as http:
+        yield http
+
+
+@pytest.fixture(scope="session")
+def client(served):
+    """The typed client."""
+    with Client(served.url) as client:
+        yield client

@@ -1,0 +1,37 @@
+"""How many values arrays span together: counted before anything is computed, so that nothing explodes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from itertools import zip_longest
+from typing import Any
+
+import numpy as np
+
+from templates.core.quantity import Typed
+
+Shape = tuple[int, ...]
+
+
+def points(inputs: Mapping[str, Any]) -> int:
+    """How many points the arrays among inputs, as typed, span together."""
+    return spanned(shape(raw) for raw in inputs.values())
+
+
+def spanned(shapes: Iterable[Shape]) -> int:
+    """How many points shapes span together; of shapes that do not fit, at least as many as any of them."""
+    # NumPy's own broadcast_shapes gives up on counts beyond 2^63.
+    axes = zip_longest(*(reversed(shape) for shape in shapes), fillvalue=1)
+    return math.prod(max(lengths) for lengths in axes)
+
+
+def shape(raw: Any) -> Shape:
+    """The shape of a quantity as typed: by its first items, as what is uneven is refused later."""
+    if isinstance(raw, Typed):
+        return np.shape(raw.si)
+    found: list[int] = []
+    while isinstance(items := raw.get("value") if isinstance(raw, Mapping) else raw, list) and items:
+        found.append(len(items))
+        raw = items[0]
+    return tuple(found)

@@ -1,0 +1,280 @@
+"""Servers for tests: the real app under uvicorn, in a thread of the tests or in a process to be killed."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from contextlib import contextmanager
+from copy import deepcopy
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import dedent
+
+import httpx
+import uvicorn
+
+from app.client import Client
+from app.designs.schemas import PAPER
+from app.main import create_app
+from app.settings import Settings
+
+API = "/api/v1"
+PATIENCE = 30.0  # for a server to start [s]; importing the geometry kernel takes some of it
+HANG = 5.0  # an answer that takes longer hangs [s]
+
+MOODY = '''
+"""A block that misbehaves when it is told to."""
+
+import ctypes
+import time
+
+from cadquery import Location, Solid, Vector
+
+from cad.model import Box, CadModel, Part, mm
+from templates.core.template import Array, choice, given
+
+
+class Moody(CadModel):
+    """A block that misbehaves when it is told to."""
+
+    example = {"size": "10 mm"}
+
+    a: Array = given("mm", "size", gt=0, le=1000)
+    mood: str = choice("good", "raises", "two_solids", "wrong_volume", "loops", "eats", "dies",
+                       words="mood", default="good")
+
+    def build(self):
+        size = mm(self.a)
+        block = Solid.makeBox(size, size, size)
+        volume = size**3
+        match self.mood:
+            case "raises":
+                raise RuntimeError("the kernel is in a bad mood")
+            case "two_solids":
+                block = block.fuse(Solid.makeBox(size, size, size, Vector(2 * size, 0, 0)))
+                volume *= 2
+            case "wrong_volume":
+                volume *= 1.01
+            case "loops":
+                while True:
+                    pass
+            case "eats":
+                hoard = []
+                while True:
+                    hoard.append(bytearray(50 * 2**20))
+            case "dies":
+                ctypes.string_at(0)
+        return (Part("block", block, volume),)
+
+    def bounding_box(self):
+        size = mm(self.a)
+        return Box((0, 0, 0), (3 * size if self.mood == "two_solids" else size, size, size))
+
+    def dimensions(self, seen):
+        return {"size": seen["block"].length(Vector(0, 0, 1))}
+'''
+
+
+def paper(**changes):
+    """The paper's design as a document of its own."""
+    return {**deepcopy(PAPER), **changes}
+
+
+def moody(size="10 mm", mood="good", **more):
+    """A design of one block."""
+    return {
+        "name": "block",
+        "model": {"id": "moody", "version": 1, "parameters": {"size": size, "mood": mood}},
+        **more,
+    }
+
+
+def folder_of_models(path: Path) -> Path:
+    """A team's own folder with the model that misbehaves."""
+    (path / "own").mkdir(parents=True)
+    (path / "own" / "moody_v1.py").write_text(dedent(MOODY).lstrip())
+    return path
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@dataclass
+class Served:
+    """A server in a thread of this process."""
+
+    url: str
+    app: object
+
+    @property
+    def jobs(self):
+        return self.app.state.jobs
+
+
+@contextmanager
+def serving(settings: Settings):
+    """The real app under uvicorn in a thread, until the end."""
+    app = create_app(settings)
+    server = uvicorn.Server(uvicorn.Config(app, host="127.0.0.1", port=0, log_level="error"))
+    thread = threading.Thread(target=server.run, name="uvicorn")
+    thread.start()
+    try:
+        end = time.monotonic() + PATIENCE
+        while not server.started:
+            assert thread.is_alive(), "the server did not start"
+            assert time.monotonic() < end, "the server takes too long to start"
+            time.sleep(0.02)
+        port = server.servers[0].sockets[0].getsockname()[1]
+        yield Served(f"http://127.0.0.1:{port}", app)
+    finally:
+        server.should_exit = True
+        thread.join(PATIENCE)
+        assert not thread.is_alive(), "the server did not stop"
+
+
+class ServerProcess:
+    """`python -m app serve` in a process, and a process group, of its own."""
+
+    def __init__(self, data: Path, **environment: str) -> None:
+        self.data, self.environment = data, environment
+        self.process = None
+        self.port = free_port()
+
+    @property
+    def url(self) -> str:
+        return f"http://127.0.0.1:{self.port}"
+
+    def start(self) -> "ServerProcess":
+        command = [sys.executable, "-m", "app", "serve", "--port", str(self.port), "--data", str(self.data)]
+        self.process = subprocess.Popen(
+            command,
+            env={**os.environ, **self.environment},
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+        )
+        return self
+
+    def ready(self) -> "ServerProcess":
+        end = time.monotonic() + PATIENCE
+        with Client(self.url) as client:
+            while not client.healthy():
+                assert self.process.poll() is None, self.process.stderr.read().decode()
+                assert time.monotonic() < end, "the server takes too long to start"
+                time.sleep(0.02)
+        return self
+
+    def kill(self) -> set[int]:
+        """Kill -9 the server alone, and return the processes that descended from it."""
+        family = descendants(self.process.pid)
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
+        self.process.stderr.close()
+        return family
+
+    def stop(self) -> int:
+        """Ask the server to stop; its exit code."""
+        self.process.send_signal(signal.SIGTERM)
+        code = self.process.wait(PATIENCE)
+        self.process.stderr.close()
+        return code
+
+    def __enter__(self) -> "ServerProcess":
+        return self.start().ready()
+
+    def __exit__(self, *exception) -> None:
+        if self.process.poll() is None:
+            self.stop()
+
+
+def descendants(pid: int) -> set[int]:
+    """All living processes that descend from this one, from /proc."""
+    parents = {}
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdecimal():
+            parents[int(entry.name)] = _parent(entry)
+    found: set[int] = set()
+    while more := {child for child, parent in parents.items() if parent in found | {pid}} - found:
+        found |= more
+    return found
+
+
+def alive(pid: int) -> bool:
+    """Whether a process exists and is more than a zombie."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+def _parent(entry: Path) -> int:
+    try:
+        return int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+    except (FileNotFoundError, ProcessLookupError):
+        return 0
+
+
+def settled(http: httpx.Client, id: str, seconds: float = 60.0) -> dict:
+    """The design once nothing of it is being regenerated."""
+    end = time.monotonic() + seconds
+    while (design := http.get(f"{API}/designs/{id}").json())["state"] == "regenerating":
+        assert time.monotonic() < end, f"still regenerating: {design}"
+        time.sleep(0.03)
+    return design
+
+
+def created(http: httpx.Client, document: dict) -> dict:
+    """A new design once its regeneration has ended, whatever came out."""
+    answer = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=60"})
+    assert answer.status_code == 201, answer.text
+    return answer.json()
+
+
+def patched(http: httpx.Client, design: dict, patch: dict) -> dict:
+    """A design after a change, once its regeneration has ended, whatever came out."""
+    headers = {"If-Match": f'"{design["revision"]}"', "Prefer": "wait=60"}
+    answer = http.patch(f"{API}/designs/{design['id']}", json=patch, headers=headers)
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def revision(http: httpx.Client, design: dict, number: int | None = None) -> dict:
+    answer = http.get(f"{API}/designs/{design['id']}/revisions/{number or design['revision']}")
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def problem(answer: httpx.Response, status: int, slug: str) -> dict:
+    """The problem in an answer, which must be of this kind."""
+    assert answer.status_code == status, (answer.status_code, answer.text[:2000])
+    assert answer.headers["content-type"] == "application/problem+json"
+    told = answer.json()
+    assert told["type"] == f"/problems/{slug}", told
+    assert told["status"] == status
+    assert told["title"]
+    assert told["detail"]
+    return told
+
+
+def faults(answer: httpx.Response) -> dict[str, str]:
+    """The wrong inputs of a refusal: name → code."""
+    told = problem(answer, 422, "invalid-inputs")
+    assert all(fault["name"] and fault["code"] and fault["detail"] for fault in told["errors"])
+    return {fault["name"]: fault["code"] for fault in told["errors"]}
+
+
+def heard(stream: httpx.Response):
+    """The events of a stream: (name, data)."""
+    name = None
+    for line in stream.iter_lines():
+        if line.startswith("event:"):
+            name = line.removeprefix("event:").strip()
+        elif line.startswith("data:"):
+            yield name, json.loads(line.removeprefix("data:"))
