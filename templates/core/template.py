@@ -37,7 +37,7 @@ from templates.core.declare import (
     text,
     units,
 )
-from templates.core.errors import InvalidInputs
+from templates.core.errors import Fault, InvalidInputs
 from templates.core.intake import Input, admitted, as_typed, check_shapes, read_inputs, violations
 from templates.core.ledger import Ledger, Mask
 
@@ -162,8 +162,13 @@ class Template:
     def _checked(cls, values: Mapping[str, Any], ledger: Ledger) -> Self:
         self = cls(values, ledger)
         check_shapes(self)
+        faults: list[Fault] = []
         with np.errstate(all="ignore"):
-            faults = [fault for rule in cls.requirements for fault in violations(self, rule)]
+            for rule in cls.requirements:
+                try:
+                    faults += violations(self, rule)
+                except InvalidInputs as error:  # a default that the rule asks for is refused
+                    faults += (fault for fault in error.faults if fault not in faults)
         if faults:
             raise InvalidInputs(faults)
         return self
