@@ -130,6 +130,8 @@ def _kernel(model: CadModel) -> Iterator[None]:
         raise GeometryError(
             error.code, f"{model.id}: {error.detail}", error.parameters or model.inputs
         ) from None
+    except MemoryError:
+        raise  # its process knows the limit, and says so
     except Exception as error:
         detail = f"the kernel failed on {model.id}: {type(error).__name__}: {error}"
         raise GeometryError("kernel", detail, model.inputs) from error
