@@ -5,6 +5,8 @@ import pytest
 
 from templates.physics.cavitating_film import Groove, cavitating_film
 from templates.physics.cavitating_slider import PocketedSlider, discrete_slider, film_Fowell_2007
+from templates.physics.film_dynamics import grooved_coefficients
+from templates.physics.grooved_film import grooved_film
 from templates.physics.reynolds import extrapolated_film
 
 SLIDER = PocketedSlider(1e-2, 1.05e-6, 1e-6, 2e-3, 5e-3, 1e-6, eta=1e-2, speed=1.0, ambient=1e5)
@@ -54,3 +56,13 @@ def test_refusals_name_the_argument() -> None:
         cavitating_film(0.5, 0.5, [Groove(0.0, 0.1, 1.0, -1.0)])
     with pytest.raises(ValueError, match="eps"):
         cavitating_film(1.0, 0.5, [Groove(0.0, 0.1)])
+
+
+@pytest.mark.parametrize("eps", [0.244, 0.655, 0.95])
+def test_grooved_film_finds_the_attitude_of_the_ruptured_one(eps: float) -> None:
+    """Two grooves at ambient pressure: nearly nothing re-forms outside them, so Swift and Stieber agree."""
+    width = np.radians(20)
+    film = grooved_film(eps, 0.5, [Groove(-np.pi / 2, width), Groove(np.pi / 2, width)])
+    static = grooved_coefficients(eps, 0.5, [(-np.pi / 2, width), (np.pi / 2, width)])
+    assert film.So == pytest.approx(static.So, rel=0.01)
+    assert film.attitude == pytest.approx(static.attitude, abs=0.01)
