@@ -97,7 +97,7 @@ def errors() -> tuple[Array, Array, Array]:
         x, y, truth = checks["x"], checks["y"], checks["truth"]
     data = film_map()
     coefficients = np.concatenate([data.static, data.linear], axis=-1)
-    return x, y, np.abs(surface(coefficients, data.eccentricity, data.width, x, y) - truth)
+    return x, y, np.abs(surface(coefficients, data.eccentricity, data.width, x, y).T - truth)
 
 
 def keep_error() -> None:

@@ -63,7 +63,7 @@ def mapped_load(eps: Array, ratio: Array) -> Array:
     Raises:
         ValueError: if an argument lies outside its range.
     """
-    return load_Ocvirk_1952(eps, ratio) * np.exp(_look_up(film_map().load, eps, ratio)[..., 0])
+    return load_Ocvirk_1952(eps, ratio) * np.exp(_look_up(film_map().load, eps, ratio)[0])
 
 
 def mapped_film(eps: Array, ratio: Array) -> dict[str, Array]:
@@ -95,7 +95,7 @@ def mapped_coefficients(eps: Array, ratio: Array) -> tuple[Array, Array]:
     attitude = np.asarray(mapped_film(eps, ratio)["attitude"])
     cos, sin = np.cos(attitude), np.sin(attitude)
     turn = np.stack([np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)], axis=-2)
-    values = _look_up(film_map().linear, eps, ratio).reshape(*eps.shape, 2, 2, 2)
+    values = np.moveaxis(_look_up(film_map().linear, eps, ratio), 0, -1).reshape(*eps.shape, 2, 2, 2)
     thin = np.sqrt((1 - eps) / (1 + eps))[..., None, None]
     K = values[..., 0, :, :] / (eps[..., None, None] * thin**_STIFFNESS_SCALE)
     B = values[..., 1, :, :] / (eps[..., None, None] * thin**_DAMPING_SCALE)
@@ -137,10 +137,10 @@ def encode(eps: float, ratio: float, film: Film) -> Array:
 
 
 def decode(eps: Array, ratio: Array, values: Array) -> dict[str, Array]:
-    """The film's measures by name, from what `encode` gives, (..., 8); half is tan(attitude/2)."""
+    """The film's measures by name, from what `encode` gives, (8, ...); half is tan(attitude/2)."""
     s2 = (1 - eps) * (1 + eps)
     s, thin = np.sqrt(s2), np.sqrt((1 - eps) / (1 + eps))
-    load, half, P_max, peak, side, supply, streamers = np.moveaxis(np.exp(values[..., :7]), -1, 0)
+    load, half, P_max, peak, side, supply, streamers = np.exp(values[:7])
     So = load_Ocvirk_1952(eps, ratio) * load
     half = half * np.pi * s / (4 * eps + np.sqrt(16 * eps**2 + np.pi**2 * s2))
     shear, pressure = np.pi / s, eps * So * half / (1 + half**2)
@@ -149,7 +149,7 @@ def decode(eps: Array, ratio: Array, values: Array) -> dict[str, Array]:
         "attitude": 2 * np.arctan(half),
         "P_max": peak_pressure_Ocvirk_1952(eps, ratio) * P_max,
         "peak": -2 * np.arctan(thin * peak),
-        "rupture": 2 * np.arctan(thin * values[..., 7]),
+        "rupture": 2 * np.arctan(thin * values[7]),
         "friction": shear + pressure,
         "friction_bearing": shear - pressure,
         "friction_streamers": shear * streamers + pressure,
@@ -183,9 +183,9 @@ def _place(eps: Array, ratio: Array) -> tuple[Array, Array]:
 
 
 def _look_up(coefficients: Array, eps: Array, ratio: Array) -> Array:
-    """Interpolate at points of any shape, (..., functions)."""
+    """Interpolate at points of any shape, (functions, ...)."""
     require_mapped(eps, ratio)
     x, y = np.broadcast_arrays(*_place(eps, ratio))
     data = film_map()
     values = surface(coefficients, data.eccentricity, data.width, x.ravel(), y.ravel())
-    return values.reshape(*x.shape, coefficients.shape[-1])
+    return values.reshape(coefficients.shape[-1], *x.shape)

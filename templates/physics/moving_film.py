@@ -13,8 +13,9 @@ References:
 from dataclasses import replace
 
 import numpy as np
+from scipy.optimize import brentq
 
-from templates.physics.arrays import Array, require_film
+from templates.physics.arrays import Array, require, require_film
 from templates.physics.complementarity import Rupture, finer, rupture
 from templates.physics.film_equations import film_equations, midpoints, squeeze
 from templates.physics.film_measures import force
@@ -51,6 +52,34 @@ def extrapolated_force(
     coarse = moving_force(eps, ratio, direction, around, across)
     fine = moving_force(eps, ratio, direction, 2 * around, 2 * across)
     return fine + (fine - coarse) / 3, (fine - coarse) / 3
+
+
+def mobility(eps: float, ratio: float, load_direction: float, around: int = 128, across: int = 16) -> Array:
+    """Velocity that a load gives the journal in a film that does not turn: Booker's mobility, without a map.
+
+    Args:
+        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
+        ratio: width over diameter B/D [-].
+        load_direction: angle of the load on the journal from the narrowest gap, −pi … pi [rad].
+        around: intervals around, even.
+        across: intervals across half the width.
+
+    Returns:
+        (2,) M along the line of centres and ahead of it: d(eps)/dt = M F psi²/(B D eta).
+
+    Raises:
+        ValueError: if an argument lies outside its range.
+    """
+    require(np.asarray(abs(load_direction) <= np.pi), "load_direction must lie in [-pi, pi]")
+
+    def excess(direction: float) -> float:
+        along, ahead = moving_force(eps, ratio, direction, around, across)
+        return float(np.arctan2(abs(ahead), along) - abs(load_direction))
+
+    inside = 0 < abs(load_direction) < np.pi
+    direction = brentq(excess, 0.0, np.pi, xtol=1e-15) if inside else abs(load_direction)
+    size = np.hypot(*moving_force(eps, ratio, direction, around, across))
+    return np.array([np.cos(direction), np.sign(load_direction) * np.sin(direction)]) / size
 
 
 def moving_film(eps: float, ratio: float, direction: float, around: int, across: int) -> tuple[Mesh, Rupture]:

@@ -68,14 +68,14 @@ def surface(coefficients: Array, first: Axis, second: Axis, x: Array, y: Array) 
         x, y: (N,) places.
 
     Returns:
-        (N, functions).
+        (functions, N).
     """
     flat = coefficients.reshape(-1, coefficients.shape[-1])
-    blocks = [
-        _block(flat, first, second, x[start : start + _BLOCK], y[start : start + _BLOCK])
-        for start in range(0, x.size, _BLOCK)
-    ]
-    return np.concatenate(blocks) if blocks else np.zeros((0, flat.shape[1]))
+    values = np.empty((flat.shape[1], x.size))
+    for start in range(0, x.size, _BLOCK):
+        part = slice(start, start + _BLOCK)
+        values[:, part] = _block(flat, first, second, x[part], y[part]).T
+    return values
 
 
 def line(coefficients: Array, second: Axis, y: Array) -> Array:

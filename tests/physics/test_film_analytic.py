@@ -11,7 +11,7 @@ from templates.physics.long_bearing import (
     load_Swift_Stieber,
     peak_pressure_Swift_Stieber,
 )
-from templates.physics.moving_film import moving_force
+from templates.physics.moving_film import mobility, moving_force
 from templates.physics.reynolds import extrapolated_film, static_field, static_film
 from templates.physics.short_bearing import (
     attitude_Ocvirk_1952,
@@ -145,3 +145,19 @@ def test_pressure_is_a_complementary_solution() -> None:
     assert field.rupture.P.min() == 0
     assert np.abs(excess[film]).max() < 1e-11 * scale
     assert excess[1:-1, :-1].min() > -1e-11 * scale
+
+
+@pytest.mark.parametrize(
+    ("eps", "angle"), [(0.0, 1.0), (0.5, 0.4), (0.5, -2.0), (0.9, 2.8), (0.95, 0.0), (0.95, np.pi)]
+)
+def test_mobility_is_the_motion_whose_film_bears_the_load(eps: float, angle: float) -> None:
+    M = mobility(eps, 0.5, angle, 64, 8)
+    force = moving_force(eps, 0.5, float(np.arctan2(M[1], M[0])), 64, 8) * np.hypot(*M)
+    assert force == pytest.approx([np.cos(angle), np.sin(angle)], abs=1e-6)
+
+
+@pytest.mark.parametrize("eps", [0.1, 0.5])
+def test_short_bearing_mobility_along_the_line_of_centres(eps: float) -> None:
+    """Booker 1965: closing, M = (1 − eps)^2.5 / (pi (L/D)²), itself a fit by some per cent."""
+    short = (1 - eps) ** 2.5 / (np.pi * 0.02**2)
+    assert mobility(eps, 0.02, 0.0)[0] == pytest.approx(short, rel=0.06)
