@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from templates.core.catalogue import digest
 from templates.core.evaluate import Answer, Echo, Evaluation
@@ -33,9 +34,20 @@ def answer(result: Answer) -> dict[str, Any]:
         return told if result.reason is None else {**told, "value": None, "reason": result.reason}
     if result.reasons is None:
         return quantity(result.value.tolist(), result.unit)
-    holes = result.value.astype(object)
-    holes[np.not_equal(result.value, result.value)] = None
+    holes = _with_holes(result.value, result.reasons)
     return {**quantity(holes.tolist(), result.unit), "reasons": result.reasons.tolist()}
+
+
+def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDArray[np.object_]:
+    """The values as objects, None where there is none; a profile, which has one reason, is one object."""
+    if value.ndim == reasons.ndim:
+        holes = value.astype(object)
+        holes[np.isnan(value)] = None
+        return holes
+    rows = np.empty(reasons.shape, dtype=object)
+    for point in np.ndindex(reasons.shape):
+        rows[point] = None if reasons[point] else value[point].tolist()
+    return rows
 
 
 def _plain(value: Any) -> Any:

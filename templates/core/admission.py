@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from templates.core.declare import Array, Declaration, Formula
-from templates.core.errors import Fault
+from templates.core.declare import Array, Declaration, Formula, Profile
+from templates.core.errors import Fault, InvalidInputs
 from templates.core.ledger import Ledger, Mask, Notice
 
 if TYPE_CHECKING:
@@ -36,17 +36,32 @@ def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:
     return Fault(declaration.name, "outside_domain", detail)
 
 
+def whole(self: Template, declaration: Formula[Any], value: Array) -> Array:
+    """The profile of a single point: refused unless all of it means something, or none of it exists."""
+    inside = declaration.meaning.admits(value)
+    if not inside.all():
+        why = absence(self, declaration) if np.isnan(value).any() else None
+        if why is None:
+            raise InvalidInputs([refusal(self, declaration, value[~inside][0])])
+        self.ledger.absent[declaration.attribute] = why
+    return value
+
+
 def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
-    """The results with NaN where they mean nothing, the reason noted."""
+    """The results with NaN where they mean nothing, the reason noted; a profile is masked as a whole."""
     meaning = declaration.meaning
     inside, known = meaning.admits(value), ~np.isnan(value)
+    if isinstance(declaration, Profile):
+        inside, known = np.all(inside, axis=-1), np.all(known, axis=-1)
     if (known & ~inside).any():
         remedy = f"; {meaning.remedy}" if meaning.remedy else ""
         reason = f"{declaration.name} must be {meaning.wanted}{remedy}"
         self.ledger.masks.append(Mask((declaration.attribute,), known & ~inside, reason))
     if not known.all() and (why := absence(self, declaration)):
         self.ledger.masks.append(Mask((declaration.attribute,), ~known, why))
-    return value if inside.all() else np.where(inside, value, np.nan)
+    if inside.all():
+        return value
+    return np.where(inside[..., None] if isinstance(declaration, Profile) else inside, value, np.nan)
 
 
 def warn_if_outside(ledger: Ledger, declaration: Declaration, value: Any) -> None:

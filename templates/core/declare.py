@@ -111,6 +111,18 @@ class Derived(Formula[T]):
     required = False
 
 
+class Profile(Formula[T]):
+    """An output that is an array along its last axis, as along a pad, for each point of the inputs.
+
+    It means something only as a whole: one place out of its domain takes the profile of that point.
+    `along` is the name of the profile that says where its places are; its own for that one.
+    """
+
+    def __init__(self, function: Callable[[T], Any], meaning: Meaning, latex: str | None, along: str) -> None:
+        super().__init__(function, meaning, latex)
+        self.along = along
+
+
 class Text(Formula[T]):
     """An output in words; empty where it does not exist."""
 
@@ -188,6 +200,13 @@ def formula(
 def derived(unit: str, words: str, **keywords: Any) -> Callable[[Callable[[T], Any]], Derived[T]]:
     """Declare an optional input whose default is this formula of other inputs."""
     return lambda function: Derived(function, meaning(unit, words, **keywords))
+
+
+def profile(
+    unit: str, words: str, *, along: str, latex: str | None = None, **keywords: Any
+) -> Callable[[Callable[[T], Any]], Profile[T]]:
+    """Declare an output that is an array along its last axis, at the places given by `along`."""
+    return lambda function: Profile(function, meaning(unit, words, **keywords), latex, along)
 
 
 def text(words: str, **keywords: Any) -> Callable[[Callable[[T], Any]], Text[T]]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.declare import Choice, Formula, Text
+from templates.core.declare import Choice, Formula, Profile, Text
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
 from templates.core.intake import Input
 from templates.core.ledger import Notice
@@ -131,23 +131,27 @@ def _part(template: Template, names: list[str], shown_in: Mapping[str, Unit]) ->
 def _joined(rungs: list[Rung], parts: list[_Part]) -> _Part:
     """The answers of several levels, each at its own points, as arrays over all points."""
     answers = {
-        name: _joined_answer(rungs, [part.answers[name] for part in parts]) for name in parts[0].answers
+        name: _joined_answer(rungs, rungs[0].template.formulas[name], [part.answers[name] for part in parts])
+        for name in parts[0].answers
     }
     error = {name: _scattered(rungs, [part.error[name] for part in parts], float) for name in parts[0].error}
     return _Part(answers, _scattered(rungs, [part.level for part in parts], object), error)
 
 
-def _joined_answer(rungs: list[Rung], answers: list[Answer]) -> Answer:
+def _joined_answer(rungs: list[Rung], formula: Formula[Any], answers: list[Answer]) -> Answer:
     unit = answers[0].unit
-    values = _scattered(rungs, [answer.value for answer in answers], float if unit else object)
+    places = np.shape(answers[0].value)[-1:] if isinstance(formula, Profile) else ()
+    values = _scattered(rungs, [answer.value for answer in answers], float if unit else object, places)
     if all(answer.reasons is None for answer in answers):
         return Answer(values, unit)
     return Answer(values, unit, reasons=_scattered(rungs, [answer.reasons for answer in answers], object))
 
 
-def _scattered(rungs: list[Rung], values: list[Any], kind: type) -> NDArray[Any]:
+def _scattered(
+    rungs: list[Rung], values: list[Any], kind: type, places: tuple[int, ...] = ()
+) -> NDArray[Any]:
     assert rungs[0].where is not None
-    whole: NDArray[Any] = np.empty(rungs[0].where.shape, dtype=kind)
+    whole: NDArray[Any] = np.empty(rungs[0].where.shape + places, dtype=kind)
     for rung, value in zip(rungs, values, strict=True):
         whole[rung.where] = value
     return whole
@@ -175,7 +179,7 @@ def _answer(template: Template, formula: Formula[Any], shown_in: Unit | None) ->
         return Answer(None, scale.text, reason=template.ledger.absent[formula.attribute])
     if not isinstance(si, np.ndarray):
         return Answer(float(scale.from_si(si)), scale.text)
-    value, reasons = _with_reasons(template, formula.attribute, si)
+    value, reasons = _with_reasons(template, formula, si)
     return Answer(scale.from_si(value), scale.text, reasons=reasons)
 
 
@@ -187,18 +191,23 @@ def _words(value: Any) -> Answer:
 
 
 def _with_reasons(
-    template: Template, attribute: str, si: NDArray[np.float64]
+    template: Template, formula: Formula[Any], si: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.object_] | None]:
-    """The values with NaN where a mask of anything beneath covers them, and the reason for each NaN."""
-    beneath = template.ancestors(attribute)
+    """The values with NaN where a mask of anything beneath covers them, and the reason for each NaN.
+
+    A profile has one reason as a whole.
+    """
+    beneath, is_profile = template.ancestors(formula.attribute), isinstance(formula, Profile)
     masks = [mask for mask in template.ledger.masks if not beneath.isdisjoint(mask.names)]
     if not masks and not np.isnan(si).any():
         return si, None
-    shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), si.shape)
+    points = si.shape[:-1] if is_profile else si.shape
+    shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), points)
     covered = reduce(np.logical_or, (mask.where for mask in masks), np.zeros(shape, dtype=bool))
-    value = np.where(covered, np.nan, si)
+    value = np.where(covered[..., None] if is_profile else covered, np.nan, si)
+    holes = np.isnan(value).any(axis=-1) if is_profile else np.isnan(value)
     reasons = np.full(shape, None, dtype=object)
-    reasons[np.isnan(value)] = "the formula has no finite value here"
+    reasons[holes] = "the formula has no finite value here"
     for mask in reversed(masks):
         reasons[np.broadcast_to(mask.where, shape)] = mask.reason
     return value, reasons

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from templates.core.catalogue import digest
-from templates.core.declare import Choice, Curve, Declaration, Derived, Formula, Text
+from templates.core.declare import Choice, Curve, Declaration, Derived, Formula, Profile, Text
 from templates.core.intake import Input
 from templates.core.mathml import expression, mathml, symbol, symbols
 from templates.core.meaning import Bounds
@@ -59,7 +59,8 @@ def _output(formula: Formula[Any]) -> dict[str, Any]:
     if isinstance(formula, Text):
         value = {"value": {"type": ["string", "array", "null"]}, "reason": {"type": "string"}}
         return {"title": formula.meaning.words, "type": "object", "required": ["value"], "properties": value}
-    return {**_common(formula), **_quantity_out(formula)}
+    along = {"along": formula.along} if isinstance(formula, Profile) else {}
+    return {**_common(formula), **along, **_quantity_out(formula)}
 
 
 def _input(cls: type[Template], declared: Input) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from templates.core.declare import Choice, Curve, Formula
+from templates.core.declare import Choice, Curve, Formula, Profile, Text
 from templates.core.errors import Fault, FaultyText, InvalidInputs, Unreachable, unknown_name
 from templates.core.evaluate import Evaluation, evaluate
 from templates.core.intake import Input
@@ -90,6 +90,8 @@ def _question(
         formula = cls.formulas.get(name)
         if formula is None:
             faults.append(unknown_name(name, cls.formulas, "output").within("target"))
+        elif isinstance(formula, (Profile, Text)):
+            faults.append(Fault(f"target.{name}", "not_a_number", "only a single value can be aimed at"))
         else:
             wanted = _scalar(value, formula.meaning.unit, f"target.{name}", faults)
     faults += _faulty_inputs(cls, raw, unknown, declared, ends)

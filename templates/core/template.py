@@ -15,7 +15,7 @@ from typing import Any, ClassVar, NoReturn, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.admission import absence, masked, refusal, warn_if_outside
+from templates.core.admission import absence, masked, refusal, warn_if_outside, whole
 from templates.core.declare import (
     Array,
     Choice,
@@ -23,6 +23,7 @@ from templates.core.declare import (
     Derived,
     Formula,
     Given,
+    Profile,
     Requirement,
     Shared,
     Truth,
@@ -32,6 +33,7 @@ from templates.core.declare import (
     derived,
     formula,
     given,
+    profile,
     require,
     shared,
     text,
@@ -42,8 +44,8 @@ from templates.core.intake import Input, admitted, as_typed, check_shapes, read_
 from templates.core.ledger import Ledger, Mask
 
 __all__ = [
-    "Array", "Template", "Truth", "choice", "curve", "derived", "formula", "given", "require", "shared",
-    "text", "units",
+    "Array", "Template", "Truth", "choice", "curve", "derived", "formula", "given", "profile", "require",
+    "shared", "text", "units",
 ]  # fmt: skip
 
 VERSIONED = re.compile(r"(?:^|.*\.)([a-z][a-z0-9_]*)_v([1-9][0-9]*)$")
@@ -205,6 +207,8 @@ class Template:
                 if why is None:
                     raise InvalidInputs([refusal(self, declaration, value)])
                 self.ledger.absent[declaration.attribute] = why
+        elif isinstance(declaration, Profile) and value.ndim == 1:
+            value = whole(self, declaration, value)
         elif isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
             value = masked(self, declaration, value)
         if meaning.published_si is not None:

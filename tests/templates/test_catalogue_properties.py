@@ -14,7 +14,7 @@ import templates
 from cad.catalogue import models
 from templates.core import dimensions, golden, report
 from templates.core.catalogue import digest, find
-from templates.core.declare import Choice, Curve, Derived, Given
+from templates.core.declare import Choice, Curve, Derived, Given, Profile
 from templates.core.errors import InvalidInputs
 from templates.core.evaluate import evaluate
 from templates.core.schema import describe, inputs_schema
@@ -195,10 +195,12 @@ class TestArrays:
             bad = {**good, name: with_bad_point(cls.inputs[name], good[name], 4)}
             outputs = evaluate(cls, typed(cls, bad)).outputs
             hit = [output for output in outputs if cls.inputs[name].attribute in ancestors_of(cls, output)]
-            assert all(np.isnan(outputs[output].value[4]) and outputs[output].reasons[4] for output in hit)
+            for output in hit:
+                assert np.isnan(outputs[output].value[4]).all(), output
+                assert outputs[output].reasons[4], output
             for output, answer in outputs.items():
-                others = np.delete(np.broadcast_to(answer.value, (9,)), 4)
-                expected = np.delete(np.broadcast_to(clean[output].value, (9,)), 4)
+                others = np.delete(at_points(cls, output, answer, 9), 4, axis=0)
+                expected = np.delete(at_points(cls, output, clean[output], 9), 4, axis=0)
                 np.testing.assert_array_equal(others, expected, err_msg=f"{output} with bad {name}")
 
     @every_template
@@ -206,11 +208,11 @@ class TestArrays:
         """10⁴ points far outside of common sense: each a finite number, or none with its reason."""
         inputs = extremes(cls, np.random.default_rng(3), 10_000)
         for name, answer in evaluate(cls, typed(cls, inputs)).outputs.items():
-            value = np.atleast_1d(answer.value)
+            value = at_points(cls, name, answer, 10_000)
             assert not np.isinf(value).any(), name
-            missing = np.flatnonzero(np.isnan(value))
-            assert all(answer.reasons[i] for i in missing), name
-            assert answer.reasons is None or all(r is None for r in np.delete(answer.reasons, missing)), name
+            missing = np.isnan(value.reshape(10_000, -1)).any(axis=1)
+            reasons = np.full(10_000, None) if answer.reasons is None else answer.reasons
+            np.testing.assert_array_equal(missing, reasons != None, err_msg=name)  # noqa: E711
 
     @every_template
     def test_property_extremes_agree_with_single_points(self, cls):
@@ -276,16 +278,22 @@ def assert_pointwise(cls, inputs, points):
     compared = 0
     for i in points:
         alone = evaluated_alone(cls, {name: point(value, i) for name, value in shown.items()})
-        at = {
-            name: np.atleast_1d(np.broadcast_to(a.value, (len(points),)))[i] for name, a in together.items()
-        }
+        at = {name: at_points(cls, name, answer, len(points))[i] for name, answer in together.items()}
         if alone is None:
-            assert any(np.isnan(value) for value in at.values()), i
+            assert any(np.isnan(value).any() for value in at.values()), i
         else:
             compared += 1
             for name, answer in alone.items():
-                assert at[name] == pytest.approx(answer.value, rel=1e-9, abs=0), (name, i)
+                expected = np.nan if answer.value is None else answer.value
+                assert at[name] == pytest.approx(expected, rel=1e-9, abs=0, nan_ok=True), (name, i)
     assert compared > 0
+
+
+def at_points(cls, name, answer, size):
+    """The values of an output at every point; a profile's along a further axis."""
+    value = np.asarray(answer.value)
+    places = value.shape[-1:] if isinstance(cls.formulas[name], Profile) else ()
+    return np.broadcast_to(value, (size, *places))
 
 
 def point(value, i):
@@ -300,7 +308,8 @@ def evaluated_alone(cls, raw):
     except InvalidInputs as refusal:
         faults = refusal.faults
     else:
-        assert np.all(np.isfinite([answer.value for answer in outputs.values()]))
+        for name, answer in outputs.items():
+            assert answer.reason if answer.value is None else np.isfinite(answer.value).all(), name
         return outputs
     assert faults
     assert all(fault.name in {*cls.inputs, *cls.formulas} and fault.detail for fault in faults)

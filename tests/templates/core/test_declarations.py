@@ -5,12 +5,25 @@ import json
 import numpy as np
 import pytest
 
+from app.calculations import rendering
 from templates.core import dimensions
 from templates.core.errors import InvalidInputs
 from templates.core.evaluate import evaluate
 from templates.core.report import rows
 from templates.core.schema import describe, inputs_schema
-from templates.core.template import Template, Truth, choice, curve, derived, formula, given, require, units
+from templates.core.solve import solve
+from templates.core.template import (
+    Template,
+    Truth,
+    choice,
+    curve,
+    derived,
+    formula,
+    given,
+    profile,
+    require,
+    units,
+)
 
 
 @units("m", returns="m", latex=r"f\left({0}\right)")
@@ -213,6 +226,61 @@ class TestLimits:
         assert warning.code == "tolerance_unmet"
         with pytest.raises(InvalidInputs, match="one level only"):
             evaluate(Shaft, Shaft.example, level="map")
+
+
+def stations(length):
+    return np.asarray(length)[..., None] * np.linspace(0, 1, 3)
+
+
+class Beam(Template):
+    """A beam."""
+
+    example = {"length": "2 m", "load": "1 N", "sag": "1 m"}
+
+    l = given("m", "length", gt=0)  # noqa: E741
+    w = given("N", "load")
+    s = given("m", "sag", optional=True)
+
+    @profile("m", "place", along="place")
+    def x(self):
+        return stations(self.l)
+
+    @profile("N*m", "moment", along="place", lt=10, remedy="lower the load")
+    def m(self):
+        return self.w * self.x
+
+    @profile("m", "line", along="place")
+    def y(self):
+        return stations(self.s)
+
+
+class TestProfiles:
+    MANY = {"load": "4 N", "sag": "1 m", "length": {"value": [1, -1, 3], "unit": "m"}}
+
+    def test_property_profile_of_a_point(self):
+        outputs = evaluate(Beam, {"length": "2 m", "load": "1 N"}).outputs
+        np.testing.assert_array_equal(outputs["moment"].value, [0, 1, 2])
+        assert (outputs["line"].value, outputs["line"].reason) == (None, "needs sag")
+        assert describe(Beam)["outputs"]["properties"]["moment"]["along"] == "place"
+
+    def test_property_profile_of_a_point_is_refused_whole(self):
+        with pytest.raises(InvalidInputs, match=r"moment would be 12 N\*m; .*lower the load") as refusal:
+            evaluate(Beam, {"length": "3 m", "load": "4 N"})
+        assert codes(refusal) == {("moment", "outside_domain")}
+
+    def test_property_profiles_of_arrays_are_masked_whole(self):
+        moment = evaluate(Beam, self.MANY).outputs["moment"]
+        np.testing.assert_array_equal(moment.value, [[0, 2, 4], [np.nan] * 3, [np.nan] * 3])
+        assert [bool(reason) for reason in moment.reasons] == [False, True, True]
+        assert "length must be" in moment.reasons[1]
+        shown = rendering.answer(moment)
+        assert shown["value"] == [[0, 2, 4], None, None]
+        assert json.loads(json.dumps(shown))["reasons"] == list(moment.reasons)
+
+    def test_property_profile_is_no_target(self):
+        with pytest.raises(InvalidInputs, match="single value") as refusal:
+            solve(Beam, {"load": "1 N"}, "length", ["1 m", "2 m"], {"moment": "1 N*m"})
+        assert codes(refusal) == {("target.moment", "not_a_number")}
 
 
 class TestLanguage:
