@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
 
 Word = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
+Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f]+$")]
 Version = Annotated[int, Field(ge=1, le=10**6)] | Literal["latest"] | None
 Values = Annotated[dict[Word, Any], Field(max_length=500)]
 
@@ -56,7 +57,7 @@ class Document(BaseModel):
 
     model_config = _STRICT
 
-    name: str = Field(min_length=1, max_length=200)
+    name: Name
     parameters: Values = {}
     steps: Annotated[dict[Word, Step], Field(max_length=100)] = {}
     models: Annotated[dict[Word, Model], Field(max_length=20)] = {}

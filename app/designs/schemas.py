@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.calculations.schemas import OIL_FILM
-from app.designs.document import Document, Model
+from app.designs.document import Document, Model, Name
 
 PAPER: dict[str, Any] = {
     "name": "435 cc main bearing",
@@ -53,4 +53,4 @@ class CopyIn(BaseModel):
     """A name for the copy."""
 
     model_config = ConfigDict(strict=True, extra="forbid")
-    name: str | None = Field(None, min_length=1, max_length=200)
+    name: Name | None = None
