@@ -24,7 +24,7 @@ def absence(self: Template, declaration: Formula[Any]) -> str | None:
 
 def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:
     """The fault of a formula's result outside its domain, with the inputs that it follows from."""
-    meaning = declaration.meaning
+    meaning = declaration.meaning.at(self.level)
     used = (self.declarations[n] for n in sorted(self.ancestors(declaration.attribute)))
     inputs = ", ".join(d.name for d in used if d.name in self.inputs) or "constants alone"
     if np.isfinite(value):
@@ -49,7 +49,7 @@ def whole(self: Template, declaration: Formula[Any], value: Array) -> Array:
 
 def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
     """The results with NaN where they mean nothing, the reason noted; a profile is masked as a whole."""
-    meaning = declaration.meaning
+    meaning = declaration.meaning.at(self.level)
     inside, known = meaning.admits(value), ~np.isnan(value)
     if isinstance(declaration, Profile):
         inside, known = np.all(inside, axis=-1), np.all(known, axis=-1)
@@ -64,9 +64,9 @@ def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
     return np.where(inside[..., None] if isinstance(declaration, Profile) else inside, value, np.nan)
 
 
-def warn_if_outside(ledger: Ledger, declaration: Declaration, value: Any) -> None:
+def warn_if_outside(ledger: Ledger, declaration: Declaration, value: Any, level: str = "") -> None:
     """Note a warning that names the limit where a value leaves its published range."""
-    meaning = declaration.meaning
+    meaning = declaration.meaning.at(level)
     outside = ~np.isnan(value) & ~np.asarray(meaning.published_si.admits(value))  # type: ignore[union-attr]
     if not outside.any():
         return

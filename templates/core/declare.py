@@ -19,7 +19,7 @@ from typing import Any, Generic, Self, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.meaning import Meaning, meaning
+from templates.core.meaning import Bounds, Meaning, meaning
 from templates.core.quantity import Typed, read, unit
 from templates.core.syntax import attributes_used, returned
 
@@ -45,10 +45,12 @@ class Declaration:
 class Given(Declaration):
     """An input: a quantity that the user gives, its default, or NaN if it is optional and missing."""
 
-    def __init__(self, meaning: Meaning, default: Any = None, *, optional: bool = False) -> None:
+    def __init__(
+        self, meaning: Meaning, default: Any = None, *, optional: bool = False, alternative: bool = False
+    ) -> None:
         super().__init__(meaning)
         self.default: Typed | None = None if default is None else read(default, meaning.unit)
-        self.optional = optional
+        self.optional, self.alternative = optional or alternative, alternative
 
     @property
     def required(self) -> bool:
@@ -61,6 +63,17 @@ class Curve(Given):
 
     A curve means something only as a whole: one point out of its domain refuses it.
     """
+
+
+class Table(Given):
+    """An optional input that is a list of rows, each of the same columns; one thing, not many points.
+
+    Its value is a tuple of tuples [SI]; empty when missing.
+    """
+
+    def __init__(self, meaning: Meaning, columns: tuple[str, ...]) -> None:
+        super().__init__(meaning, alternative=True)
+        self.columns = columns
 
 
 class Choice(Declaration):
@@ -106,9 +119,13 @@ class Formula(Declaration, Generic[T]):
 
 
 class Derived(Formula[T]):
-    """An optional input: a value given by the user, else this formula of other inputs."""
+    """An optional input: a value given by the user, else this formula of other inputs; `shown` as output."""
 
     required = False
+
+    def __init__(self, function: Callable[[T], Any], meaning: Meaning, *, shown: bool = False) -> None:
+        super().__init__(function, meaning)
+        self.shown = shown
 
 
 class Profile(Formula[T]):
@@ -172,12 +189,35 @@ class Requirement:
         return attributes_used(self.function)
 
 
-def given(unit: str, words: str, *, default: Any = None, optional: bool = False, **keywords: Any) -> Any:
+def given(
+    unit: str,
+    words: str,
+    *,
+    default: Any = None,
+    optional: bool = False,
+    alternative: bool = False,
+    **keywords: Any,
+) -> Any:
     """Declare an input in `unit`, with bounds in that unit; required unless it has a default or is optional.
 
-    An optional input that is missing is NaN; outputs that need it do not exist, and say so.
+    An optional input that is missing is NaN; outputs that need it do not exist, and say so. An `alternative`
+    is optional too, but one of several ways to say something: its formulas deal with the NaN themselves.
     """
-    return Given(meaning(unit, words, **keywords), default, optional=optional)
+    return Given(meaning(unit, words, **keywords), default, optional=optional, alternative=alternative)
+
+
+def table(unit: str, words: str, *columns: str, **keywords: Any) -> Any:
+    """Declare an optional input that is a list of rows; every column is in `unit`."""
+    return Table(meaning(unit, words, **keywords), columns)
+
+
+def limits(
+    ge: float | None = None,
+    le: float | None = None,
+    published: tuple[float | None, float | None] = (None, None),
+) -> tuple[Bounds, Bounds]:
+    """Domain and published range at one level of fidelity, for `per_level`, in the declared unit."""
+    return Bounds(ge=ge, le=le), Bounds(ge=published[0], le=published[1])
 
 
 def curve(unit: str, words: str, *, default: Any = None, **keywords: Any) -> Any:
@@ -197,9 +237,11 @@ def formula(
     return lambda function: Formula(function, meaning(unit, words, **keywords), latex)
 
 
-def derived(unit: str, words: str, **keywords: Any) -> Callable[[Callable[[T], Any]], Derived[T]]:
-    """Declare an optional input whose default is this formula of other inputs."""
-    return lambda function: Derived(function, meaning(unit, words, **keywords))
+def derived(
+    unit: str, words: str, *, shown: bool = False, **keywords: Any
+) -> Callable[[Callable[[T], Any]], Derived[T]]:
+    """Declare an optional input whose default is this formula of other inputs; `shown`: it is an output too."""
+    return lambda function: Derived(function, meaning(unit, words, **keywords), shown=shown)
 
 
 def profile(

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import pint
 
-from templates.core.declare import Choice, Derived, Formula, Requirement
+from templates.core.declare import Choice, Derived, Formula, Requirement, Table
 from templates.core.syntax import attributes_used
 from templates.core.template import Template
 from templates.core.units import registry, unit
@@ -78,7 +78,7 @@ class _Record:
 
 def _quantity(template: Template, name: str) -> Any:
     declared, value = template.declarations.get(name), getattr(template, name)
-    if declared is None or isinstance(declared, Choice) or isinstance(value, str):
+    if declared is None or isinstance(declared, (Choice, Table)) or isinstance(value, str):
         return value
     return registry.Quantity(value, declared.meaning.scale.base)
 

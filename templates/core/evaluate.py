@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.declare import Choice, Formula, Profile, Text
+from templates.core.declare import Choice, Derived, Formula, Given, Profile, Text
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
 from templates.core.intake import Input
 from templates.core.ledger import Notice
-from templates.core.levels import Rung, accuracy, climb
+from templates.core.levels import Rung, accuracy, at_level, climb
 from templates.core.quantity import Typed, Unit, require_same_kind
 from templates.core.template import Template
 
@@ -90,7 +90,9 @@ def evaluate(
         rungs = _rungs(template, names, level, tolerance)
         parts = [_part(rung.template, names, shown_in) for rung in rungs]
         whole = parts[0] if rungs[0].where is None else _joined(rungs, parts)
-        echoes = {name: _echo(template, declared) for name, declared in cls.inputs.items()}
+        echoes = {
+            n: _echo(template, declared) for n, declared in cls.inputs.items() if is_told(template, declared)
+        }
     notices = [*_standing(cls), *_noticed(rungs), *_unmet(cls, whole, names, tolerance)]
     seconds = time.perf_counter() - start
     return Evaluation(rungs[0].template, echoes, whole.answers, whole.level, whole.error, notices, seconds)
@@ -114,17 +116,17 @@ class _Part:
 
 
 def _rungs(template: Template, names: list[str], level: str | None, tolerance: float | None) -> list[Rung]:
-    if level is not None:
-        return [Rung(template.at(level), None)]
-    if tolerance is None or not template.levels:
+    if not template.levels:
         return [Rung(template, None)]
-    return list(climb(template, names, tolerance))
+    if level is None and tolerance is not None:
+        return list(climb(template, names, tolerance))
+    return [Rung(at_level(template, level or template.starting_level()), None)]
 
 
 def _part(template: Template, names: list[str], shown_in: Mapping[str, Unit]) -> _Part:
     measured = accuracy(type(template))
     answers = {name: _answer(template, template.formulas[name], shown_in.get(name)) for name in names}
-    error = {name: measured.estimate(template, name) if measured else None for name in names}
+    error = {name: measured.error(template, name) if measured else None for name in names}
     return _Part(answers, template.level or None, error)
 
 
@@ -213,6 +215,15 @@ def _with_reasons(
     return value, reasons
 
 
+def is_told(template: Template, declared: Input) -> bool:
+    """Whether an input is worth telling: it was given, has a default, or is not shown as an output anyway."""
+    if declared.name in template.ledger.typed:
+        return True
+    if isinstance(declared, Derived):
+        return not declared.shown
+    return not (isinstance(declared, Given) and declared.optional)
+
+
 def _echo(template: Template, declared: Input) -> Echo:
     typed = template.ledger.typed.get(declared.name)
     if isinstance(typed, Typed):
@@ -247,7 +258,8 @@ def _unmet(cls: type[Template], whole: _Part, names: list[str], tolerance: float
     if accuracy(cls) is None:
         detail = f"the error of {cls.id} version {cls.version} is not measured; no level is known to meet it"
         return [Notice("tolerance_unmet", "tolerance", detail)]
-    missed = {name: whole.error[name] for name in names if not np.all(whole.error[name] <= tolerance)}
+    numbers = [name for name in names if not isinstance(cls.formulas[name], Text)]
+    missed = {name: whole.error[name] for name in numbers if not np.all(whole.error[name] <= tolerance)}
     return [Notice("tolerance_unmet", name, _missed(name, error)) for name, error in missed.items()]
 
 

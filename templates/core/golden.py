@@ -12,10 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from templates.core.catalogue import digest
 from templates.core.declare import Choice
 from templates.core.errors import InvalidInputs
+from templates.core.evaluate import is_told
 from templates.core.intake import Input
 from templates.core.template import Template
 
@@ -55,10 +57,10 @@ def freeze(cls: type[Template], folder: Path) -> Path:
 
 
 def _cases(cls: type[Template]) -> Iterator[dict[str, Any]]:
-    example = cls.from_quantities(cls.example).inputs_si()
+    example = _given(cls)
     yield {"inputs": _plain(example), "outputs": results(cls, example)}
     for name, declared in cls.inputs.items():
-        for value in _steps(declared, example[name]):
+        for value in _steps(declared, example.get(name)):
             inputs = {**example, name: value}
             try:
                 yield {"inputs": _plain(inputs), "outputs": results(cls, inputs)}
@@ -66,8 +68,17 @@ def _cases(cls: type[Template]) -> Iterator[dict[str, Any]]:
                 yield {"inputs": _plain(inputs), "refused": sorted(fault.code for fault in refusal.faults)}
 
 
+def _given(cls: type[Template]) -> dict[str, Any]:
+    """The example's inputs in SI: defaults too, but neither what is missing nor what is shown as an output."""
+    template = cls.from_quantities(cls.example)
+    told = {name: declared for name, declared in cls.inputs.items() if is_told(template, declared)}
+    return {name: getattr(template, declared.attribute) for name, declared in told.items()}
+
+
 def _steps(declared: Input, value: Any) -> list[Any]:
     """Other values of one input: the other options, a number more or fewer, 10 % below and above."""
+    if value is None or isinstance(value, tuple):
+        return []
     if isinstance(declared, Choice):
         return [option for option in declared.options if option != value]
     if declared.meaning.integer:
@@ -90,6 +101,13 @@ def results(cls: type[Template], inputs: Mapping[str, Any]) -> dict[str, Any]:
 
 def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
     return {
-        name: value if isinstance(value, str) else np.asarray(value).tolist()
+        name: value if isinstance(value, (str, tuple)) else _without_nan(np.asarray(value))
         for name, value in values.items()
     }
+
+
+def _without_nan(value: NDArray[Any]) -> Any:
+    """As JSON, null where there is none."""
+    plain = value.astype(object)
+    plain[np.isnan(value)] = None
+    return plain.tolist()

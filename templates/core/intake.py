@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.admission import warn_if_outside
-from templates.core.declare import Array, Choice, Curve, Declaration, Derived, Given, Requirement
+from templates.core.declare import Array, Choice, Curve, Declaration, Derived, Given, Requirement, Table
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_name
 from templates.core.ledger import Ledger, Mask
 from templates.core.quantity import Typed, read, unit
@@ -61,13 +61,15 @@ def admitted(
         elif source is not None:
             yield declared.attribute, source
         elif isinstance(declared, Given) and declared.optional:
-            ledger.missing.add(declared.attribute)
-            yield declared.attribute, np.float64(np.nan)
+            ledger.missing |= set() if declared.alternative else {declared.attribute}
+            yield declared.attribute, () if isinstance(declared, Table) else np.float64(np.nan)
 
 
 def _bounded(declared: Input, typed: Typed, ledger: Ledger, faults: list[Fault]) -> Any:
     """The value, checked: a faulty single value or curve is refused, a faulty point of an array is masked."""
     meaning, value = declared.meaning, typed.si
+    if isinstance(declared, Table):
+        return _rows(declared, value, faults)
     if isinstance(value, float) and not isinstance(declared, Curve) and meaning.admits(value):
         value = np.float64(value)
         if meaning.published_si is not None:
@@ -86,6 +88,17 @@ def _bounded(declared: Input, typed: Typed, ledger: Ledger, faults: list[Fault])
     if meaning.published_si is not None:
         warn_if_outside(ledger, declared, value)
     return value
+
+
+def _rows(declared: Table, value: Any, faults: list[Fault]) -> tuple[tuple[float, ...], ...]:
+    """The rows of a table; a single row may stand alone."""
+    rows = np.atleast_2d(value)
+    if rows.ndim != 2 or rows.shape[1] != len(declared.columns) or not np.all(declared.meaning.admits(rows)):
+        columns = ", ".join(declared.columns)
+        told = f"{declared.meaning.words} are rows of {columns}, each {declared.meaning.wanted}"
+        faults.append(Fault(declared.name, "not_a_table", told))
+        return ()
+    return tuple(map(tuple, rows.tolist()))
 
 
 def _out_of_bounds(declared: Declaration, typed: Typed, inside: Any) -> Fault:

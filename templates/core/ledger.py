@@ -37,3 +37,4 @@ class Ledger:
     masks: list[Mask] = field(default_factory=list)
     missing: set[str] = field(default_factory=set)  # attributes of optional inputs that were not given
     absent: dict[str, str] = field(default_factory=dict)  # attributes of results that do not exist, and why
+    handed: frozenset[str] = frozenset()  # attributes that the template was made with

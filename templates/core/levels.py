@@ -18,6 +18,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from templates.core.declare import Text
+from templates.core.errors import Fault, InvalidInputs
 from templates.core.template import Template
 
 Array = NDArray[np.float64]
@@ -27,12 +29,21 @@ SINGLE = "only"  # how the table of a template without levels calls its one
 
 @dataclass(frozen=True)
 class Accuracy:
-    """Measured errors, relative (of an angle: to 90°), on a grid over two attributes of a template."""
+    """Measured errors, relative (of an angle: to 90°), in the cells of a grid over two attributes."""
 
     axes: tuple[str, str]  # attributes of the template
-    grids: tuple[Array, Array]  # ascending; between nodes the worst of them counts
-    errors: dict[str, dict[str, Array]]  # by level and output
+    grids: tuple[Array, Array]  # ascending edges of the cells
+    errors: dict[str, dict[str, Array]]  # by level and output: the largest found in each cell, NaN unmeasured
     told: dict[str, Any]  # the whole file, as it is served
+
+    def error(self, template: Template, output: str) -> Any:
+        """What `evaluate` reports: none of a text, 0 where the level does not matter, else the estimate."""
+        formula = template.formulas[output]
+        if isinstance(formula, Text):
+            return np.full(_shape(template), np.nan)[()]
+        if template.levels and "level" not in template.ancestors(formula.attribute):
+            return np.zeros(_shape(template))[()]
+        return self.estimate(template, output)
 
     def estimate(self, template: Template, output: str) -> Any:
         """The largest relative error to expect of an output at the template's level; NaN where not measured.
@@ -46,19 +57,13 @@ class Accuracy:
             return np.full(first.shape, np.nan)[()]
         rows, inside_rows = _cells(self.grids[0], first)
         columns, inside_columns = _cells(self.grids[1], second)
-        return np.where(inside_rows & inside_columns, _worst(table)[rows, columns], np.nan)[()]
+        return np.where(inside_rows & inside_columns, table[rows, columns], np.nan)[()]
 
 
 def _cells(grid: Array, values: Array) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
     """The cell of the grid in which each value lies, and whether it lies in any."""
     cells = np.clip(np.searchsorted(grid, values, side="right") - 1, 0, grid.size - 2)
     return cells, (values >= grid[0]) & (values <= grid[-1])
-
-
-def _worst(table: Array) -> Array:
-    """For every cell the largest error at its corners."""
-    size = np.abs(table)
-    return np.maximum.reduce([size[:-1, :-1], size[1:, :-1], size[:-1, 1:], size[1:, 1:]])
 
 
 def accuracy_file(cls: type[Template]) -> Path:
@@ -100,23 +105,46 @@ def climb(template: Template, outputs: Iterable[str], tolerance: float) -> Itera
 
     What no level meets is calculated at the finest.
     """
-    measured, names = accuracy(type(template)), list(outputs)
-    left = np.ones(_shape(template), dtype=bool)
-    for level in template.levels:
-        rung = template.at(level)
-        last = level == template.levels[-1]
-        met = np.broadcast_to(measured is not None and _meets(measured, rung, names, tolerance), left.shape)
-        chosen = left if last else left & met
+    measured = accuracy(type(template))
+    names = [name for name in outputs if not isinstance(template.formulas[name], Text)]
+    ladder, left = template.ladder(), np.ones(_shape(template), dtype=bool)
+    for level in ladder:
+        rung = at_level(template, level, None if left.all() else left)
+        met = level == ladder[-1] or (measured is not None and _meets(measured, rung, names, tolerance))
+        chosen = np.zeros_like(left)
+        chosen[left] = met
         if chosen.all():
             yield Rung(rung, None)
             return
         if chosen.any():
-            yield Rung(template.at(level, chosen), chosen)
+            yield Rung(rung if np.all(met) else template.at(level, chosen), chosen)
         left = left & ~chosen
+        if not left.any():
+            return
+
+
+def at_level(template: Template, level: str, where: NDArray[np.bool_] | None = None) -> Template:
+    """The template at a level, if that takes as many points at once.
+
+    Raises
+    ------
+    InvalidInputs
+        If there are too many.
+    """
+    count = int(np.prod(_shape(template))) if where is None else int(where.sum())
+    most = template.most_points.get(level, count)
+    if count > most:
+        told = f"level {level} takes at most {most} points at once, not {count}; ask for fewer, or for less"
+        raise InvalidInputs([Fault("level", "too_many_points", told)])
+    return template.at(level, where)
 
 
 def _meets(measured: Accuracy, rung: Template, names: list[str], tolerance: float) -> Any:
-    return np.logical_and.reduce([measured.estimate(rung, name) <= tolerance for name in names])
+    """Where the errors of all outputs are within the tolerance; nowhere if the level refuses."""
+    try:
+        return np.logical_and.reduce([measured.error(rung, name) <= tolerance for name in names])
+    except InvalidInputs:
+        return False
 
 
 def _shape(template: Template) -> tuple[int, ...]:

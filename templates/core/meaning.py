@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -61,7 +62,7 @@ class Meaning:
     `domain` is where it means anything, `published` where its source claims it; `remedy` says what to do
     outside. `also` are other names under which it is known. `assumes` are attributes of the template whose
     published range bounds this formula too, though it does not use them. `absent` says why a result may be
-    NaN without being a fault.
+    NaN without being a fault. `per_level` narrows domain and published range at single levels of fidelity.
     """
 
     words: str
@@ -76,6 +77,16 @@ class Meaning:
     integer: bool = False
     assumes: tuple[str, ...] = ()
     absent: str | None = None
+    per_level: Mapping[str, tuple[Bounds, Bounds]] = field(default_factory=dict, hash=False)
+
+    def at(self, level: str) -> Meaning:
+        """What the number means at a level of fidelity, which may have limits of its own."""
+        return self._at_levels.get(level, self) if self.per_level else self
+
+    @cached_property
+    def _at_levels(self) -> dict[str, Meaning]:
+        narrowed = self.per_level.items()
+        return {level: replace(self, domain=d, published=p, per_level={}) for level, (d, p) in narrowed}
 
     @property
     def wanted(self) -> str:
@@ -149,6 +160,7 @@ def meaning(
     integer: bool = False,
     assumes: tuple[str, ...] = (),
     absent: str | None = None,
+    per_level: Mapping[str, tuple[Bounds, Bounds]] | None = None,
 ) -> Meaning:
     """The keywords that every declaration shares, as a `Meaning`; bounds are in the declared unit."""
     return Meaning(
@@ -164,4 +176,5 @@ def meaning(
         integer=integer,
         assumes=assumes,
         absent=absent,
+        per_level=per_level or {},
     )

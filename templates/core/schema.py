@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from templates.core.catalogue import digest
-from templates.core.declare import Choice, Curve, Declaration, Derived, Formula, Profile, Text
+from templates.core.declare import Choice, Curve, Declaration, Derived, Formula, Profile, Table, Text
 from templates.core.intake import Input
 from templates.core.mathml import expression, mathml, symbol, symbols
 from templates.core.meaning import Bounds
@@ -100,7 +100,7 @@ def _default(cls: type[Template], declared: Input) -> dict[str, Any]:
 def _quantity_in(declared: Declaration) -> dict[str, Any]:
     """The written forms of a quantity: text, object, and bare numbers where the unit is 1."""
     values = {"type": "array", "minItems": 1}
-    magnitude = values if isinstance(declared, Curve) else {"type": ["number", "array"]}
+    magnitude = values if isinstance(declared, (Curve, Table)) else {"type": ["number", "array"]}
     typed = {
         "type": "object",
         "required": ["value", "unit"],
@@ -113,7 +113,7 @@ def _quantity_in(declared: Declaration) -> dict[str, Any]:
         },
     }
     bare = [{"type": "number"}] if declared.meaning.unit == "1" and not isinstance(declared, Curve) else []
-    text = [] if isinstance(declared, Curve) else [{"type": "string"}]
+    text = [] if isinstance(declared, (Curve, Table)) else [{"type": "string"}]
     return {"anyOf": [*text, *bare, typed, values]}
 
 
@@ -139,8 +139,17 @@ def formula_on_paper(cls: type[Template], formula: Formula[Any]) -> dict[str, An
         "latex": latex,
         "mathml": mathml(latex),
         "source": formula.meaning.source,
-        "uses": [cls.declarations[used].name for used in formula.uses],
+        "uses": list(dict.fromkeys(_declared_beneath(cls, formula.uses))),
     }
+
+
+def _declared_beneath(cls: type[Template], attributes: Iterable[str]) -> Iterator[str]:
+    """The names of declarations that are used, directly or by a shared intermediate."""
+    for attribute in attributes:
+        if attribute in cls.declarations:
+            yield cls.declarations[attribute].name
+        elif attribute in cls.intermediates:
+            yield from _declared_beneath(cls, cls.intermediates[attribute].uses)
 
 
 def declared_limits(cls: type[Template]) -> list[dict[str, Any]]:
@@ -152,11 +161,21 @@ def declared_limits(cls: type[Template]) -> list[dict[str, Any]]:
             if not bounds.open:
                 text = f"{meaning.words} {bounds.text(meaning.unit)}"
                 found.append({"name": declared.name, "kind": kind, "text": text, "source": meaning.source})
+        found += _limits_of_levels(declared)
     for rule in cls.requirements:
         found += (
             {"name": n, "kind": "refused_unless", "text": rule.sentence, "source": None} for n in rule.names
         )
     return found
+
+
+def _limits_of_levels(declared: Declaration) -> Iterator[dict[str, Any]]:
+    meaning = declared.meaning
+    for level, both in meaning.per_level.items():
+        for kind, bounds in zip(("refused_unless", "warned_unless"), both, strict=True):
+            if not bounds.open:
+                text = f"{meaning.words} {bounds.text(meaning.unit)} at level {level}"
+                yield {"name": declared.name, "kind": kind, "text": text, "source": meaning.source}
 
 
 def documentation(cls: type[Template]) -> Mapping[str, list[str]]:

@@ -36,6 +36,7 @@ from templates.core.declare import (
     profile,
     require,
     shared,
+    table,
     text,
     units,
 )
@@ -45,7 +46,7 @@ from templates.core.ledger import Ledger, Mask
 
 __all__ = [
     "Array", "Template", "Truth", "choice", "curve", "derived", "formula", "given", "profile", "require",
-    "shared", "text", "units",
+    "shared", "table", "text", "units",
 ]  # fmt: skip
 
 VERSIONED = re.compile(r"(?:^|.*\.)([a-z][a-z0-9_]*)_v([1-9][0-9]*)$")
@@ -70,6 +71,7 @@ class Template:
 
     levels: ClassVar[tuple[str, ...]] = ()  # fidelities, cheapest first
     default_level: ClassVar[str] = ""
+    most_points: ClassVar[Mapping[str, int]] = {}  # that a dear level takes at once
     level: str
 
     _ancestry: ClassVar[dict[str, frozenset[str]]] = {}
@@ -86,7 +88,7 @@ class Template:
         cls.declarations, cls._ancestry = declared, {}
         named = by_name(declared)
         cls.inputs = {name: v for name, v in named.items() if isinstance(v, (Given, Choice, Derived))}
-        cls.formulas = {name: v for name, v in named.items() if name not in cls.inputs}
+        cls.formulas = {n: v for n, v in named.items() if n not in cls.inputs or getattr(v, "shown", False)}
         cls.requirements = tuple(v for v in everything.values() if isinstance(v, Requirement))
         cls.intermediates = {name: v for name, v in everything.items() if isinstance(v, Shared)}
 
@@ -95,6 +97,7 @@ class Template:
         self.__dict__.update(values)
         self.__dict__.setdefault("level", self.default_level)
         self.__dict__["ledger"] = ledger or Ledger()
+        self.ledger.handed = frozenset(values)
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
         raise AttributeError(f"a {type(self).__name__} is a record of one calculation; make a new one")
@@ -142,13 +145,26 @@ class Template:
     def at(self, level: str, where: NDArray[np.bool_] | None = None) -> Self:
         """The same inputs at another level; only those points of arrays where `where` holds, if given."""
         names = (declared.attribute for declared in self.inputs.values())
-        values = {name: vars(self)[name] for name in names if name in vars(self)}
+        values = {name: vars(self)[name] for name in names if name in self.ledger.handed}
         masks = self._own_masks()
         if where is not None:
             values = {name: _picked(value, where) for name, value in values.items()}
             masks = [Mask(m.names, np.broadcast_to(m.where, where.shape)[where], m.reason) for m in masks]
         ledger = Ledger(typed=self.ledger.typed, masks=masks, missing=self.ledger.missing)
         return type(self)({**values, "level": level}, ledger)
+
+    def as_given(self, attribute: str) -> Any:
+        """The value of an input as it was given, or its default; NaN where its formula has to make it."""
+        return vars(self)[attribute] if attribute in self.ledger.handed else np.float64(np.nan)
+
+    def ladder(self) -> tuple[str, ...]:
+        """The levels that answer the question these inputs ask, cheapest first."""
+        return self.levels
+
+    def starting_level(self) -> str:
+        """The level that is taken when none is asked for."""
+        ladder = self.ladder()
+        return self.default_level if self.default_level in ladder else ladder[-1]
 
     def _own_masks(self) -> list[Mask]:
         """The masks that come from inputs; those of formulas come anew with the level."""
@@ -199,7 +215,7 @@ class Template:
 
     def admit(self, declaration: Formula[Any], value: Any) -> Any:
         """Check a formula's result against its bounds: refuse a point, mask points of an array, or warn."""
-        meaning = declaration.meaning
+        meaning = declaration.meaning.at(self.level)
         if isinstance(value, float) or (np.ndim(value) == 0 and not isinstance(value, str)):
             value = np.float64(value)
             if not (math.isfinite(value) and (meaning.domain_si is None or meaning.domain_si.admits(value))):
@@ -212,7 +228,7 @@ class Template:
         elif isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
             value = masked(self, declaration, value)
         if meaning.published_si is not None:
-            warn_if_outside(self.ledger, declaration, value)
+            warn_if_outside(self.ledger, declaration, value, self.level)
         for assumed in meaning.assumes:
             getattr(self, assumed)
         return value
