@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import AsyncIterator
 from contextlib import ExitStack, asynccontextmanager
+from functools import partial
 from importlib.metadata import version
 from typing import Any
 
@@ -75,7 +76,18 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     problems.install(app)
     app.add_middleware(BodyLimit, limit=chosen.body_limit, refuse=_too_large)
     app.add_middleware(Metrics)
+    app.openapi = partial(_openapi_3_1, app)  # type: ignore[method-assign]
     return app
+
+
+def _openapi_3_1(app: FastAPI) -> dict[str, Any]:
+    """The description without `itemSchema`, which FastAPI writes for event streams: that is OpenAPI 3.2."""
+    described = FastAPI.openapi(app)
+    operations = [operation for item in described["paths"].values() for operation in item.values()]
+    for answer in (answer for operation in operations for answer in operation["responses"].values()):
+        for content in answer.get("content", {}).values():
+            content.pop("itemSchema", None)
+    return described
 
 
 def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:

@@ -10,6 +10,10 @@ from fastapi.responses import JSONResponse, Response
 from app.jobs.service import Jobs
 
 LONGEST = 60.0  # s
+LATER: dict[int | str, dict[str, Any]] = {
+    202: {"description": "as far as it is known: the work goes on, its job is in the header Location"}
+}
+"""What a route that may wait for a job says of its answers."""
 
 
 async def finished(jobs: Jobs, job: str | None, prefer: str | None) -> bool:

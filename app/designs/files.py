@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Response
+from fastapi.responses import FileResponse
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
@@ -14,22 +15,27 @@ from app.designs.errors import NotFound
 from app.designs.routes import Id, Number, Prefer
 from app.http import StrictRoute
 from app.models.routes import send_file
-from app.waiting import accepted, finished
+from app.waiting import LATER, accepted, finished
 from cad.export import MEDIA_TYPES
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
+FILES: dict[str, Any] = {
+    "response_class": FileResponse,
+    "responses": {200: {"content": {media: {} for media in MEDIA_TYPES.values()}}, **LATER},
+}
+
 Accept = Annotated[str | None, Header(description=", ".join(MEDIA_TYPES.values()))]
 
 
-@router.get("/{id}/model")
-@router.get("/{id}/model.{kind}")
-@router.get("/{id}/models/{name}/model")
-@router.get("/{id}/models/{name}/model.{kind}")
-@router.get("/{id}/revisions/{number}/model")
-@router.get("/{id}/revisions/{number}/model.{kind}")
-@router.get("/{id}/revisions/{number}/models/{name}/model")
-@router.get("/{id}/revisions/{number}/models/{name}/model.{kind}")
+@router.get("/{id}/model", **FILES)
+@router.get("/{id}/model.{kind}", **FILES)
+@router.get("/{id}/models/{name}/model", **FILES)
+@router.get("/{id}/models/{name}/model.{kind}", **FILES)
+@router.get("/{id}/revisions/{number}/model", **FILES)
+@router.get("/{id}/revisions/{number}/model.{kind}", **FILES)
+@router.get("/{id}/revisions/{number}/models/{name}/model", **FILES)
+@router.get("/{id}/revisions/{number}/models/{name}/model.{kind}", **FILES)
 async def model_file(
     id: Id,
     database: TheDatabase,

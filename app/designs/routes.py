@@ -17,7 +17,7 @@ from app.designs.service import Designs, Saved
 from app.http import StrictRoute
 from app.jobs.service import Jobs
 from app.paging import Cursor, Limit, page
-from app.waiting import finished
+from app.waiting import LATER, finished
 from templates.core.errors import Fault, InvalidInputs
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
@@ -33,9 +33,12 @@ Patch = Annotated[
         examples=[{"parameters": {"scale": "1.01"}, "note": "next size"}],
     ),
 ]
+MERGE_PATCH: dict[str, Any] = {
+    "requestBody": {"content": {"application/merge-patch+json": {"schema": {"type": "object"}}}}
+}
 
 
-@router.post("", status_code=201)
+@router.post("", status_code=201, responses=LATER)
 async def create_design(
     body: DesignIn, designs: TheDesigns, jobs: TheJobs, once: TheOnce, prefer: Prefer = None
 ) -> Response:
@@ -66,7 +69,7 @@ def show_design(id: Id, designs: TheDesigns) -> Response:
     return _shown(designs, id, None, 200)
 
 
-@router.patch("/{id}")
+@router.patch("/{id}", responses=LATER, openapi_extra=MERGE_PATCH)
 async def change_design(
     id: Id,
     body: Patch,
@@ -97,7 +100,7 @@ def preview_design(id: Id, body: Patch, database: TheDatabase, catalogues: TheCa
         return preview(session, catalogues, id, patch)
 
 
-@router.post("/{id}/auto-map")
+@router.post("/{id}/auto-map", responses=LATER)
 async def auto_map(
     id: Id,
     designs: TheDesigns,
@@ -113,7 +116,7 @@ async def auto_map(
     return await _answer(designs, jobs, saved, prefer, told) if saved else JSONResponse(told)
 
 
-@router.post("/{id}/copy", status_code=201)
+@router.post("/{id}/copy", status_code=201, responses=LATER)
 async def copy_design(
     id: Id,
     designs: TheDesigns,
@@ -127,7 +130,7 @@ async def copy_design(
     return await _answer(designs, jobs, saved, prefer)
 
 
-@router.post("/{id}/revisions/{number}/restore")
+@router.post("/{id}/revisions/{number}/restore", responses=LATER)
 async def restore_revision(
     id: Id,
     number: Number,

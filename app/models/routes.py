@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Header, Request, Response
+from fastapi import APIRouter, Header, Path, Request, Response
 from fastapi.responses import FileResponse, JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
-from app.catalogue.routes import Id, Number, summary
+from app.catalogue.routes import Number, summary
 from app.dependencies import TheCatalogues, TheJobs, TheModels, TheStore
 from app.http import NotJson, StrictRoute
 from app.paging import Cursor, Limit, page_of
-from app.waiting import accepted, finished
+from app.waiting import LATER, accepted, finished
 from cad.export import MEDIA_TYPES
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
@@ -23,6 +23,7 @@ from templates.core.schema import describe
 
 router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
 
+Id = Annotated[str, Path(max_length=64, examples=["ball_bearing"])]
 FOR_EVER = "public, max-age=31536000, immutable"
 
 
@@ -62,7 +63,11 @@ def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, A
     return {**told, "parameters": told.pop("inputs"), "measures": MEASURES, "picture": picture}
 
 
-@router.get("/models/{id}/versions/{number}/picture")
+@router.get(
+    "/models/{id}/versions/{number}/picture",
+    response_class=FileResponse,
+    responses={200: {"content": {"image/png": {}}}, **LATER},
+)
 async def picture(
     id: Id,
     number: Number,
@@ -80,7 +85,7 @@ async def picture(
     return send_file(await run_in_threadpool(models.file, build_key(shape), "png"))
 
 
-@router.post("/models/{id}/versions/{number}/build")
+@router.post("/models/{id}/versions/{number}/build", responses=LATER)
 async def build(
     id: Id,
     number: Number,
@@ -113,7 +118,11 @@ def show_build(key: str, models: TheModels) -> dict[str, Any]:
     return models.show(key)
 
 
-@router.get("/artifacts/{sha256}")
+@router.get(
+    "/artifacts/{sha256}",
+    response_class=FileResponse,
+    responses={200: {"content": {"application/octet-stream": {}}}},
+)
 def artifact(sha256: str, store: TheStore) -> Response:
     """The bytes of this hash; they never change."""
     headers = {"ETag": f'"{sha256}"', "Cache-Control": FOR_EVER}
