@@ -1,0 +1,148 @@
+"""The description of the interface: valid, complete, with examples that run; and its page, which is local."""
+
+from html.parser import HTMLParser
+from urllib.parse import urlsplit
+
+import pytest
+import schemathesis
+from serving import API, created, paper
+
+METHODS = ("get", "post", "patch", "put", "delete")
+
+
+@pytest.fixture(scope="module")
+def document(http):
+    return http.get("/openapi.json").json()
+
+
+@pytest.fixture(scope="module")
+def operations(document):
+    return {
+        f"{method.upper()} {path}": operation
+        for path, item in document["paths"].items()
+        for method, operation in item.items()
+        if method in METHODS
+    }
+
+
+@pytest.fixture(scope="module")
+def example(http):
+    """A design of which every part exists, for paths."""
+    return created(http, paper(name="example"))
+
+
+def test_it_is_valid_openapi_3_1(document):
+    assert document["openapi"].startswith("3.1")
+    schemathesis.openapi.from_dict(document).validate()
+
+
+def test_every_operation_says_what_it_does(operations):
+    assert len(operations) > 30
+    for name, told in operations.items():
+        assert told.get("summary"), name
+        assert told.get("description"), name
+    assert len({told["operationId"] for told in operations.values()}) == len(operations)
+
+
+def test_every_operation_says_what_it_answers(operations):
+    for name, told in operations.items():
+        assert "4XX" in told["responses"], name
+        assert "application/problem+json" in told["responses"]["4XX"]["content"]
+        assert any(status.startswith("2") for status in told["responses"]), name
+
+
+def test_every_body_has_an_example(document, operations):
+    with_body = {name: told["requestBody"] for name, told in operations.items() if "requestBody" in told}
+    bodies = {name: body["content"].get("application/json") for name, body in with_body.items()}
+    missing = [name for name, body in bodies.items() if body and not examples(document, body["schema"])]
+    assert [name for name in missing if not name.endswith(("/copy", "/restore"))] == []
+
+
+def examples(document, schema):
+    """The examples of a schema, wherever they stand."""
+    if "$ref" in schema:
+        schema = document["components"]["schemas"][schema["$ref"].rpartition("/")[2]]
+    inside = [found for part in schema.get("anyOf", ()) for found in examples(document, part)]
+    return [*schema.get("examples", ()), *inside]
+
+
+def filled(path, operation, design):
+    """A path with the examples of its parameters; designs and jobs are named by what exists."""
+    known = {"/designs/{id}": f"/designs/{design['id']}", "revisions/{number}": "revisions/1"}
+    for template, value in known.items():
+        path = path.replace(template, value)
+    for parameter in operation.get("parameters", ()):
+        given = parameter.get("schema", {}).get("examples")
+        if parameter["in"] == "path" and given:
+            path = path.replace(f"{{{parameter['name']}}}", str(given[0]))
+    assert "{" not in path, f"no example for {path}"
+    return path
+
+
+def test_every_example_runs(http, document, operations, example):
+    ran = []
+    for name, operation in operations.items():
+        method, path = name.split(" ")
+        for media, body in operation.get("requestBody", {}).get("content", {}).items():
+            for sent in examples(document, body["schema"]):
+                headers = {"Content-Type": media, "Prefer": "wait=60", "If-Match": "*"}
+                answer = http.request(method, filled(path, operation, example), json=sent, headers=headers)
+                assert answer.is_success, (name, sent, answer.text)
+                ran.append(name)
+    assert len(ran) >= 6, ran
+
+
+def test_every_get_with_examples_answers(http, operations, example):
+    """Templates, models and designs, as the document's own examples name them."""
+    ran = []
+    for name, operation in operations.items():
+        method, path = name.split(" ")
+        if method == "GET" and path.startswith((f"{API}/templates", f"{API}/models")):
+            answer = http.get(filled(path, operation, example), headers={"Prefer": "wait=60"})
+            assert answer.is_success, (name, answer.text)
+            documented = operation["responses"]["200"].get("content", {})
+            assert answer.headers["content-type"].partition(";")[0] in documented, name
+            ran.append(name)
+    assert len(ran) >= 7, ran
+
+
+class Loads(HTMLParser):
+    """Everything that a page loads or points at."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.links, self.scripts = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.links += [value for name, value in attributes if name in ("src", "href", "action", "data")]
+
+    def handle_data(self, data):
+        self.scripts.append(data)
+
+
+def test_docs_load_nothing_from_outside(http):
+    page = http.get("/docs")
+    assert page.headers["content-type"].startswith("text/html")
+    loaded = Loads(page.text)
+    assert len(loaded.links) >= 3
+    for link in loaded.links:
+        assert not urlsplit(link).netloc, link
+        assert http.get(link).is_success, link
+    inline = " ".join(loaded.scripts)
+    assert "http://" not in inline
+    assert "https://" not in inline
+    assert "//cdn" not in inline
+    assert '"/openapi.json"' in inline or "'/openapi.json'" in inline
+    assert '"validatorUrl": null' in inline
+
+
+def test_the_style_sheet_loads_nothing_from_outside(http):
+    style = next(link for link in Loads(http.get("/docs").text).links if link.endswith(".css"))
+    text = http.get(style).text
+    assert "url(http" not in text.replace('"', "").replace("'", "")
+    assert "@import" not in text
+
+
+def test_redoc_is_not_served(http):
+    assert http.get("/redoc").status_code == 404

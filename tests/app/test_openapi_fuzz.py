@@ -1,0 +1,161 @@
+"""Requests made up from the interface's own description, and designs made up at random: never a 5xx."""
+
+import json
+import math
+
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+from serving import API, HANG, created
+
+from app.main import create_app
+from app.settings import Settings
+
+# A stream of events has no end.
+INTERFACE = schemathesis.openapi.from_dict(create_app(Settings()).openapi()).exclude(path_regex="/events$")
+QUICK = settings(
+    max_examples=12,
+    deadline=None,
+    derandomize=True,
+    database=None,
+    phases=[Phase.explicit, Phase.generate],
+    suppress_health_check=list(HealthCheck),
+)
+THOROUGH = settings(QUICK, max_examples=300)
+
+
+@schemathesis.serializer("model/step")
+def as_bytes(context, value):
+    return value if isinstance(value, bytes) else str(value).encode("utf-8", "replace")
+
+
+def ask(case, url):
+    headers = {"Prefer": "respond-async"}
+    if case.method == "PATCH":
+        headers["If-Match"] = "*"
+    answer = case.call(base_url=url, headers=headers, timeout=2 * HANG)
+    assert answer.status_code < 500, answer.text
+    if answer.status_code >= 400 and case.method != "HEAD":
+        assert answer.headers["content-type"][0] == "application/problem+json", answer.text
+
+
+@INTERFACE.parametrize()
+@QUICK
+def test_the_interface(served, case):
+    ask(case, served.url)
+
+
+@pytest.mark.slow
+@INTERFACE.parametrize()
+@THOROUGH
+def test_the_interface_at_length(served, case):
+    ask(case, served.url)
+
+
+NAMES = st.sampled_from(["a", "b", "film", "model", "x", "__class__", "pi"])
+UNITS = st.sampled_from(["mm", "kN", "1", "degC", "rpm", "m**9**9", "kg", "", "mm ** 2", "N*m"])
+NUMBERS = st.one_of(
+    st.integers(), st.floats(), st.sampled_from(["1", "-1", "1e999", "0", "1e-320", "NaN", "1.", ".5", "1_0"])
+)
+QUANTITIES = st.one_of(
+    st.builds("{} {}".format, NUMBERS, UNITS),
+    st.fixed_dictionaries({"value": NUMBERS, "unit": UNITS}),
+    st.fixed_dictionaries({"value": st.lists(NUMBERS, max_size=3), "unit": UNITS}),
+)
+PIECES = ["a", "b", "film.speed", "model.mass", "model.size", "1", "48 mm", "2 kN", "+", "-", "*", "/", "**",
+          "(", ")", "sqrt(", "exp(", "max(", ",", "pi", " ", "20 degC", "9", "m", "film.density"]  # fmt: skip
+RELATIONS = st.lists(st.sampled_from(PIECES), max_size=12).map(lambda pieces: "= " + " ".join(pieces))
+JUNK = st.recursive(
+    st.none() | st.booleans() | NUMBERS | st.text(max_size=5),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=3), inner, max_size=3),
+    max_leaves=6,
+)
+VALUES = st.one_of(
+    QUANTITIES, RELATIONS, RELATIONS, JUNK, st.lists(st.one_of(QUANTITIES, RELATIONS), max_size=3)
+)
+INPUTS = ["radial_load", "diametral_clearance", "bearing_diameter", "speed", "temperature_1", "nothing"]
+STEPS = st.fixed_dictionaries(
+    {
+        "template": st.sampled_from(["oil_film", "nothing"]),
+        "inputs": st.dictionaries(st.sampled_from(INPUTS), VALUES),
+    },
+    optional={
+        "version": st.sampled_from([1, "latest", 0, None]),
+        "outputs": st.lists(st.sampled_from(["density"])),
+    },
+)
+MODELS = st.fixed_dictionaries(
+    {"id": st.sampled_from(["moody", "plain_bearing", "nothing"])},
+    optional={"parameters": st.dictionaries(st.sampled_from(["size", "wall", "inner_diameter"]), VALUES)},
+)
+DOCUMENTS = st.fixed_dictionaries(
+    {},
+    optional={
+        "name": st.text(max_size=5),
+        "parameters": st.one_of(st.dictionaries(NAMES, VALUES, max_size=4), JUNK),
+        "steps": st.one_of(st.dictionaries(st.sampled_from(["film", "a"]), STEPS, max_size=2), JUNK),
+        "model": st.one_of(MODELS, JUNK),
+        "iterations": st.one_of(
+            st.lists(
+                st.fixed_dictionaries(
+                    {"through": st.sampled_from(["model.mass", "film.speed"]), "start": VALUES}
+                ),
+                max_size=2,
+            ),
+            JUNK,
+        ),
+        "note": JUNK,
+    },
+)
+
+
+def dumped(document):
+    """JSON as loose as Python writes it, NaN and infinities included; surrogates escaped."""
+    return json.dumps(document).encode("ascii")
+
+
+def a_problem_or_fine(answer):
+    assert answer.status_code < 500, answer.text
+    if answer.status_code >= 400:
+        told = answer.json()
+        assert answer.headers["content-type"] == "application/problem+json"
+        assert told["status"] == answer.status_code
+        for fault in told.get("errors", ()):
+            assert fault["name"]
+            assert fault["code"]
+            assert fault["detail"]
+    assert math.isfinite(answer.elapsed.total_seconds())
+
+
+def try_design(http, patched, document):
+    headers = {"Content-Type": "application/json", "Prefer": "respond-async", "If-Match": "*"}
+    named = {"name": "random", **document}
+    for method, path, body in (
+        ("POST", f"{API}/designs", named),
+        ("PATCH", f"{API}/designs/{patched}", document),
+        ("POST", f"{API}/designs/{patched}/preview", document),
+    ):
+        answer = http.request(method, path, content=dumped(body), headers=headers, timeout=HANG)
+        a_problem_or_fine(answer)
+        if answer.status_code == 202:  # a solid that really can be built: seen, and taken away
+            http.delete(answer.headers["location"])
+
+
+@pytest.fixture(scope="module")
+def target(http):
+    document = {"name": "target", "parameters": {"a": "1"}, "model": {"id": "moody"}}
+    return created(http, document)["id"]
+
+
+@settings(QUICK, max_examples=150)
+@given(document=DOCUMENTS)
+def test_designs(http, target, document):
+    try_design(http, target, document)
+
+
+@pytest.mark.slow
+@settings(QUICK, max_examples=5000)
+@given(document=DOCUMENTS)
+def test_designs_at_length(http, target, document):
+    try_design(http, target, document)
