@@ -38,7 +38,7 @@ def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:
 
 def whole(self: Template, declaration: Formula[Any], value: Array) -> Array:
     """The profile of a single point: refused unless all of it means something, or none of it exists."""
-    inside = declaration.meaning.admits(value)
+    inside = declaration.meaning.at(self.level).admits(value)
     if not inside.all():
         why = absence(self, declaration) if np.isnan(value).any() else None
         if why is None:

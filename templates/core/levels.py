@@ -148,5 +148,7 @@ def _meets(measured: Accuracy, rung: Template, names: list[str], tolerance: floa
 
 
 def _shape(template: Template) -> tuple[int, ...]:
-    arrays = (v for v in vars(template).values() if isinstance(v, np.ndarray))
+    """The shape of the points that the inputs make."""
+    given = (vars(template)[name] for name in template.ledger.handed)
+    arrays = (value for value in given if isinstance(value, np.ndarray))
     return np.broadcast_shapes(*(array.shape for array in arrays))
