@@ -25,8 +25,9 @@ def absence(self: Template, declaration: Formula[Any]) -> str | None:
 def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:
     """The fault of a formula's result outside its domain, with the inputs that it follows from."""
     meaning = declaration.meaning.at(self.level)
-    used = (self.declarations[n] for n in sorted(self.ancestors(declaration.attribute)))
-    inputs = ", ".join(d.name for d in used if d.name in self.inputs) or "constants alone"
+    beneath = sorted(self.ancestors(declaration.attribute) & self.declarations.keys())
+    used = (self.declarations[n].name for n in beneath)
+    inputs = ", ".join(name for name in used if name in self.inputs) or "constants alone"
     if np.isfinite(value):
         what = f"would be {meaning.told(value)}; it must be {meaning.wanted}"
     else:

@@ -240,7 +240,7 @@ def formula(
 def derived(
     unit: str, words: str, *, shown: bool = False, **keywords: Any
 ) -> Callable[[Callable[[T], Any]], Derived[T]]:
-    """Declare an optional input whose default is this formula of other inputs; `shown`: it is an output too."""
+    """Declare an optional input that defaults to this formula of others; `shown`: it is an output too."""
     return lambda function: Derived(function, meaning(unit, words, **keywords), shown=shown)
 
 

@@ -69,7 +69,7 @@ def _cases(cls: type[Template]) -> Iterator[dict[str, Any]]:
 
 
 def _given(cls: type[Template]) -> dict[str, Any]:
-    """The example's inputs in SI: defaults too, but neither what is missing nor what is shown as an output."""
+    """The example's inputs in SI with defaults; without what is missing or shown as an output."""
     template = cls.from_quantities(cls.example)
     told = {name: declared for name, declared in cls.inputs.items() if is_told(template, declared)}
     return {name: getattr(template, declared.attribute) for name, declared in told.items()}

@@ -110,7 +110,7 @@ class Writer:
             case ast.Constant(value=int() | float() as value):
                 return (text := number(value)), _tightness(text)
             case ast.Attribute(value=ast.Name(id="self"), attr=name):
-                return self.attributes[name]
+                return self.attributes.get(name) or (_from_attribute(name), ATOM)
             case ast.Attribute(value=ast.Attribute(value=ast.Name(id="self")), attr=name):
                 return _from_attribute(name), ATOM
             case ast.Attribute(attr="pi") | ast.Name(id="pi"):
