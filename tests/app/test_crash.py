@@ -1,0 +1,200 @@
+"""`kill -9` at any moment: what was accepted is there once, whole, and built or told why not.
+
+Clients change designs and repeat, under the same Idempotency-Key, whatever was not answered. Meanwhile the
+server is killed again and again. In the end every accepted change is one revision, no more and no less, and
+no process is left of any server.
+"""
+
+import hashlib
+import random
+import signal
+import threading
+import time
+
+import httpx
+import pytest
+from serving import API, PATIENCE, ServerProcess, alive, folder_of_models, moody, settled
+
+from app.storage.artifacts import ArtifactStore
+
+DESIGNS = f"{API}/designs"
+WRITERS = 4
+
+
+class Writer(threading.Thread):
+    """A client with one design, which it changes again and again, each time until the change is accepted."""
+
+    def __init__(self, url: str, number: int) -> None:
+        super().__init__(name=f"writer-{number}")
+        self.url, self.number = url, number
+        self.random = random.Random(number)
+        self.enough = threading.Event()
+        self.accepted: list[str] = []  # the notes of accepted revisions
+        self.unanswered = 0
+        self.design = None
+        self.failure: BaseException | None = None
+
+    def run(self) -> None:
+        try:
+            with httpx.Client(base_url=self.url, timeout=10, trust_env=False) as self.http:
+                document = moody(f"{10 + self.number} mm", parameters={"counter": "0"}, note="change 0")
+                self.design = self.send("POST", DESIGNS, document, "0", {})["id"]
+                while not self.enough.wait(self.random.uniform(0, 0.1)):
+                    self.change(len(self.accepted))
+        except BaseException as failure:
+            self.failure = failure
+
+    def change(self, change: int) -> None:
+        """A light change, one that builds, or one that cannot be built."""
+        patch = {"parameters": {"counter": str(change)}, "note": f"change {change}"}
+        kind = self.random.random()
+        if kind < 0.3:
+            size = f"{10 + self.number + change / 1000} mm"
+            patch["model"] = {"parameters": {"size": size, "mood": "raises" if kind < 0.05 else "good"}}
+        place = f"{DESIGNS}/{self.design}"
+        answer = self.send("PATCH", place, patch, str(change), {"If-Match": f'"{change}"'})
+        assert answer["revision"] == change + 1
+
+    def send(self, method, path, body, key, headers) -> dict:
+        """Send until there is an answer; the key makes that harmless."""
+        headers = {**headers, "Idempotency-Key": f"{self.name}-{key}", "Prefer": "respond-async"}
+        end = time.monotonic() + 3 * PATIENCE
+        while time.monotonic() < end:
+            try:
+                answer = self.http.request(method, path, json=body, headers=headers)
+            except httpx.TransportError:
+                self.unanswered += 1
+                time.sleep(0.02)
+                continue
+            if answer.status_code == 429:
+                time.sleep(0.5)
+                continue
+            assert answer.status_code in (200, 201, 202), answer.text
+            self.accepted.append(body["note"])
+            return answer.json()
+        raise TimeoutError(f"{method} {path}")
+
+
+def battle(data, kills: int, seed: int, changes: int) -> None:
+    """Writers against a server that is killed until they have made enough changes; then look what is left."""
+    chance = random.Random(seed)
+    server = ServerProcess(data, CRANKWRIGHT_TEMPLATE_FOLDERS=f'["{folder_of_models(data.parent)}"]')
+    family: set[int] = set()
+    writers = [Writer(server.url, number) for number in range(WRITERS)]
+    server.start().ready()
+    for writer in writers:
+        writer.start()
+    for _ in range(kills):
+        time.sleep(chance.uniform(0.01, 0.6))
+        family |= server.kill()
+        server.start()
+        if chance.random() < 0.7:  # else it is killed while it starts, or resumes
+            server.ready()
+    server.ready()
+    for writer in writers:
+        writer.enough.set()
+    for writer in writers:
+        writer.join(4 * PATIENCE)
+    try:
+        assert [writer.failure for writer in writers] == [None] * WRITERS
+        assert not any(writer.is_alive() for writer in writers)
+        nothing_lives(family)
+        with httpx.Client(base_url=server.url, timeout=30, trust_env=False) as http:
+            for writer in writers:
+                each_accepted_change_is_one_revision(http, writer)
+            nothing_is_half_done(http, data)
+        assert sum(len(writer.accepted) for writer in writers) >= changes, "too few to mean anything"
+        assert all(writer.unanswered for writer in writers), "no kill met a change"
+    finally:
+        last = server.kill()
+    nothing_lives(last)
+
+
+def each_accepted_change_is_one_revision(http, writer: Writer) -> None:
+    design = settled(http, writer.design, seconds=120)
+    revisions, cursor = [], None
+    while True:
+        page = {"limit": 100, **({"cursor": cursor} if cursor else {})}
+        told = http.get(f"{DESIGNS}/{writer.design}/revisions", params=page).json()
+        revisions += told["items"]
+        if (cursor := told["next"]) is None:
+            break
+    assert [one["note"] for one in reversed(revisions)] == writer.accepted
+    assert [one["number"] for one in reversed(revisions)] == list(range(1, len(revisions) + 1))
+    assert design["revision"] == len(writer.accepted)
+    for one in revisions:
+        each_revision_is_whole(http, one)
+
+
+def each_revision_is_whole(http, one: dict) -> None:
+    end = time.monotonic() + 60
+    place = f"{DESIGNS}/{one['design']}/revisions/{one['number']}"
+    while one["state"] == "regenerating" and time.monotonic() < end:
+        time.sleep(0.05)
+        one = http.get(place).json()
+    assert one["parameters"]["counter"] == str(one["number"] - 1)
+    mood = one["models"]["model"]["parameters"]["mood"]["value"]
+    if mood == "raises":
+        assert one["state"] == "failed"
+        assert one["problem"]["type"] == "/problems/geometry"
+        return
+    assert one["state"] == "current", one["problem"]
+    sha = one["models"]["model"]["artifacts"]["step"]
+    for link in (f"{API}/artifacts/{sha}", f"{place}/model.step"):
+        assert hashlib.sha256(http.get(link).content).hexdigest() == sha
+
+
+def nothing_is_half_done(http, data) -> None:
+    jobs = http.get(f"{API}/jobs", params={"limit": 500}).json()["items"]
+    assert {job["state"] for job in jobs} <= {"done", "failed"}
+    assert len(http.get(DESIGNS, params={"limit": 500}).json()["items"]) == WRITERS
+    store = ArtifactStore(data / "artifacts")
+    files = [file for file in (data / "artifacts").rglob("*") if file.is_file()]
+    whole = [file for file in files if len(file.name) == 64]
+    assert whole
+    assert all(store.check(file.name) for file in whole)
+
+
+def nothing_lives(family: set[int]) -> None:
+    end = time.monotonic() + 10
+    while (left := {pid for pid in family if alive(pid)}) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert left == set()
+
+
+@pytest.mark.parametrize("seed", [1])
+def test_a_few_kills(tmp_path, seed):
+    battle(tmp_path / "data", kills=8, seed=seed, changes=40)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [2, 3])
+def test_dozens_of_kills_during_200_accepted_changes(tmp_path, seed):
+    battle(tmp_path / "data", kills=36, seed=seed, changes=200)
+
+
+def test_a_killed_servers_loop_is_ended_with_it_and_resumed(tmp_path):
+    """A job that loops for ever neither outlives its server nor is forgotten by the next one."""
+    environment = {
+        "CRANKWRIGHT_TEMPLATE_FOLDERS": f'["{folder_of_models(tmp_path)}"]',
+        "CRANKWRIGHT_JOB_DEADLINE": "2",
+    }
+    server = ServerProcess(tmp_path / "data", **environment).start().ready()
+    with httpx.Client(base_url=server.url, timeout=30, trust_env=False) as http:
+        answer = http.post(DESIGNS, json=moody(mood="loops"), headers={"Prefer": "respond-async"})
+        job = answer.headers["location"]
+        end = time.monotonic() + PATIENCE
+        while http.get(job).json()["state"] != "running":
+            assert time.monotonic() < end
+            time.sleep(0.02)
+        time.sleep(0.3)
+        family = server.kill()
+        assert family, "the forkserver and the job"
+        nothing_lives(family)
+        server.start().ready()
+        try:
+            told = settled(http, answer.json()["id"])
+            assert told["problem"]["type"] == "/problems/deadline"
+            assert told["revision"] == 1
+        finally:
+            assert server.stop() in (0, -signal.SIGTERM)  # uvicorn ends by the signal itself
