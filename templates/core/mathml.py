@@ -36,9 +36,10 @@ def symbol(declared: Declaration) -> str:
 
 def _from_attribute(attribute: str) -> str:
     head, _, index = attribute.partition("_")
-    letter = _SPECIAL.get(head) or (f"\\{head}" if head in _GREEK else head)
+    plain = head if len(head) == 1 else rf"\mathrm{{{head}}}"
+    letter = _SPECIAL.get(head) or (f"\\{head}" if head in _GREEK else plain)
     if not index:
-        return letter if len(head) == 1 or letter != head else rf"\mathrm{{{head}}}"
+        return letter
     subscript = index if len(index) == 1 else rf"\mathrm{{{index}}}"
     return f"{letter}_{{{subscript}}}"
 

@@ -110,7 +110,7 @@ class TestReport:
         assert [row.name for row in rows] == list(cls.formulas)
         for row in rows:
             assert row.expression
-            assert row.result
+            assert row.result or isinstance(cls.formulas[row.name], Profile)
             assert balanced(row.latex), row.latex
             assert ElementTree.fromstring(row.mathml).tag.endswith("math")
 
