@@ -45,6 +45,9 @@ def serve(host: str, port: int, data: Path | None) -> None:
         DataFolder(settings.data).release()
     except DataFolderInUse as error:
         raise click.ClickException(str(error)) from None
+    except OSError as error:
+        told = f"{settings.data.absolute()} cannot hold the data: {error.strerror}"
+        raise click.ClickException(f"{told}; name another folder by --data") from None
     if not _is_loopback(host):
         click.secho(
             f"WARNING: listening on {host} without authentication: whoever reaches this address can read and "

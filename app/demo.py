@@ -56,22 +56,26 @@ def service(data: Path) -> Iterator[Client]:
         port = probe.getsockname()[1]
     click.echo(f"starting the service on port {port}, data in {data.absolute()} …")
     command = [sys.executable, "-m", "app", "serve", "--port", str(port), "--data", str(data)]
-    process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    data.mkdir(parents=True, exist_ok=True)
+    log = data / "service.log"
+    with log.open("wb") as told:
+        process = subprocess.Popen(command, stderr=told)
     try:
         with Client(f"http://127.0.0.1:{port}") as client:
-            _await(client, process)
+            _await(client, process, log)
             yield client
     finally:
         process.send_signal(signal.SIGTERM)
         process.wait(PATIENCE)
 
 
-def _await(client: Client, process: subprocess.Popen[bytes]) -> None:
+def _await(client: Client, process: subprocess.Popen[bytes], log: Path) -> None:
     end = time.monotonic() + PATIENCE
     while not client.healthy():
         if process.poll() is not None or time.monotonic() > end:
-            hint = "run `crankwright serve` to see why"
-            raise click.ClickException(f"the service did not start (exit code {process.poll()}); {hint}")
+            last = log.read_text(errors="replace").strip().splitlines()[-5:]
+            told = f"the service did not start (exit code {process.poll()}); {log.absolute()} ends with"
+            raise click.ClickException("\n  ".join([told, *last]))
         time.sleep(0.1)
 
 
