@@ -146,6 +146,7 @@ class ServerProcess:
         self.data, self.environment = data, environment
         self.process = None
         self.port = free_port()
+        self.log = data.with_name(f"{data.name}.log")
 
     @property
     def url(self) -> str:
@@ -153,20 +154,21 @@ class ServerProcess:
 
     def start(self) -> "ServerProcess":
         command = [sys.executable, "-m", "app", "serve", "--port", str(self.port), "--data", str(self.data)]
-        self.process = subprocess.Popen(
-            command,
-            env={**os.environ, **self.environment},
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            start_new_session=True,
-        )
+        with self.log.open("ab") as log:
+            self.process = subprocess.Popen(
+                command,
+                env={**os.environ, **self.environment},
+                stdout=subprocess.DEVNULL,
+                stderr=log,
+                start_new_session=True,
+            )
         return self
 
     def ready(self) -> "ServerProcess":
         end = time.monotonic() + PATIENCE
         with Client(self.url) as client:
             while not client.healthy():
-                assert self.process.poll() is None, self.process.stderr.read().decode()
+                assert self.process.poll() is None, self.log.read_text()[-2000:]
                 assert time.monotonic() < end, "the server takes too long to start"
                 time.sleep(0.02)
         return self
@@ -176,15 +178,12 @@ class ServerProcess:
         family = descendants(self.process.pid)
         self.process.send_signal(signal.SIGKILL)
         self.process.wait()
-        self.process.stderr.close()
         return family
 
     def stop(self) -> int:
         """Ask the server to stop; its exit code."""
         self.process.send_signal(signal.SIGTERM)
-        code = self.process.wait(PATIENCE)
-        self.process.stderr.close()
-        return code
+        return self.process.wait(PATIENCE)
 
     def __enter__(self) -> "ServerProcess":
         return self.start().ready()

@@ -25,7 +25,7 @@ class Writer(threading.Thread):
     """A client with one design, which it changes again and again, each time until the change is accepted."""
 
     def __init__(self, url: str, number: int) -> None:
-        super().__init__(name=f"writer-{number}")
+        super().__init__(name=f"writer-{number}", daemon=True)
         self.url, self.number = url, number
         self.random = random.Random(number)
         self.enough = threading.Event()
@@ -81,33 +81,40 @@ def battle(data, kills: int, seed: int, changes: int) -> None:
     server = ServerProcess(data, CRANKWRIGHT_TEMPLATE_FOLDERS=f'["{folder_of_models(data.parent)}"]')
     family: set[int] = set()
     writers = [Writer(server.url, number) for number in range(WRITERS)]
-    server.start().ready()
-    for writer in writers:
-        writer.start()
-    for _ in range(kills):
-        time.sleep(chance.uniform(0.01, 0.6))
-        family |= server.kill()
-        server.start()
-        if chance.random() < 0.7:  # else it is killed while it starts, or resumes
-            server.ready()
-    server.ready()
-    for writer in writers:
-        writer.enough.set()
-    for writer in writers:
-        writer.join(4 * PATIENCE)
     try:
-        assert [writer.failure for writer in writers] == [None] * WRITERS
-        assert not any(writer.is_alive() for writer in writers)
+        server.start().ready()
+        for writer in writers:
+            writer.start()
+        for _ in range(kills):
+            time.sleep(chance.uniform(0.01, 0.6))
+            family |= server.kill()
+            server.start()
+            if chance.random() < 0.7:  # else it is killed while it starts, or resumes
+                server.ready()
+        server.ready()
+        peace(writers)
         nothing_lives(family)
         with httpx.Client(base_url=server.url, timeout=30, trust_env=False) as http:
             for writer in writers:
                 each_accepted_change_is_one_revision(http, writer)
             nothing_is_half_done(http, data)
-        assert sum(len(writer.accepted) for writer in writers) >= changes, "too few to mean anything"
-        assert all(writer.unanswered for writer in writers), "no kill met a change"
     finally:
+        for writer in writers:
+            writer.enough.set()
         last = server.kill()
     nothing_lives(last)
+    assert sum(len(writer.accepted) for writer in writers) >= changes, "too few to mean anything"
+    assert all(writer.unanswered for writer in writers), "no kill met a change"
+
+
+def peace(writers: list[Writer]) -> None:
+    """Let all writers finish what they are at."""
+    for writer in writers:
+        writer.enough.set()
+    for writer in writers:
+        writer.join(4 * PATIENCE)
+    assert [writer.failure for writer in writers] == [None] * WRITERS
+    assert not any(writer.is_alive() for writer in writers)
 
 
 def each_accepted_change_is_one_revision(http, writer: Writer) -> None:

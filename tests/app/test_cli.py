@@ -1,0 +1,178 @@
+"""The command line: evaluate, template list and show, freeze, serve."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import httpx
+import pytest
+from click.testing import CliRunner
+from serving import PATIENCE, ServerProcess, free_port
+
+from app.calculations.schemas import OIL_FILM
+from app.cli import main
+
+INPUTS = [f"{name}={value}" for name, value in OIL_FILM.items()]
+ROOT = Path(__file__).parents[2]
+
+
+def run(*arguments):
+    return CliRunner().invoke(main, arguments)
+
+
+class TestEvaluate:
+    def test_a_table(self):
+        told = run("evaluate", "oil_film", "--version", "1", *INPUTS)
+        assert told.exit_code == 0, told.output
+        (line,) = [line for line in told.output.splitlines() if line.startswith("minimum_film_thickness")]
+        _, value, unit = line.split()
+        assert (float(value), unit) == (pytest.approx(3.2449, abs=5e-5), "µm")
+
+    def test_json(self):
+        told = run("evaluate", "oil_film", "--version", "1", "--json", "--output", "density", *INPUTS)
+        answer = json.loads(told.output)
+        assert answer["outputs"].keys() == {"density"}
+        assert answer["template"]["version"] == 1
+
+    def test_all_faults_at_once(self):
+        told = run("evaluate", "oil_film", "--version", "1", "radial_load=-4 kN", "speed=40 MPa", "sped=1")
+        assert told.exit_code == 1
+        assert "Traceback" not in told.output
+        for name in ("radial_load:", "speed:", "sped:", "bearing_diameter:"):
+            assert name in told.output
+
+    def test_warnings_are_told(self):
+        told = run("evaluate", "oil_film", "--version", "1", *INPUTS, "bearing_width=48 mm")
+        assert told.exit_code == 0
+        assert "width_ratio" in told.stderr
+
+    @pytest.mark.parametrize(
+        ("arguments", "said"),
+        [
+            (["evaluate", "nothing"], "oil_film"),
+            (["evaluate", "oil_film", "--version", "99"], "no version 99"),
+            (["evaluate", "oil_film", "speed"], "NAME=QUANTITY"),
+            (["evaluate", "oil_film", "--version", "1", "--output", "nothing", *INPUTS], "nothing"),
+            (["template", "show", "nothing"], "oil_film"),
+        ],
+    )
+    def test_mistakes_are_told_in_one_line(self, arguments, said):
+        told = run(*arguments)
+        assert told.exit_code in (1, 2)
+        assert said in told.output
+        assert "Traceback" not in told.output
+
+
+class TestTemplates:
+    def test_list(self):
+        told = run("template", "list")
+        assert told.exit_code == 0
+        assert "oil_film 1" in told.output
+
+    def test_show(self):
+        told = run("template", "show", "oil_film", "--version", "1").output
+        for part in (
+            "Inputs",
+            "Outputs",
+            "Limits",
+            "Errata",
+            "References",
+            "radial_load",
+            "minimum_film_thickness",
+        ):
+            assert part in told
+
+    def test_freeze_writes_once(self, tmp_path):
+        arguments = ("freeze", "oil_film", "1", "--folder", str(tmp_path))
+        assert run(*arguments).exit_code == 0
+        file = tmp_path / "oil_film_v1.json"
+        frozen = file.read_bytes()
+        again = run(*arguments)
+        assert again.exit_code == 1
+        assert "oil_film_v1.json" in again.output
+        assert "make a new one" in again.output
+        assert file.read_bytes() == frozen
+        golden = json.loads((ROOT / "tests/golden/oil_film_v1.json").read_text())
+        assert json.loads(frozen)["digest"] == golden["digest"]
+
+    def test_help_names_every_command(self):
+        told = run("--help").output
+        for command in ("serve", "demo", "evaluate", "template", "freeze"):
+            assert command in told
+
+
+class TestServe:
+    def test_a_folder_with_other_files_is_left_as_it_is(self, tmp_path):
+        (tmp_path / "notes.txt").write_text("mine")
+        (tmp_path / "artifacts").mkdir()
+        (tmp_path / "artifacts" / "also mine").write_bytes(b"\x00")
+        with ServerProcess(tmp_path) as server:
+            with httpx.Client(base_url=server.url, trust_env=False) as http:
+                assert http.get("/readyz").json() == {"status": "ready", "designs": 0}
+                assert http.post("/api/v1/designs", json={"name": "kept"}).status_code == 201
+            self.refuses_a_second_server(tmp_path)
+        assert (tmp_path / "notes.txt").read_text() == "mine"
+        assert (tmp_path / "artifacts" / "also mine").read_bytes() == b"\x00"
+        with ServerProcess(tmp_path) as server, httpx.Client(base_url=server.url, trust_env=False) as http:
+            assert [one["name"] for one in http.get("/api/v1/designs").json()["items"]] == ["kept"]
+
+    def refuses_a_second_server(self, data):
+        second = serve("--port", "0", "--data", str(data))
+        told = second.communicate(timeout=PATIENCE)[1].decode()
+        assert second.returncode == 1
+        assert str(data) in told
+        assert "Traceback" not in told
+        assert "process" in told
+
+    def test_a_folder_that_is_a_file(self, tmp_path):
+        (tmp_path / "file").write_text("")
+        process = serve("--port", "0", "--data", str(tmp_path / "file"))
+        told = process.communicate(timeout=PATIENCE)[1].decode()
+        assert process.returncode != 0
+        assert "Traceback" not in told
+        assert str(tmp_path / "file") in told
+
+    def test_a_port_that_is_taken(self, tmp_path):
+        with socket.create_server(("127.0.0.1", 0)) as taken:
+            port = taken.getsockname()[1]
+            process = serve("--port", str(port), "--data", str(tmp_path))
+            told = process.communicate(timeout=PATIENCE)[1].decode()
+        assert process.returncode != 0
+        assert "address already in use" in told
+        assert "Traceback" not in told
+
+    @pytest.mark.parametrize(("host", "warned"), [("0.0.0.0", True), ("127.0.0.1", False)])
+    def test_a_warning_beyond_loopback(self, tmp_path, host, warned):
+        port = free_port()
+        process = serve("--host", host, "--port", str(port), "--data", str(tmp_path))
+        try:
+            answers(port, process)
+        finally:
+            process.send_signal(signal.SIGTERM)
+            told = process.communicate(timeout=PATIENCE)[1].decode()
+        assert ("WARNING" in told and "without authentication" in told) is warned
+        assert f":{port}/docs" in told
+        assert "Traceback" not in told
+
+
+def serve(*arguments):
+    command = [sys.executable, "-m", "app", "serve", *arguments]
+    return subprocess.Popen(
+        command, cwd=ROOT, env=dict(os.environ), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+    )
+
+
+def answers(port, process):
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        assert process.poll() is None, process.stderr.read()
+        try:
+            return httpx.get(f"http://127.0.0.1:{port}/healthz", trust_env=False).raise_for_status()
+        except httpx.TransportError:
+            time.sleep(0.1)
+    raise TimeoutError

@@ -1,0 +1,72 @@
+"""The typed client: what it gives back, and the problems that it raises."""
+
+import pytest
+from serving import free_port, moody
+
+from app.calculations.schemas import OIL_FILM
+from app.client import Client, Problem
+
+
+def test_templates_evaluate_and_solve(client):
+    assert "oil_film" in {one["id"] for one in client.templates()}
+    assert client.template("oil_film", 1)["formulas"]
+    answer = client.evaluate("oil_film", 1, OIL_FILM, outputs=["density"])
+    assert answer["outputs"].keys() == {"density"}
+    target = {"minimum_film_thickness": "3.2449 um"}
+    inputs = {name: value for name, value in OIL_FILM.items() if name != "bearing_width"}
+    found = client.solve("oil_film", 1, inputs, "bearing_width", ("10 mm", "80 mm"), target)
+    assert found["unknown"]["value"] == pytest.approx(18, abs=0.01)
+
+
+def test_a_design_from_its_creation_to_its_verification(client):
+    told = []
+    design = client.create(moody("33 mm"), on_progress=lambda fraction, text: told.append(fraction))
+    assert (design.state, design.revision, design.job) == ("current", 1, None)
+    assert client.design(design.id) == design
+    assert design.id in {one["id"] for one in client.designs()}
+    patch = {"models": {"model": {"parameters": {"size": "34 mm"}}}}
+    shown = client.preview(design.id, patch)
+    assert shown["model_parameters"]["model.size"]["new"] == {"value": 34, "unit": "mm"}
+    changed = client.change(design, patch)
+    assert changed.revision == 2
+    step = client.model(design.id)
+    (user,) = client.verify(step)["revisions"]
+    assert user == {"design": design.id, "revision": 2, "current": True}
+    build = client.revision(design.id, 2)["models"]["model"]["build"]
+    assert client.build(build)["measurements"]["dimensions"]["size"]["value"] == pytest.approx(34)
+    with pytest.raises(Problem) as refused:
+        client.change(design, patch)
+    assert refused.value.status == 412
+
+
+def test_a_repeat_under_one_key_is_one_design(client):
+    first = client.create({"name": "once"}, key="the same key")
+    assert client.create({"name": "once"}, key="the same key") == first
+
+
+def test_auto_map(client):
+    design = client.create({**moody(), "parameters": {"size": "3 mm"}, "model": {"id": "moody"}})
+    (proposal,) = client.auto_map(design.id)
+    assert (proposal["target"], proposal["relation"]) == ("model.size", "= size")
+
+
+def test_a_problem_carries_every_fault(client):
+    with pytest.raises(Problem, match="422") as refused:
+        client.evaluate("oil_film", 1, {"radial_load": "-1 N", "speed": "3 mm"})
+    assert {"radial_load", "speed", "bearing_diameter"} <= {fault["name"] for fault in refused.value.errors}
+
+
+def test_a_change_that_is_followed_to_its_end(served, monkeypatch):
+    monkeypatch.setattr(served.jobs, "wait_seconds", 0.0)
+    told = []
+    with Client(served.url) as client:
+        design = client.create(
+            moody("35.5 mm"), on_progress=lambda fraction, text: told.append((fraction, text))
+        )
+    assert design.state == "current"
+    assert all(0 <= fraction <= 1 and text for fraction, text in told)
+
+
+def test_a_service_that_is_not_there():
+    with Client(f"http://127.0.0.1:{free_port()}", timeout=1) as client:
+        assert not client.healthy()
