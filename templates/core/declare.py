@@ -176,9 +176,10 @@ class Requirement:
     """A rule between inputs; where it does not hold, the inputs it names are refused."""
 
     def __init__(
-        self, function: Callable[[Any], Any], names: tuple[str, ...], remedy: str, missing: bool
+        self, function: Callable[[Any], Any], names: tuple[str, ...], remedy: str, missing: bool, warning: str
     ) -> None:
-        self.function, self.names, self.remedy, self.missing = function, names, remedy, missing
+        self.function, self.names, self.remedy = function, names, remedy
+        self.missing, self.warning = missing, warning
         self.sentence = " ".join((inspect.getdoc(function) or "").split()).rstrip(".")
         if not self.sentence:
             raise TypeError(f"{function.__qualname__}: the docstring of a requirement is its sentence")
@@ -261,27 +262,34 @@ def shared(function: Callable[[Any], T]) -> Shared[T]:
     return Shared(function)
 
 
-def require(*names: str, remedy: str, missing: bool = False) -> Callable[[Callable[[Any], Any]], Requirement]:
+def require(
+    *names: str, remedy: str, missing: bool = False, warning: str = ""
+) -> Callable[[Callable[[Any], Any]], Requirement]:
     """Declare a rule between the inputs `names`; its docstring is the sentence that a user reads.
 
     Where an optional input that it uses is missing the rule is not applied, unless it is about `missing`.
+    With the code of a `warning` nothing is refused, and the answer carries the sentence.
     """
-    return lambda function: Requirement(function, names, remedy, missing)
+    return lambda function: Requirement(function, names, remedy, missing, warning)
 
 
-def units(*arguments: str, returns: str | tuple[str, ...], latex: str | None = None) -> Callable[[F], F]:
+def units(
+    *arguments: str | None, returns: str | tuple[str, ...], latex: str | None = None
+) -> Callable[[F], F]:
     """Declare the units in which a physics function takes its arguments and returns its result.
 
     For functions whose inside is not dimensionally pure, such as Walther's `nu + 0.7`: the catalogue-wide
     test of dimensions checks calls at this border. Values are in exactly these units, which must be SI
-    (or pure numbers) so that nothing needs converting in the hot path.
+    (or pure numbers) so that nothing needs converting in the hot path. None stands for an argument that is no
+    quantity: a word, or a record that several formulas share.
 
     Raises
     ------
     TypeError
         If a unit is not SI.
     """
-    for name in (*arguments, *([returns] if isinstance(returns, str) else returns)):
+    named = (name for name in arguments if name is not None)
+    for name in (*named, *([returns] if isinstance(returns, str) else returns)):
         if (scale := unit(name)).factor != 1 or scale.absolute:
             raise TypeError(f"{name} is not SI; a physics function takes and returns SI values")
 

@@ -154,9 +154,11 @@ def _outside(result: Any, declared: str) -> Any:
     return result if np.asarray(result).dtype == bool else registry.Quantity(result, unit(declared).base)
 
 
-def _inside(function: Callable[..., Any], argument: tuple[str, Any], declared: str) -> Any:
+def _inside(function: Callable[..., Any], argument: tuple[str, Any], declared: str | None) -> Any:
     """The magnitude of an argument, if it measures what the border declares."""
     name, value = argument
+    if declared is None:
+        return value
     si = _magnitude(value, declared)
     if si is None:
         told = f"{function.__name__} takes {name} in {declared}, not in {_units(value)}"

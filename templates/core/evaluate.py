@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from templates.core.admission import absence
 from templates.core.declare import Choice, Derived, Formula, Given, Profile, Text
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
-from templates.core.intake import Input
+from templates.core.intake import Input, remarks
 from templates.core.ledger import Notice
 from templates.core.levels import Rung, accuracy, at_level, climb
 from templates.core.quantity import Typed, Unit, require_same_kind
@@ -175,7 +176,7 @@ def _units(cls: type[Template], units: Mapping[str, str], faults: list[Fault]) -
 def _answer(template: Template, formula: Formula[Any], shown_in: Unit | None) -> Answer:
     si = getattr(template, formula.attribute)
     if isinstance(formula, Text):
-        return _words(si)
+        return _words(si, absence(template, formula))
     scale = shown_in or formula.meaning.scale
     if formula.attribute in template.ledger.absent:
         return Answer(None, scale.text, reason=template.ledger.absent[formula.attribute])
@@ -185,10 +186,10 @@ def _answer(template: Template, formula: Formula[Any], shown_in: Unit | None) ->
     return Answer(scale.from_si(value), scale.text, reasons=reasons)
 
 
-def _words(value: Any) -> Answer:
+def _words(value: Any, why: str | None) -> Answer:
     """An answer in words; an empty word is none."""
     if isinstance(value, str):
-        return Answer(value or None, None, reason=None if value else "there is nothing to tell here")
+        return Answer(value or None, None, reason=None if value else why or "there is nothing to tell here")
     return Answer(np.where(value == "", None, value), None)
 
 
@@ -248,7 +249,8 @@ def _standing(cls: type[Template]) -> list[Notice]:
 
 def _noticed(rungs: list[Rung]) -> list[Notice]:
     """The warnings of all levels, each once."""
-    return list(dict.fromkeys(notice for rung in rungs for notice in rung.template.ledger.warnings))
+    noticed = (notice for rung in rungs for notice in rung.template.ledger.warnings)
+    return list(dict.fromkeys([*noticed, *(notice for rung in rungs for notice in remarks(rung.template))]))
 
 
 def _unmet(cls: type[Template], whole: _Part, names: list[str], tolerance: float | None) -> list[Notice]:

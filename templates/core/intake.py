@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from templates.core.admission import warn_if_outside
 from templates.core.declare import Array, Choice, Curve, Declaration, Derived, Given, Requirement, Table
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_name
-from templates.core.ledger import Ledger, Mask
+from templates.core.ledger import Ledger, Mask, Notice
 from templates.core.quantity import Typed, read, unit
 
 Input = Given | Choice | Derived[Any]
@@ -151,7 +151,7 @@ def check_shapes(self: Template) -> None:
 
 def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
     """The faults of inputs that break a rule; points of arrays are masked instead."""
-    if not rule.missing and not self.ledger.missing.isdisjoint(rule.uses):
+    if rule.warning or (not rule.missing and not self.ledger.missing.isdisjoint(rule.uses)):
         return
     holds = rule.function(self)
     if isinstance(holds, np.ndarray):
@@ -164,6 +164,15 @@ def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
         yield from (Fault(name, "inconsistent", detail) for name in rule.names)
 
 
+def remarks(self: Template) -> Iterator[Notice]:
+    """A warning for every rule that asks for no more than attention, where it does not hold."""
+    for rule in (rule for rule in self.requirements if rule.warning):
+        if not np.all(rule.function(self)):
+            yield from (Notice(rule.warning, name, f"{rule.sentence}; {rule.remedy}") for name in rule.names)
+
+
 def _shown(self: Template, declared: Declaration) -> str:
     value = getattr(self, declared.attribute)
-    return value if isinstance(value, str) else declared.meaning.told(value)
+    if isinstance(value, str):
+        return value
+    return "not given" if np.isnan(value) else declared.meaning.told(value)

@@ -8,7 +8,17 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from templates.core.catalogue import digest
-from templates.core.declare import Choice, Curve, Declaration, Derived, Formula, Profile, Table, Text
+from templates.core.declare import (
+    Choice,
+    Curve,
+    Declaration,
+    Derived,
+    Formula,
+    Profile,
+    Requirement,
+    Table,
+    Text,
+)
 from templates.core.intake import Input
 from templates.core.mathml import expression, mathml, symbol, symbols
 from templates.core.meaning import Bounds
@@ -164,9 +174,13 @@ def declared_limits(cls: type[Template]) -> list[dict[str, Any]]:
         found += _limits_of_levels(declared)
     for rule in cls.requirements:
         found += (
-            {"name": n, "kind": "refused_unless", "text": rule.sentence, "source": None} for n in rule.names
+            {"name": n, "kind": _consequence(rule), "text": rule.sentence, "source": None} for n in rule.names
         )
     return found
+
+
+def _consequence(rule: Requirement) -> str:
+    return "warned_unless" if rule.warning else "refused_unless"
 
 
 def _limits_of_levels(declared: Declaration) -> Iterator[dict[str, Any]]:

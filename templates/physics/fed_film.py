@@ -61,7 +61,7 @@ def fed_film(So: float, ratio: float, feed: Feed) -> Position | None:
     low, high = np.log(mapped_load(np.array([_SMALLEST, ECCENTRICITY_LIMIT]), np.array(ratio)))
 
     def position(x: float, attitude: float) -> Position:
-        eps = float(mapped_eccentricity(np.exp(min(max(x, low), high)), ratio))
+        eps = float(mapped_eccentricity(np.exp(min(max(x, low), high)), np.array(ratio)))
         return Position(eps, cavitating_film(eps, ratio, feed.placed(attitude), 0.0, *_MESH))
 
     wanted = float(np.log(max(So, 1e-300)))

@@ -6,6 +6,7 @@ the radial clearance, psi = c/R.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,9 +15,40 @@ from templates.physics.film_dynamics import plain_coefficients
 from templates.physics.film_map import mapped_coefficients, mapped_load
 from templates.physics.short_bearing import load_Ocvirk_1952
 from templates.physics.short_dynamics import coefficients_Holmes_1960
+from templates.physics.whirl import threshold_mass
 
 _CENTRED = 1e-6
 """Eccentricity at which a centred journal's coefficients are taken: their limit [-]."""
+
+
+@dataclass(frozen=True)
+class Linear:
+    """The coefficients one by one, dimensionless as above; M_c is the largest stable mass."""
+
+    K_xx: Array
+    K_xy: Array
+    K_yx: Array
+    K_yy: Array
+    B_xx: Array
+    B_xy: Array
+    B_yx: Array
+    B_yy: Array
+    M_c: Array
+    """M omega² c psi²/(B D eta omega_h), M of the rotor's share; infinite where every mass is stable."""
+
+
+def linear_at(level: str, eps: Array, ratio: Array) -> Linear:
+    """Stiffness, damping and threshold mass; NaN at points that are NaN and at levels without them [-]."""
+    K, B = coefficients_at(level, eps, ratio)
+    entries = {
+        f"{name}_{xy}": matrix[..., i, j][()]
+        for name, matrix in (("K", K), ("B", B))
+        for xy, i, j in (("xx", 0, 0), ("xy", 0, 1), ("yx", 1, 0), ("yy", 1, 1))
+    }
+    known = np.asarray(np.isfinite(K).all(axis=(-1, -2)))
+    unit = np.broadcast_to(np.eye(2), K.shape)
+    mass = threshold_mass(*(np.where(known[..., None, None], matrix, unit) for matrix in (K, B)))
+    return Linear(**entries, M_c=np.where(known, mass, np.nan)[()])
 
 
 def coefficients_at(level: str, eps: Array, ratio: Array) -> tuple[Array, Array]:

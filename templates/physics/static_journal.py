@@ -59,6 +59,22 @@ _CENTRED = 1e-6
 """Eccentricity below which a full solution is taken in proportion [-]."""
 
 
+FED = "mass_conserving"
+"""The level that knows grooves and supply pressure."""
+
+
+def is_fed(pressure: Array, grooves: tuple[tuple[float, float], ...]) -> bool:
+    """Whether there is any supply pressure, or a groove."""
+    return bool(grooves) or bool(np.any(np.asarray(pressure) > 0))
+
+
+def ladder(
+    levels: tuple[str, ...], pressure: Array, grooves: tuple[tuple[float, float], ...]
+) -> tuple[str, ...]:
+    """The levels that know how the bearing is fed: all but FED, or only that."""
+    return (FED,) if is_fed(pressure, grooves) else tuple(level for level in levels if level != FED)
+
+
 @dataclass(frozen=True)
 class JournalFilm:
     """What a static film does; dimensionless arrays of one shape."""
@@ -91,7 +107,7 @@ def static_film_at(
     So: Array,
     ratio: Array,
     pressure: Array | float = 0.0,
-    grooves: tuple[tuple[float, ...], ...] = (),
+    grooves: tuple[tuple[float, float], ...] = (),
 ) -> JournalFilm:
     """The film that bears So, at a level of fidelity.
 

@@ -1,0 +1,133 @@
+r"""Temperature of a journal bearing's film by the global heat balance of ISO 7902-1, bracketed.
+
+.. math:: P(T) = \rho c\,Q(T)\,(T_{out} - T_{supply}) + kA\,(T - T_{ambient}), \quad
+    T = (T_{supply}+T_{out})/2
+
+Power loss P and side flow Q are those of the film map (`film_map`) at the viscosity of T, at every level of
+fidelity: so the temperature, and with it the viscosity, is the same for all of them. Whichever of the two
+terms is not given is left out. P falls and what is carried off rises with T: there is one root, and it lies
+between the colder surrounding and 500 °C, or there is none.
+
+References
+----------
+ISO 7902-1:1998, clause 6.4; DIN 31652-1:1983, section 4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from templates.physics.arrays import ECCENTRICITY_LIMIT, Array, Mask
+from templates.physics.film_map import NARROWEST, WIDEST, mapped_load
+from templates.physics.oil import density, walther
+from templates.physics.roots import bracketed_root
+from templates.physics.static_journal import static_film_at
+
+HOTTEST = 773.15
+"""Highest film temperature that is looked for [K]."""
+_ACCURACY = 1e-13
+
+
+@dataclass(frozen=True)
+class Running:
+    """A bearing at work, in SI; arrays that broadcast together."""
+
+    F: Any
+    """Load [N]."""
+    D: Any
+    """Diameter [m]."""
+    W: Any
+    """Width [m]."""
+    psi: Any
+    """Relative clearance [-]."""
+    omega_m: Any
+    """Size of the hydrodynamic speed [rad/s]."""
+    omega_s: Any
+    """Speed of sliding in its sense [rad/s]."""
+    A: Any
+    """Walther's intercept [-]."""
+    B: Any
+    """Walther's slope [-]."""
+    eta: Any
+    """Dynamic viscosity, if it does not follow from Walther's law, else NaN [Pa s]."""
+    rho_ref: Any
+    """Density at T_ref [kg/m³]."""
+    T_ref: Any
+    """Temperature of rho_ref [K]."""
+    heat_capacity: Any
+    """Of the oil per volume, rho c [J/(m³ K)]."""
+    T_supply: Any
+    """Temperature of the oil supplied, else NaN [K]."""
+    T_ambient: Any
+    """Temperature of the air, else NaN [K]."""
+    kA: Any
+    """Heat transfer coefficient times area, else NaN [W/K]."""
+
+    def viscosity(self, T: Array) -> Array:
+        """Dynamic viscosity [Pa s] at T [K]."""
+        thin = walther(self.A, self.B, T) * density(self.rho_ref, T, self.T_ref)
+        return np.where(np.isnan(self.eta), thin, self.eta)
+
+    def power_and_flow(self, T: Array) -> tuple[Array, Array]:
+        """Power loss [W] and side flow [m³/s] at T [K]; at the limit of the map beyond it."""
+        eta, ratio = self.viscosity(T), self.W / self.D
+        scale = self.W * self.D * eta * self.omega_m / self.psi**2
+        inside = (ratio >= NARROWEST) & (ratio <= WIDEST)
+        most = mapped_load(np.asarray(ECCENTRICITY_LIMIT), np.where(inside, ratio, 1.0))
+        film = static_film_at("map", np.minimum(self.F / scale, most * (1 - 1e-9)), ratio)
+        couple = film.eps * film.So * np.sin(film.attitude) / 2
+        half = scale * self.psi * self.D / 2
+        power = half * (film.shear * self.omega_s**2 / self.omega_m + couple * self.omega_m)
+        return power, film.side_flow * (self.D / 2) ** 3 * self.psi * self.omega_m
+
+    def carried(self, T: Array, flow: Array) -> Array:
+        """Heat that oil and air carry off at T [K], per second [W]."""
+        by_oil = self.heat_capacity * flow * 2 * (T - self.T_supply)
+        by_air = self.kA * (T - self.T_ambient)
+        return np.nan_to_num(by_oil, nan=0.0) + np.nan_to_num(by_air, nan=0.0)
+
+    def excess(self, T: Array) -> Array:
+        """Power less what is carried off, over the power [-]."""
+        power, flow = self.power_and_flow(T)
+        return 1 - self.carried(T, flow) / power
+
+
+@dataclass(frozen=True)
+class HeatBalance:
+    """The balance found; NaN where it was not asked for."""
+
+    T: Array
+    """Film temperature [K]; infinite where there is no balance below 500 °C."""
+    T_out: Array
+    """Temperature of the oil that leaves; NaN too without a supply [K]."""
+    residual: Array
+    """What of the power is not accounted for [-]."""
+
+
+def heat_balance(running: Running) -> HeatBalance:
+    """Find the film temperature of every point that has a supply, or air to cool it."""
+    parts = np.broadcast_arrays(*(np.asarray(getattr(running, f.name), float) for f in fields(running)))
+    everything = Running(*parts)
+    asked = asked_for(everything.T_supply, everything.T_ambient, everything.kA)
+    T, residual = np.full((2, *asked.shape), np.nan)
+    if asked.any():
+        point = Running(*(part[asked] for part in parts))
+        T[asked], residual[asked] = _found(point)
+    return HeatBalance(T[()], (2 * T - everything.T_supply)[()], residual[()])
+
+
+def asked_for(T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
+    """Whether a supply temperature, or air and its heat transfer, is given."""
+    return np.asarray(np.isfinite(T_supply) | (np.isfinite(T_ambient) & np.isfinite(kA)))
+
+
+def _found(point: Running) -> tuple[Array, Array]:
+    """Temperature and residual of points in a row; infinite and NaN where there is none, NaN unknown."""
+    air = np.where(np.isfinite(point.kA), point.T_ambient, np.nan)
+    coldest = np.fmin(point.T_supply, air)
+    T = bracketed_root(point.excess, coldest, np.full_like(coldest, HOTTEST), _ACCURACY)
+    hot = point.excess(np.full_like(coldest, HOTTEST))
+    return np.where(np.isnan(T) & ~np.isnan(hot), np.inf, T), point.excess(T)
