@@ -107,7 +107,7 @@ def _compare(client: Client, before: Design, after: Design) -> None:
     click.echo(f"\n{HEADER}")
     for name, (value, unit) in new.items():
         mark = "  ←" if old[name] != new[name] else ""
-        click.echo(f"{name:28}{old[name][0]:>14.6g}{value:>14.6g} {unit}{mark}")
+        click.echo(f"{name:28}{old[name][0]:>14.6g}{value:>14.6g} {"" if unit == "1" else unit}{mark}")
     click.echo("(dimensions as measured on the re-imported STEP files)\n")
 
 
