@@ -107,7 +107,7 @@ def _compare(client: Client, before: Design, after: Design) -> None:
     click.echo(f"\n{HEADER}")
     for name, (value, unit) in new.items():
         mark = "  ←" if old[name] != new[name] else ""
-        click.echo(f"{name:28}{old[name][0]:>14.6g}{value:>14.6g} {"" if unit == "1" else unit}{mark}")
+        click.echo(f"{name:28}{old[name][0]:>14.6g}{value:>14.6g} {unit}{mark}")
     click.echo("(dimensions as measured on the re-imported STEP files)\n")
 
 
@@ -116,7 +116,7 @@ def _facts(client: Client, design: Design) -> dict[str, tuple[float, str]]:
     outputs = revision["steps"]["film"]["outputs"]
     dimensions = client.build(revision["models"]["model"]["build"])["measurements"]["dimensions"]
     shown = {"minimum_film_thickness": outputs["minimum_film_thickness"], **dimensions}
-    return {name: (quantity["value"], quantity["unit"]) for name, quantity in shown.items()}
+    return {name: (told["value"], told["unit"].removeprefix("1")) for name, told in shown.items()}
 
 
 def _saved(client: Client, design: Design, data: Path) -> Path:
