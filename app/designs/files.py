@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Response
@@ -71,7 +72,13 @@ async def model_file(
 
 
 def _accepted(accept: str | None) -> str:
-    """The first kind that the client names; STEP by default."""
-    named = [part.partition(";")[0].strip() for part in (accept or "").split(",")]
+    """The kind that the client likes best, of those it likes equally the first; STEP by default."""
     kinds = {media: kind for kind, media in MEDIA_TYPES.items()}
-    return next((kinds[media] for media in named if media in kinds), "step")
+    named = (part.partition(";") for part in (accept or "").lower().split(","))
+    liked = [(_weight(more), kinds[media.strip()]) for media, _, more in named if media.strip() in kinds]
+    return max(liked, key=lambda pair: pair[0], default=(1.0, "step"))[1]
+
+
+def _weight(parameters: str) -> float:
+    found = re.search(r"\bq=([01](?:\.[0-9]{0,3})?)", parameters)
+    return float(found[1]) if found else 1.0

@@ -1,8 +1,11 @@
 """The rules of HTTP that designs and their jobs keep: preconditions, repeats, waiting, full queues."""
 
 import time
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
 from uuid import uuid4
 
+import httpx
 import pytest
 from serving import API, HANG, created, moody, paper, patched, problem, revision, settled
 
@@ -142,6 +145,46 @@ class TestIdempotency:
     def test_a_key_has_a_length(self, http, key):
         answer = http.post(DESIGNS, json={"name": "x"}, headers={"Idempotency-Key": key})
         problem(answer, 422, "invalid-inputs")
+
+
+class TestManyAtOnce:
+    def at_once(self, served, send, times=8):
+        """What each of several clients gets that send in the same moment."""
+        gate = Barrier(times)
+
+        def one(number):
+            with httpx.Client(base_url=served.url, timeout=60, trust_env=False) as own:
+                gate.wait()
+                return send(own, number)
+
+        with ThreadPoolExecutor(times) as clients:
+            return list(clients.map(one, range(times)))
+
+    def test_one_of_many_changes_of_a_revision_is_accepted(self, served, http, plain):
+        def send(own, number):
+            patch = {"parameters": {"a": str(100 + number)}}
+            return own.patch(place(plain), json=patch, headers={"If-Match": '"1"'})
+
+        answers = self.at_once(served, send)
+        assert sorted(answer.status_code for answer in answers) == [200] + [412] * 7
+        (accepted,) = [answer.json() for answer in answers if answer.status_code == 200]
+        assert http.get(place(plain)).json() == accepted
+
+    def test_one_key_is_one_design(self, served, http):
+        before, key = count(http), uuid4().hex
+        answers = self.at_once(
+            served, lambda own, _: own.post(DESIGNS, json={"name": "x"}, headers={"Idempotency-Key": key})
+        )
+        assert {answer.status_code for answer in answers} == {201}
+        assert len({answer.json()["id"] for answer in answers}) == 1
+        assert count(http) == before + 1
+
+    def test_the_same_solid_asked_for_by_many_is_one_build(self, served):
+        answers = self.at_once(
+            served, lambda own, _: own.post(DESIGNS, json=moody("20.5 mm"), headers={"Prefer": "wait=60"})
+        )
+        assert {answer.json()["state"] for answer in answers} == {"current"}
+        assert len({answer.json()["id"] for answer in answers}) == 8
 
 
 class TestWaiting:

@@ -124,6 +124,20 @@ class TestFiles:
         assert answer.headers["content-type"].partition(";")[0] == KINDS[kind][0]
         assert "Accept" in answer.headers["vary"]
 
+    @pytest.mark.parametrize(
+        ("accept", "media"),
+        [
+            ("model/stl, model/gltf-binary", "model/stl"),
+            ("model/stl;q=0.5, model/gltf-binary;q=0.9", "model/gltf-binary"),
+            ("image/svg+xml;q=0.2,model/step", "model/step"),
+            ("IMAGE/PNG", "image/png"),
+            ("model/stl;q=x", "model/stl"),
+        ],
+    )
+    def test_the_kind_liked_best_is_sent(self, http, design, accept, media):
+        answer = http.get(place(design, "model"), headers={"Accept": accept, "Prefer": "wait=60"})
+        assert answer.headers["content-type"].partition(";")[0] == media
+
     @pytest.mark.parametrize("accept", ["*/*", "application/json", "", "nonsense"])
     def test_step_is_the_default(self, http, design, accept):
         answer = http.get(place(design, "model"), headers={"Accept": accept})
