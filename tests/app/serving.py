@@ -79,6 +79,25 @@ class Moody(CadModel):
 '''
 
 
+DOUBLE = '''
+"""Twice a length."""
+
+from templates.core.template import Array, Template, formula, given
+
+
+class Double(Template):
+    """Twice a length."""
+
+    example = {"length": "1 mm"}
+
+    a: Array = given("mm", "length", ge=0)
+
+    @formula("mm", "twice the length")
+    def b(self) -> Array:
+        return 2 * self.a
+'''
+
+
 def paper(**changes):
     """The paper's design as a document of its own."""
     return {**deepcopy(PAPER), **changes}
@@ -94,8 +113,9 @@ def moody(size="10 mm", mood="good", **more):
 
 
 def folder_of_models(path: Path) -> Path:
-    """A team's own folder with the model that misbehaves."""
+    """A team's own folder: the model that misbehaves, and a template."""
     (path / "own").mkdir(parents=True)
+    (path / "own" / "double_v1.py").write_text(dedent(DOUBLE).lstrip())
     (path / "own" / "moody_v1.py").write_text(dedent(MOODY).lstrip())
     return path
 

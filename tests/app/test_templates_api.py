@@ -1,7 +1,7 @@
 """Single templates over REST: list, show, evaluate, solve, in any unit, with warnings."""
 
 import pytest
-from serving import API, faults, problem
+from serving import API, created, faults, moody, problem
 
 from app.calculations.schemas import OIL_FILM
 
@@ -57,6 +57,25 @@ class TestCatalogue:
     @pytest.mark.parametrize("path", ["none", "none/versions/1", "oil_film/versions/999"])
     def test_unknown(self, http, path):
         problem(http.get(f"{API}/templates/{path}"), 404, "unknown-template")
+
+
+class TestOwnTemplates:
+    """A team's folder may hold templates and models side by side."""
+
+    def test_they_stand_beside_the_built_in_ones(self, http):
+        assert "double" in {item["id"] for item in http.get(f"{API}/templates").json()["items"]}
+        assert "double" not in {item["id"] for item in http.get(f"{API}/models").json()["items"]}
+        body = {"inputs": {"length": "3 mm"}}
+        told = http.post(f"{API}/templates/double/versions/1/evaluate", json=body).json()
+        assert told["outputs"] == {"twice_the_length": {"value": 6, "unit": "mm"}}
+
+    def test_they_drive_models(self, http):
+        document = moody("= twice.twice_the_length")
+        document["steps"] = {"twice": {"template": "double", "inputs": {"length": "4 mm"}}}
+        design = created(http, document)
+        assert design["state"] == "current", design["problem"]
+        measured = http.get(f"{API}/designs/{design['id']}/measurements").json()
+        assert measured["model"]["dimensions"]["size"]["value"] == pytest.approx(8)
 
 
 class TestEvaluate:
