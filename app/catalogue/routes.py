@@ -10,6 +10,8 @@ from app.dependencies import TheCatalogues
 from app.http import StrictRoute
 from app.paging import Cursor, Limit, page_of
 from templates.core.catalogue import Catalogue
+from templates.core.errors import UnknownTemplate
+from templates.core.levels import accuracy
 from templates.core.schema import describe
 from templates.core.template import Template
 
@@ -40,6 +42,16 @@ def show_version(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str,
     """One version: inputs and outputs as JSON Schema, formulas on paper, limits, references, errata."""
     cls = catalogues.templates.get(id, number)
     return {**describe(cls), "latest": cls is catalogues.templates.latest(id)}
+
+
+@router.get("/{id}/versions/{number}/accuracy")
+def show_accuracy(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, Any]:
+    """Measured cost and error of each level over the parameter plane; 404 where none was measured."""
+    cls = catalogues.templates.get(id, number)
+    measured = accuracy(cls)
+    if measured is None:
+        raise UnknownTemplate(id, f"the error of {id} version {number} is not measured")
+    return measured.told
 
 
 def summary(cls: type[Template], catalogue: Catalogue[Any]) -> dict[str, Any]:

@@ -51,10 +51,10 @@ class Accuracy:
         A scalar, or an array of the shape of the axes' values.
         """
         table = self.errors.get(template.level or SINGLE, {}).get(output)
+        if table is None:
+            return np.full(_shape(template), np.nan)[()]
         first, second = (np.asarray(getattr(template, axis), dtype=float) for axis in self.axes)
         first, second = np.broadcast_arrays(first, second)
-        if table is None:
-            return np.full(first.shape, np.nan)[()]
         rows, inside_rows = _cells(self.grids[0], first)
         columns, inside_columns = _cells(self.grids[1], second)
         return np.where(inside_rows & inside_columns, table[rows, columns], np.nan)[()]

@@ -64,8 +64,12 @@ def _shown(template: Template, attribute: str, *, absolute: bool = False) -> str
     if isinstance(declared, Choice):
         return rf"\text{{{getattr(template, attribute).replace('_', ' ')}}}"
     value = vars(template).get(attribute)
-    if value is None or isinstance(value, np.ndarray):
+    if value is None or isinstance(value, (np.ndarray, tuple)):
         return ""
+    if isinstance(value, str):
+        return rf"\text{{{value.replace('_', ' ')}}}"
+    if np.isnan(value):
+        return r"\text{none}"
     scale = declared.meaning.scale
     if scale.absolute and not absolute:
         return amount(float(value), "K")

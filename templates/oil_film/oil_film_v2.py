@@ -164,7 +164,7 @@ class OilFilm(Template):
 
     @require(
         "oil_inlet_temperature", "oil_outlet_temperature", missing=True,
-        remedy="give both; or supply_temperature; or ambient_temperature, heat_transfer; or dynamic_viscosity",
+        remedy="both; or supply_temperature; or ambient_temperature, heat_transfer; or dynamic_viscosity",
     )  # fmt: skip
     def viscosity_follows(self) -> Truth:
         """The viscosity follows from some temperature, or is given."""

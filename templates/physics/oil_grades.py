@@ -38,10 +38,10 @@ def grades() -> tuple[str, ...]:
 @units(None, returns="m**2/s")
 def viscosity_at_40(grade: str) -> Array:
     """Kinematic viscosity of a grade at 40 °C [m²/s]."""
-    return np.float64(_table()[grade][0] * MM2_PER_S)
+    return np.asarray(_table()[grade][0] * MM2_PER_S)
 
 
 @units(None, returns="m**2/s")
 def viscosity_at_100(grade: str) -> Array:
     """Kinematic viscosity of a grade at 100 °C [m²/s]."""
-    return np.float64(_table()[grade][1] * MM2_PER_S)
+    return np.asarray(_table()[grade][1] * MM2_PER_S)
