@@ -17,6 +17,7 @@ from app.main import create_app
 from app.settings import Settings
 from app.storage.errors import DataFolderInUse
 from app.storage.folder import DataFolder
+from cad.catalogue import models as find_models
 from templates.core.catalogue import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate
 from templates.core.evaluate import evaluate as evaluate_template
@@ -149,9 +150,13 @@ def _shown(default: Any) -> str:
 @click.argument("version", type=int)
 @click.option("--folder", type=click.Path(path_type=Path), default=GOLDEN, show_default=True)
 def freeze(id: str, version: int, folder: Path) -> None:
-    """Write the golden record of a version that is about to be released; never over an existing one."""
+    """Write the golden record of a template or model about to be released; never over an existing one."""
+    catalogue: Catalogue[Any] = find_models(*Settings().template_folders)
     try:
-        click.echo(f"written: {freeze_template(_find(id, version), folder)}")
+        cls = catalogue.get(id, version) if id in catalogue.ids else _find(id, version)
+        click.echo(f"written: {freeze_template(cls, folder)}")
+    except UnknownTemplate as error:
+        raise click.ClickException(str(error)) from None
     except FileExistsError as error:
         raise click.ClickException(f"{error}: a released version is not changed; make a new one") from None
 
