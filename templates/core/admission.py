@@ -59,7 +59,7 @@ def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
         reason = f"{declaration.name} must be {meaning.wanted}{remedy}"
         self.ledger.masks.append(Mask((declaration.attribute,), known & ~inside, reason))
     if not known.all() and (why := absence(self, declaration)):
-        self.ledger.masks.append(Mask((declaration.attribute,), ~known, why))
+        self.ledger.masks.append(Mask((declaration.attribute,), ~known, why, tells=True))
     if inside.all():
         return value
     return np.where(inside[..., None] if isinstance(declaration, Profile) else inside, value, np.nan)

@@ -206,13 +206,14 @@ def _with_reasons(
         return si, None
     points = si.shape[:-1] if is_profile else si.shape
     shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), points)
-    covered = reduce(np.logical_or, (mask.where for mask in masks), np.zeros(shape, dtype=bool))
+    covering = (mask.where for mask in masks if not mask.tells)
+    covered = reduce(np.logical_or, covering, np.zeros(shape, dtype=bool))
     value = np.where(covered[..., None] if is_profile else covered, np.nan, si)
     holes = np.isnan(value).any(axis=-1) if is_profile else np.isnan(value)
     reasons = np.full(shape, None, dtype=object)
     reasons[holes] = "the formula has no finite value here"
     for mask in reversed(masks):
-        reasons[np.broadcast_to(mask.where, shape)] = mask.reason
+        reasons[np.broadcast_to(mask.where, shape) & holes] = mask.reason
     return value, reasons
 
 

@@ -21,11 +21,15 @@ class Notice:
 
 @dataclass(frozen=True)
 class Mask:
-    """Points of an array that mean nothing, and why; `names` are the attributes it comes from."""
+    """Points of an array that mean nothing, and why; `names` are the attributes it comes from.
+
+    What follows from them means nothing either, unless the mask only `tells` why a result is absent.
+    """
 
     names: tuple[str, ...]
     where: NDArray[np.bool_]
     reason: str
+    tells: bool = False
 
 
 @dataclass

@@ -57,7 +57,8 @@ def solve(
         If no value between the bounds gives the target, with the range that is reachable.
     """
     declared, (low, high), formula, wanted = _question(cls, raw, unknown, bounds, target)
-    curve = _Curve(cls, dict(raw), declared, formula, wanted)
+    fidelity: dict[str, Any] = {name: options[name] for name in ("level", "tolerance") if name in options}
+    curve = _Curve(cls, dict(raw), declared, formula, wanted, fidelity)
     grid, residual = curve.scan(low, high)
     roots = curve.roots(grid, residual)
     if not roots:
@@ -189,12 +190,12 @@ class _Curve:
     declared: Input
     formula: Formula[Any]
     wanted: float
+    fidelity: dict[str, Any]
 
     def residual(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Output minus target [SI] at these values of the unknown; NaN where the template refuses."""
-        typed = _typed(self.declared, values)
-        evaluation = evaluate(self.cls, {**self.raw, self.declared.name: typed}, outputs=[self.formula.name])
-        answer = evaluation.outputs[self.formula.name].value
+        raw, name = {**self.raw, self.declared.name: _typed(self.declared, values)}, self.formula.name
+        answer = evaluate(self.cls, raw, outputs=[name], **self.fidelity).outputs[name].value
         si = self.formula.meaning.scale.to_si(np.asarray(answer, dtype=float))
         return np.broadcast_to(si - self.wanted, values.shape)
 

@@ -112,7 +112,7 @@ def heat_balance(running: Running) -> HeatBalance:
     parts = np.broadcast_arrays(*(np.asarray(getattr(running, f.name), float) for f in fields(running)))
     everything = Running(*parts)
     asked = asked_for(everything.T_supply, everything.T_ambient, everything.kA)
-    T, residual = np.full((2, *asked.shape), np.nan)
+    T, residual = np.full(asked.shape, np.nan), np.full(asked.shape, np.nan)
     if asked.any():
         point = Running(*(part[asked] for part in parts))
         T[asked], residual[asked] = _found(point)

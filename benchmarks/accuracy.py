@@ -1,0 +1,337 @@
+"""Measure every level of `oil_film` against the converged solution, and what a point of it costs.
+
+python -m benchmarks.accuracy measure    about 6 minutes: writes templates/oil_film/*.accuracy.json
+python -m benchmarks.accuracy picture    docs/pictures/oil_film_accuracy.png from those files
+
+The converged film: solutions extrapolated from 256 × 32 and 512 × 64 intervals at 1500 random places, which
+`benchmarks.film_map` keeps. Levels map, reynolds and mass_conserving are compared with those; the closed
+forms with the map on a dense grid, the map's own error added. Of each cell the largest error found counts.
+Errors are relative, of an angle to 90°, of a stiffness or damping to the largest of its four.
+"""
+
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import fields
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from templates.oil_film.oil_film_v1 import OilFilm as Paper
+from templates.oil_film.oil_film_v2 import OilFilm
+from templates.physics.arrays import ECCENTRICITY_LIMIT, Array
+from templates.physics.film_fit import load_ISO_7902
+from templates.physics.film_map import _DAMPING_SCALE, _STIFFNESS_SCALE, decode
+from templates.physics.journal_coefficients import coefficients_at
+from templates.physics.power_fit import exponent_k2, factor_k1
+from templates.physics.short_bearing import load_Ocvirk_1952
+from templates.physics.static_journal import WIDTHS, JournalFilm, static_film_at
+from templates.physics.whirl import threshold_mass
+
+FOLDER = Path("templates/oil_film")
+CHECKS = Path("benchmarks/film_map_checks.npz")
+PICTURE = Path("docs/pictures/oil_film_accuracy.png")
+
+EPS = [0, 0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.93, 0.95, 0.97, 0.98, 0.99, 0.995, 0.998,
+       0.999, 0.9995, 0.9999, 1 - 1e-5, 1 - 1e-6, 1]  # fmt: skip
+WIDTH = [0.01, 0.02, 0.035, 0.05, 0.07, 0.1, 0.125, 0.18, 0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 3, 5, 10, 30, 100]
+LOADS = [0.01, 0.03, 0.1, 0.2, 0.5, 1, 1.5, 2, 3, 4, 5, 7, 10, 14, 20, 30, 40, 60, 80, 100, 120, 150, 200, 300,
+         500, 800, 1360]  # fmt: skip
+FINER = 7
+MARGIN = 1.02
+SCATTERED = 8, 8
+NEARBY = 1.5
+COEFFICIENTS = [f"{name}_{xy}" for name in ("stiffness", "damping") for xy in ("xx", "xy", "yx", "yy")]
+DEAR = {"reynolds": 1500, "mass_conserving": 400}
+
+Errors = dict[str, Array]
+
+
+def film_errors(film: JournalFilm, truth: JournalFilm) -> Errors:
+    """Relative errors of every output that comes from a film, at the same load."""
+    couple, true_couple = (f.eps * f.So * np.sin(f.attitude) / 2 for f in (film, truth))
+    torque = _relative(film.shear + couple, truth.shear + true_couple)
+    thickness = _relative(1 - film.eps, 1 - truth.eps)
+    peak = np.abs(film.attitude + film.peak - truth.attitude - truth.peak)
+    return {
+        "relative_eccentricity": _relative(film.eps, truth.eps),
+        "minimum_film_thickness": thickness,
+        "film_parameter": thickness,
+        "attitude_angle": np.abs(film.attitude - truth.attitude) / (np.pi / 2),
+        "maximum_pressure": _relative(film.P_max, truth.P_max),
+        "maximum_pressure_angle": peak / (np.pi / 2),
+        "shear_torque": _relative(film.shear, truth.shear),
+        "load_couple": _relative(couple, true_couple),
+        "friction_torque": torque,
+        "friction_coefficient": torque,
+        "power_loss": torque,
+        "side_flow": _relative(film.side_flow, truth.side_flow),
+    }
+
+
+def coefficient_errors(found: tuple[Array, Array], truth: tuple[Array, Array]) -> Errors:
+    """Errors of stiffness and damping over the largest of their four, and of the threshold of whirl."""
+    parts = []
+    for matrix, true in zip(found, truth, strict=True):
+        size = np.abs(true).max(axis=(-1, -2), keepdims=True)
+        parts.append((np.abs(matrix - true) / size).reshape(-1, 4))
+    errors = dict(zip(COEFFICIENTS, np.concatenate(parts, axis=1).T, strict=True))
+    mass, true_mass = (_threshold(*pair) for pair in (found, truth))
+    with np.errstate(all="ignore"):
+        speed = np.abs(np.sqrt(mass / true_mass) - 1)
+    both = np.isinf(mass) & np.isinf(true_mass)
+    return {
+        **errors,
+        "whirl_threshold_speed": np.where(both, 0.0, np.where(np.isfinite(speed), speed, np.nan)),
+    }
+
+
+def _threshold(K: Array, B: Array) -> Array:
+    known = np.isfinite(K).all(axis=(-1, -2))
+    unit = np.broadcast_to(np.eye(2), K.shape)
+    mass = threshold_mass(*(np.where(known[:, None, None], matrix, unit) for matrix in (K, B)))
+    return np.where(known, mass, np.nan)
+
+
+def _relative(value: Array, true: Array) -> Array:
+    """Relative error; 0 where both vanish."""
+    with np.errstate(all="ignore"):
+        return np.where(value == true, 0.0, np.abs(value / true - 1))
+
+
+def dense(first: list[float], second: list[float]) -> tuple[Array, Array]:
+    """FINER × FINER places in every cell, edges included, (cells, cells, FINER²)."""
+    share = np.linspace(0, 1, FINER)
+    one = np.array([a + (b - a) * share for a, b in zip(first[:-1], first[1:], strict=True)])
+    two = np.array([a * (b / a) ** share for a, b in zip(second[:-1], second[1:], strict=True)])
+    x = np.broadcast_to(one[:, None, :, None], (len(one), len(two), FINER, FINER))
+    y = np.broadcast_to(two[None, :, None, :], x.shape)
+    return x.reshape(len(one), len(two), -1), y.reshape(len(one), len(two), -1)
+
+
+def closed_form(level: str, load: Callable[..., Array], own: dict[str, Array]) -> dict[str, Array]:
+    """The largest error of a closed form in each cell of its own eps, against the map."""
+    eps, ratio = dense(EPS, WIDTH)
+    eps = np.clip(eps, 1e-9, ECCENTRICITY_LIMIT)
+    low, high = WIDTHS[level]
+    allowed = (ratio >= low * (1 - 1e-12)) & (ratio <= high * (1 + 1e-12))
+    safe = np.clip(ratio, low, high)
+    So = np.where(allowed, load(eps, safe), np.nan).ravel()
+    film, truth = (static_film_at(name, So, safe.ravel()) for name in (level, "map"))
+    true_eps = np.where(np.isfinite(truth.eps), truth.eps, np.nan)
+    found = coefficients_at(level, eps.ravel(), safe.ravel())
+    errors = {
+        **film_errors(film, truth.admitted(true_eps)),
+        **coefficient_errors(found, coefficients_at("map", true_eps, safe.ravel())),
+    }
+    cells = {name: error.reshape(eps.shape).max(axis=-1) for name, error in errors.items()}
+    return {name: MARGIN * cell + own[name] for name, cell in cells.items()}
+
+
+def converged() -> tuple[Array, Array, JournalFilm, tuple[Array, Array]]:
+    """Places x = atanh(eps), y = ln(B/D), films and coefficients of the converged solutions."""
+    with np.load(CHECKS) as checks:
+        x, y, truth = checks["x"], checks["y"], checks["truth"]
+    eps, ratio = np.tanh(x), np.exp(y)
+    film = decode(eps, ratio, truth[:, :8].T)
+    shear = np.pi / np.sqrt((1 - eps) * (1 + eps))
+    names = ("So", "attitude", "P_max", "peak", "side_flow")
+    cos, sin = np.cos(film["attitude"]), np.sin(film["attitude"])
+    turn = np.stack([np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)], axis=-2)
+    thin = np.sqrt((1 - eps) / (1 + eps))[:, None, None]
+    scale = (film["So"] / eps)[:, None, None]
+    matrices = [
+        turn @ (scale * truth[:, part].reshape(-1, 2, 2) / thin**power) @ turn.swapaxes(-1, -2)
+        for part, power in ((slice(8, 12), _STIFFNESS_SCALE), (slice(12, 16), _DAMPING_SCALE))
+    ]
+    film_of = JournalFilm(eps=eps, shear=shear, **{name: film[name] for name in names})
+    return x, y, film_of, (matrices[0], matrices[1])
+
+
+def solved(level: str) -> dict[str, Array]:
+    """The largest error of a level near each cell, against the converged solutions, with a margin."""
+    x, y, truth, matrices = converged()
+    some = slice(DEAR.get(level, x.size))
+    x, y = x[some], y[some]
+    truth = JournalFilm(*(getattr(truth, field.name)[some] for field in fields(truth)))
+    ratio = np.exp(y)
+    film = static_film_at(level, truth.So, ratio)
+    eps = np.where(np.isfinite(film.eps), film.eps, np.nan)
+    found = coefficients_at(level, eps, ratio)
+    errors = {
+        **film_errors(film.admitted(eps), truth),
+        **coefficient_errors(found, (matrices[0][some], matrices[1][some])),
+    }
+    if level == "mass_conserving":
+        for name in ("shear_torque", "friction_torque", "friction_coefficient", "power_loss"):
+            errors[name] = np.full(x.shape, np.nan)
+    return {name: spread(x, y, error) for name, error in errors.items()}
+
+
+def spread(x: Array, y: Array, error: Array) -> Array:
+    """Scattered errors as cells: the largest of the coarse cells that a cell touches, and their neighbours."""
+    top, low, high = np.arctanh(ECCENTRICITY_LIMIT), np.log(WIDTH[0]), np.log(WIDTH[-1])
+
+    def place(values: Array, first: float, last: float, cells: int) -> Array:
+        return np.clip((values - first) / (last - first) * cells, 0, cells - 1e-9)
+
+    row, column = place(x, 0, top, SCATTERED[0]).astype(int), place(y, low, high, SCATTERED[1]).astype(int)
+    coarse = np.full(SCATTERED, np.nan)
+    for i, j in np.ndindex(*SCATTERED):
+        near = error[(np.abs(row - i) <= 1) & (np.abs(column - j) <= 1)]
+        coarse[i, j] = NEARBY * near.max()
+    rows = place(np.arctanh(np.minimum(EPS, ECCENTRICITY_LIMIT)), 0, top, SCATTERED[0]).astype(int)
+    columns = place(np.log(WIDTH), low, high, SCATTERED[1]).astype(int)
+    return np.array([
+        [coarse[a : b + 1, c : d + 1].max() for c, d in zip(columns[:-1], columns[1:], strict=True)]
+        for a, b in zip(rows[:-1], rows[1:], strict=True)
+    ])  # fmt: skip
+
+
+def paper() -> dict[str, Array]:
+    """The largest error of the fit of `oil_film` 1 in each cell of So and B/D, against the map."""
+    So, ratio = dense(LOADS, WIDTH)
+    eps = factor_k1(So) * So ** exponent_k2(So)
+    film = static_film_at("map", So.ravel(), ratio.ravel())
+    true = np.where(np.isfinite(film.eps), film.eps, np.nan).reshape(So.shape)
+    errors = {"relative_eccentricity": _relative(eps, true)}
+    errors["minimum_film_thickness"] = _relative(1 - eps, 1 - true)
+    return {name: MARGIN * error.max(axis=-1) for name, error in errors.items()}
+
+
+def cost(level: str) -> dict[str, float]:
+    """Seconds a point, alone and among many, at eps 0.8 and B/D 1, or what of it the level takes."""
+    So, many = 3.5718, (DEAR.get(level) and 20) or 20_000
+
+    def seconds(count: int) -> float:
+        loads = np.full(count, So) if count > 1 else np.float64(So)
+        begin = perf_counter()
+        static_film_at(level, loads, 1.0)
+        return (perf_counter() - begin) / count
+
+    seconds(1)
+    return {"single": min(seconds(1) for _ in range(5)), "vectorised": min(seconds(many) for _ in range(3))}
+
+
+def told(cls: type, truth: str, axes: list[dict[str, Any]], levels: dict[str, Any]) -> dict[str, Any]:
+    """The whole file."""
+    return {
+        "template": {"id": cls.id, "version": cls.version},
+        "made_by": "python -m benchmarks.accuracy measure",
+        "truth": truth,
+        "error": "largest found in each cell; relative, of an angle to 90°, of a stiffness or damping to the "
+        "largest of its four; of the film at the viscosity used; null: not measured, or refused",
+        "cost": "seconds a point",
+        "axes": axes,
+        "levels": levels,
+    }
+
+
+def rounded(table: Array) -> list[list[float | None]]:
+    """Two digits, upwards; null where unknown."""
+    with np.errstate(all="ignore"):
+        unit = 10.0 ** (np.floor(np.log10(np.maximum(table, 1e-12))) - 1)
+    up = np.ceil(table / unit) * unit
+    return [[None if not np.isfinite(v) else float(f"{v:.2g}") for v in row] for row in up]
+
+
+def write(cls: type, content: dict[str, Any]) -> None:
+    """One line a row of cells, so that differences can be read."""
+    path = FOLDER / f"{cls.id}_v{cls.version}.accuracy.json"
+    path.write_text(json.dumps(content, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
+    print(path, path.stat().st_size // 1000, "kB")
+
+
+def axis(attribute: str, name: str, values: list[float]) -> dict[str, Any]:
+    """One axis of the tables: the edges of its cells."""
+    return {"attribute": attribute, "name": name, "values": values}
+
+
+def measure() -> None:
+    """Measure all and write both files."""
+    own = solved("map")
+    tables = {
+        "short_bearing": closed_form("short_bearing", load_Ocvirk_1952, own),
+        "fit": closed_form("fit", load_ISO_7902, own),
+        "map": own,
+        "reynolds": solved("reynolds"),
+        "mass_conserving": solved("mass_conserving"),
+    }
+    levels = {
+        level: {"cost": cost(level), "errors": {name: rounded(t) for name, t in table.items()}}
+        for level, table in tables.items()
+    }
+    width = axis("b", "width_ratio", WIDTH)
+    truth = "Swift-Stieber film, extrapolated from 256 × 32 and 512 × 64 intervals"
+    write(OilFilm, told(OilFilm, truth, [axis("eps", "relative_eccentricity", EPS), width], levels))
+    fit = {"only": {"cost": {}, "errors": {name: rounded(table) for name, table in paper().items()}}}
+    write(Paper, told(Paper, truth, [axis("S_0", "sommerfeld_number", LOADS), width], fit))
+
+
+def picture() -> None:
+    """Error against cost at three points, and maps of the error in film thickness."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    second = json.loads((FOLDER / "oil_film_v2.accuracy.json").read_text(encoding="utf-8"))
+    first = json.loads((FOLDER / "oil_film_v1.accuracy.json").read_text(encoding="utf-8"))
+    figure, axes = plt.subplots(2, 3, figsize=(13, 7.5), layout="constrained")
+    _against_cost(axes[0, 0], second)
+    maps = [
+        ("short_bearing", second),
+        ("fit", second),
+        ("map", second),
+        ("reynolds", second),
+        ("only", first),
+    ]
+    for panel, (level, content) in zip(axes.flat[1:], maps, strict=True):
+        shown = _error_map(panel, level, content)
+    figure.colorbar(shown, ax=axes, label="error of the minimum film thickness", shrink=0.8)
+    PICTURE.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(PICTURE, dpi=80)
+    print(PICTURE, PICTURE.stat().st_size // 1000, "kB")
+
+
+def _against_cost(panel: Any, content: dict[str, Any]) -> None:
+    """Each level's error and cost, for light, medium and heavy load at B/D about 0.6."""
+    column = np.searchsorted(WIDTH, 0.6) - 1
+    for eps, mark in ((0.35, "o"), (0.75, "s"), (0.96, "^")):
+        row = np.searchsorted(EPS, eps) - 1
+        points = [
+            (content["levels"][level]["cost"]["vectorised"], e[row][column])
+            for level in content["levels"]
+            if (e := content["levels"][level]["errors"]["minimum_film_thickness"])[row][column]
+        ]
+        panel.loglog(*zip(*points, strict=True), mark + "-", label=f"eps {eps}")
+    for level, about in content["levels"].items():
+        panel.axvline(about["cost"]["vectorised"], color="0.9", zorder=0)
+        panel.text(about["cost"]["vectorised"], 1.2, level, rotation=90, va="top", ha="right", fontsize=7)
+    panel.set(
+        xlabel="seconds a point, vectorised", ylabel="error of h_min", title="error against cost, B/D 0.6"
+    )
+    panel.legend()
+
+
+def _error_map(panel: Any, level: str, content: dict[str, Any]) -> Any:
+    """Error of the film thickness over the plane; white where it was refused or not measured."""
+    from matplotlib.colors import LogNorm
+
+    table = np.array(content["levels"][level]["errors"]["minimum_film_thickness"], dtype=float)
+    along = np.array(content["axes"][0]["values"])
+    is_eps = content["axes"][0]["attribute"] == "eps"
+    edges = np.arctanh(np.minimum(along, ECCENTRICITY_LIMIT)) if is_eps else np.log10(along)
+    shown = panel.pcolormesh(edges, WIDTH, table.T, norm=LogNorm(1e-5, 1), cmap="viridis")
+    ticks = [0, 0.5, 0.8, 0.95, 0.99, 0.999, 0.9999, 0.99999] if is_eps else [0.01, 0.1, 1, 10, 100, 1000]
+    places = np.arctanh(ticks) if is_eps else np.log10(ticks)
+    panel.set_xticks(places, [f"{tick:g}" for tick in ticks], fontsize=7, rotation=30)
+    name = f"oil_film 2, {level}" if is_eps else "oil_film 1"
+    panel.set(yscale="log", ylabel="B/D", xlabel="eps" if is_eps else "So", title=name)
+    return shown
+
+
+if __name__ == "__main__":
+    {"measure": measure, "picture": picture}[sys.argv[1]]()
