@@ -23,7 +23,7 @@ from app.main import create_app
 from app.settings import Settings
 
 API = "/api/v1"
-PATIENCE = 30.0  # for a server to start [s]; importing the geometry kernel takes some of it
+PATIENCE = 60.0  # for a server to start [s]; importing the geometry kernel takes some of it
 HANG = 5.0  # an answer that takes longer hangs [s]
 
 MOODY = '''

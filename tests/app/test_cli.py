@@ -1,18 +1,15 @@
 """The command line: evaluate, template list and show, freeze, serve."""
 
 import json
-import os
-import signal
 import socket
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import httpx
 import pytest
 from click.testing import CliRunner
-from serving import PATIENCE, ServerProcess, free_port
+from serving import PATIENCE, ServerProcess
 
 from app.calculations.schemas import OIL_FILM
 from app.cli import main
@@ -108,71 +105,60 @@ class TestTemplates:
 
 class TestServe:
     def test_a_folder_with_other_files_is_left_as_it_is(self, tmp_path):
-        (tmp_path / "notes.txt").write_text("mine")
-        (tmp_path / "artifacts").mkdir()
-        (tmp_path / "artifacts" / "also mine").write_bytes(b"\x00")
-        with ServerProcess(tmp_path) as server:
-            with httpx.Client(base_url=server.url, trust_env=False) as http:
-                assert http.get("/readyz").json() == {"status": "ready", "designs": 0}
-                assert http.post("/api/v1/designs", json={"name": "kept"}).status_code == 201
-            self.refuses_a_second_server(tmp_path)
-        assert (tmp_path / "notes.txt").read_text() == "mine"
-        assert (tmp_path / "artifacts" / "also mine").read_bytes() == b"\x00"
-        with ServerProcess(tmp_path) as server, httpx.Client(base_url=server.url, trust_env=False) as http:
-            assert [one["name"] for one in http.get("/api/v1/designs").json()["items"]] == ["kept"]
+        data = tmp_path / "data"
+        (data / "artifacts").mkdir(parents=True)
+        (data / "notes.txt").write_text("mine")
+        (data / "artifacts" / "also mine").write_bytes(b"\x00")
+        server = ServerProcess(data)
+        with server, httpx.Client(base_url=server.url, trust_env=False) as http:
+            assert http.get("/readyz").json() == {"status": "ready", "designs": 0}
+            assert http.post("/api/v1/designs", json={"name": "kept"}).status_code == 201
+            refused = run("serve", "--data", str(data))
+        assert (data / "notes.txt").read_text() == "mine"
+        assert (data / "artifacts" / "also mine").read_bytes() == b"\x00"
+        assert refused.exit_code == 1
+        assert f"process {server.process.pid}" in refused.output
+        assert str(data) in refused.output
+        assert f"{server.port}/docs" in server.log.read_text()
 
-    def refuses_a_second_server(self, data):
-        second = serve("--port", "0", "--data", str(data))
-        told = second.communicate(timeout=PATIENCE)[1].decode()
-        assert second.returncode == 1
-        assert str(data) in told
-        assert "Traceback" not in told
-        assert "process" in told
+    def test_a_second_server_on_one_folder_is_refused(self, served):
+        refused = run("serve", "--data", str(served.app.state.settings.data))
+        assert refused.exit_code == 1
+        assert refused.output.startswith("Error: ")
+        assert str(served.app.state.settings.data) in refused.output
 
     def test_a_folder_that_is_a_file(self, tmp_path):
         (tmp_path / "file").write_text("")
-        process = serve("--port", "0", "--data", str(tmp_path / "file"))
-        told = process.communicate(timeout=PATIENCE)[1].decode()
-        assert process.returncode != 0
-        assert "Traceback" not in told
-        assert str(tmp_path / "file") in told
+        refused = run("serve", "--data", str(tmp_path / "file"))
+        assert refused.exit_code == 1
+        assert str(tmp_path / "file") in refused.output
+        assert "--data" in refused.output
 
     def test_a_port_that_is_taken(self, tmp_path):
         with socket.create_server(("127.0.0.1", 0)) as taken:
-            port = taken.getsockname()[1]
-            process = serve("--port", str(port), "--data", str(tmp_path))
-            told = process.communicate(timeout=PATIENCE)[1].decode()
-        assert process.returncode != 0
-        assert "address already in use" in told
-        assert "Traceback" not in told
+            port = str(taken.getsockname()[1])
+            command = [sys.executable, "-m", "app", "serve", "--port", port, "--data", str(tmp_path)]
+            ended = subprocess.run(command, cwd=ROOT, capture_output=True, timeout=PATIENCE, check=False)
+        assert ended.returncode != 0
+        assert b"address already in use" in ended.stderr
+        assert b"Traceback" not in ended.stderr
 
-    @pytest.mark.parametrize(("host", "warned"), [("0.0.0.0", True), ("127.0.0.1", False)])
-    def test_a_warning_beyond_loopback(self, tmp_path, host, warned):
-        port = free_port()
-        process = serve("--host", host, "--port", str(port), "--data", str(tmp_path))
-        try:
-            answers(port, process)
-        finally:
-            process.send_signal(signal.SIGTERM)
-            told = process.communicate(timeout=PATIENCE)[1].decode()
-        assert ("WARNING" in told and "without authentication" in told) is warned
-        assert f":{port}/docs" in told
-        assert "Traceback" not in told
-
-
-def serve(*arguments):
-    command = [sys.executable, "-m", "app", "serve", *arguments]
-    return subprocess.Popen(
-        command, cwd=ROOT, env=dict(os.environ), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+    @pytest.mark.parametrize(
+        ("host", "warned"),
+        [
+            ("0.0.0.0", True),
+            ("::", True),
+            ("192.168.1.5", True),
+            ("crank.example", True),
+            ("127.0.0.1", False),
+            ("::1", False),
+            ("localhost", False),
+        ],
     )
-
-
-def answers(port, process):
-    end = time.monotonic() + PATIENCE
-    while time.monotonic() < end:
-        assert process.poll() is None, process.stderr.read()
-        try:
-            return httpx.get(f"http://127.0.0.1:{port}/healthz", trust_env=False).raise_for_status()
-        except httpx.TransportError:
-            time.sleep(0.1)
-    raise TimeoutError
+    def test_a_warning_beyond_loopback(self, tmp_path, monkeypatch, host, warned):
+        served = []
+        monkeypatch.setattr("app.cli.uvicorn.run", lambda app, **options: served.append(options))
+        told = run("serve", "--host", host, "--port", "8123", "--data", str(tmp_path))
+        assert told.exit_code == 0
+        assert ("WARNING" in told.stderr and "without authentication" in told.stderr) is warned
+        assert (served[0]["host"], served[0]["port"]) == (host, 8123)
