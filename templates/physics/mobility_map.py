@@ -1,0 +1,188 @@
+"""The mobility of a finite bearing, precomputed over eccentricity, direction of the load, and width.
+
+Booker's frame: xi along the load, eta ahead of it. The map's coordinates are the gap in the direction of
+the load, h = 1 − xi, as ln h + h; the place on the chord of that gap, |eta|/sqrt(1 − xi²), in which
+the thin film has the same extent at every h; and ln(B/D). Cubic splines of the mobility against the
+short bearing's form (Booker 1971), smooth also where the journal is centred. Film and boundary
+condition: those of `film_mobility`, rotation and squeeze solved together, mirrored in direction.
+Built and measured by `benchmarks/mobility_map.py`, from solutions extrapolated by Richardson.
+Range: eps 0 … 1 − 1e-6, B/D 0.02 … 10, every direction; beyond it is refused. Velocity of the centre:
+d(eps)/dt = M F psi²/(B D eta) + omega_bar × eps, omega_bar the mean speed of journal and sleeve.
+
+References:
+    J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; J. Lubr. Technol. 93, 1971, p. 168.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from templates.physics.arrays import ECCENTRICITY_LIMIT, Array, require
+from templates.physics.film_mobility import Motion
+from templates.physics.uniform_spline import Axis, surface
+from templates.physics.volume_spline import Axes, at_third, volume
+
+NARROWEST, WIDEST = 0.02, 10.0
+"""Width ratios B/D between which the map was made [-]."""
+LARGEST = 1 - 1e-6
+"""The largest relative eccentricity of the map [-]."""
+
+_DATA = Path(__file__).parent / "data" / "mobility_map.npz"
+
+
+@dataclass(frozen=True)
+class MobilityMap:
+    """The map's data."""
+
+    axes: Axes
+    """Nodes over gap, chord and width: see `coordinates`."""
+    motion: Array
+    """Spline coefficients of the first two values of `encode`."""
+    film: Array
+    """Spline coefficients of the last two."""
+    error: Array
+    """(cells over gap, chord, width, 4) largest error found in each cell: see `mobility_error`."""
+
+
+@cache
+def mobility_map() -> MobilityMap:
+    """Read the data, once."""
+    with np.load(_DATA) as data:
+        gap, chord, width = (Axis(float(a), float(h), int(n)) for a, h, n in data["axes"])
+        values, error = data["values"].astype(float), data["error"].astype(float)
+    return MobilityMap((gap, chord, width), values[..., :2].copy(), values[..., 2:].copy(), error)
+
+
+def mapped_mobility(eps: Array, ratio: Array, load_direction: Array) -> Array:
+    """Mobility M: the velocity that a load gives the journal in a film that does not turn [-].
+
+    Args:
+        eps: relative eccentricity, 0 … 1 − 1e-6 [-].
+        ratio: width over diameter B/D, 0.02 … 10 [-]; fastest if it is one number.
+        load_direction: angle of the load on the journal from the narrowest gap, −pi … pi [rad].
+
+    Returns:
+        (2, ...) along the line of centres (towards the narrowest gap) and ahead of it.
+
+    Raises:
+        ValueError: if an argument lies outside its range.
+    """
+    eps = np.asarray(eps, float)
+    require((eps >= 0) & (eps <= LARGEST), "eps must lie in [0, 1 - 1e-6] for the mobility map")
+    require(np.abs(load_direction) <= np.pi, "load_direction must lie in [-pi, pi]")
+    cos, sin = np.cos(load_direction), np.sin(load_direction)
+    along, ahead = mapped_mobility_along_load(eps * cos, -eps * sin, ratio)
+    return np.stack([along * cos - ahead * sin, along * sin + ahead * cos])
+
+
+def mapped_mobility_along_load(xi: Array, eta: Array, ratio: Array) -> Array:
+    """The same in Booker's frame, without angles: the form for integrating an orbit [-].
+
+    Args:
+        xi: relative eccentricity along the load on the journal [-].
+        eta: the same ahead of the load, a quarter turn in the positive sense [-].
+        ratio: width over diameter B/D, 0.02 … 10 [-]; fastest if it is one number.
+
+    Returns:
+        (2, ...) M along the load and ahead of it.
+
+    Raises:
+        ValueError: if the eccentricity exceeds 1 − 1e-6, or B/D lies outside its range.
+    """
+    xi, eta, ratio = _accepted(xi, eta, ratio)
+    return decode_motion(xi, eta, ratio, _look_up(mobility_map().motion, xi, eta, ratio))
+
+
+def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
+    """What the film does under the load, in Booker's frame [-].
+
+    Args:
+        xi: relative eccentricity along the load on the journal [-].
+        eta: the same ahead of the load, a quarter turn in the positive sense [-].
+        ratio: width over diameter B/D, 0.02 … 10 [-].
+
+    Returns:
+        (2, ...) largest pressure p_max B D/F, and side flow Q/(B D v), where v = c |M| F psi²/(B D eta),
+        c the radial clearance, is the speed that the load gives the journal in the turning frame.
+
+    Raises:
+        ValueError: if the eccentricity exceeds 1 − 1e-6, or B/D lies outside its range.
+    """
+    xi, eta, ratio = _accepted(xi, eta, ratio)
+    P_max, side = np.exp(_look_up(mobility_map().film, xi, eta, ratio))
+    return np.stack([P_max / np.sqrt(1 - xi), side])
+
+
+def mobility_error(xi: Array, eta: Array, ratio: Array) -> Array:
+    """Largest error found about a point between the map and fresh, finer solutions.
+
+    Returns:
+        (..., 4): of ln M along the load, of M as a vector over its size, of ln P_max and ln side flow.
+    """
+    data = mobility_map()
+    cells = np.array(data.error.shape[:3])
+    xi, eta, ratio = _accepted(xi, eta, ratio)
+    places = np.stack(np.broadcast_arrays(*coordinates(xi, eta), np.log(ratio)), axis=-1)
+    index = np.clip(cell_of(data.axes, places, cells), 0, cells - 1)
+    return np.asarray(data.error[index[..., 0], index[..., 1], index[..., 2]])
+
+
+def cell_of(axes: Axes, places: Array, cells: Array) -> Array:
+    """Indices (..., 3) of the error's cells at places (..., 3) in the map's coordinates."""
+    first = np.array([axis.first for axis in axes])
+    length = np.array([axis.step * (axis.nodes - 1) for axis in axes])
+    return np.asarray(np.floor((places - first) / length * cells).astype(int))
+
+
+def coordinates(xi: Array, eta: Array) -> tuple[Array, Array]:
+    """Coordinates of the gap and of the place on its chord."""
+    h = ECCENTRICITY_LIMIT - xi
+    chord = np.sqrt(np.maximum(h * (ECCENTRICITY_LIMIT + xi), 1e-30))
+    return np.log(h) + h, np.minimum(np.abs(eta) / chord, 1.0)
+
+
+def encode(xi: float, eta: float, ratio: float, motion: Motion) -> Array:
+    """The smooth values that are interpolated, (4,), of a solution with its velocity along the load."""
+    h = 1 - xi
+    along, ahead = motion.velocity
+    return np.array([
+        np.log(along * np.pi * ratio**2 / h**2.5),
+        -ahead * h / (along * eta),
+        np.log(motion.P_max * np.sqrt(h)),
+        np.log(motion.side_flow),
+    ])  # fmt: skip
+
+
+def decode_motion(xi: Array, eta: Array, ratio: Array, values: Array) -> Array:
+    """M along the load and ahead of it, (2, ...), from the first two values of `encode`."""
+    h = 1 - xi
+    along = h**2 * np.sqrt(h) / (np.pi * ratio**2) * np.exp(values[0])
+    return np.stack([along, -along * values[1] * eta / h])
+
+
+def _accepted(xi: Array, eta: Array, ratio: Array) -> tuple[Array, Array, Array]:
+    """Arrays within the map's range.
+
+    Raises:
+        ValueError: naming the argument and its limit.
+    """
+    xi, eta, ratio = (np.asarray(x, float) for x in (xi, eta, ratio))
+    inside = xi**2 + eta**2 <= (LARGEST + 4e-16) ** 2
+    require(inside, "the relative eccentricity must lie in [0, 1 - 1e-6] for the mobility map")
+    require((ratio >= NARROWEST) & (ratio <= WIDEST), "ratio B/D must lie in [0.02, 10] for the mobility map")
+    return xi, eta, ratio
+
+
+def _look_up(coefficients: Array, xi: Array, eta: Array, ratio: Array) -> Array:
+    """Interpolate at points of any shape, (functions, ...); one width for all costs a quarter."""
+    gap, chord, width = mobility_map().axes
+    x, v = np.broadcast_arrays(*coordinates(xi, eta))
+    if ratio.size == 1:
+        flat = at_third(coefficients, width, float(np.log(ratio).item()))
+        shape = np.broadcast_shapes(x.shape, ratio.shape)
+        return surface(flat, gap, chord, x.ravel(), v.ravel()).reshape(-1, *shape)
+    x, v, y = np.broadcast_arrays(x, v, np.log(ratio))
+    places = np.stack([x.ravel(), v.ravel(), y.ravel()])
+    return volume(coefficients, (gap, chord, width), places).reshape(-1, *x.shape)
