@@ -12,8 +12,10 @@ h_i/h of it shear. A parallel film (a = 1) bears nothing either.
 The finite width is solved by the balances of flow of `film_equations`. A converging film does not rupture,
 and then these balances separate: their eigenvectors across the pad leave one tridiagonal system along it
 each, which is solved for all pads together. Second order, extrapolated by Richardson from 32 × 8 and
-64 × 16 intervals: the load errs by 1e-5 at a film ratio up to 10 and by 1e-4 at 1000, the pressure by
-1e-4 of its peak, the flows, less smooth at the corners, by up to 3e-3.
+64 × 16 intervals. Measured by `benchmarks/slider_bearing.py`, the load errs by 2e-5 up to a film ratio of
+10 and by 2e-4 up to 1000, the pressure by 5e-5 and 3e-4 of its peak, the largest pressure by 3e-4 and 8e-4;
+the flows are less smooth at the corners: that of the inlet errs by 2e-3, the little at the sides of wide
+pads by 1e-2.
 
 References:
     Lord Rayleigh, Phil. Mag. 35, 1918, p. 1; A. G. M. Michell, Z. Math. Phys. 52, 1905, p. 123;
@@ -25,6 +27,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from templates.core.declare import units
 from templates.physics.arrays import Array, require
 from templates.physics.pad_mesh import Grading, across, grading
 from templates.physics.slider import (
@@ -44,7 +47,6 @@ STATIONS = np.linspace(0, 1, 101)
 HEIGHTS = np.linspace(0, 1, 41)
 """Places z/h at which the velocity across the film is told [-]."""
 
-_ALONG, _ACROSS = 64, 16
 _BLOCK = 512
 
 
@@ -77,6 +79,12 @@ class PadFilm(ABC):
         """Friction on the pad, likewise: less by the pressure on the incline."""
         return shear_of_wedge(self.a) - 3 * (self.a - 1) * self.load
 
+    @property
+    def friction_coefficient(self) -> Array:
+        """Friction on the moving face over load, times l/h_o; NaN where the pad bears nothing."""
+        load = np.where(self.load > 0, self.load, np.nan)
+        return self.friction_moving / (6 * load)
+
     @abstractmethod
     def pressure(self, x: Array) -> Array:
         """Pressure p h_o²/(6 eta U l) at mid-width and x/l, (..., places)."""
@@ -91,8 +99,8 @@ def pad_film(level: str, a: Array, width: Array) -> PadFilm:
 
     Args:
         level: its name.
-        a: film ratio h_i/h_o, above 0 to 1000; NaN gives NaN [-].
-        width: b/l, 0.01 … 100; NaN gives NaN [-].
+        a: film ratio h_i/h_o, above 0 and if finite up to 1000; NaN gives NaN [-].
+        width: b/l, if finite 0.01 … 100; NaN gives NaN [-].
 
     Raises:
         ValueError: if an argument lies outside its range.
@@ -103,11 +111,14 @@ def pad_film(level: str, a: Array, width: Array) -> PadFilm:
         >>> round(float(pad_film("finite", 2.0, 1.0).load), 6)
         0.011546
     """
-    a, width = np.broadcast_arrays(np.asarray(a, float), np.asarray(width, float))
-    require(np.isnan(a) | (a > 0) & (a <= STEEPEST), "film ratio h_i/h_o must lie in (0, 1000]")
+    a, width = np.asarray(a, float), np.asarray(width, float)
+    require(np.isnan(a) | (a > 0) & np.isfinite(a), "film ratio h_i/h_o must be positive and finite")
+    if level == "infinite":
+        return _infinite(a + 0 * width)
+    require(np.isnan(a) | (a <= STEEPEST), "film ratio h_i/h_o must not be above 1000")
     inside = (width >= NARROWEST) & (width <= WIDEST)
     require(np.isnan(width) | inside, "width b/l must lie in [0.01, 100]")
-    return _infinite(a) if level == "infinite" else _finite(a, width)
+    return finite_pad(a, width)
 
 
 def shear_of_wedge(a: Array) -> Array:
@@ -121,6 +132,12 @@ def shear_of_wedge(a: Array) -> Array:
     return sum(friction_incline_Rayleigh_1918(_bearing(a))) / 2 + 0 * a
 
 
+def spread(scale: Array, profile: Array) -> Array:
+    """A profile for every point, (..., places): the scale of each times its profile."""
+    return scale[..., None] * profile
+
+
+@units("m", "Pa/m", "Pa*s", "m/s", returns="m/s")
 def velocity_profile(h: Array, pressure_gradient: Array, eta: Array, u_a: Array) -> Array:
     """Velocity at `HEIGHTS` across the film, (..., 41): see `slider.film_velocity` [m/s].
 
@@ -208,12 +225,21 @@ def interpolated(values: Array, t: Array) -> tuple[Array, Array]:
     return value, n * slope
 
 
-def _finite(a: Array, width: Array) -> FinitePad:
-    """The solutions for pads (...), block by block."""
+def finite_pad(a: Array, width: Array, along: int = 64, across_half: int = 16) -> FinitePad:
+    """The solutions for pads (...), extrapolated from the mesh given and one of half as many intervals.
+
+    Args:
+        a: film ratio h_i/h_o, above 0 to 1000; NaN gives NaN [-].
+        width: b/l, 0.01 … 100; NaN gives NaN [-].
+        along: intervals along the pad, even.
+        across_half: intervals across half the width, even.
+    """
+    a, width = np.broadcast_arrays(a, width)
+    size = along, across_half
     known = np.isfinite(a * width)
     wedge, ratio = np.where(known, _bearing(a), 1.0), np.where(known, width, 1.0)
     blocks = [slice(i, i + _BLOCK) for i in range(0, a.size, _BLOCK)]
-    solved = [_extrapolated(wedge.ravel()[part], ratio.ravel()[part]) for part in blocks]
+    solved = [_extrapolated(wedge.ravel()[part], ratio.ravel()[part], *size) for part in blocks]
     measures, P = (np.concatenate(parts).reshape(*a.shape, -1) for parts in zip(*solved, strict=True))
     load, moment, inlet_flow, side_flow = np.moveaxis(measures, -1, 0)
     mesh, nothing, bears = grading(wedge, ratio), np.where(known, 0.0, np.nan), known & (a > 1)
@@ -241,13 +267,12 @@ def _peak(P: Array) -> tuple[Array, Array]:
     return top + slope * shift / 2, (k + shift) / n
 
 
-def _extrapolated(a: Array, width: Array) -> tuple[Array, Array]:
+def _extrapolated(a: Array, width: Array, along: int, across_half: int) -> tuple[Array, Array]:
     """Load, moment, inlet and side flow (N, 4), and the pressure at mid-width (N, n + 1), extrapolated."""
-    coarse, P_coarse = solved_pads(a, width, _ALONG // 2, _ACROSS // 2)
-    fine, P_fine = solved_pads(a, width, _ALONG, _ACROSS)
-    error = np.zeros_like(P_fine)
-    error[:, ::2] = (P_fine[:, ::2] - P_coarse) / 3
-    error[:, 1::2] = (error[:, :-1:2] + error[:, 2::2]) / 2
+    coarse, P_coarse = solved_pads(a, width, along // 2, across_half // 2)
+    fine, P_fine = solved_pads(a, width, along, across_half)
+    nodes = np.broadcast_to(np.linspace(0, 1, along + 1), P_fine.shape)
+    error, _ = interpolated((P_fine[:, ::2] - P_coarse) / 3, nodes)
     return fine + (fine - coarse) / 3, P_fine + error
 
 

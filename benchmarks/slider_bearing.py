@@ -1,0 +1,119 @@
+"""How wrong `slider_bearing` 1 is at each level, and what it costs: against pads solved on a finer mesh.
+
+python -m benchmarks.slider_bearing            about a minute
+
+Writes `templates/oil_film/slider_bearing_v1.accuracy.json`, in each cell of which stands the largest error
+found, and prints the figures that the docstrings quote. The errors of pressure and gradient are relative to
+the largest along the pad, that of the velocity to the runner's, and that of the friction on the pad, which
+passes through zero, to the friction on the runner.
+"""
+
+import json
+from itertools import pairwise
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from templates.oil_film.slider_bearing_v1 import SliderBearing
+from templates.physics.arrays import Array
+from templates.physics.slider_film import NARROWEST, STATIONS, STEEPEST, WIDEST, PadFilm, finite_pad, pad_film
+
+TABLE = Path("templates/oil_film/slider_bearing_v1.accuracy.json")
+RATIO = [1 / STEEPEST, 1, 1.05, 1.2, 1.5, 2, 3, 5, 10, 30, 100, STEEPEST]
+WIDTH = [NARROWEST, 0.03, 0.1, 0.25, 0.5, 1, 2, 4, 10, 30, WIDEST]
+INSIDE = 5
+POINTS = 10_000
+PLACES = STATIONS[::4]
+HEIGHTS = np.linspace(0, 1, 9)
+
+
+def errors(film: PadFilm, true: PadFilm) -> dict[str, Array]:
+    """The error of every output of a pad, by name."""
+    profile = np.abs(film.pressure(STATIONS) - true.pressure(STATIONS)).max(axis=-1) / true.P_max
+    slope, straight = (np.stack([f.gradient(np.array(x)) for x in PLACES], axis=-1) for f in (film, true))
+    H = true.a[..., None] - (true.a[..., None] - 1) * PLACES
+    drive = np.abs(HEIGHTS**2 - HEIGHTS).max() / 2 * H**2 * np.abs(slope - straight)
+    moving = relative(film.friction_moving, true.friction_moving)
+    return {
+        "load": relative(film.load, true.load),
+        "maximum_pressure": relative(film.P_max, true.P_max),
+        "centre_of_pressure": relative(film.centre, true.centre),
+        "place_of_maximum_pressure": relative(film.peak, true.peak),
+        "friction_force_moving": moving,
+        "friction_force_fixed": np.abs(film.friction_fixed - true.friction_fixed) / true.friction_moving,
+        "power_loss": moving,
+        "friction_coefficient": relative(film.friction_coefficient, true.friction_coefficient),
+        "inlet_flow": relative(film.inlet_flow, true.inlet_flow),
+        "side_flow": relative(film.side_flow, true.side_flow),
+        "pressure": profile,
+        "pressure_gradient": np.abs(slope - straight).max(axis=-1) / np.abs(straight).max(axis=-1),
+        "velocity": drive.max(axis=-1),
+    }
+
+
+def relative(value: Array, true: Array) -> Array:
+    """Relative error [-]."""
+    return np.abs(value / true - 1)
+
+
+def cell(level: str, ratio: tuple[float, float], width: tuple[float, float]) -> dict[str, float]:
+    """The largest errors found in a cell, its edges included, rounded up."""
+    if ratio[1] <= 1:
+        return {}
+    a = 1 + np.geomspace(max(ratio[0] - 1, 1e-6), ratio[1] - 1, INSIDE)[:, None]
+    b = np.geomspace(*width, INSIDE)
+    found = errors(pad_film(level, a, b), finite_pad(a, b, 256, 64))
+    return {name: float(f"{1.05 * error.max():.1e}") for name, error in found.items()}
+
+
+def table(level: str) -> dict[str, list[list[float]]]:
+    """The largest errors of every output in every cell; none where the film is ruptured."""
+    cells = [[cell(level, ratio, width) for width in pairwise(WIDTH)] for ratio in pairwise(RATIO)]
+    names = cells[-1][-1]
+    return {name: [[found.get(name, 0.0) for found in row] for row in cells] for name in names}
+
+
+def seconds_a_point(level: str, count: int) -> float:
+    """Cost of a pad among so many, the best of some runs."""
+    a = np.linspace(1.1, 3, count) if count > 1 else np.float64(2)
+    runs = []
+    for _ in range(5):
+        begin = perf_counter()
+        pad_film(level, a, 1.0)
+        runs.append(perf_counter() - begin)
+    return float(f"{min(runs) / count:.1e}")
+
+
+def costs(level: str) -> dict[str, float]:
+    """Cost a point, alone and among many."""
+    return {"single": seconds_a_point(level, 1), "vectorised": seconds_a_point(level, POINTS)}
+
+
+def main() -> None:
+    """Fill the table and print the figures."""
+    levels = {level: {"cost": costs(level), "errors": table(level)} for level in SliderBearing.levels}
+    told = {
+        "template": {"id": SliderBearing.id, "version": SliderBearing.version},
+        "made_by": "python -m benchmarks.slider_bearing",
+        "truth": "pads of finite width, extrapolated from 128 × 32 and 256 × 64 intervals",
+        "error": "largest found in each cell; relative, of pressure and its gradient to the largest along "
+        "the pad, of the velocity to the runner's, of the friction on the pad to that on the runner",
+        "cost": "seconds a point",
+        "axes": [
+            {"attribute": "a", "name": "film_ratio", "values": RATIO},
+            {"attribute": "ratio", "name": "width_ratio", "values": WIDTH},
+        ],
+        "levels": levels,
+    }
+    TABLE.write_text(json.dumps(told, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
+    for level, measured in levels.items():
+        print(level, measured["cost"])
+        for name, cells in measured["errors"].items():
+            print(
+                f"  {name}: {np.max(cells):.1e} everywhere, {np.max(cells[:8]):.1e} up to a film ratio of 10"
+            )
+
+
+if __name__ == "__main__":
+    main()
