@@ -127,7 +127,7 @@ def _rungs(template: Template, names: list[str], level: str | None, tolerance: f
 def _part(template: Template, names: list[str], shown_in: Mapping[str, Unit]) -> _Part:
     measured = accuracy(type(template))
     answers = {name: _answer(template, template.formulas[name], shown_in.get(name)) for name in names}
-    error = {name: measured.error(template, name) if measured else None for name in names}
+    error = measured.of(template, names) if measured else dict.fromkeys(names)
     return _Part(answers, template.level or None, error)
 
 

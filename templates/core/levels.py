@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import inspect
 import json
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -36,31 +38,61 @@ class Accuracy:
     errors: dict[str, dict[str, Array]]  # by level and output: the largest found in each cell, NaN unmeasured
     told: dict[str, Any]  # the whole file, as it is served
 
-    def error(self, template: Template, output: str) -> Any:
-        """What `evaluate` reports: none of a text, 0 where the level does not matter, else the estimate."""
-        formula = template.formulas[output]
-        if isinstance(formula, Text):
-            return np.full(_shape(template), np.nan)[()]
-        if template.levels and "level" not in template.ancestors(formula.attribute):
-            return np.zeros(_shape(template))[()]
-        return self.estimate(template, output)
+    def of(self, template: Template, outputs: Iterable[str]) -> dict[str, Any]:
+        """What `evaluate` reports: none of a text, 0 where the level does not matter, else the estimate.
 
-    def estimate(self, template: Template, output: str) -> Any:
-        """The largest relative error to expect of an output at the template's level; NaN where not measured.
-
-        A scalar, or an array of the shape of the axes' values.
+        An estimate is the largest relative error to expect at the template's level, NaN where it was not
+        measured. Scalars, or arrays of the shape of the points.
         """
-        table = self.errors.get(template.level or SINGLE, {}).get(output)
-        if table is None:
-            return np.full(_shape(template), np.nan)[()]
-        first, second = (np.asarray(getattr(template, axis), dtype=float) for axis in self.axes)
-        first, second = np.broadcast_arrays(first, second)
-        rows, inside_rows = _cells(self.grids[0], first)
-        columns, inside_columns = _cells(self.grids[1], second)
-        return np.where(inside_rows & inside_columns, table[rows, columns], np.nan)[()]
+        names, tables = list(outputs), self.errors.get(template.level or SINGLE, {})
+        exact = {name for name in names if _same_at_all_levels(template, name)}
+        measured = [name for name in names if name in tables and name not in exact]
+        cell = self._cell(template) if measured else None
+        found = {name: _looked_up(tables[name], cell) for name in measured}
+        none = np.zeros(_shape(template))[()]
+        unknown = none + np.nan
+        return {n: found[n] if n in found else none if n in exact else unknown for n in names}
+
+    def _cell(self, template: Template) -> tuple[Any, Any, Any]:
+        """Row and column of the cell in which each point lies, and whether it lies in any."""
+        first, second = (getattr(template, axis) for axis in self.axes)
+        if isinstance(first, float) and isinstance(second, float):  # NumPy would take ten times as long
+            (row, in_rows), (column, in_columns) = (
+                _place(edges, value) for edges, value in zip(self._edges, (first, second), strict=True)
+            )
+            return row, column, in_rows and in_columns
+        first, second = np.broadcast_arrays(np.asarray(first, float), np.asarray(second, float))
+        rows, inside_rows = _places(self.grids[0], first)
+        columns, inside_columns = _places(self.grids[1], second)
+        return rows, columns, inside_rows & inside_columns
+
+    @cached_property
+    def _edges(self) -> tuple[list[float], list[float]]:
+        return self.grids[0].tolist(), self.grids[1].tolist()
 
 
-def _cells(grid: Array, values: Array) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+def _same_at_all_levels(template: Template, output: str) -> bool:
+    """Whether an output, which is no text, has no other value at another level."""
+    formula = template.formulas[output]
+    if not template.levels or isinstance(formula, Text):
+        return False
+    return "level" not in template.ancestors(formula.attribute)
+
+
+def _looked_up(table: Array, cell: Any) -> Any:
+    rows, columns, inside = cell
+    if isinstance(inside, bool):
+        return table[rows, columns] if inside else np.float64(np.nan)
+    return np.where(inside, table[rows, columns], np.nan)[()]
+
+
+def _place(edges: list[float], value: float) -> tuple[int, bool]:
+    """As `_places`, of one value."""
+    place = min(max(bisect_right(edges, value) - 1, 0), len(edges) - 2)
+    return place, bool(edges[0] <= value <= edges[-1])
+
+
+def _places(grid: Array, values: Array) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
     """The cell of the grid in which each value lies, and whether it lies in any."""
     cells = np.clip(np.searchsorted(grid, values, side="right") - 1, 0, grid.size - 2)
     return cells, (values >= grid[0]) & (values <= grid[-1])
@@ -142,7 +174,7 @@ def at_level(template: Template, level: str, where: NDArray[np.bool_] | None = N
 def _meets(measured: Accuracy, rung: Template, names: list[str], tolerance: float) -> Any:
     """Where the errors of all outputs are within the tolerance; nowhere if the level refuses."""
     try:
-        return np.logical_and.reduce([measured.error(rung, name) <= tolerance for name in names])
+        return np.logical_and.reduce([e <= tolerance for e in measured.of(rung, names).values()])
     except InvalidInputs:
         return False
 
@@ -150,5 +182,5 @@ def _meets(measured: Accuracy, rung: Template, names: list[str], tolerance: floa
 def _shape(template: Template) -> tuple[int, ...]:
     """The shape of the points that the inputs make."""
     given = (vars(template)[name] for name in template.ledger.handed)
-    arrays = (value for value in given if isinstance(value, np.ndarray))
-    return np.broadcast_shapes(*(array.shape for array in arrays))
+    shapes = [value.shape for value in given if isinstance(value, np.ndarray)]
+    return np.broadcast_shapes(*shapes) if shapes else ()
