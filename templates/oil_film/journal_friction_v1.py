@@ -27,8 +27,8 @@ class JournalFriction(Template):
     27 % at 0.5, by 56 to 70 % at 0.9 and by 86 to 91 % at 0.99.
     The course's own load of 3 kN gives its worked case So = 32, eps = 0.965 and 5.3 times Petrov's friction:
     it lies far outside.
-    The film is laminar and isothermal, and fills the whole circle; the load stands still, and the speed is the
-    journal's against the bearing.
+    The film is laminar and isothermal, and fills the whole circle; the load stands still, and the speed is
+    the journal's against the bearing.
 
     References
     ----------

@@ -9,17 +9,14 @@ incompressible, rigid, laminar. A diverging film (a < 1) gains oil nowhere, so t
 `complementarity` is met by P = 0: all of it is ruptured, it bears nothing, and streamers that fill
 h_i/h of it shear. A parallel film (a = 1) bears nothing either.
 
-The finite width is solved by the balances of flow of `film_equations`. A converging film does not rupture,
-and then these balances separate: their eigenvectors across the pad leave one tridiagonal system along it
-each, which is solved for all pads together. Second order, extrapolated by Richardson from 32 × 8 and
+The finite width is solved by `pad_equations`, of second order, and extrapolated by Richardson from 32 × 8 and
 64 × 16 intervals. Measured by `benchmarks/slider_bearing.py`, the load errs by 2e-5 up to a film ratio of
 10 and by 2e-4 up to 1000, the pressure by 5e-5 and 3e-4 of its peak, the largest pressure by 3e-4 and 8e-4;
 the flows are less smooth at the corners: that of the inlet errs by 2e-3, the little at the sides of wide
 pads by 1e-2.
 
 References:
-    Lord Rayleigh, Phil. Mag. 35, 1918, p. 1; A. G. M. Michell, Z. Math. Phys. 52, 1905, p. 123;
-    R. E. Lynch, J. R. Rice, D. H. Thomas, Numer. Math. 6, 1964, p. 185, for the separation.
+    Lord Rayleigh, Phil. Mag. 35, 1918, p. 1; A. G. M. Michell, Z. Math. Phys. 52, 1905, p. 123.
 """
 
 from abc import ABC, abstractmethod
@@ -29,7 +26,8 @@ import numpy as np
 
 from templates.core.declare import units
 from templates.physics.arrays import Array, require
-from templates.physics.pad_mesh import Grading, across, grading
+from templates.physics.pad_equations import solved_pads
+from templates.physics.pad_mesh import Grading, grading
 from templates.physics.slider import (
     centre_of_pressure_Rayleigh_1918,
     film_velocity,
@@ -274,73 +272,3 @@ def _extrapolated(a: Array, width: Array, along: int, across_half: int) -> tuple
     nodes = np.broadcast_to(np.linspace(0, 1, along + 1), P_fine.shape)
     error, _ = interpolated((P_fine[:, ::2] - P_coarse) / 3, nodes)
     return fine + (fine - coarse) / 3, P_fine + error
-
-
-def solved_pads(a: Array, width: Array, along: int, across_half: int) -> tuple[Array, Array]:
-    """Solve converging pads on one mesh.
-
-    Args:
-        a: (N,) film ratio h_i/h_o, 1 or more [-].
-        width: (N,) b/l [-].
-        along: intervals n along the pad.
-        across_half: intervals across half the width.
-
-    Returns:
-        (N, 4) load, its moment about the inlet, inlet flow and side flow as in `PadFilm`, and
-        (N, n + 1) the pressure p h_o²/(6 eta U l) at mid-width.
-    """
-    x = grading(a, width).place(np.linspace(0, 1, along + 1))
-    middle, cells = (x[:, 1:] + x[:, :-1]) / 2, _cells(x)
-    a, width = a[:, None], width[:, None]
-    H, H_mid = a - (a - 1) * x, a - (a - 1) * middle
-    conductance, leak = H_mid**3 / np.diff(x), 4 * H**3 * cells / width**2
-    eigenvalues, shares, centre = _modes(across(a[:, 0], width[:, 0], across_half))
-    source = (a - 1) * np.diff(middle)
-    p = _tridiagonal(conductance, leak[:, 1:-1], eigenvalues, source)
-    line = np.einsum("inm,nm->ni", p, shares**2)
-    load = cells[:, 1:-1] * line
-    inlet = H_mid[:, 0] / 2 - conductance[:, 0] * line[:, 0] / 2
-    edge = 1 - np.sum(shares**2, axis=-1)  # the half cells at the sides, where P = 0, pass on all they get
-    side = np.einsum("inm,nm,ni->n", p, eigenvalues * shares**2, leak[:, 1:-1]) + edge * source.sum(-1)
-    measures = np.stack([load.sum(-1), (load * x[:, 1:-1]).sum(-1), inlet, side / 2], axis=-1)
-    return measures, np.pad(np.einsum("inm,nm->ni", p, shares * centre), ((0, 0), (1, 1)))
-
-
-def _cells(nodes: Array) -> Array:
-    """Lengths of the cells around the nodes, half cells at the ends, (..., n + 1)."""
-    half = np.diff(nodes) / 2
-    return np.pad(half, ((0, 0), (0, 1))) + np.pad(half, ((0, 0), (1, 0)))
-
-
-def _modes(zeta: Array) -> tuple[Array, Array, Array]:
-    """Eigenvalues of the flow across (N, m), what of a constant each mode holds, and its mid-width value."""
-    step, cells = 1 / np.diff(zeta), _cells(zeta)[:, :-1]
-    stiff = np.zeros((*cells.shape, cells.shape[-1]))
-    i = np.arange(cells.shape[-1])
-    stiff[:, i, i] = step + np.pad(step[:, :-1], ((0, 0), (1, 0)))
-    stiff[:, i[1:], i[:-1]] = stiff[:, i[:-1], i[1:]] = -step[:, :-1]
-    root = np.sqrt(cells)
-    eigenvalues, vectors = np.linalg.eigh(stiff / (root[:, :, None] * root[:, None, :]))
-    return eigenvalues, np.einsum("ni,nik->nk", root, vectors), vectors[:, 0] / root[:, :1]
-
-
-def _tridiagonal(conductance: Array, leak: Array, eigenvalues: Array, source: Array) -> Array:
-    """Solve the balances along the pad for every mode by Gaussian elimination, (n − 1, N, m).
-
-    Args:
-        conductance: (N, n) between neighbours.
-        leak: (N, n − 1) across, to be multiplied by the modes' eigenvalues.
-        eigenvalues: (N, m).
-        source: (N, n − 1), the same for all modes but for their share.
-    """
-    g = conductance.T[:, :, None]
-    pivot = leak.T[:, :, None] * eigenvalues + (g[:-1] + g[1:])
-    p = np.repeat(source.T[:, :, None], eigenvalues.shape[-1], axis=2)
-    for i in range(1, len(p)):
-        ratio = g[i] / pivot[i - 1]
-        pivot[i] -= ratio * g[i]
-        p[i] += ratio * p[i - 1]
-    p[-1] /= pivot[-1]
-    for i in range(len(p) - 2, -1, -1):
-        p[i] = (p[i] + g[i + 1] * p[i + 1]) / pivot[i]
-    return p

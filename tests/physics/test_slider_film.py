@@ -8,8 +8,9 @@ from templates.physics.complementarity import rupture
 from templates.physics.film_equations import film_equations, midpoints, rotation
 from templates.physics.film_mesh import Mesh
 from templates.physics.finite_slider import finite_slider
+from templates.physics.pad_equations import solved_pads
 from templates.physics.pad_mesh import across, grading
-from templates.physics.slider_film import STATIONS, pad_film, shear_of_wedge, solved_pads, velocity_profile
+from templates.physics.slider_film import STATIONS, pad_film, shear_of_wedge, velocity_profile
 
 RATIOS = [1 + 1e-9, 1.05, 2.0, 10.0, 300.0]
 WIDTHS = [0.01, 0.3, 1.0, 10.0, 100.0]
