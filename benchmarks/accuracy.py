@@ -9,6 +9,7 @@ forms with the map on a dense grid, the map's own error added. Of each cell the 
 Errors are relative, of an angle to 90°, of a stiffness or damping to the largest of its four.
 """
 
+import itertools
 import json
 import sys
 from collections.abc import Callable
@@ -37,14 +38,15 @@ PICTURE = Path("docs/pictures/oil_film_accuracy.png")
 EPS = [0, 0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.93, 0.95, 0.97, 0.98, 0.99, 0.995, 0.998,
        0.999, 0.9995, 0.9999, 1 - 1e-5, 1 - 1e-6, 1]  # fmt: skip
 WIDTH = [0.01, 0.02, 0.035, 0.05, 0.07, 0.1, 0.125, 0.18, 0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 3, 5, 10, 30, 100]
-LOADS = [0.01, 0.03, 0.1, 0.2, 0.5, 1, 1.5, 2, 3, 4, 5, 7, 10, 14, 20, 30, 40, 60, 80, 100, 120, 150, 200, 300,
-         500, 800, 1360]  # fmt: skip
+PAPER_WIDTH = sorted([*WIDTH, 0.372, 0.381])
+LOADS = [0.01, 0.03, 0.1, 0.2, 0.5, 1, 1.5, 2, 3, 4, 5, 7, 10, 14, 20, 30, 40, 60, 80, 100, 120, 150, 200,
+         300, 500, 800, 1360]  # fmt: skip
 FINER = 7
 MARGIN = 1.02
 SCATTERED = 8, 8
 NEARBY = 1.5
 COEFFICIENTS = [f"{name}_{xy}" for name in ("stiffness", "damping") for xy in ("xx", "xy", "yx", "yy")]
-DEAR = {"reynolds": 1500, "mass_conserving": 400}
+DEAR = {"reynolds": 800, "mass_conserving": 400}
 
 Errors = dict[str, Array]
 
@@ -104,8 +106,8 @@ def _relative(value: Array, true: Array) -> Array:
 def dense(first: list[float], second: list[float]) -> tuple[Array, Array]:
     """FINER × FINER places in every cell, edges included, (cells, cells, FINER²)."""
     share = np.linspace(0, 1, FINER)
-    one = np.array([a + (b - a) * share for a, b in zip(first[:-1], first[1:], strict=True)])
-    two = np.array([a * (b / a) ** share for a, b in zip(second[:-1], second[1:], strict=True)])
+    one = np.array([a + (b - a) * share for a, b in itertools.pairwise(first)])
+    two = np.array([a * (b / a) ** share for a, b in itertools.pairwise(second)])
     x = np.broadcast_to(one[:, None, :, None], (len(one), len(two), FINER, FINER))
     y = np.broadcast_to(two[None, :, None, :], x.shape)
     return x.reshape(len(one), len(two), -1), y.reshape(len(one), len(two), -1)
@@ -114,12 +116,13 @@ def dense(first: list[float], second: list[float]) -> tuple[Array, Array]:
 def closed_form(level: str, load: Callable[..., Array], own: dict[str, Array]) -> dict[str, Array]:
     """The largest error of a closed form in each cell of its own eps, against the map."""
     eps, ratio = dense(EPS, WIDTH)
-    eps = np.clip(eps, 1e-9, ECCENTRICITY_LIMIT)
+    eps = np.clip(eps, 1e-9, 1 - 1.001e-7)
     low, high = WIDTHS[level]
     allowed = (ratio >= low * (1 - 1e-12)) & (ratio <= high * (1 + 1e-12))
     safe = np.clip(ratio, low, high)
     So = np.where(allowed, load(eps, safe), np.nan).ravel()
     film, truth = (static_film_at(name, So, safe.ravel()) for name in (level, "map"))
+    film = film.admitted(np.where(np.isfinite(film.eps), film.eps, np.nan))
     true_eps = np.where(np.isfinite(truth.eps), truth.eps, np.nan)
     found = coefficients_at(level, eps.ravel(), safe.ravel())
     errors = {
@@ -130,13 +133,18 @@ def closed_form(level: str, load: Callable[..., Array], own: dict[str, Array]) -
     return {name: MARGIN * cell + own[name] for name, cell in cells.items()}
 
 
-def converged() -> tuple[Array, Array, JournalFilm, tuple[Array, Array]]:
-    """Places x = atanh(eps), y = ln(B/D), films and coefficients of the converged solutions."""
+def converged(*, streamers: bool) -> tuple[Array, Array, JournalFilm, tuple[Array, Array]]:
+    """Places x = atanh(eps), y = ln(B/D), films and coefficients of the converged solutions.
+
+    Shear acts over the full circle, as in the standards, or with `streamers` as there is oil.
+    """
     with np.load(CHECKS) as checks:
         x, y, truth = checks["x"], checks["y"], checks["truth"]
     eps, ratio = np.tanh(x), np.exp(y)
     film = decode(eps, ratio, truth[:, :8].T)
     shear = np.pi / np.sqrt((1 - eps) * (1 + eps))
+    if streamers:
+        shear = film["friction_streamers"] - eps * film["So"] * np.sin(film["attitude"]) / 2
     names = ("So", "attitude", "P_max", "peak", "side_flow")
     cos, sin = np.cos(film["attitude"]), np.sin(film["attitude"])
     turn = np.stack([np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)], axis=-2)
@@ -152,7 +160,7 @@ def converged() -> tuple[Array, Array, JournalFilm, tuple[Array, Array]]:
 
 def solved(level: str) -> dict[str, Array]:
     """The largest error of a level near each cell, against the converged solutions, with a margin."""
-    x, y, truth, matrices = converged()
+    x, y, truth, matrices = converged(streamers=level == "mass_conserving")
     some = slice(DEAR.get(level, x.size))
     x, y = x[some], y[some]
     truth = JournalFilm(*(getattr(truth, field.name)[some] for field in fields(truth)))
@@ -164,14 +172,11 @@ def solved(level: str) -> dict[str, Array]:
         **film_errors(film.admitted(eps), truth),
         **coefficient_errors(found, (matrices[0][some], matrices[1][some])),
     }
-    if level == "mass_conserving":
-        for name in ("shear_torque", "friction_torque", "friction_coefficient", "power_loss"):
-            errors[name] = np.full(x.shape, np.nan)
     return {name: spread(x, y, error) for name, error in errors.items()}
 
 
 def spread(x: Array, y: Array, error: Array) -> Array:
-    """Scattered errors as cells: the largest of the coarse cells that a cell touches, and their neighbours."""
+    """Scattered errors as cells: the largest of the coarse cells that a cell touches, or next to them."""
     top, low, high = np.arctanh(ECCENTRICITY_LIMIT), np.log(WIDTH[0]), np.log(WIDTH[-1])
 
     def place(values: Array, first: float, last: float, cells: int) -> Array:
@@ -185,20 +190,28 @@ def spread(x: Array, y: Array, error: Array) -> Array:
     rows = place(np.arctanh(np.minimum(EPS, ECCENTRICITY_LIMIT)), 0, top, SCATTERED[0]).astype(int)
     columns = place(np.log(WIDTH), low, high, SCATTERED[1]).astype(int)
     return np.array([
-        [coarse[a : b + 1, c : d + 1].max() for c, d in zip(columns[:-1], columns[1:], strict=True)]
-        for a, b in zip(rows[:-1], rows[1:], strict=True)
+        [coarse[a : b + 1, c : d + 1].max() for c, d in itertools.pairwise(columns)]
+        for a, b in itertools.pairwise(rows)
     ])  # fmt: skip
 
 
-def paper() -> dict[str, Array]:
-    """The largest error of the fit of `oil_film` 1 in each cell of So and B/D, against the map."""
-    So, ratio = dense(LOADS, WIDTH)
+def paper() -> dict[str, Any]:
+    """The largest error of the fit of `oil_film` 1 in each cell of So and B/D, against the map.
+
+    `signed` is that of the film thickness with its sign: above 0 too thick, which is unsafe.
+    """
+    So, ratio = dense(LOADS, PAPER_WIDTH)
     eps = factor_k1(So) * So ** exponent_k2(So)
     film = static_film_at("map", So.ravel(), ratio.ravel())
     true = np.where(np.isfinite(film.eps), film.eps, np.nan).reshape(So.shape)
     errors = {"relative_eccentricity": _relative(eps, true)}
     errors["minimum_film_thickness"] = _relative(1 - eps, 1 - true)
-    return {name: MARGIN * error.max(axis=-1) for name, error in errors.items()}
+    over = (1 - eps) / (1 - true) - 1
+    worst = np.take_along_axis(over, np.abs(over).argmax(axis=-1)[..., None], axis=-1)[..., 0]
+    return {
+        "errors": {name: rounded(MARGIN * error.max(axis=-1)) for name, error in errors.items()},
+        "signed": {"minimum_film_thickness": [[float(f"{v:.2g}") for v in row] for row in worst]},
+    }
 
 
 def cost(level: str) -> dict[str, float]:
@@ -266,8 +279,8 @@ def measure() -> None:
     width = axis("b", "width_ratio", WIDTH)
     truth = "Swift-Stieber film, extrapolated from 256 × 32 and 512 × 64 intervals"
     write(OilFilm, told(OilFilm, truth, [axis("eps", "relative_eccentricity", EPS), width], levels))
-    fit = {"only": {"cost": {}, "errors": {name: rounded(table) for name, table in paper().items()}}}
-    write(Paper, told(Paper, truth, [axis("S_0", "sommerfeld_number", LOADS), width], fit))
+    axes = [axis("S_0", "sommerfeld_number", LOADS), axis("b", "width_ratio", PAPER_WIDTH)]
+    write(Paper, told(Paper, truth, axes, {"only": {"cost": {}, **paper()}}))
 
 
 def picture() -> None:
@@ -324,7 +337,8 @@ def _error_map(panel: Any, level: str, content: dict[str, Any]) -> Any:
     along = np.array(content["axes"][0]["values"])
     is_eps = content["axes"][0]["attribute"] == "eps"
     edges = np.arctanh(np.minimum(along, ECCENTRICITY_LIMIT)) if is_eps else np.log10(along)
-    shown = panel.pcolormesh(edges, WIDTH, table.T, norm=LogNorm(1e-5, 1), cmap="viridis")
+    widths = content["axes"][1]["values"]
+    shown = panel.pcolormesh(edges, widths, table.T, norm=LogNorm(1e-5, 1), cmap="viridis")
     ticks = [0, 0.5, 0.8, 0.95, 0.99, 0.999, 0.9999, 0.99999] if is_eps else [0.01, 0.1, 1, 10, 100, 1000]
     places = np.arctanh(ticks) if is_eps else np.log10(ticks)
     panel.set_xticks(places, [f"{tick:g}" for tick in ticks], fontsize=7, rotation=30)

@@ -174,6 +174,8 @@ def at_level(template: Template, level: str, where: NDArray[np.bool_] | None = N
 def _meets(measured: Accuracy, rung: Template, names: list[str], tolerance: float) -> Any:
     """Where the errors of all outputs are within the tolerance; nowhere if the level refuses."""
     try:
+        for name in names:
+            getattr(rung, rung.formulas[name].attribute)
         return np.logical_and.reduce([e <= tolerance for e in measured.of(rung, names).values()])
     except InvalidInputs:
         return False

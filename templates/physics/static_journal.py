@@ -196,10 +196,9 @@ def _conserving(So: float, ratio: float, feed: Feed) -> list[float]:
     found = fed_film(So, ratio, feed)
     if found is None:
         return [np.nan] * 7
-    film = found.film
-    shear = film.friction - found.eps * film.So * np.sin(film.attitude) / 2
-    peak = film.phi[film.P[:, 0].argmax()]
-    return [found.eps, film.So, film.attitude, film.P_max, peak, shear, film.side_flow]
+    shear = found.friction - found.eps * found.So * np.sin(found.attitude) / 2
+    film = found.So, found.attitude, found.P_max, found.peak, shear, found.side_flow
+    return [found.eps, *film]
 
 
 def _moved(So: Array, ratio: Array, near: Array) -> JournalFilm:

@@ -1,0 +1,156 @@
+"""Levels of fidelity and what else `oil_film` 2 asks of the language, on small templates made here."""
+
+import json
+
+import numpy as np
+import pytest
+
+from templates.core import levels
+from templates.core.declare import limits
+from templates.core.errors import InvalidInputs
+from templates.core.evaluate import evaluate
+from templates.core.golden import record
+from templates.core.levels import Accuracy
+from templates.core.schema import describe, inputs_schema
+from templates.core.template import Template, Truth, derived, formula, given, require, shared, table, text
+
+OFFSETS = {"rough": 0.1, "fine": 0.001}
+
+
+class Ladder(Template):
+    """Two levels."""
+
+    levels = ("rough", "fine")
+    default_level = "fine"
+    most_points = {"fine": 3}
+    example = {"length": "2 m"}
+
+    x = given("m", "length", ge=0)
+    y = given("m", "height", optional=True)
+    t = given("m", "depth", alternative=True)
+    holes = table("m", "holes", "place", "width", ge=0)
+
+    @require("length", warning="long", remedy="cut it")
+    def short(self) -> Truth:
+        """The length is below 100 m."""
+        return self.x < 100
+
+    @shared
+    def offset(self):
+        """The error of the level."""
+        return OFFSETS[self.level]
+
+    @derived("m", "breadth", shown=True)
+    def b(self):
+        return 2 * self.x
+
+    @formula("m", "size", per_level={"rough": limits(1, 50, published=(2, None))}, remedy="take fine")
+    def s(self):
+        return self.x * (1 + self.offset)
+
+    @formula("m", "lost depth", absent="no depth is given")
+    def lost(self):
+        return self.t - self.s * 0
+
+    @formula("m**2", "side")
+    def side(self):
+        return self.x * self.y
+
+    @text("word")
+    def word(self):
+        return "many" if self.holes else ""
+
+
+@pytest.fixture
+def measured(monkeypatch):
+    grid = np.array([0.0, 10.0, 100.0])
+    errors = {
+        "rough": {"size": np.array([[0.1, 0.1], [0.3, np.nan]])},
+        "fine": {"size": np.array([[0.001, 0.001], [0.002, 0.002]])},
+    }
+    known = Accuracy(("x", "b"), (grid, 2 * grid), errors, {})
+    monkeypatch.setitem(levels._known, Ladder, known)
+    return known
+
+
+def evaluated(*names, level=None, tolerance=None, **raw):
+    return evaluate(Ladder, {**Ladder.example, **raw}, outputs=names, level=level, tolerance=tolerance)
+
+
+def metres(*values):
+    return {"value": list(values), "unit": "m"}
+
+
+class TestLadder:
+    def test_property_cheapest_that_will_do(self, measured):
+        assert evaluated("size", tolerance=0.2).level == "rough"
+        assert evaluated("size", tolerance=0.01).level == "fine"
+        made = evaluated("size", tolerance=0.2, length=metres(5, 20, 30))
+        assert made.level.tolist() == ["rough", "fine", "fine"]
+        np.testing.assert_allclose(made.error["size"], [0.1, 0.002, 0.002])
+
+    def test_property_a_level_that_refuses_does_not_do(self, measured):
+        assert evaluated("size", tolerance=0.5, length="0.5 m").level == "fine"
+
+    def test_property_outputs_without_a_level_are_exact(self, measured):
+        assert evaluated("breadth", tolerance=0.0).level == "rough"
+        assert evaluated("breadth").error["breadth"] == 0
+
+    def test_property_dear_levels_take_few_points(self):
+        with pytest.raises(InvalidInputs, match="level fine takes at most 3 points at once, not 4"):
+            evaluated("size", length=metres(1, 2, 3, 4))
+
+    def test_property_unmeasured_is_told(self):
+        assert [w.code for w in evaluated("size", tolerance=0.1).warnings] == ["tolerance_unmet"]
+
+
+class TestLimits:
+    def test_property_limits_of_a_level(self):
+        assert evaluated("size", level="fine", length="0.5 m").outputs["size"].value
+        with pytest.raises(InvalidInputs, match="it must be ≥ 1 m and ≤ 50 m; take fine"):
+            evaluated("size", level="rough", length="0.5 m")
+        assert [w.name for w in evaluated("size", level="rough", length="1.5 m").warnings] == ["size"]
+        reasons = evaluated("size", level="rough", length=metres(0.5, 3)).outputs["size"].reasons
+        assert reasons[1] is None
+        assert "≥ 1 m" in reasons[0]
+
+    def test_property_limits_of_a_level_are_on_the_page(self):
+        told = [limit["text"] for limit in describe(Ladder)["limits"]]
+        assert any("at level rough" in text for text in told)
+
+    def test_property_remark_warns(self):
+        assert [w.code for w in evaluated("breadth", length="200 m").warnings] == ["long"]
+        assert evaluated("breadth").warnings == []
+
+
+class TestOptional:
+    def test_property_missing_input_is_named(self):
+        assert evaluated("side").outputs["side"].reason == "needs height"
+        assert evaluated("side", height="3 m").outputs["side"].value == 6
+
+    def test_property_alternative_is_dealt_with_by_its_formulas(self):
+        assert evaluated("lost_depth").outputs["lost_depth"].reason == "no depth is given"
+        answer = evaluated("lost_depth", length=metres(1, 2)).outputs["lost_depth"]
+        assert answer.reasons.tolist() == ["no depth is given"] * 2
+
+    def test_property_shown_input_is_an_output_too(self):
+        assert evaluated("breadth").outputs["breadth"].value == 4
+        assert "breadth" not in evaluated("breadth").inputs
+        given_one = evaluated("breadth", breadth="7 m")
+        assert given_one.outputs["breadth"].value == 7
+        assert given_one.inputs["breadth"].source == "given"
+
+    def test_property_tables(self):
+        assert evaluated("word").outputs["word"].value is None
+        assert evaluated("word", holes=metres(1, 2)).outputs["word"].value == "many"
+        assert (
+            evaluated("word", holes={"value": [[1, 2], [3, 4]], "unit": "m"}).outputs["word"].value == "many"
+        )
+        for wrong in (metres(1, 2, 3), metres(-1, 2)):
+            with pytest.raises(InvalidInputs, match="holes are rows of place, width"):
+                evaluated("word", holes=wrong)
+        assert "holes" in inputs_schema(Ladder)["properties"]
+
+    def test_property_golden_record_is_json(self):
+        cases = json.loads(json.dumps(record(Ladder), allow_nan=False))["cases"]
+        assert cases[0]["outputs"]["side"] is None
