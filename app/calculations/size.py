@@ -16,7 +16,7 @@ Shape = tuple[int, ...]
 
 def points(inputs: Mapping[str, Any]) -> int:
     """How many points the arrays among inputs, as typed, span together."""
-    return spanned(shape(raw) for raw in inputs.values())
+    return spanned(shape(raw) for raw in inputs.values() if not isinstance(raw, str))
 
 
 def spanned(shapes: Iterable[Shape]) -> int:
