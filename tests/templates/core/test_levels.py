@@ -12,9 +12,25 @@ from templates.core.evaluate import evaluate
 from templates.core.golden import record
 from templates.core.levels import Accuracy
 from templates.core.schema import describe, inputs_schema
-from templates.core.template import Template, Truth, derived, formula, given, require, shared, table, text
+from templates.core.template import (
+    Template,
+    Truth,
+    derived,
+    formula,
+    given,
+    require,
+    shared,
+    table,
+    text,
+    units,
+)
 
 OFFSETS = {"rough": 0.1, "fine": 0.001}
+
+
+@units(None, returns="1")
+def counted(rows):
+    return "many" if rows else ""
 
 
 class Ladder(Template):
@@ -58,7 +74,7 @@ class Ladder(Template):
 
     @text("word")
     def word(self):
-        return "many" if self.holes else ""
+        return counted(self.holes)
 
 
 @pytest.fixture

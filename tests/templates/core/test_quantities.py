@@ -2,7 +2,6 @@
 
 import json
 import math
-import time
 
 import numpy as np
 import pytest
@@ -189,10 +188,8 @@ ODD = [
 class TestRefusals:
     @pytest.mark.parametrize(("raw", "declared", "code"), ODD, ids=range(len(ODD)))
     def test_property_odd_inputs_are_refused_with_a_remedy(self, raw, declared, code):
-        start = time.perf_counter()
         with pytest.raises(FaultyText) as refusal:
             read(raw, declared)
-        assert time.perf_counter() - start < 0.1
         assert refusal.value.code == code
         assert 10 < len(str(refusal.value)) < 300
         json.dumps(str(refusal.value), ensure_ascii=False).encode("utf-8")

@@ -1,4 +1,4 @@
-"""Measured errors of `oil_film`: what is reported bounds what is true, and a tolerance takes no dearer level."""
+"""Measured errors of `oil_film`: the reported bounds the true one, a tolerance takes no dearer level."""
 
 import numpy as np
 import pytest
@@ -64,10 +64,10 @@ class TestTolerance:
         assert [w.code for w in made.warnings] == ["tolerance_unmet"]
 
     def test_property_points_climb_one_by_one(self):
-        raw = bearing(np.array([0.001, 0.1, 5.0]), np.array([0.05, 0.5, 2.0]))
-        made = evaluate(OilFilm, raw, outputs=["relative_eccentricity"], tolerance=0.01)
+        raw = bearing(np.array([0.001, 1.0, 5.0]), np.array([0.05, 0.5, 2.0]))
+        made = evaluate(OilFilm, raw, outputs=["relative_eccentricity"], tolerance=0.02)
         assert made.level.tolist() == ["short_bearing", "fit", "map"]
-        assert (made.error["relative_eccentricity"] <= 0.01).all()
+        assert (made.error["relative_eccentricity"] <= 0.02).all()
 
     def test_property_what_does_not_depend_on_level_is_exact(self):
         made = evaluate(OilFilm, bearing(1.0, 0.5), outputs=["sommerfeld_number", "boundary_condition"])
