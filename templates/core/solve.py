@@ -6,14 +6,14 @@ The scan is one array call, so a formula that is not monotone, or jumps, is seen
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from templates.core.declare import Choice, Curve, Formula, Profile, Text
+from templates.core.declare import Choice, Curve, Formula, Profile, Table, Text
 from templates.core.errors import Fault, FaultyText, InvalidInputs, Unreachable, unknown_name
 from templates.core.evaluate import Evaluation, evaluate
 from templates.core.intake import Input
@@ -23,6 +23,7 @@ from templates.core.template import Template
 
 SAMPLES = 1025  # of the scan; cheap as one array call
 INTERVALS, FINER, ROUNDS = 20, 65, 5  # where something happens: so many intervals, in so many parts, so often
+POLISHES, POLISHED = 8, 1e-9  # steps at a dear level, and the relative miss with which they end
 JUMP = 1e-6  # relative residual at a crossing beyond which it is a jump, not a solution
 
 
@@ -58,17 +59,26 @@ def solve(
     """
     declared, (low, high), formula, wanted = _question(cls, raw, unknown, bounds, target)
     fidelity: dict[str, Any] = {name: options[name] for name in ("level", "tolerance") if name in options}
-    curve = _Curve(cls, dict(raw), declared, formula, wanted, fidelity)
+    asked = _Curve(cls, dict(raw), declared, formula, wanted, fidelity)
+    curve = replace(asked, fidelity=_cheap(cls, fidelity))
     grid, residual = curve.scan(low, high)
     roots = curve.roots(grid, residual)
     if not roots:
         raise curve.unreachable(grid, residual)
     unit = declared.meaning.unit
-    found = float(declared.meaning.scale.from_si(roots[0]))
+    root = roots[0] if curve == asked else asked.polished(roots[0], curve)
+    found = float(declared.meaning.scale.from_si(root))
     evaluation = evaluate(cls, {**raw, unknown: {"value": found, "unit": unit}}, **options)
     return Solution(
         found, unit, evaluation, [*_not_monotone(declared, formula, residual), *_others(declared, roots)]
     )
+
+
+def _cheap(cls: type[Template], fidelity: dict[str, Any]) -> dict[str, Any]:
+    """The fidelity of the scan: the one asked for, or the default level where that may take few points."""
+    if not cls.most_points or ((level := fidelity.get("level")) and level not in cls.most_points):
+        return fidelity
+    return {"level": cls.default_level}
 
 
 def _question(
@@ -115,7 +125,7 @@ def _unknown(cls: type[Template], name: str, faults: list[Fault]) -> Input | Non
 
 
 def _solvable(cls: type[Template]) -> list[str]:
-    discrete = (Choice, Curve)
+    discrete = (Choice, Curve, Table)
     return [n for n, d in cls.inputs.items() if not (isinstance(d, discrete) or d.meaning.integer)]
 
 
@@ -148,7 +158,7 @@ def _faulty_inputs(
     ends: tuple[float, float],
 ) -> list[Fault]:
     """What is wrong with the other inputs, seen with the unknown in the middle of its bounds."""
-    curves = [name for name, d in cls.inputs.items() if isinstance(d, Curve)]
+    curves = [name for name, d in cls.inputs.items() if isinstance(d, (Curve, Table))]
     arrays = [name for name, value in raw.items() if _is_array(value) and name not in curves]
     faults = [Fault(f"inputs.{n}", "not_a_number", "solve takes single values, not arrays") for n in arrays]
     probe = {name: value for name, value in raw.items() if name not in arrays}
@@ -225,6 +235,17 @@ class _Curve:
 
     def _at(self, value: float) -> float:
         return float(self.residual(np.array([value]))[0])
+
+    def polished(self, root: float, cheap: _Curve) -> float:
+        """The crossing at this fidelity, from that of a cheaper one, by its slope."""
+        step = JUMP * abs(root)
+        slope = (cheap._at(root + step) - cheap._at(root - step)) / (2 * step)
+        for _ in range(POLISHES):
+            miss = self._at(root)
+            if not abs(miss) > POLISHED * abs(self.wanted):
+                break
+            root -= miss / slope
+        return root
 
     def unreachable(self, grid: NDArray[np.float64], residual: NDArray[np.float64]) -> Unreachable:
         """The error that tells what can be reached between the bounds, and why the target cannot."""

@@ -206,7 +206,7 @@ class OilFilm(Template):
         return self.c / self.D
 
     @formula(
-        "1", "width ratio", source=ISO, ge=0.01, le=100, remedy="another level may hold here",
+        "1", "width ratio", ge=0.01, le=100, remedy="another level may hold here",
         per_level={"short_bearing": limits(0.01, 100, published=(None, 0.25)), "fit": limits(0.125, 1)},
     )  # fmt: skip
     def b(self) -> Array:

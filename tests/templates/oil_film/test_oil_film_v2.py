@@ -13,6 +13,7 @@ import pytest
 from templates.core.errors import InvalidInputs
 from templates.core.evaluate import evaluate
 from templates.core.quantity import Typed
+from templates.core.solve import solve
 from templates.oil_film.oil_film_v2 import OilFilm
 from templates.physics.short_bearing import attitude_Ocvirk_1952
 
@@ -176,6 +177,28 @@ class TestLevels:
         for wrong in ({"value": [1, 2, 3], "unit": "deg"}, {"value": [[[1, 2]]], "unit": "deg"}):
             with pytest.raises(InvalidInputs, match="grooves are rows of angle from the load, width"):
                 evaluate(OilFilm, bearing(1, 0.5, grooves=wrong))
+
+
+class TestSolve:
+    @pytest.mark.parametrize("level", [None, "short_bearing", "reynolds", "mass_conserving"])
+    def test_property_load_for_a_film_at_any_level(self, level):
+        raw = bearing(1.0, 0.5)
+        del raw["radial_load"]
+        target = {"minimum_film_thickness": "10 um"}
+        found = solve(OilFilm, raw, "radial_load", ["1 N", "1 MN"], target, level=level)
+        answer = found.evaluation.outputs["minimum_film_thickness"].value
+        assert found.evaluation.level == (level or "map")
+        assert answer == pytest.approx(10, rel=1e-4 if level == "mass_conserving" else 1e-8)
+
+    def test_property_solve_with_a_tolerance(self):
+        raw = bearing(1.0, 0.5)
+        del raw["radial_load"]
+        target = {"minimum_film_thickness": "10 um"}
+        found = solve(
+            OilFilm, raw, "radial_load", ["1 N", "1 MN"], target, tolerance=0.1, outputs=list(target)
+        )
+        assert found.evaluation.level == "fit"
+        assert found.evaluation.outputs["minimum_film_thickness"].value == pytest.approx(10, rel=1e-8)
 
 
 class TestMotion:
