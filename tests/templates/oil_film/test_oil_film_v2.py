@@ -116,6 +116,16 @@ class TestLiterature:
             raw = case(oil_inlet_temperature=temperature, oil_outlet_temperature=temperature, oil_grade=grade)
             assert outputs(raw, "kinematic_viscosity") == pytest.approx(viscosity, rel=1e-12)
 
+    def test_literature_lund_thomsen_1978(self):
+        """Two axial grooves of 20° at ±90° to the load: eccentricity and attitude."""
+        rows = table("lund_thomsen_1978.csv")
+        grooves = {"value": [[90, 20], [270, 20]], "unit": "deg"}
+        So = 1 / (2 * np.pi * rows["S"])
+        for i in range(len(So)):
+            found = outputs(bearing(float(So[i]), float(rows["length_ratio"][i]), grooves=grooves))
+            assert found["relative_eccentricity"] == pytest.approx(rows["eps"][i], abs=0.002)
+            assert found["attitude_angle"] == pytest.approx(rows["phi_deg"][i], abs=0.3)
+
     @pytest.mark.parametrize(
         ("d", "rpm", "film"), [(50, 300, 3), (50, 5000, 7), (100, 100, 4), (500, 3000, 16)]
     )
