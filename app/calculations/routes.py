@@ -46,14 +46,14 @@ class PlainRoute(StrictRoute):
 router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=PlainRoute)
 
 LONGEST_ID, PLAIN_NUMBER = 64, re.compile("[1-9][0-9]{0,5}")
-FEW = 100  # points that are evaluated within the event loop, if no level is dear: a thread costs more
+FEW = 100  # points and names that are taken in the event loop, if no level is dear: a thread costs more
 
 
 @router.post("/{id}/versions/{number}/evaluate")
 async def evaluate(id: Id, number: Number, body: EvaluateIn, catalogues: TheCatalogues) -> Response:
     """Evaluate a template: inputs in any unit, scalars or arrays; only what is asked for is computed."""
     cls = catalogues.templates.get(id, number)
-    if points(body.inputs) <= FEW and not cls.most_points:
+    if points(body.inputs) <= FEW and len(body.inputs) <= FEW and not cls.most_points:
         return _json(to_json(run_evaluate(cls, body)))
     return _json(await run_in_threadpool(lambda: to_json(run_evaluate(cls, body))))
 

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 Text = Annotated[str, StringConstraints(max_length=100)]
+MOST_NAMES = 2000  # in one request: every unknown one is compared with all that are known
 
 OIL_FILM: dict[str, Any] = {
     "radial_load": "25 kN",
@@ -25,14 +26,15 @@ class Asked(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
     inputs: dict[str, Any] = Field(
-        description='quantities by name: `"25 kN"` or `{"value": 25, "unit": "kN"}`'
+        max_length=MOST_NAMES,
+        description='quantities by name: `"25 kN"` or `{"value": 25, "unit": "kN"}`',
     )
     outputs: Annotated[list[Text], Field(max_length=200)] | None = Field(
         None, description="compute these only; all, if not given"
     )
     level: Text | None = Field(None, description="a fidelity by name")
     tolerance: float | None = Field(None, gt=0, lt=1, description="largest relative error wanted")
-    units: dict[str, Text] = Field({}, description="units in which outputs are wanted")
+    units: dict[str, Text] = Field({}, max_length=200, description="units in which outputs are wanted")
 
 
 class EvaluateIn(Asked):
@@ -61,4 +63,4 @@ class SolveIn(Asked):
 
     unknown: Text = Field(description="the input to find")
     bounds: list[Any] = Field(description="the lowest and the highest value to try")
-    target: dict[str, Any] = Field(description="one output and its wanted value")
+    target: dict[str, Any] = Field(max_length=200, description="one output and its wanted value")
