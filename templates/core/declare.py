@@ -71,9 +71,9 @@ class Table(Given):
     Its value is a tuple of tuples [SI]; empty when missing.
     """
 
-    def __init__(self, meaning: Meaning, columns: tuple[str, ...]) -> None:
+    def __init__(self, meaning: Meaning, columns: tuple[str, ...], most: int) -> None:
         super().__init__(meaning, alternative=True)
-        self.columns = columns
+        self.columns, self.most = columns, most
 
 
 class Choice(Declaration):
@@ -207,9 +207,9 @@ def given(
     return Given(meaning(unit, words, **keywords), default, optional=optional, alternative=alternative)
 
 
-def table(unit: str, words: str, *columns: str, **keywords: Any) -> Any:
-    """Declare an optional input that is a list of rows; every column is in `unit`."""
-    return Table(meaning(unit, words, **keywords), columns)
+def table(unit: str, words: str, *columns: str, most: int = 12, **keywords: Any) -> Any:
+    """Declare an optional input that is a list of at most so many rows; every column is in `unit`."""
+    return Table(meaning(unit, words, **keywords), columns, most)
 
 
 def limits(

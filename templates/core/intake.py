@@ -93,9 +93,10 @@ def _bounded(declared: Input, typed: Typed, ledger: Ledger, faults: list[Fault])
 def _rows(declared: Table, value: Any, faults: list[Fault]) -> tuple[tuple[float, ...], ...]:
     """The rows of a table; a single row may stand alone."""
     rows = np.atleast_2d(value)
-    if rows.ndim != 2 or rows.shape[1] != len(declared.columns) or not np.all(declared.meaning.admits(rows)):
-        columns = ", ".join(declared.columns)
-        told = f"{declared.meaning.words} are rows of {columns}, each {declared.meaning.wanted}"
+    fits = rows.ndim == 2 and rows.shape[1] == len(declared.columns) and len(rows) <= declared.most
+    if not fits or not np.all(declared.meaning.admits(rows)):
+        rows_of = f"at most {declared.most} rows of {', '.join(declared.columns)}"
+        told = f"{declared.meaning.words} are {rows_of}, each {declared.meaning.wanted}"
         faults.append(Fault(declared.name, "not_a_table", told))
         return ()
     return tuple(map(tuple, rows.tolist()))

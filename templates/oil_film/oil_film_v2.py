@@ -49,7 +49,8 @@ NO_BALANCE = "needs supply_temperature, or ambient_temperature with heat_transfe
 NO_SUPPLY = "needs supply_temperature"
 NEVER_WHIRLS = "stable at every speed, or without mass; levels fit and mass_conserving cannot tell"
 UNBORNE = (
-    "no film bears this: change load, clearance, speed or viscosity; under supply pressure raise the load"
+    "no film bears this: change load, clearance, speed or viscosity, or move the grooves; "
+    "supply pressure alone may lift more"
 )
 
 
@@ -130,7 +131,9 @@ class OilFilm(Template):
     T_amb: Array = given("degC", "ambient temperature", alternative=True, ge=-100, le=499)
     kA: Array = given("W/K", "heat transfer", alternative=True, ge=0)
     rho_c: Array = given("kJ/(m**3*K)", "heat capacity", default="1800 kJ/(m**3*K)", gt=0, source=ISO)
-    grooves: tuple[tuple[float, float], ...] = table("deg", "grooves", "angle from the load", "width")
+    grooves: tuple[tuple[float, float], ...] = table(
+        "deg", "grooves", "angle from the load", "width", ge=-360, le=720
+    )
     p_s: Array = given("bar", "supply pressure", default="0 bar", ge=0)
     R_J: Array = given("um", "journal roughness", optional=True, ge=0)
     R_B: Array = given("um", "bearing roughness", optional=True, ge=0)

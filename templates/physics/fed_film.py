@@ -86,7 +86,7 @@ def fed_film(So: float, ratio: float, feed: Feed) -> FedFilm | None:
     try:
         found = _grooved(position, wanted) if feed.grooves else _lined(position, wanted, low, high)
         return None if found is None else _extrapolated(found, ratio, feed)
-    except (ArithmeticError, ValueError):
+    except (ArithmeticError, ValueError, RuntimeError):  # the last: a singular matrix
         return None
 
 

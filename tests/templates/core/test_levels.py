@@ -163,7 +163,7 @@ class TestOptional:
             evaluated("word", holes={"value": [[1, 2], [3, 4]], "unit": "m"}).outputs["word"].value == "many"
         )
         for wrong in (metres(1, 2, 3), metres(-1, 2)):
-            with pytest.raises(InvalidInputs, match="holes are rows of place, width"):
+            with pytest.raises(InvalidInputs, match="holes are at most 12 rows of place, width"):
                 evaluated("word", holes=wrong)
         assert "holes" in inputs_schema(Ladder)["properties"]
 

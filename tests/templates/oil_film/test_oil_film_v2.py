@@ -185,7 +185,7 @@ class TestLevels:
 
     def test_property_tables_are_checked(self):
         for wrong in ({"value": [1, 2, 3], "unit": "deg"}, {"value": [[[1, 2]]], "unit": "deg"}):
-            with pytest.raises(InvalidInputs, match="grooves are rows of angle from the load, width"):
+            with pytest.raises(InvalidInputs, match="grooves are at most 12 rows of angle from the load"):
                 evaluate(OilFilm, bearing(1, 0.5, grooves=wrong))
 
 
