@@ -1,6 +1,6 @@
 """Build `templates/physics/data/mobility_map.npz` from full solutions, and measure its error.
 
-python -m benchmarks.mobility_map build      about 12 minutes on one core; goes on where it was stopped
+python -m benchmarks.mobility_map build      about 5 minutes on one core; goes on where it was stopped
 python -m benchmarks.mobility_map measure    about 8 minutes: fresh, finer solutions at random places
 python -m benchmarks.mobility_map report     the errors found and the cost a point
 
@@ -22,6 +22,7 @@ from templates.physics.mobility_map import (
     WIDEST,
     cell_of,
     decode_motion,
+    decode_side,
     encode,
     mapped_mobility,
     mapped_mobility_along_load,
@@ -33,25 +34,25 @@ from templates.physics.volume_spline import Axes, volume
 DATA = Path("templates/physics/data/mobility_map.npz")
 CHECKS = Path("benchmarks/mobility_map_checks.npz")
 KEPT = Path("build/mobility_map")
-NODES = 50, 10, 22
-CELLS = 8, 4, 6
+NODES = 44, 10, 18
+CELLS = 8, 3, 6
 POINTS = 800
 MARGIN = 1.5
-THIN = 1e-2
-"""The gap below which solutions take twice the mesh."""
+MESH = 96, 12
+CENTRE = 0.05
+"""The place on a chord, over sqrt(h exp(h)), that stands for its middle, where a mesh tells no direction."""
 WIDE = 1.95
 """The last gap with nodes; beyond it chords are too short to tell the direction, and the cubic goes on."""
 
 
 def axes() -> Axes:
-    """Nodes over gap, chord and width; the first over the chord is the mirror image of the second."""
+    """Nodes over gap, chord and width."""
     low = ECCENTRICITY_LIMIT - LARGEST
     start, end = np.log(low) + low, np.log(WIDE) + WIDE
-    step = 2 / (2 * NODES[1] - 1)
     narrow, wide = np.log(NARROWEST), np.log(WIDEST)
     return (
         Axis(start, (end - start) / (NODES[0] - 1), NODES[0]),
-        Axis(-step / 2, step, NODES[1] + 1),
+        Axis(0.0, 1 / (NODES[1] - 1), NODES[1]),
         Axis(narrow, (wide - narrow) / (NODES[2] - 1), NODES[2]),
     )
 
@@ -73,8 +74,7 @@ def encoded(xi: float, eta: float, ratio: float, around: int, across: int) -> Ar
 
 def extrapolated(xi: float, eta: float, ratio: float, finer: int = 1) -> Array:
     """The same by Richardson's extrapolation."""
-    finer *= 2 if 1 - xi < THIN else 1
-    coarse, fine = (encoded(xi, eta, ratio, n * finer * 64, n * finer * 8) for n in (1, 2))
+    coarse, fine = (encoded(xi, eta, ratio, n * finer * MESH[0], n * finer * MESH[1]) for n in (1, 2))
     return fine + (fine - coarse) / 3
 
 
@@ -97,23 +97,23 @@ def build() -> None:
 
 def row(x: float, chord: Axis, width: Axis) -> Array:
     """Values at all nodes of one gap, (chord, width, 4)."""
+    middle = CENTRE * np.sqrt(np.exp(min(x, 0.0)))
     return np.array([
-        [extrapolated(*place(x, float(v)), float(np.exp(y))) for y in width.places()]
-        for v in chord.places()[1:]
+        [extrapolated(*place(x, max(float(v), middle)), float(np.exp(y))) for y in width.places()]
+        for v in chord.places()
     ])  # fmt: skip
 
 
 def coefficients(values: Array) -> Array:
-    """B-spline coefficients along all three axes; the chord's splines are even about its middle."""
-    over_gap = np.moveaxis(spline_coefficients(values), 1, 0)
-    mirrored = np.concatenate([over_gap[::-1], over_gap])
-    over_chord = np.moveaxis(spline_coefficients(mirrored)[len(over_gap) - 1 :], 0, 2)
-    return np.moveaxis(spline_coefficients(np.moveaxis(over_chord, 1, 0)), (0, 2), (2, 1))
+    """B-spline coefficients along all three axes, of (gap, chord, width, functions)."""
+    for _ in range(3):
+        values = np.moveaxis(spline_coefficients(values), 0, 2)
+    return values
 
 
 def check_points() -> Array:
     """Random places over the whole map in its coordinates, (3, POINTS)."""
-    low = np.array([axis.first for axis in axes()]) * [1, 0, 1]
+    low = np.array([axis.first for axis in axes()])
     high = np.array([axis.first + axis.step * (axis.nodes - 1) for axis in axes()])
     high[0] = np.log(2 * LARGEST) + 2 * LARGEST
     draw = np.random.default_rng(7).random((5 * POINTS, 3))
@@ -144,6 +144,7 @@ def errors() -> tuple[Array, Array]:
     ratio = np.exp(places[2])
     M, M_true = (decode_motion(xi, eta, ratio, values) for values in (found, truth))
     difference = np.abs(found - truth)
+    difference[3] = np.abs(decode_side(xi, eta, found) / decode_side(xi, eta, truth) - 1)
     difference[1] = np.hypot(*(M - M_true)) / np.hypot(*M_true)
     return places, difference
 
@@ -168,7 +169,7 @@ def report() -> None:
     eps, ratio = np.hypot(xi, eta), np.exp(places[2])
     inside = (eps <= 0.999) & (ratio >= 0.1) & (ratio <= 4)
     for name, part in (("eps to 0.999, B/D 0.1…4", inside), ("everywhere", np.ones_like(inside))):
-        print(f"{name}: {part.sum()} points; errors of ln M_xi, |M|, ln P_max, ln side flow")
+        print(f"{name}: {part.sum()} points; errors of ln M_xi, |M|, ln P_max, side flow")
         print("  largest", " ".join(f"{value:.1e}" for value in found[:, part].max(axis=1)))
         print("  median ", " ".join(f"{value:.1e}" for value in np.median(found[:, part], axis=1)))
     rng = np.random.default_rng(1)

@@ -111,15 +111,16 @@ def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
         ValueError: if the eccentricity exceeds 1 − 1e-6, or B/D lies outside its range.
     """
     xi, eta, ratio = _accepted(xi, eta, ratio)
-    P_max, side = np.exp(_look_up(mobility_map().film, xi, eta, ratio))
-    return np.stack([P_max / np.sqrt(1 - xi), side])
+    data = mobility_map()
+    values = np.concatenate([_look_up(part, xi, eta, ratio) for part in (data.motion, data.film)])
+    return np.stack([np.exp(values[2]) / np.sqrt(1 - xi), decode_side(xi, eta, values)])
 
 
 def mobility_error(xi: Array, eta: Array, ratio: Array) -> Array:
     """Largest error found about a point between the map and fresh, finer solutions.
 
     Returns:
-        (..., 4): of ln M along the load, of M as a vector over its size, of ln P_max and ln side flow.
+        (..., 4): of ln M along the load, of M as a vector over its size, of ln P_max, of side flow.
     """
     data = mobility_map()
     cells = np.array(data.error.shape[:3])
@@ -151,7 +152,7 @@ def encode(xi: float, eta: float, ratio: float, motion: Motion) -> Array:
         np.log(along * np.pi * ratio**2 / h**2.5),
         -ahead * h / (along * eta),
         np.log(motion.P_max * np.sqrt(h)),
-        np.log(motion.side_flow),
+        motion.side_flow * np.hypot(along, ahead) / along * np.sqrt(h),
     ])  # fmt: skip
 
 
@@ -160,6 +161,12 @@ def decode_motion(xi: Array, eta: Array, ratio: Array, values: Array) -> Array:
     h = 1 - xi
     along = h**2 * np.sqrt(h) / (np.pi * ratio**2) * np.exp(values[0])
     return np.stack([along, -along * values[1] * eta / h])
+
+
+def decode_side(xi: Array, eta: Array, values: Array) -> Array:
+    """Side flow over what the journal displaces, from the second and the last value of `encode`."""
+    h = 1 - xi
+    return np.asarray(values[3] / (np.sqrt(h) * np.hypot(1, values[1] * eta / h)))
 
 
 def _accepted(xi: Array, eta: Array, ratio: Array) -> tuple[Array, Array, Array]:

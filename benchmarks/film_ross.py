@@ -1,0 +1,200 @@
+"""Our film against two peers in one run: ROSS's plain journal bearing, and the scipy prototype.
+
+    python -m benchmarks.film_ross [prototype.py]
+
+ROSS 3.1 is installed from PyPI into build/ross, an environment of its own. Its bearing is given the same film
+as ours: one land of 360° that begins at the widest gap, constant viscosity, the eccentricity held, its
+default mesh. Errors of the load are against our solution extrapolated from 1024 × 128. ROSS's time is
+that of its constructor, which finds stiffness and damping too; ours is given without and with them.
+The prototype is compared on the coarsest of its meshes whose error is no larger than ours.
+The table is printed and kept in benchmarks/results/film.json; if ROSS gives no answer it says why.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import warnings
+from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from shutil import which
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from benchmarks.film_cost import seconds
+from templates.physics.film_dynamics import plain_coefficients
+from templates.physics.film_map import mapped_film
+from templates.physics.reynolds import extrapolated_film, static_film
+
+RELEASE = "ross-rotordynamics==3.1.0"
+ENVIRONMENT = Path("build/ross")
+RESULTS = Path("benchmarks/results/film.json")
+POINTS = [(0.1, 1.0), (0.5, 0.5), (0.8, 1.0), (0.95, 1.0), (0.99, 1.0)]
+MESH = 64, 8
+PROTOTYPE_MESHES = [(60, 8), (120, 12), (180, 18), (240, 24), (360, 40), (480, 48)]
+DIAMETER, CLEARANCE, VISCOSITY, SPEED = 0.1, 1e-4, 0.02, 300.0
+INSTALL_SECONDS, ANSWER_SECONDS = 900, 300
+
+
+class NoAnswerError(Exception):
+    """ROSS could not be installed or gave no answer."""
+
+
+def main() -> None:
+    """Measure, print and keep."""
+    results: dict[str, Any] = {}
+    try:
+        python = environment()
+        results["ROSS, plain journal, default mesh"] = ross_rows(answers(python))
+    except NoAnswerError as reason:
+        results["ROSS, plain journal, default mesh"] = f"no answer: {reason}"
+    if len(sys.argv) > 1:
+        results["scipy prototype, at equal error"] = [prototype_row(sys.argv[1], *p) for p in POINTS]
+    RESULTS.parent.mkdir(exist_ok=True)
+    RESULTS.write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n")
+    print(json.dumps(results, indent=1, ensure_ascii=False))
+
+
+def environment() -> Path:
+    """ROSS's interpreter, installed if it is not yet.
+
+    Raises:
+        NoAnswerError: if it cannot be installed.
+    """
+    python = ENVIRONMENT / "bin" / "python"
+    if not python.exists():
+        run([interpreter(), "-m", "venv", str(ENVIRONMENT)], INSTALL_SECONDS)
+    install = [str(python), "-m", "pip", "install", "--quiet", "--only-binary=:all:"]
+    run([*install, "--ignore-requires-python", RELEASE], INSTALL_SECONDS)
+    return python
+
+
+def interpreter() -> str:
+    """Python 3.13, which ROSS asks for, if there is one that starts; else this one."""
+    candidates = [which("python3.13"), *map(str, Path.home().glob(".pyenv/versions/3.13*/bin/python3.13"))]
+    for candidate in filter(None, candidates):
+        if subprocess.run([candidate, "--version"], capture_output=True, check=False).returncode == 0:
+            return candidate
+    return sys.executable
+
+
+def run(command: list[str], limit: float) -> str:
+    """What a command prints, on as many threads as it likes.
+
+    Raises:
+        NoAnswerError: if it fails or takes too long.
+    """
+    free = {name: value for name, value in os.environ.items() if name != "OMP_NUM_THREADS"}
+    try:
+        done = subprocess.run(command, env=free, capture_output=True, text=True, timeout=limit, check=False)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise NoAnswerError(str(error)) from error
+    if done.returncode:
+        raise NoAnswerError(done.stderr.strip()[-300:])
+    return done.stdout
+
+
+def answers(python: Path) -> list[dict[str, float]]:
+    """ROSS's load and time at each point, from its own environment.
+
+    Raises:
+        NoAnswerError: if it gave none.
+    """
+    printed = run([str(python), "-m", "benchmarks.film_ross", "--answer"], ANSWER_SECONDS)
+    return list(json.loads(printed.splitlines()[-1]))
+
+
+def answer() -> None:
+    """Print ROSS's load and time at each point; runs in its environment."""
+    warnings.simplefilter("ignore")
+    rows = []
+    for eps, ratio in POINTS:
+        ross_load(eps, ratio)
+        rows.append({"So": ross_load(eps, ratio), "time": seconds(lambda e=eps, b=ratio: ross_load(e, b))})  # type: ignore[misc]
+    print(json.dumps(rows))
+
+
+def ross_load(eps: float, ratio: float) -> float:
+    """Sommerfeld number of ROSS's plain journal bearing, its land beginning at the widest gap."""
+    viscosity = {f"liquid_viscosity{k}": VISCOSITY for k in (1, 2)}
+    oil = {"liquid_density": 860.0, "liquid_specific_heat": 1950.0, "liquid_thermal_conductivity": 0.13}
+    bearing = import_module("ross.bearings.plain_journal").PlainJournal(
+        n=0,
+        pad_axial_length=ratio * DIAMETER,
+        journal_diameter=DIAMETER,
+        radial_clearance=CLEARANCE,
+        n_pads=1,
+        pad_arc=np.radians(359.9999),
+        oil_supply_temperature=323.15,
+        speed=[SPEED],
+        fys_load=-1e4,
+        lubricant=viscosity | {"temperature1": 313.15, "temperature2": 373.15} | oil,
+        oil_flow_v=1e-2,
+        thermal_type=None,
+        equilibrium_type="match_eccentricity",
+        initial_position=(-eps, 0.0),
+    )
+    film = bearing._results.outputs[0]
+    load = np.hypot(np.squeeze(film["fx_hydro"]), np.squeeze(film["fy_hydro"]))
+    return float(load * (2 * CLEARANCE / DIAMETER) ** 2 / (ratio * DIAMETER**2 * VISCOSITY * SPEED))
+
+
+def ross_rows(ross: list[dict[str, float]]) -> list[dict[str, float | str]]:
+    """Errors of ROSS's load, ours and our map's, and ROSS's time over ours."""
+    rows: list[dict[str, float | str]] = []
+    for (eps, ratio), theirs in zip(POINTS, ross, strict=True):
+        truth = extrapolated_film(eps, ratio, 512, 64)[0].So
+        film = seconds(lambda e=eps, b=ratio: static_film(e, b, *MESH))  # type: ignore[misc]
+        linear = seconds(lambda e=eps, b=ratio: plain_coefficients(e, b, *MESH))  # type: ignore[misc]
+        rows.append({
+            "eps": eps,
+            "B/D": ratio,
+            "error, ROSS [%]": percent(theirs["So"] / truth - 1),
+            "error, ours 64 × 8 [%]": percent(static_film(eps, ratio, *MESH).So / truth - 1),
+            "error, our map [%]": percent(
+                float(mapped_film(np.array(eps), np.array(ratio))["So"]) / truth - 1
+            ),
+            "time, ROSS [ms]": round(1e3 * theirs["time"], 2),
+            "ROSS over our film": round(theirs["time"] / film, 1),
+            "ROSS over our film, stiffness and damping": round(theirs["time"] / linear, 1),
+            "aim": "at least 5, at smaller error",
+        })  # fmt: skip
+    return rows
+
+
+def prototype_row(path: str, eps: float, ratio: float) -> dict[str, float | str]:
+    """Time of the prototype over ours, on its coarsest mesh that is as exact as ours."""
+    spec = spec_from_file_location("prototype", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    truth = extrapolated_film(eps, ratio, 512, 64)[0].So
+    ours = abs(static_film(eps, ratio, *MESH).So / truth - 1)
+    row: dict[str, float | str] = {"eps": eps, "B/D": ratio, "error, ours 64 × 8 [%]": percent(ours)}
+    for n, m in PROTOTYPE_MESHES:
+        begin = perf_counter()
+        error = abs(module.solve(eps, ratio, n, m)["So"] / truth - 1)
+        once = perf_counter() - begin
+        if error <= ours or (n, m) == PROTOTYPE_MESHES[-1]:
+            repeats = 5 if once < 1 else 1
+            theirs = min(once, seconds(lambda n=n, m=m: module.solve(eps, ratio, n, m), repeats))  # type: ignore[misc]
+            film = seconds(lambda: static_film(eps, ratio, *MESH))
+            row |= {"prototype's mesh": f"{n} × {m}", "error, prototype [%]": percent(error)}
+            row |= {"prototype over ours": round(theirs / film, 1), "aim": "at least 5"}
+            if error > ours:
+                row["note"] = "the prototype's finest mesh, less exact than ours"
+            break
+    return row
+
+
+def percent(share: float) -> float:
+    """Per cent, to a ten-thousandth."""
+    return round(100 * share, 4)
+
+
+if __name__ == "__main__":
+    answer() if sys.argv[1:] == ["--answer"] else main()
