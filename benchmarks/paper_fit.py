@@ -1,0 +1,31 @@
+"""How far the film thickness of `oil_film` 1 is off: the paper's fit against the converged Reynolds film.
+
+    python -m benchmarks.paper_fit
+
+At the width of the paper's bearing, W/D = 32/85, isothermal, Swift–Stieber film: both films at the same
+Sommerfeld number, so that viscosity and loads drop out. The converged film is that of the map, its own error
+printed beside.
+"""
+
+import numpy as np
+
+from templates.physics.film_map import map_error
+from templates.physics.film_map_inverse import mapped_eccentricity
+from templates.physics.power_fit import exponent_k2, factor_k1
+
+RATIO = np.array(32 / 85)
+NUMBERS = (1, 1.9, 3.948, 5, 10, 40, 100, 200)
+
+
+def main() -> None:
+    """Print the table."""
+    print(f"{'So':>7} {'eps, fit':>9} {'eps, film':>10} {'h0 is off by':>13}  (error of the film's load)")
+    for number in map(np.array, NUMBERS):
+        fit = factor_k1(number) * number ** exponent_k2(number)
+        film = mapped_eccentricity(number, RATIO)
+        off, error = (1 - fit) / (1 - film) - 1, map_error(film, RATIO)[0]
+        print(f"{number:7g} {fit:9.4f} {film:10.4f} {off:+13.1%}  ({error:.0e})")
+
+
+if __name__ == "__main__":
+    main()
