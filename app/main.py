@@ -69,7 +69,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
             "4XX": {"description": "a problem", "content": {problems.MEDIA_TYPE: {"schema": PROBLEM}}}
         },
     )
-    for router in (catalogue, calculations, designs, design_files, design_events, models, jobs):
+    # Routers are tried one after another; that of `evaluate`, which is called most, is the first.
+    for router in (calculations, catalogue, designs, design_files, design_events, models, jobs):
         app.include_router(router)
     app.include_router(health.router)
     app.include_router(problems.router)
