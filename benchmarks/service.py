@@ -363,12 +363,16 @@ def pings(server: Server, count: int) -> list[float]:
 def hostile(server: Server, folder: Path, rounds: int) -> list[Row]:
     """Every hostile input, to its whole answer; the slowest of its repeats is told too."""
     rows = []
-    for name, found in service_hostile.measure(server, rounds).items():
-        statuses = "/".join(map(str, sorted(found["statuses"])))
-        made = row("f", f"{name} → {statuses}", "ms", found["ms"])
+    for name, found in service_hostile.measure(server, service_hostile.CASES, rounds).items():
         refused = all(400 <= status < 500 for status in found["statuses"])
-        rows.append(judged(made, "4xx < 100 ms", below=100 if refused else 0))
-    return rows
+        rows.append(judged(_refusal("f", name, found), "4xx < 100 ms", below=100 if refused else 0))
+    beyond = service_hostile.measure(server, service_hostile.LARGEST, 3)
+    return [*rows, *(_refusal("f+", name, found) for name, found in beyond.items())]
+
+
+def _refusal(part: str, name: str, found: dict[str, Any]) -> Row:
+    statuses = "/".join(map(str, sorted(found["statuses"])))
+    return row(part, f"{name} → {statuses}, slowest {max(found['ms']):.3g}", "ms", found["ms"])
 
 
 # ----------------------------------------------------------------------------------------------------------
@@ -430,7 +434,7 @@ def line(made: Row) -> str:
         ratio = "× {:6.3g}  [{:.3g} … {:.3g}]  of {}".format(made.ratio, *made.ratio_quartiles, made.against)
     spread = "[{:.3g} … {:.3g}]".format(*made.quartiles)
     verdict = "" if made.met is None else f"  aim {made.aim}: {'met' if made.met else 'MISSED'}"
-    return f"{made.part}  {made.what:44} {made.median:9.4g} {made.unit:4} {spread:19} {ratio}{verdict}"
+    return f"{made.part:2} {made.what:52} {made.median:9.4g} {made.unit:4} {spread:19} {ratio}{verdict}"
 
 
 if __name__ == "__main__":
