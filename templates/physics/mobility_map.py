@@ -14,7 +14,7 @@ References:
 """
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -92,7 +92,7 @@ def mapped_mobility_along_load(xi: Array, eta: Array, ratio: Array) -> Array:
         ValueError: if the eccentricity exceeds 1 − 1e-6, or B/D lies outside its range.
     """
     xi, eta, ratio = _accepted(xi, eta, ratio)
-    return decode_motion(xi, eta, ratio, _look_up(mobility_map().motion, xi, eta, ratio))
+    return decode_motion(xi, eta, ratio, _look_up("motion", xi, eta, ratio))
 
 
 def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
@@ -111,8 +111,7 @@ def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
         ValueError: if the eccentricity exceeds 1 − 1e-6, or B/D lies outside its range.
     """
     xi, eta, ratio = _accepted(xi, eta, ratio)
-    data = mobility_map()
-    values = np.concatenate([_look_up(part, xi, eta, ratio) for part in (data.motion, data.film)])
+    values = np.concatenate([_look_up(part, xi, eta, ratio) for part in ("motion", "film")])
     return np.stack([np.exp(values[2]) / np.sqrt(1 - xi), decode_side(xi, eta, values)])
 
 
@@ -182,14 +181,19 @@ def _accepted(xi: Array, eta: Array, ratio: Array) -> tuple[Array, Array, Array]
     return xi, eta, ratio
 
 
-def _look_up(coefficients: Array, xi: Array, eta: Array, ratio: Array) -> Array:
-    """Interpolate at points of any shape, (functions, ...); one width for all costs a quarter."""
-    gap, chord, width = mobility_map().axes
+def _look_up(part: str, xi: Array, eta: Array, ratio: Array) -> Array:
+    """Interpolate motion or film at points of any shape, (functions, ...); one width costs a third."""
+    axes = mobility_map().axes
     x, v = np.broadcast_arrays(*coordinates(xi, eta))
     if ratio.size == 1:
-        flat = at_third(coefficients, width, float(np.log(ratio).item()))
-        shape = np.broadcast_shapes(x.shape, ratio.shape)
-        return surface(flat, gap, chord, x.ravel(), v.ravel()).reshape(-1, *shape)
+        values = surface(_at_width(part, float(ratio.item())), *axes[:2], x.ravel(), v.ravel())
+        return values.reshape(-1, *np.broadcast_shapes(x.shape, ratio.shape))
     x, v, y = np.broadcast_arrays(x, v, np.log(ratio))
     places = np.stack([x.ravel(), v.ravel(), y.ravel()])
-    return volume(coefficients, (gap, chord, width), places).reshape(-1, *x.shape)
+    return volume(getattr(mobility_map(), part), axes, places).reshape(-1, *x.shape)
+
+
+@lru_cache(maxsize=64)
+def _at_width(part: str, ratio: float) -> Array:
+    """Spline coefficients over gap and chord at one width, kept for the steps of an orbit."""
+    return at_third(getattr(mobility_map(), part), mobility_map().axes[2], float(np.log(ratio)))
