@@ -13,7 +13,7 @@ from typing import Any
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
-from PIL import Image
+from PIL import Image, ImageChops
 
 from app.client import Client, Design
 from app.demo import service
@@ -23,21 +23,22 @@ TARGET = Path(__file__).parents[1] / "docs" / "pictures" / "link.png"
 SHOWN = ("sommerfeld_number", "relative_eccentricity", "minimum_film_thickness")
 SCALES = ("1", "1.25")
 UNITS = {"1": "", "um": "µm"}
+WIDEST = 116  # of what is shown of a part [mm]
 
 
 def main() -> None:
-    """Create the paper's design at two scales and draw both."""
+    """Create the paper's design at two scales and draw both, the parts in true proportion to each other."""
     mpl.use("Agg")
     with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as client:
         formulas = {f["name"]: f["latex"] for f in client.template("oil_film", 1)["formulas"]}
         designs = [client.create(_document(scale)) for scale in SCALES]
-        figure, rows = plt.subplots(len(designs), 2, figsize=(11, 7.2), width_ratios=[1.25, 1])
+        figure, rows = plt.subplots(len(designs), 2, figsize=(9.2, 6.2), width_ratios=[0.8, 1])
         for design, (worksheet, part) in zip(designs, rows, strict=True):
             _worksheet(worksheet, client, design, formulas)
             _part(part, client, design)
-    figure.tight_layout()
+    figure.subplots_adjust(left=0.01, right=0.99, bottom=0.01, top=0.95, wspace=0, hspace=0.12)
     TARGET.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(TARGET, dpi=90)
+    figure.savefig(TARGET, dpi=100)
 
 
 def _document(scale: str) -> dict[str, Any]:
@@ -55,20 +56,28 @@ def _worksheet(axes: Any, client: Client, design: Design, formulas: dict[str, st
     ]
     axes.axis("off")
     for place, line in enumerate(lines):
-        axes.text(0.02, 0.9 - 0.2 * place, line, fontsize=15, va="center", transform=axes.transAxes)
+        axes.text(0.05, 0.92 - 0.2 * place, line, fontsize=15, va="center", transform=axes.transAxes)
 
 
 def _shown(quantity: dict[str, Any]) -> str:
-    return f"{quantity['value']:.4g} {UNITS[quantity['unit']]}".strip()
+    return f"{quantity['value']:#.4g} {UNITS[quantity['unit']]}".strip()
 
 
 def _part(axes: Any, client: Client, design: Design) -> None:
-    measured = client.measurements(design.id)["model"]["dimensions"]["inner_diameter"]
-    axes.imshow(Image.open(io.BytesIO(client.model(design.id, "png"))))
-    axes.set_title(
-        f"inner diameter {measured['value']:g} {measured['unit']}, measured on the STEP", fontsize=12
-    )
+    dimensions = client.measurements(design.id)["model"]["dimensions"]
+    bore, outside = (dimensions[name]["value"] for name in ("inner_diameter", "outer_diameter"))
+    picture = _trimmed(Image.open(io.BytesIO(client.model(design.id, "png"))).convert("RGB"))
+    half, height = outside / 2, outside * picture.height / picture.width / 2
+    axes.imshow(picture, extent=(-half, half, -height, height))
+    axes.set(xlim=(-WIDEST / 2, WIDEST / 2), ylim=(-WIDEST / 2.9, WIDEST / 2.9), aspect="equal")
+    axes.set_title(f"bore {bore:g} mm, outside {outside:g} mm, as measured on the STEP file", fontsize=11)
     axes.axis("off")
+
+
+def _trimmed(picture: Image.Image) -> Image.Image:
+    """What is not background; of a ring seen from above its edge, this is as wide as the ring."""
+    background = Image.new("RGB", picture.size, picture.getpixel((0, 0)))
+    return picture.crop(ImageChops.difference(picture, background).getbbox())
 
 
 if __name__ == "__main__":
