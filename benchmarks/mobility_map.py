@@ -22,7 +22,6 @@ from templates.physics.mobility_map import (
     WIDEST,
     cell_of,
     decode_motion,
-    decode_side,
     encode,
     mapped_mobility,
     mapped_mobility_along_load,
@@ -144,7 +143,7 @@ def errors() -> tuple[Array, Array]:
     ratio = np.exp(places[2])
     M, M_true = (decode_motion(xi, eta, ratio, values) for values in (found, truth))
     difference = np.abs(found - truth)
-    difference[3] = np.abs(decode_side(xi, eta, found) / decode_side(xi, eta, truth) - 1)
+    difference[3] = np.abs(found[3] / truth[3] - 1)
     difference[1] = np.hypot(*(M - M_true)) / np.hypot(*M_true)
     return places, difference
 
