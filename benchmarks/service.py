@@ -13,6 +13,7 @@ import json
 import os
 import platform
 import sqlite3
+import subprocess
 import sys
 import tempfile
 import time
@@ -44,7 +45,7 @@ QUESTIONS: dict[str, dict[str, Any]] = {
     "all outputs": {"inputs": OIL_FILM},
 }
 POINTS = 10**6
-PAUSE = 0.2  # before a change, as between the changes of one user [s]
+PAUSE = 0.5  # around a change, as between the changes of one user: the service prepares its next job [s]
 QUICK = "quick" in sys.argv[1:]
 
 
@@ -201,6 +202,7 @@ def regenerations(server: Server, folder: Path, rounds: int) -> list[Row]:
         bore = 50 + 0.37 * turn
         time.sleep(PAUSE)
         taken = milliseconds(lambda: changes.regenerated(bore))  # noqa: B023 - called at once
+        time.sleep(PAUSE)
         alone = milliseconds(lambda: regenerate("ball_bearing", 1, {"inner_diameter": bore / 1e3}))  # noqa: B023
         both = {n: milliseconds(lambda: make(bore, file)) for n, make in service_cad.BASELINES.items()}  # noqa: B023
         if turn > 1:
@@ -231,7 +233,7 @@ def quiet_changes(server: Server, folder: Path, rounds: int) -> list[Row]:
     database = sqlite3.connect(folder / "bare.sqlite", isolation_level=None)
     database.executescript("PRAGMA journal_mode = wal; PRAGMA synchronous = full; CREATE TABLE t (a TEXT)")
     for turn in range(rounds + 3):
-        time.sleep(PAUSE / 4)
+        time.sleep(PAUSE / 10)
         load = {"steps": {"film": {"inputs": {"radial_load": f"{25 + 0.1 * turn!r} kN"}}}}
         taken = milliseconds(lambda: changes.change(load))  # noqa: B023 - called at once
         alone = milliseconds(lambda: database.execute("INSERT INTO t VALUES (?)", ["x" * 2000]))
@@ -399,7 +401,11 @@ def main() -> None:
             made = measure(server, folder, 3 if QUICK else rounds)
             print("\n".join(line(told) for told in made), flush=True)
             rows += made
-    told = {"machine": machine(), "load_average": {"before": before, "after": os.getloadavg()}}
+    told = {
+        "commit": commit(),
+        "machine": machine(),
+        "load_average": {"before": before, "after": os.getloadavg()},
+    }
     print(json.dumps(told))
     if len(wanted) == len(PARTS) and not QUICK:
         RESULTS.parent.mkdir(exist_ok=True)
@@ -410,6 +416,12 @@ def main() -> None:
         date = datetime.now(UTC).isoformat(timespec="seconds")
         head = json.dumps({"date": date, **told}, ensure_ascii=False)[:-1]
         RESULTS.write_text(f'{head}, "rows": [\n{lines}\n]}}\n')
+
+
+def commit() -> str:
+    """Which commit was measured, and whether the working tree had changes beside it."""
+    command = ["git", "describe", "--always", "--dirty", "--exclude=*"]
+    return subprocess.run(command, capture_output=True, text=True).stdout.strip()
 
 
 def machine() -> dict[str, Any]:
