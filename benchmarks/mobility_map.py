@@ -1,7 +1,7 @@
 """Build `templates/physics/data/mobility_map.npz` from full solutions, and measure its error.
 
-python -m benchmarks.mobility_map build      about 5 minutes on one core; goes on where it was stopped
-python -m benchmarks.mobility_map measure    about 8 minutes: fresh, finer solutions at random places
+python -m benchmarks.mobility_map build      about 6 minutes on one core; goes on where it was stopped
+python -m benchmarks.mobility_map measure    about 4 minutes: fresh, finer solutions at random places
 python -m benchmarks.mobility_map report     the errors found and the cost a point
 
 Solutions so far are kept in build/mobility_map, one file a gap.

@@ -6,6 +6,8 @@ the thin film has the same extent at every h; and ln(B/D). Cubic splines of the 
 short bearing's form (Booker 1971), smooth also where the journal is centred. Film and boundary
 condition: those of `film_mobility`, rotation and squeeze solved together, mirrored in direction.
 Built and measured by `benchmarks/mobility_map.py`, from solutions extrapolated by Richardson.
+Measured at 800 places: M errs by 7e-4 of its size or less to eps 0.999 at B/D 0.1 … 4 (median 5e-5), by
+3e-3 anywhere; P_max by 2 %, most where the journal separates; `mobility_error` gives it place by place.
 Range: eps 0 … 1 − 1e-6, B/D 0.02 … 10, every direction; beyond it is refused. Velocity of the centre:
 d(eps)/dt = M F psi²/(B D eta) + omega_bar × eps, omega_bar the mean speed of journal and sleeve.
 

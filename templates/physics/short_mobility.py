@@ -66,13 +66,14 @@ def mobility_Booker_1965(eps: Array, ratio: Array, load_direction: Array) -> Arr
     """
     _require_direction(load_direction)
     eps, ratio, chi = np.broadcast_arrays(*(np.asarray(x, float) for x in (eps, ratio, load_direction)))
-    cos, sin = np.cos(chi), np.abs(np.sin(chi))
+    turn = np.clip(np.abs(chi), 0, np.pi)
 
     def excess(direction: Array) -> Array:
         along, ahead = squeeze_force_Booker_1965(eps, ratio, direction)
-        return ahead * cos - along * sin
+        return np.asarray(np.arctan2(np.abs(ahead), along) - turn)
 
     alpha = bracketed_root(excess, np.zeros(chi.shape), np.full(chi.shape, np.pi))
+    alpha = np.where(np.isnan(alpha), turn, alpha)  # along the line of centres rounding hides the root
     force = squeeze_force_Booker_1965(eps, ratio, alpha)
     return np.stack([np.cos(alpha), np.copysign(np.sin(alpha), chi)]) / np.hypot(*force)
 
