@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -66,3 +66,19 @@ class Builds:
 def build_in_worker(id: str, version: int, parameters: Mapping[str, Any], folders: tuple[Path, ...]) -> Build:
     """`cad.regenerate.regenerate` with progress told to the job; runs in the worker's process."""
     return regenerate(id, version, parameters, folders=folders, report=report)
+
+
+def rehearse(called: Callable[[], bool]) -> None:
+    """Build something small, in a worker's process that waits: a first build takes twice as long as a second.
+
+    Raises
+    ------
+    InterruptedError
+        Between two of its steps, once it is called to its job; the kernel may word it as a GeometryError.
+    """
+
+    def give_way(_done: float, _what: str) -> None:
+        if called():
+            raise InterruptedError
+
+    regenerate("ball_bearing", 1, {"inner_diameter": 0.05}, report=give_way)

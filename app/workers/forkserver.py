@@ -14,56 +14,65 @@ import os
 import pkgutil
 import signal
 import socket
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from multiprocessing.connection import Connection
+from types import ModuleType
 
-from app.workers.job_process import serve_one_job
+from app.workers.job_process import Rehearsal, serve_one_job
 
 Nursery = dict[int, Connection]  # process id of a living job -> where its exit code is told
 
 
 def main(channel: int, modules: Iterable[str]) -> None:
     """Import the modules, then fork a job process for each pair of connections that the channel brings."""
-    for module in modules:
-        _preload(module)
+    loaded = [_preload(module) for module in modules]
+    rehearsals = [module.rehearse for module in loaded if module and hasattr(module, "rehearse")]
     gc.freeze()  # collections in the children shall not copy what is shared
     with socket.socket(fileno=channel) as server:
-        _serve(server)
+        _serve(server, rehearsals)
 
 
-def _preload(name: str) -> None:
+def _preload(name: str) -> ModuleType | None:
     """Import a module, or all modules of a package; the kernel is only loaded.
 
-    Once used, it has threads of its own, and a fork that lacks them would wait for them for ever.
+    Once used, it has threads of its own, and a fork that lacks them would wait for them for ever. So a module
+    may have a function `rehearse`, which each fork calls by itself while it waits for its job.
     """
     try:
         module = importlib.import_module(name)
     except ImportError as error:
         logging.getLogger(__name__).warning("%s is not preloaded: %s", name, error)
-        return
+        return None
     for found in pkgutil.iter_modules(getattr(module, "__path__", ()), f"{name}."):
         _preload(found.name)
+    return module
 
 
-def _serve(server: socket.socket) -> None:
+def _serve(server: socket.socket, rehearsals: Sequence[Rehearsal]) -> None:
     nursery: Nursery = {}
     signal.signal(signal.SIGCHLD, lambda *_: _bury(nursery))
     while descriptors := socket.recv_fds(server, 1, 2)[1]:
         job, status = descriptors
-        _fork(Connection(job), Connection(status), server, nursery)
+        _fork(Connection(job), Connection(status), server, nursery, rehearsals)
     for pid in list(nursery):
         with suppress(ProcessLookupError):
             os.killpg(pid, signal.SIGKILL)
 
 
-def _fork(job: Connection, status: Connection, server: socket.socket, nursery: Nursery) -> None:
+def _fork(
+    job: Connection,
+    status: Connection,
+    server: socket.socket,
+    nursery: Nursery,
+    rehearsals: Sequence[Rehearsal],
+) -> None:
     """Fork a job process in a process group of its own and tell its id."""
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGCHLD})  # it shall not die before it is registered
     parent = os.getpid()
     pid = os.fork()
     if pid == 0:
-        _become_job(job, (server, status, *nursery.values()), parent)
+        _become_job(job, (server, status, *nursery.values()), parent, rehearsals)
     with suppress(OSError):  # the server may have gone
         os.setpgid(pid, pid)
         status.send(pid)
@@ -72,14 +81,19 @@ def _fork(job: Connection, status: Connection, server: socket.socket, nursery: N
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGCHLD})
 
 
-def _become_job(job: Connection, foreign: Iterable[socket.socket | Connection], parent: int) -> None:
+def _become_job(
+    job: Connection,
+    foreign: Iterable[socket.socket | Connection],
+    parent: int,
+    rehearsals: Sequence[Rehearsal],
+) -> None:
     """Turn a fork of this process into a job process; does not return."""
     for other in foreign:  # a copy left open here would hide the end of its owner
         other.close()
     os.set_inheritable(job.fileno(), False)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGCHLD})
-    serve_one_job(job, parent)
+    serve_one_job(job, parent, rehearsals)
 
 
 def _bury(nursery: Nursery) -> None:

@@ -8,6 +8,8 @@ import resource
 import signal
 import sys
 import traceback
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, NoReturn
@@ -17,17 +19,24 @@ from app.workers.errors import MemoryExceeded, RemoteError
 from app.workers.messages import Progress, Raised, Request, Returned
 from app.workers.progress import reporting
 
+Rehearsal = Callable[[Callable[[], bool]], object]
+"""Does some work like a job's; it is given what tells whether the job has come, and then ends soon."""
+
 _PR_SET_PDEATHSIG = 1
 
 
-def serve_one_job(connection: Connection, parent: int) -> NoReturn:
+def serve_one_job(connection: Connection, parent: int, rehearsals: Iterable[Rehearsal] = ()) -> NoReturn:
     """Wait for one request, answer it, and end the process.
 
-    It ends without cleaning up: destructors of geometry kernels may crash when the work is long done.
+    Meanwhile it rehearses, so that the job finds ready what is made at first use. It ends without cleaning
+    up: destructors of geometry kernels may crash when the work is long done.
     """
     exit_code = 1
     try:
         _die_with(parent)
+        for rehearse in rehearsals:
+            with suppress(Exception):  # the job will meet it again, and say so
+                rehearse(connection.poll)
         connection.send_bytes(_answer(connection.recv_bytes(), connection))
         exit_code = 0
     finally:  # also when the server has closed its end, which is how it dismisses a process
