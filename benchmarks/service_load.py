@@ -3,6 +3,8 @@
 `python -m benchmarks.service_load URL SECONDS FILE` is that client; it prints requests per second.
 """
 
+import atexit
+import os
 import re
 import selectors
 import shutil
@@ -42,6 +44,7 @@ def _by_wrk(url: str, body: bytes, seconds: float) -> float:
 def _script(body: bytes) -> str:
     with tempfile.NamedTemporaryFile("w", suffix=".lua", delete=False) as file:
         file.write(_SCRIPT.format(body=body.decode()))
+    atexit.register(os.unlink, file.name)
     return file.name
 
 
