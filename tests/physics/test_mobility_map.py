@@ -6,6 +6,7 @@ Literature: Butenschön 1976, pure squeeze. Analytic: quadrature, short bearing,
 import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
+from test_film_literature import table
 
 from templates.physics.arrays import Array
 from templates.physics.film_mobility import film_mobility
@@ -24,7 +25,6 @@ from templates.physics.short_mobility import (
     mobility_Booker_1971,
     squeeze_force_Booker_1965,
 )
-from tests.physics.test_film_literature import table
 
 RNG = np.random.default_rng(17)
 
