@@ -36,7 +36,7 @@ KEPT = Path("build/mobility_map")
 NODES = 44, 10, 18
 CELLS = 8, 3, 6
 POINTS = 800
-MARGIN = 1.5
+MARGIN = 2.5
 MESH = 96, 12
 CENTRE = 0.05
 """The place on a chord, over sqrt(h exp(h)), that stands for its middle, where a mesh tells no direction."""

@@ -36,8 +36,8 @@ def squeeze_force_Booker_1965(eps: Array, ratio: Array, direction: Array) -> Arr
         ValueError: if an argument lies outside its range.
 
     Example:
-        >>> squeeze_force_Booker_1965(0.0, 0.5, 0.0).round(6)
-        array([0.785398, 0.      ])
+        >>> squeeze_force_Booker_1965(0.0, 0.5, 1.0).round(6)
+        array([0.424352, 0.66089 ])
     """
     require_film(eps, ratio)
     eps, ratio, direction = np.broadcast_arrays(*(np.asarray(x, float) for x in (eps, ratio, direction)))
