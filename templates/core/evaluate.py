@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import reduce
+from functools import cache, reduce
 from typing import Any
 
 import numpy as np
@@ -230,14 +230,24 @@ def _echo(template: Template, declared: Input) -> Echo:
     typed = template.ledger.typed.get(declared.name)
     if isinstance(typed, Typed):
         return Echo(typed.value, typed.unit, "given", typed.extra)
+    if typed is None and isinstance(declared, Given) and isinstance(declared.default, Typed):
+        return _default(declared)
     value = getattr(template, declared.attribute)
     source = "default" if typed is None else "given"
-    if isinstance(declared, Choice):
-        return Echo(value, None, source, {})
-    shown = declared.meaning.scale.from_si(value)
-    return Echo(
-        shown.tolist() if isinstance(shown, np.ndarray) else float(shown), declared.meaning.unit, source, {}
-    )
+    return Echo(value, None, source, {}) if isinstance(declared, Choice) else _shown(declared, value, source)
+
+
+@cache
+def _default(declared: Given) -> Echo:
+    """The constant default of an input; there are only so many."""
+    assert declared.default is not None
+    return _shown(declared, declared.default.si, "default")
+
+
+def _shown(declared: Given | Derived[Any], si: Any, source: str) -> Echo:
+    shown = declared.meaning.scale.from_si(si)
+    plain = shown.tolist() if isinstance(shown, np.ndarray) else float(shown)
+    return Echo(plain, declared.meaning.unit, source, {})
 
 
 def _standing(cls: type[Template]) -> list[Notice]:

@@ -10,6 +10,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -90,6 +91,7 @@ def _own_unit(raw: Any) -> str:
     return "1"
 
 
+@lru_cache(maxsize=4096)  # who varies one input sends the others again
 def _read_text(text: str, declared: str) -> Typed:
     match = _PATTERN.fullmatch(text) if len(text) <= _LONGEST_TEXT else None
     if match is None:
