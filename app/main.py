@@ -64,6 +64,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         description=DESCRIPTION,
         lifespan=lifespan,
         redoc_url=None,
+        telemetry={"tracing": False, "metrics": False, "logs": False},  # /metrics counts
         swagger_ui_parameters={"validatorUrl": None},  # the default one asks an outside address
         responses={
             "4XX": {"description": "a problem", "content": {problems.MEDIA_TYPE: {"schema": PROBLEM}}}
