@@ -12,6 +12,7 @@ import importlib
 import logging
 import os
 import pkgutil
+import selectors
 import signal
 import socket
 from collections.abc import Iterable, Sequence
@@ -50,11 +51,27 @@ def _preload(name: str) -> ModuleType | None:
 
 
 def _serve(server: socket.socket, rehearsals: Sequence[Rehearsal]) -> None:
+    """Fork and bury by turns: no death is handled in the middle of anything else."""
     nursery: Nursery = {}
-    signal.signal(signal.SIGCHLD, lambda *_: _bury(nursery))
-    while descriptors := socket.recv_fds(server, 1, 2)[1]:
-        job, status = descriptors
-        _fork(Connection(job), Connection(status), server, nursery, rehearsals)
+    deaths, knell = socket.socketpair()
+    with deaths, knell, selectors.DefaultSelector() as selector:
+        deaths.setblocking(False)
+        knell.setblocking(False)
+        signal.set_wakeup_fd(knell.fileno(), warn_on_full_buffer=False)
+        signal.signal(signal.SIGCHLD, lambda *_: None)  # a signal that is ignored would wake nobody
+        selector.register(server, selectors.EVENT_READ)
+        selector.register(deaths, selectors.EVENT_READ)
+        while True:
+            ready = {key.fileobj for key, _ in selector.select()}
+            if deaths in ready:
+                deaths.recv(4096)
+                _bury(nursery)
+            if server in ready:
+                descriptors = socket.recv_fds(server, 1, 2)[1]
+                if not descriptors:
+                    break
+                job, status = (Connection(descriptor) for descriptor in descriptors)
+                _fork(job, status, (server, deaths, knell), nursery, rehearsals)
     for pid in list(nursery):
         with suppress(ProcessLookupError):
             os.killpg(pid, signal.SIGKILL)
@@ -63,22 +80,20 @@ def _serve(server: socket.socket, rehearsals: Sequence[Rehearsal]) -> None:
 def _fork(
     job: Connection,
     status: Connection,
-    server: socket.socket,
+    own: Iterable[socket.socket],
     nursery: Nursery,
     rehearsals: Sequence[Rehearsal],
 ) -> None:
     """Fork a job process in a process group of its own and tell its id."""
-    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGCHLD})  # it shall not die before it is registered
     parent = os.getpid()
     pid = os.fork()
     if pid == 0:
-        _become_job(job, (server, status, *nursery.values()), parent, rehearsals)
+        _become_job(job, (*own, status, *nursery.values()), parent, rehearsals)
     with suppress(OSError):  # the server may have gone
         os.setpgid(pid, pid)
         status.send(pid)
     nursery[pid] = status
     job.close()
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGCHLD})
 
 
 def _become_job(
@@ -88,11 +103,11 @@ def _become_job(
     rehearsals: Sequence[Rehearsal],
 ) -> None:
     """Turn a fork of this process into a job process; does not return."""
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    signal.set_wakeup_fd(-1)
     for other in foreign:  # a copy left open here would hide the end of its owner
         other.close()
     os.set_inheritable(job.fileno(), False)
-    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGCHLD})
     serve_one_job(job, parent, rehearsals)
 
 
