@@ -1,0 +1,1 @@
+"""Stiffness of cranks: torsion, vibration, fatigue."""
