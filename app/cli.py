@@ -19,7 +19,7 @@ from app.storage.errors import DataFolderInUse
 from app.storage.folder import DataFolder
 from cad.catalogue import models as find_models
 from templates.core.catalogue import Catalogue
-from templates.core.errors import InvalidInputs, UnknownTemplate
+from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
 from templates.core.evaluate import evaluate as evaluate_template
 from templates.core.golden import freeze as freeze_template
 from templates.core.mathml import unit_symbol
@@ -29,7 +29,18 @@ from templates.core.template import Template
 GOLDEN = Path("tests/golden")
 
 
-@click.group()
+class Commands(click.Group):
+    """Commands whose user is told what is wrong with the catalogue, not where the program noticed."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command."""
+        try:
+            return super().invoke(ctx)
+        except (UnknownTemplate, UnusableFile) as error:
+            raise click.ClickException(str(error)) from None
+
+
+@click.group(cls=Commands)
 @click.version_option(package_name="crankwright")
 def main() -> None:
     """Engine-bearing calculations that drive geometry."""
@@ -49,6 +60,7 @@ def serve(host: str, port: int, data: Path | None) -> None:
     except OSError as error:
         told = f"{settings.data.absolute()} cannot hold the data: {error.strerror}"
         raise click.ClickException(f"{told}; name another folder by --data") from None
+    _catalogue(), find_models(*settings.template_folders)  # a broken file is told before anything is served
     if not _is_loopback(host):
         click.secho(
             f"WARNING: listening on {host} without authentication: whoever reaches this address can read and "
@@ -155,8 +167,6 @@ def freeze(id: str, version: int, folder: Path) -> None:
     try:
         cls = catalogue.get(id, version) if id in catalogue.ids else _find(id, version)
         click.echo(f"written: {freeze_template(cls, folder)}")
-    except UnknownTemplate as error:
-        raise click.ClickException(str(error)) from None
     except FileExistsError as error:
         raise click.ClickException(f"{error}: a released version is not changed; make a new one") from None
 
@@ -166,7 +176,4 @@ def _catalogue() -> Catalogue[Template]:
 
 
 def _find(id: str, version: int | None) -> type[Template]:
-    try:
-        return _catalogue().latest(id) if version is None else _catalogue().get(id, version)
-    except UnknownTemplate as error:
-        raise click.ClickException(str(error)) from None
+    return _catalogue().latest(id) if version is None else _catalogue().get(id, version)

@@ -18,6 +18,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 JSON_TYPES = {"application/json"}
 PATCH_TYPES = {"application/json", "application/merge-patch+json"}
+MOST_BRACKETS, MOST_QUOTES = 250_000, 400_000
+"""In one body. A list of numbers has one bracket; millions of them keep the parser, and the server, busy."""
 
 
 class HttpError(Exception):
@@ -30,6 +32,10 @@ class BodyTooLarge(HttpError):
 
 class TooManyValues(HttpError):
     """The answer would hold more values than the service gives at once."""
+
+
+class TooIntricate(HttpError):
+    """The body nests or names more than any design or table does."""
 
 
 class NotJson(HttpError):
@@ -74,7 +80,8 @@ class StrictRoute(APIRoute):
             told = StrictRequest(request.scope, request.receive)
             if takes_json:
                 _check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
-                await told.body()  # here, because FastAPI answers a BodyTooLarge in its reading with 400
+                # here, because FastAPI answers whatever is raised in its reading with 400
+                _check_intricacy(await told.body())
             return await self.shortcut(told) or await handler(told)
 
         return strict
@@ -91,6 +98,15 @@ def _check_type(request: Request, allowed: set[str]) -> None:
         return  # an empty body is judged by what the route needs
     if given.partition(";")[0].strip().lower() not in allowed:
         raise NotJson(f"content type {given[:80]!r} is not taken here; send {' or '.join(sorted(allowed))}")
+
+
+def _check_intricacy(body: bytes) -> None:
+    """Count what makes parsing dear, which takes no time."""
+    if body.count(b"[") + body.count(b"{") > MOST_BRACKETS or body.count(b'"') > MOST_QUOTES:
+        told = f"a body may open {MOST_BRACKETS} brackets and have {MOST_QUOTES // 2} texts and names"
+        raise TooIntricate(
+            f'{told}; send numbers as one list with one unit: {{"value": [1, 2], "unit": "mm"}}'
+        )
 
 
 class BodyLimit:

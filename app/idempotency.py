@@ -7,13 +7,17 @@ either the change or nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
+from sqlalchemy import delete
 from sqlalchemy.orm import Session
 
 from app.designs.errors import KeyReused
-from app.storage.identity import now
+from app.storage.identity import as_text, now
 from app.storage.tables import IdempotencyRow
+
+KEPT = timedelta(days=7)
 
 
 @dataclass(frozen=True)
@@ -52,3 +56,9 @@ class Once:
                     created=now(),
                 )
             )
+
+
+def forget_old_keys(session: Session) -> None:
+    """Drop the keys that no client will send again."""
+    oldest = as_text(datetime.now(UTC) - KEPT)
+    session.execute(delete(IdempotencyRow).where(IdempotencyRow.created < oldest))

@@ -24,6 +24,7 @@ from app.designs.routes import router as designs
 from app.designs.service import REGENERATE, Designs
 from app.health import Metrics
 from app.http import BodyLimit, BodyTooLarge
+from app.idempotency import forget_old_keys
 from app.jobs.routes import router as jobs
 from app.jobs.service import Jobs
 from app.jobs.shutdown import streams_end_on_signal
@@ -100,6 +101,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     migrate(url)
     database = Database(url)
     stack.callback(database.close)
+    database.write(forget_old_keys)
     store = ArtifactStore(folder.artifacts)
     catalogues = Catalogues(
         find_templates(settings.template_folders), find_models(*settings.template_folders)

@@ -16,7 +16,7 @@ from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
 
 from app.designs import errors as designs
-from app.http import BodyTooLarge, NotJson, PreconditionRequired, TooManyValues
+from app.http import BodyTooLarge, NotJson, PreconditionRequired, TooIntricate, TooManyValues
 from app.jobs import errors as jobs
 from app.storage import errors as storage
 from app.workers import errors as workers
@@ -54,6 +54,7 @@ TABLE: dict[type[Exception], Kind] = {
     PreconditionRequired: Kind("precondition-required", 428, "If-Match is needed", "send the design's ETag"),
     NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),
     BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
+    TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),
     jobs.JobNotFound: Kind("no-such-job", 404, "No such job", "GET /api/v1/jobs lists them"),
     jobs.JobFinished: Kind("job-finished", 409, "The job has ended", "nothing is left to cancel"),
@@ -135,6 +136,9 @@ _CARRIED: dict[type[Exception], Callable[[Any], dict[str, Any]]] = {
     templates.Unreachable: _unreachable,
     GeometryError: _geometry,
     designs.NotConverged: lambda error: {"rounds": error.rounds},
+    workers.WorkerError: lambda error: {
+        "errors": [{"name": "model", "code": kind_of(error).slug, "detail": str(error)}]
+    },
 }
 
 

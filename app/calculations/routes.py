@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import cast, get_type_hints
 
 from fastapi import APIRouter, Response
-from pydantic_core import from_json, to_json
+from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
 
 from app.calculations.schemas import Asked, EvaluateIn, SolveIn
@@ -31,7 +31,7 @@ class PlainRoute(StrictRoute):
         if len(id) > LONGEST_ID or not PLAIN_NUMBER.fullmatch(number):
             return None
         try:
-            body = self.asked.model_validate(from_json(await request.body()))
+            body = self.asked.model_validate(await request.json())
         except ValueError:  # no JSON, or not what is asked for
             return None
         answer: Response = await self.endpoint(id, int(number), body, request.app.state.catalogues)

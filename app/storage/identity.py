@@ -11,5 +11,10 @@ def new_id() -> str:
 
 
 def now() -> str:
-    """Return the present time in UTC as ISO 8601 text of constant length: text order is time order."""
-    return datetime.now(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
+    """Return the present time in UTC as text."""
+    return as_text(datetime.now(UTC))
+
+
+def as_text(moment: datetime) -> str:
+    """Return a moment in UTC as ISO 8601 text of constant length: text order is time order."""
+    return moment.isoformat(timespec="microseconds").replace("+00:00", "Z")

@@ -12,6 +12,7 @@ import importlib
 import importlib.util
 import inspect
 import sys
+import traceback
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,7 +20,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Generic, TypeVar
 
-from templates.core.errors import UnknownTemplate, plain
+from templates.core.errors import UnknownTemplate, UnusableFile, plain
 from templates.core.template import VERSIONED, Template
 
 T = TypeVar("T", bound=Template)
@@ -80,18 +81,18 @@ def find(folders: Iterable[Path], base: type[T], kind: str = "template") -> Cata
 
     Raises
     ------
-    TypeError
-        If a file declares none or several, or two files claim one version.
+    UnusableFile
+        If a file cannot be imported, declares none or several, or claims another file's version.
     """
     versions: dict[tuple[str, int], type[T]] = {}
     for path in sorted(file for folder in folders for file in folder.rglob("*_v*.py")):
         if not VERSIONED.match(path.stem):
             continue
-        cls = _declared_in(_imported(path))
+        cls = _declared_in(_usable(path), path)
         if not issubclass(cls, base):
             continue  # a calculation beside models
         if (cls.id, cls.version) in versions:
-            raise TypeError(f"{path}: {cls.id} version {cls.version} stands in another file already")
+            raise UnusableFile(str(path), f"{cls.id} version {cls.version} stands in another file already")
         versions[cls.id, cls.version] = cls
     return Catalogue(dict(sorted(versions.items())), kind)
 
@@ -124,14 +125,28 @@ def _package(folder: Path) -> str:
     return f"{parent}.{folder.name}" if parent else folder.name
 
 
-def _declared_in(module: ModuleType) -> type[Template]:
+def _usable(path: Path) -> ModuleType:
+    """The module of a file, or the line of it that fails."""
+    try:
+        return _imported(path)
+    except Exception as error:
+        lines = [
+            frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)
+        ]
+        if isinstance(error, SyntaxError):
+            lines.append(error.lineno)
+        where = f"line {lines[-1]}: " if lines else ""
+        raise UnusableFile(str(path), f"{where}{type(error).__name__}: {error}") from error
+
+
+def _declared_in(module: ModuleType, path: Path) -> type[Template]:
     found = [
         value
         for value in vars(module).values()
         if isinstance(value, type) and issubclass(value, Template) and value.__module__ == module.__name__
     ]
     if len(found) != 1:
-        raise TypeError(f"{module.__file__} declares {len(found)} templates; it must declare one")
+        raise UnusableFile(str(path), f"it declares {len(found)} templates; it must declare one")
     return found[0]
 
 

@@ -3,6 +3,7 @@
 TemplateError
     InvalidInputs       wrong inputs, all of them at once, each a `Fault`
     UnknownTemplate     no such template or version in the catalogue
+    UnusableFile        a file in a folder of templates or models is broken
     Unreachable         `solve` cannot reach the target within the bounds
     FaultyText          a text that is no quantity, unit or relation
 """
@@ -56,6 +57,13 @@ class UnknownTemplate(TemplateError):
     def __init__(self, name: str, detail: str) -> None:
         self.name = name
         super().__init__(detail)
+
+
+class UnusableFile(TemplateError):
+    """A file of the catalogue that cannot be imported, or does not declare what its name promises."""
+
+    def __init__(self, path: str, reason: str) -> None:
+        super().__init__(f"{path}: {reason}")
 
 
 class Unreachable(TemplateError):

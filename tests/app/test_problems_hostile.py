@@ -210,7 +210,7 @@ class TestArrays:
     def test_evaluate(self, http, axes, length):
         names = ("radial_load", "diametral_clearance", "bearing_diameter", "bearing_width")[:axes]
         units = ("N", "um", "m", "m")
-        arrays = {n: {"value": axis(i, length), "unit": units[i]} for i, n in enumerate(names)}
+        arrays = {n: {"value": axis(i, length, axes), "unit": units[i]} for i, n in enumerate(names)}
         answer = post(http, f"{FILM}/evaluate", json.dumps({"inputs": {**OIL_FILM, **arrays}}))
         assert "values" in problem(answer, 413, "too-many-values")["detail"]
 
@@ -220,6 +220,17 @@ class TestArrays:
         inputs["bearing_width"] = {"value": [[[0.018]]] * 20_000, "unit": "m"}
         answer = post(http, f"{FILM}/evaluate", json.dumps({"inputs": inputs}))
         problem(answer, 413, "too-many-values")
+
+    @pytest.mark.parametrize(
+        "body",
+        [
+            b'{"inputs": {"speed": [' + b"[]," * 10**6 + b"[]]}}",
+            b'{"inputs": {' + b",".join(b'"name_%d": "1"' % i for i in range(150_000)) + b"}}",
+        ],
+        ids=["brackets", "names"],
+    )
+    def test_bodies_that_only_keep_the_parser_busy(self, http, body):
+        problem(post(http, f"{FILM}/evaluate", body), 413, "body-too-intricate")
 
     def test_shapes_that_do_not_fit(self, http):
         arrays = {

@@ -7,7 +7,7 @@ import pytest
 
 import templates
 from templates.core.catalogue import digest, find
-from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, Unreachable
+from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, Unreachable, UnusableFile
 from templates.core.evaluate import evaluate
 from templates.core.golden import freeze, golden_file, record
 from templates.core.template import Template
@@ -64,7 +64,7 @@ class TestFinding:
         results = [evaluate(cls, cls.example).outputs["twice_the_length"].value for cls in (one, other)]
         assert results == [4, 6]
         assert digest(one) != digest(other)
-        with pytest.raises(TypeError, match="another file already"):
+        with pytest.raises(UnusableFile, match="another file already"):
             find([tmp_path], Template)
 
     def test_property_latest_is_the_newest_that_is_not_withdrawn(self, tmp_path):
@@ -85,13 +85,13 @@ class TestFinding:
 
     @pytest.mark.parametrize("source", ["x = 1", SOURCE + "\n\nclass Second(Own):\n    '''Two.'''\n"])
     def test_property_a_file_declares_one(self, tmp_path, source):
-        with pytest.raises(TypeError, match="must declare one"):
+        with pytest.raises(UnusableFile, match="must declare one"):
             find([written(tmp_path / "own", source=source)], Template)
 
     def test_property_a_broken_file_is_not_remembered(self, tmp_path):
         folder = written(tmp_path / "own", source="1 / 0")
         for _ in range(2):
-            with pytest.raises(ZeroDivisionError):
+            with pytest.raises(UnusableFile, match=r"own_v1\.py: line 1: ZeroDivisionError"):
                 find([folder], Template)
 
     def test_property_other_files_are_left_alone(self, tmp_path):
