@@ -25,6 +25,7 @@ _GREEK = {
     "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "pi",
     "rho", "sigma", "tau", "phi", "psi", "omega",
 }  # fmt: skip
+_LESS, _MORE = "\ue000", "\ue001"  # private letters, which no formula has
 _SPECIAL = {"eps": r"\varepsilon"}
 _FUNCTIONS = {"log10": r"\lg", "log": r"\ln", "exp": r"\exp", "sin": r"\sin", "cos": r"\cos", "tan": r"\tan"}
 
@@ -83,8 +84,10 @@ def symbols(cls: type[Template]) -> dict[str, str]:
 
 @lru_cache(maxsize=4096)
 def mathml(latex: str) -> str:
-    """LaTeX as MathML that browsers draw themselves."""
-    return latex2mathml.converter.convert(latex)
+    """LaTeX as MathML that browsers draw themselves; what it quotes of a user's words is escaped."""
+    # latex2mathml copies texts as they are: signs of its own stand for the brackets of markup meanwhile.
+    told = latex2mathml.converter.convert(latex.replace("<", _LESS).replace(">", _MORE))
+    return str(told.replace(_LESS, "&lt;").replace(_MORE, "&gt;"))
 
 
 class Writer:

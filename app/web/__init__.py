@@ -1,0 +1,1 @@
+"""The pages: what the REST interface says, as an engineer reads it."""

@@ -1,0 +1,83 @@
+"""Numbers and units as a worksheet shows them: five significant digits, aligned at the point, the unit once.
+
+`static/numbers.js` does the same while a user types; `tests/web` compares the two.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+DIGITS = 5
+LARGEST_PLAIN = 1e6  # from here on with a power of ten
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+WORDS = {"deg": "°", "degC": "°C", "degF": "°F", "um": "µm", "ohm": "Ω", "thou": "mil", "inch": "in"}
+
+
+class Aligned(NamedTuple):
+    """A number in two parts that meet at the decimal point."""
+
+    whole: str
+    rest: str
+
+
+def aligned(value: float) -> Aligned:
+    """A number with five significant digits: `3.2449` → `3` and `.2449`; `1.2e-7` → `1` and `.2·10⁻⁷`."""
+    rounded = float(f"{value:.{DIGITS}g}")
+    shown = f"{rounded:.0f}" if 1e4 <= abs(rounded) < LARGEST_PLAIN else f"{rounded:.{DIGITS}g}"
+    mantissa, _, exponent = shown.partition("e")
+    whole, point, fraction = mantissa.partition(".")
+    power = f"·10{str(int(exponent)).translate(SUPERSCRIPTS)}" if exponent else ""
+    return Aligned(whole.replace("-", "−"), point + fraction + power)
+
+
+def plain(value: float) -> str:
+    """A number with five significant digits on one line."""
+    return "".join(aligned(value))
+
+
+def unit(text: str | None) -> str:
+    """A unit as it is printed, in the order it was written: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
+
+    Nothing for a pure number or a text.
+    """
+    if text in (None, "1"):
+        return ""
+    raised = re.sub(r"\*\*(-?[0-9]+)", lambda power: power[1].translate(SUPERSCRIPTS), text)
+    return re.sub(r"[A-Za-z_]+", lambda word: WORDS.get(word[0], word[0]), raised).replace("*", "·")
+
+
+def percent(relative: float) -> str:
+    """A relative error in two digits: `0.24` → `24 %`, `4.5e-5` → `0.0045 %`."""
+    return f"{float(f'{relative * 100:.2g}'):g} %"
+
+
+def told(quantity: Any) -> str:
+    """A quantity, as typed or as answered, in one line: `25 kN`, `= scale * 48 mm`, `[1, 2, 3] mm`."""
+    if quantity is None:
+        return ""
+    if not isinstance(quantity, Mapping):
+        return _written(quantity)
+    if quantity["value"] is None:
+        return str(quantity.get("reason", "none"))
+    parts = (_written(quantity["value"]), unit(quantity.get("unit")), _tolerance(quantity))
+    return " ".join(filter(None, parts))
+
+
+def _written(value: Any) -> str:
+    if isinstance(value, list):
+        return _list(value)
+    return plain(value) if isinstance(value, float) else str(value)
+
+
+def _list(values: list[Any]) -> str:
+    """A short list whole, of a long one the first, the last and how many there are."""
+    few = len(values) <= 6
+    inside = ", ".join(map(_written, values)) if few else f"{_written(values[0])} … {_written(values[-1])}"
+    return f"[{inside}]" if few else f"[{inside}] ({len(values)} values)"
+
+
+def _tolerance(more: Mapping[str, Any]) -> str:
+    signs = (("plus", "+"), ("minus", "−"))
+    return " ".join(f"{sign}{more[name]}" for name, sign in signs if name in more)
