@@ -61,8 +61,13 @@ class Given(Declaration):
 class Curve(Given):
     """An input that is an array along the crank angle: its last axis is the cycle.
 
-    A curve means something only as a whole: one point out of its domain refuses it.
+    A curve means something only as a whole: one point out of its domain refuses it. Axes before the last are
+    points, as of other inputs. Where it may be `constant`, a single value holds all over the cycle.
     """
+
+    def __init__(self, meaning: Meaning, default: Any = None, *, constant: bool = False) -> None:
+        super().__init__(meaning, default)
+        self.constant = constant
 
 
 class Table(Given):
@@ -221,9 +226,9 @@ def limits(
     return Bounds(ge=ge, le=le), Bounds(ge=published[0], le=published[1])
 
 
-def curve(unit: str, words: str, *, default: Any = None, **keywords: Any) -> Any:
-    """Declare an input that is an array along the crank angle (last axis)."""
-    return Curve(meaning(unit, words, **keywords), default)
+def curve(unit: str, words: str, *, default: Any = None, constant: bool = False, **keywords: Any) -> Any:
+    """Declare an input that is an array along the crank angle (last axis), or a `constant` if it may be."""
+    return Curve(meaning(unit, words, **keywords), default, constant=constant)
 
 
 def choice(*options: str, words: str, default: str | None = None, name: str | None = None) -> Any:

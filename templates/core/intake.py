@@ -70,12 +70,13 @@ def _bounded(declared: Input, typed: Typed, ledger: Ledger, faults: list[Fault])
     meaning, value = declared.meaning, typed.si
     if isinstance(declared, Table):
         return _rows(declared, value, faults)
-    if isinstance(value, float) and not isinstance(declared, Curve) and meaning.admits(value):
+    is_curve = isinstance(declared, Curve) and not (declared.constant and isinstance(value, float))
+    if isinstance(value, float) and not is_curve and meaning.admits(value):
         value = np.float64(value)
         if meaning.published_si is not None:
             warn_if_outside(ledger, declared, value)
         return value
-    is_curve, inside = isinstance(declared, Curve), meaning.admits(value)
+    inside = meaning.admits(value)
     if is_curve and not isinstance(value, np.ndarray):
         told = f"{meaning.words} is a curve: give an array over the cycle, in {meaning.unit}"
         faults.append(Fault(declared.name, "not_a_curve", told))
@@ -131,7 +132,7 @@ def as_typed(cls: type[Template], name: str, value: Any) -> Any:
 
 
 def check_shapes(self: Template) -> None:
-    """Refuse arrays that cannot be broadcast together.
+    """Refuse arrays whose points cannot be broadcast together, and curves of different lengths.
 
     Raises
     ------
@@ -140,7 +141,8 @@ def check_shapes(self: Template) -> None:
     """
     arrays = {n: v for n, v in vars(self).items() if isinstance(v, np.ndarray)}
     try:
-        np.broadcast_shapes(*(array.shape for array in arrays.values()))
+        points_of(self, arrays)
+        np.broadcast_shapes(*(v.shape[-1:] for n, v in arrays.items() if is_curve(self, n)))
     except ValueError:
         names = {self.declarations[n].name: v.shape for n, v in arrays.items()}
         told = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
@@ -148,6 +150,17 @@ def check_shapes(self: Template) -> None:
             f"arrays of different shapes do not fit together ({told}); give equal lengths or a single value"
         )
         raise InvalidInputs([Fault(name, "shape", detail) for name in names]) from None
+
+
+def is_curve(self: Template, attribute: str) -> bool:
+    """Whether an attribute is an input along the crank angle."""
+    return isinstance(self.declarations[attribute], Curve)
+
+
+def points_of(self: Template, arrays: Mapping[str, Array]) -> tuple[int, ...]:
+    """The shape of the points that arrays of inputs, by attribute, make; a curve is one thing for each."""
+    shapes = (array.shape[:-1] if is_curve(self, name) else array.shape for name, array in arrays.items())
+    return np.broadcast_shapes(*shapes)
 
 
 def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
@@ -176,4 +189,6 @@ def _shown(self: Template, declared: Declaration) -> str:
     value = getattr(self, declared.attribute)
     if isinstance(value, str):
         return value
+    if np.ndim(value):
+        return f"{np.shape(value)[-1]} values from {declared.meaning.told(value.flat[0])}"
     return "not given" if np.isnan(value) else declared.meaning.told(value)

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from templates.core.declare import Text
 from templates.core.errors import Fault, InvalidInputs
+from templates.core.intake import points_of
 from templates.core.template import Template
 
 Array = NDArray[np.float64]
@@ -183,6 +184,5 @@ def _meets(measured: Accuracy, rung: Template, names: list[str], tolerance: floa
 
 def _shape(template: Template) -> tuple[int, ...]:
     """The shape of the points that the inputs make."""
-    given = (vars(template)[name] for name in template.ledger.handed)
-    shapes = [value.shape for value in given if isinstance(value, np.ndarray)]
-    return np.broadcast_shapes(*shapes) if shapes else ()
+    given = {name: vars(template)[name] for name in template.ledger.handed}
+    return points_of(template, {name: v for name, v in given.items() if isinstance(v, np.ndarray)})

@@ -110,7 +110,8 @@ def _default(cls: type[Template], declared: Input) -> dict[str, Any]:
 def _quantity_in(declared: Declaration) -> dict[str, Any]:
     """The written forms of a quantity: text, object, and bare numbers where the unit is 1."""
     values = {"type": "array", "minItems": 1}
-    magnitude = values if isinstance(declared, (Curve, Table)) else {"type": ["number", "array"]}
+    listed = isinstance(declared, Table) or (isinstance(declared, Curve) and not declared.constant)
+    magnitude = values if listed else {"type": ["number", "array"]}
     typed = {
         "type": "object",
         "required": ["value", "unit"],
@@ -122,8 +123,8 @@ def _quantity_in(declared: Declaration) -> dict[str, Any]:
             "minus": {"type": ["string", "number"]},
         },
     }
-    bare = [{"type": "number"}] if declared.meaning.unit == "1" and not isinstance(declared, Curve) else []
-    text = [] if isinstance(declared, (Curve, Table)) else [{"type": "string"}]
+    bare = [{"type": "number"}] if declared.meaning.unit == "1" and not listed else []
+    text = [] if listed else [{"type": "string"}]
     return {"anyOf": [*text, *bare, typed, values]}
 
 

@@ -41,7 +41,15 @@ from templates.core.declare import (
     units,
 )
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.intake import Input, admitted, as_typed, check_shapes, read_inputs, violations
+from templates.core.intake import (
+    Input,
+    admitted,
+    as_typed,
+    check_shapes,
+    is_curve,
+    read_inputs,
+    violations,
+)
 from templates.core.ledger import Ledger, Mask
 
 __all__ = [
@@ -148,7 +156,7 @@ class Template:
         values = {name: vars(self)[name] for name in names if name in self.ledger.handed}
         masks = self._own_masks()
         if where is not None:
-            values = {name: _picked(value, where) for name, value in values.items()}
+            values = {name: _picked(value, where, is_curve(self, name)) for name, value in values.items()}
             masks = [Mask(m.names, np.broadcast_to(m.where, where.shape)[where], m.reason) for m in masks]
         ledger = Ledger(typed=self.ledger.typed, masks=masks, missing=self.ledger.missing)
         return type(self)({**values, "level": level}, ledger)
@@ -234,5 +242,8 @@ class Template:
         return value
 
 
-def _picked(value: Any, where: NDArray[np.bool_]) -> Any:
-    return np.broadcast_to(value, where.shape)[where] if isinstance(value, np.ndarray) else value
+def _picked(value: Any, where: NDArray[np.bool_], along_cycle: bool) -> Any:
+    if not isinstance(value, np.ndarray):
+        return value
+    places = value.shape[-1:] if along_cycle else ()
+    return np.broadcast_to(value, where.shape + places)[where]

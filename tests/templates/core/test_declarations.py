@@ -167,10 +167,19 @@ class TestInputs:
         }
 
     def test_property_arrays_must_fit_together(self):
-        wrong = {"bore": {"value": [10, 20], "unit": "mm"}}
-        with pytest.raises(InvalidInputs, match="bore 2, load 3") as refusal:
+        wrong = {"bore": {"value": [10, 20], "unit": "mm"}, "rod_mass": {"value": [1, 2, 3], "unit": "kg"}}
+        with pytest.raises(InvalidInputs, match="bore 2, rod_mass 3") as refusal:
             Shaft.from_quantities({**Shaft.example, **wrong})
-        assert codes(refusal) == {("bore", "shape"), ("load", "shape")}
+        assert codes(refusal) >= {("bore", "shape"), ("rod_mass", "shape")}
+
+    def test_property_curve_is_one_thing_for_each_point(self):
+        """Points of other inputs have nothing to do with the places of a curve, only with its other axes."""
+        two = {"bore": {"value": [10, 20], "unit": "mm"}, "outer_diameter": "40 mm"}
+        found = evaluate(Shaft, {**Shaft.example, **two}, outputs=["pressure"]).outputs["pressure"]
+        assert found.value.shape == (2,)
+        rows = {"load": {"value": [[1, 3, 2]] * 3, "unit": "kN"}}
+        with pytest.raises(InvalidInputs, match="bore 2, load 3×3"):
+            Shaft.from_quantities({**Shaft.example, **two, **rows})
 
 
 class TestLimits:
