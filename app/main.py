@@ -14,6 +14,7 @@ from fastapi_offline import FastAPIOffline
 
 from app import health, problems
 from app.calculations.routes import router as calculations
+from app.calculations.routes import worksheets
 from app.catalogue.finding import find_templates
 from app.catalogue.routes import router as catalogue
 from app.designs.events import router as design_events
@@ -72,7 +73,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         },
     )
     # Routers are tried one after another; that of `evaluate`, which is called most, is the first.
-    for router in (calculations, catalogue, designs, design_files, design_events, models, jobs):
+    for router in (calculations, worksheets, catalogue, designs, design_files, design_events, models, jobs):
         app.include_router(router)
     app.include_router(health.router)
     app.include_router(problems.router)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import re
 from functools import cached_property
-from typing import cast, get_type_hints
+from typing import Any, cast, get_type_hints
 
 from fastapi import APIRouter, Response
 from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
 
+from app.calculations.display import Units
 from app.calculations.schemas import Asked, EvaluateIn, SolveIn
 from app.calculations.service import run_evaluate, run_solve
 from app.calculations.size import points
+from app.calculations.worksheet import run_worksheet
 from app.catalogue.routes import Id, Number
 from app.dependencies import TheCatalogues
 from app.http import StrictRequest, StrictRoute
@@ -63,6 +65,17 @@ async def solve(id: Id, number: Number, body: SolveIn, catalogues: TheCatalogues
     """Find the input that gives a wanted output, between bounds."""
     cls = catalogues.templates.get(id, number)
     return _json(await run_in_threadpool(lambda: to_json(run_solve(cls, body))))
+
+
+worksheets = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=StrictRoute)
+
+
+@worksheets.post("/{id}/versions/{number}/worksheet")
+def worksheet(
+    id: Id, number: Number, body: EvaluateIn, catalogues: TheCatalogues, units: Units = "si"
+) -> dict[str, Any]:
+    """Evaluate a template, with every formula written out: symbol = expression = numbers = result."""
+    return run_worksheet(catalogues.templates.get(id, number), body, units)
 
 
 def _json(content: bytes) -> Response:

@@ -8,7 +8,7 @@ from app.calculations import rendering
 from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.size import points
 from app.http import TooManyValues
-from templates.core.evaluate import evaluate
+from templates.core.evaluate import Evaluation, evaluate
 from templates.core.solve import solve
 from templates.core.template import Template
 
@@ -16,6 +16,11 @@ MOST_VALUES = 2_000_000  # in one answer: some 40 MB of JSON
 
 
 def run_evaluate(cls: type[Template], body: EvaluateIn) -> dict[str, Any]:
+    """Evaluate a template, as `evaluated`."""
+    return rendering.evaluation(evaluated(cls, body))
+
+
+def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
     """Evaluate a template.
 
     Raises
@@ -30,10 +35,9 @@ def run_evaluate(cls: type[Template], body: EvaluateIn) -> dict[str, Any]:
     if values > MOST_VALUES:
         told = f"{values} values in one answer are more than {MOST_VALUES}; name fewer outputs or points"
         raise TooManyValues(told)
-    made = evaluate(
+    return evaluate(
         cls, body.inputs, outputs=body.outputs, units=body.units, level=body.level, tolerance=body.tolerance
     )
-    return rendering.evaluation(made)
 
 
 def run_solve(cls: type[Template], body: SolveIn) -> dict[str, Any]:

@@ -5,18 +5,31 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 from sqlalchemy.orm import Session
 
+from app.calculations.display import System, converted
 from app.designs import repository, results
 from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
 from app.designs.graph import Catalogues, build_graph, raise_if
 from app.designs.service import built, read_document, resolved, starts
+from app.designs.worksheet import previewed
 from templates.core.errors import Fault
 
 
-def preview(session: Session, catalogues: Catalogues, id: str, patch: Mapping[str, Any]) -> dict[str, Any]:
+def preview(
+    session: Session,
+    catalogues: Catalogues,
+    id: str,
+    patch: Mapping[str, Any],
+    *,
+    worksheet: bool = False,
+    system: System = "si",
+) -> dict[str, Any]:
     """Old and new values for a patch of a design; nothing is saved or built.
+
+    With `worksheet`, every step as a revision would hold it, its formulas written out.
 
     Raises
     ------
@@ -29,12 +42,15 @@ def preview(session: Session, catalogues: Catalogues, id: str, patch: Mapping[st
     changed = resolved(read_document(merge(head.document, patch)), catalogues)
     new, mismatched = _calculated(session, catalogues, changed)
     raise_if(new.faults)  # not those of the old one: the change may be to mend it
-    return {
+    steps = results.steps(new)
+    told = {
         "revision": head.number,
-        "outputs": _compared(results.outputs(results.steps(old)), results.outputs(results.steps(new))),
-        "warnings": _warnings(new),
+        "outputs": _compared(results.outputs(results.steps(old)), results.outputs(steps)),
+        "warnings": _warnings(steps),
         "model_parameters": _model_parameters(old, new, mismatched),
     }
+    more = {"steps": previewed(new, steps, system), "parameters": _values(new)} if worksheet else {}
+    return {**converted(told, system), **more}
 
 
 def _calculated(
@@ -54,9 +70,21 @@ def _compared(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
     return {name: {"old": old.get(name), "new": new.get(name)} for name in names}
 
 
-def _warnings(new: Calculation) -> list[dict[str, Any]]:
-    told = results.steps(new).items()
+def _warnings(steps: Mapping[str, Any]) -> list[dict[str, Any]]:
+    told = steps.items()
     return [{**w, "name": f"{step}.{w['name']}"} for step, done in told for w in done.get("warnings", ())]
+
+
+def _values(new: Calculation) -> dict[str, Any]:
+    """What the parameters of the design come to, in SI; those that wait for a solid are left out."""
+    names = (name for name in new.graph.parameters if name in new.values)
+    return {
+        name: {
+            "value": np.asarray(new.values[name]).tolist(),
+            "unit": f"{new.graph.kinds[name].base:~}" or "1",
+        }
+        for name in names
+    }
 
 
 def _model_parameters(old: Calculation, new: Calculation, mismatched: Mapping[str, Fault]) -> dict[str, Any]:

@@ -8,12 +8,14 @@ from fastapi import APIRouter, Body, Header, Path, Query, Response
 from fastapi.responses import JSONResponse
 from starlette.concurrency import run_in_threadpool
 
+from app.calculations.display import Units, converted
 from app.dependencies import TheCatalogues, TheDatabase, TheDesigns, TheJobs, TheOnce
 from app.designs import repository, views
 from app.designs.explain import explain
 from app.designs.preview import preview
 from app.designs.schemas import LONGEST_NOTE, CopyIn, DesignIn, RestoreIn
 from app.designs.service import Designs, Saved
+from app.designs.worksheet import worksheets
 from app.http import StrictRoute
 from app.jobs.service import Jobs
 from app.paging import Cursor, Limit, page
@@ -93,11 +95,18 @@ def delete_design(id: Id, designs: TheDesigns) -> Response:
 
 
 @router.post("/{id}/preview")
-def preview_design(id: Id, body: Patch, database: TheDatabase, catalogues: TheCatalogues) -> dict[str, Any]:
+def preview_design(
+    id: Id,
+    body: Patch,
+    database: TheDatabase,
+    catalogues: TheCatalogues,
+    worksheet: Annotated[bool, Query(description="also every step, its formulas written out")] = False,
+    units: Units = "si",
+) -> dict[str, Any]:
     """What a change would do to outputs and model parameters; nothing is saved."""
     patch, _ = _noted(body)
     with database.read() as session:
-        return preview(session, catalogues, id, patch)
+        return preview(session, catalogues, id, patch, worksheet=worksheet, system=units)
 
 
 @router.post("/{id}/auto-map", responses=LATER)
@@ -168,11 +177,23 @@ def show_revision(id: Id, number: Number, database: TheDatabase) -> dict[str, An
         return views.revision(session, repository.revision(session, id, number))
 
 
+@router.get("/{id}/revisions/{number}/worksheet")
+def show_worksheet(
+    id: Id, number: Number, database: TheDatabase, catalogues: TheCatalogues, units: Units = "si"
+) -> dict[str, Any]:
+    """A revision with every formula of its steps written out: symbol = expression = numbers = result."""
+    with database.read() as session:
+        told = views.revision(session, repository.revision(session, id, number))
+    models = converted(told["models"], units)
+    return {**told, "models": models, "steps": worksheets(told["steps"], catalogues.templates, units)}
+
+
 @router.get("/{id}/measurements")
-def measurements(id: Id, database: TheDatabase) -> dict[str, Any]:
+def measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str, Any]:
     """What the newest good models measure, their dimensions read back from the STEP files."""
     with database.read() as session:
-        return views.measurements(session, id)
+        told: dict[str, Any] = converted(views.measurements(session, id), units)
+        return told
 
 
 @router.get("/{id}/explain/{parameter}")

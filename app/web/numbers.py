@@ -5,14 +5,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple
+
+from templates.core.mathml import unit_symbol
 
 DIGITS = 5
 LARGEST_PLAIN = 1e6  # from here on with a power of ten
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-WORDS = {"deg": "°", "degC": "°C", "degF": "°F", "um": "µm", "ohm": "Ω", "thou": "mil", "inch": "in"}
 
 
 class Aligned(NamedTuple):
@@ -38,14 +38,8 @@ def plain(value: float) -> str:
 
 
 def unit(text: str | None) -> str:
-    """A unit as it is printed, in the order it was written: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
-
-    Nothing for a pure number or a text.
-    """
-    if text in (None, "1"):
-        return ""
-    raised = re.sub(r"\*\*(-?[0-9]+)", lambda power: power[1].translate(SUPERSCRIPTS), text)
-    return re.sub(r"[A-Za-z_]+", lambda word: WORDS.get(word[0], word[0]), raised).replace("*", "·")
+    """A unit as it is printed: `mm**2/s` → `mm²/s`; nothing for a pure number or a text."""
+    return unit_symbol(text) if text else ""
 
 
 def percent(relative: float) -> str:

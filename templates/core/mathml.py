@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 import math
+import re
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Any
@@ -14,7 +15,6 @@ from typing import Any
 import latex2mathml.converter
 
 from templates.core.declare import Declaration, Formula
-from templates.core.quantity import registry
 from templates.core.syntax import returned, syntax
 from templates.core.template import Template
 
@@ -25,6 +25,8 @@ _GREEK = {
     "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "pi",
     "rho", "sigma", "tau", "phi", "psi", "omega",
 }  # fmt: skip
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_PRINTED = {"deg": "°", "degC": "°C", "degF": "°F", "um": "µm", "ohm": "Ω", "thou": "mil", "inch": "in"}
 _LESS, _MORE = "\ue000", "\ue001"  # private letters, which no formula has
 _SPECIAL = {"eps": r"\varepsilon"}
 _FUNCTIONS = {"log10": r"\lg", "log": r"\ln", "exp": r"\exp", "sin": r"\sin", "cos": r"\cos", "tan": r"\tan"}
@@ -52,8 +54,14 @@ def number(value: float) -> str:
 
 
 def unit_symbol(text: str) -> str:
-    """A unit as it is printed: `mm**2/s` → `mm²/s`; nothing for a pure number."""
-    return "" if text == "1" else f"{registry.Unit(text):~P}"
+    """A unit as it is printed, in the order it was written: `N*m` → `N·m`, `mm**2/s` → `mm²/s`.
+
+    Nothing for a pure number.
+    """
+    if text == "1":
+        return ""
+    raised = re.sub(r"\*\*(-?[0-9]+)", lambda power: power[1].translate(_RAISED), text)
+    return re.sub(r"[A-Za-z_]+", lambda word: _PRINTED.get(word[0], word[0]), raised).replace("*", "·")
 
 
 def amount(value: float, unit: str) -> str:

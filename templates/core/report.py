@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from templates.core.declare import Choice
 from templates.core.mathml import amount, expression, mathml, symbol, symbols
 from templates.core.template import Template
+from templates.core.units import unit
 
 
 @dataclass(frozen=True)
@@ -35,12 +36,15 @@ class Row:
         return mathml(self.latex)
 
 
-def rows(template: Template) -> Iterator[Row]:
-    """The report lines of every formula that the template has evaluated so far."""
+def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator[Row]:
+    """The report lines of every formula that the template has evaluated so far.
+
+    `units` names other units than the declared ones, by attribute.
+    """
     cls = type(template)
-    names = symbols(cls)
-    values = {attribute: _shown(template, attribute) for attribute in cls.declarations}
-    result = {attribute: _shown(template, attribute, absolute=True) for attribute in cls.declarations}
+    names, shown_in = symbols(cls), units or {}
+    values = {attribute: _shown(template, attribute, shown_in) for attribute in cls.declarations}
+    result = {a: _shown(template, a, shown_in, absolute=True) for a in cls.declarations}
     for formula in cls.formulas.values():
         if formula.attribute in vars(template):
             complete = all(values.get(used) for used in formula.uses)
@@ -55,7 +59,7 @@ def rows(template: Template) -> Iterator[Row]:
             )
 
 
-def _shown(template: Template, attribute: str, *, absolute: bool = False) -> str:
+def _shown(template: Template, attribute: str, units: Mapping[str, str], *, absolute: bool = False) -> str:
     """The value of a declaration with its unit, as LaTeX; empty where it has none or is an array.
 
     A temperature inside an expression stands in kelvin: only there do sums and ratios hold.
@@ -70,7 +74,7 @@ def _shown(template: Template, attribute: str, *, absolute: bool = False) -> str
         return rf"\text{{{value.replace('_', ' ')}}}"
     if np.isnan(value):
         return r"\text{none}"
-    scale = declared.meaning.scale
+    scale = unit(units.get(attribute, declared.meaning.unit))
     if scale.absolute and not absolute:
         return amount(float(value), "K")
     return amount(float(scale.from_si(value)), scale.text)

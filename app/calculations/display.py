@@ -1,0 +1,53 @@
+"""Systems of units for display: `?units=us` asks for answers in inches and pounds instead of as declared.
+
+Values are calculated in SI whatever is shown; what was typed is never converted.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from fastapi import Query
+
+from templates.core.units import unit
+
+System = Literal["si", "us"]
+Units = Annotated[
+    System, Query(description="`us`: lengths in inches, forces in pounds, … instead of as declared")
+]
+
+US = {
+    "m": "ft", "mm": "inch", "um": "thou", "mm**2": "inch**2", "mm**3": "inch**3",
+    "N": "lbf", "kN": "lbf", "N*m": "lbf*ft", "N/m": "lbf/inch", "N*s/m": "lbf*s/inch",
+    "Pa": "psi", "kPa": "psi", "MPa": "psi", "GPa": "psi", "bar": "psi",
+    "kg": "lb", "kg*m": "lb*inch", "kg*mm": "lb*inch", "kg*m**2": "lb*ft**2", "kg*mm**2": "lb*inch**2",
+    "kg/m**3": "lb/ft**3", "m/s": "ft/s", "m/s**2": "ft/s**2", "degC": "degF", "W": "hp", "kW": "hp",
+    "J": "ft*lbf", "l/min": "gallon/min", "MPa*m/s": "psi*ft/min",
+}  # fmt: skip
+"""The unit that stands for a declared one; others, such as rpm and mPa*s, are used there as well."""
+
+
+def shown_unit(declared: str, system: System) -> str:
+    """The unit in which a value declared in another is shown."""
+    return US.get(declared, declared) if system == "us" else declared
+
+
+def converted(told: Any, system: System) -> Any:
+    """An answer with every quantity in it converted; what has no unit stays as it is."""
+    if system == "si":
+        return told
+    if isinstance(told, list):
+        return [converted(item, system) for item in told]
+    if not isinstance(told, dict):
+        return told
+    if told.get("unit") in US and "value" in told:
+        return {**told, "value": _value(told["value"], told["unit"]), "unit": US[told["unit"]]}
+    return {name: converted(item, system) for name, item in told.items()}
+
+
+def _value(value: Any, declared: str) -> Any:
+    if isinstance(value, list):
+        return [_value(item, declared) for item in value]
+    if value is None:
+        return None
+    return float(unit(US[declared]).from_si(unit(declared).to_si(float(value))))

@@ -1,0 +1,54 @@
+"""A calculation as a worksheet shows it: every formula as symbol = expression = numbers = result."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from app.calculations import rendering
+from app.calculations.display import System, converted, shown_unit
+from app.calculations.schemas import EvaluateIn
+from app.calculations.service import evaluated
+from templates.core import report
+from templates.core.evaluate import Evaluation
+from templates.core.mathml import mathml
+from templates.core.template import Template
+
+
+def run_worksheet(cls: type[Template], body: EvaluateIn, system: System) -> dict[str, Any]:
+    """Evaluate a template and write its formulas out.
+
+    Raises
+    ------
+    InvalidInputs, TooManyValues
+        As `evaluate`.
+    """
+    return worksheet(evaluated(cls, body), system)
+
+
+def worksheet(made: Evaluation, system: System) -> dict[str, Any]:
+    """An evaluation as `evaluate` answers it, in the system's units, with its formulas."""
+    told = rendering.evaluation(made)
+    return {
+        **told,
+        "outputs": converted(told["outputs"], system),
+        "formulas": formulas(made.template, system, made.outputs),
+    }
+
+
+def formulas(template: Template, system: System, names: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The formulas of the outputs named, in the order of the template, each in LaTeX and MathML."""
+    cls = type(template)
+    declared = {a: d.meaning.unit for a, d in cls.declarations.items() if d.meaning.unit}
+    units = {attribute: shown_unit(unit, system) for attribute, unit in declared.items()}
+    return [_told(row) for row in report.rows(template, units) if row.name in names]
+
+
+def _told(row: report.Row) -> dict[str, Any]:
+    lead = row.symbol if row.expression in ("", row.symbol) else f"{row.symbol}={row.expression}"
+    parts = {
+        "lead": lead,
+        "numbers": row.numbers and f"={row.numbers}",
+        "result": row.result and f"={row.result}",
+    }
+    return {**vars(row), "mathml": {name: latex and mathml(latex) for name, latex in parts.items()}}

@@ -1,0 +1,73 @@
+"""A revision as a worksheet shows it: the steps with their formulas written out, in one system of units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any
+
+from pydantic_core import from_json, to_json
+
+from app.calculations.display import System, converted
+from app.calculations.worksheet import formulas
+from app.designs.calculate import Calculation
+from templates.core.catalogue import Catalogue
+from templates.core.errors import TemplateError
+from templates.core.evaluate import evaluate
+from templates.core.template import Template
+
+REMEMBERED = 256  # steps; a revision never changes
+
+
+def worksheets(steps: Mapping[str, Any], catalogue: Catalogue[Template], system: System) -> dict[str, Any]:
+    """The steps of a revision with `formulas`, from the inputs and at the level that its job used."""
+    return {
+        name: {
+            **converted(told, system),
+            "inputs": told["inputs"],
+            "formulas": _formulas(told, catalogue, system),
+        }
+        for name, told in steps.items()
+    }
+
+
+def previewed(
+    calculation: Calculation, steps: Mapping[str, Any], system: System
+) -> dict[str, dict[str, Any]]:
+    """The steps of a preview with `formulas`; a step that waits for a solid has none yet."""
+    made = calculation.evaluations
+    return {
+        name: {
+            **converted(told, system),
+            "inputs": told.get("inputs", {}),
+            "formulas": formulas(made[name].template, system, made[name].outputs) if name in made else [],
+        }
+        for name, told in steps.items()
+    }
+
+
+def _formulas(
+    told: Mapping[str, Any], catalogue: Catalogue[Template], system: System
+) -> list[dict[str, Any]]:
+    if not told["outputs"]:
+        return []
+    level = told["level"] if isinstance(told["level"], str) else None
+    inputs = {name: _retyped(value) for name, value in told["inputs"].items() if value["from"] == "given"}
+    try:
+        cls: Any = catalogue.get(told["template"]["id"], told["template"]["version"])
+        return _written_out(cls, to_json(inputs), tuple(told["outputs"]), level, system)
+    except TemplateError:  # the file of this version was taken away, or changed: its results stay
+        return []
+
+
+def _retyped(echo: Mapping[str, Any]) -> Any:
+    """An input as it was used, as one that can be given again."""
+    return {name: part for name, part in echo.items() if name != "from"} if "unit" in echo else echo["value"]
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _written_out(
+    cls: Any, inputs: bytes, outputs: tuple[str, ...], level: str | None, system: System
+) -> list[dict[str, Any]]:
+    made = evaluate(cls, from_json(inputs), outputs=outputs, level=level)
+    return formulas(made.template, system, made.outputs)
