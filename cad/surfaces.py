@@ -1,9 +1,9 @@
-"""What a finished solid shows of itself: planes, cylinders, spheres, from which dimensions are read back."""
+"""What a finished solid shows of itself: planes, cylinders, spheres, tori; dimensions are read from them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -23,6 +23,7 @@ class Surface:
     point: Vector
     direction: Vector
     diameter: float = 0.0  # [mm]
+    reach: tuple[float, float] = (0.0, 0.0)  # of a cylinder: where along its axis it begins and ends [mm]
 
     def along(self, axis: Vector) -> bool:
         """Whether the surface's direction is that of the axis, either way round."""
@@ -31,6 +32,13 @@ class Surface:
     def about(self, axis: Vector) -> bool:
         """Whether the surface turns about that axis through the origin."""
         return self.along(axis) and bool(self.point.cross(axis).Length < _COINCIDENT)
+
+    def turned(self, axis: Vector) -> Surface:
+        """The same surface, its direction that of the axis and not against it."""
+        if self.direction.dot(axis) >= 0:
+            return self
+        low, high = self.reach
+        return replace(self, direction=-self.direction, reach=(-high, -low))
 
 
 @dataclass(frozen=True)
@@ -41,6 +49,7 @@ class Seen:
     planes: tuple[Surface, ...]
     cylinders: tuple[Surface, ...]
     spheres: tuple[float, ...]  # diameters [mm]
+    tori: tuple[float, ...] = ()  # radii of their tubes [mm]
 
     def levels(self, axis: Vector) -> list[float]:
         """Where planes cross the axis at a right angle [mm], ascending."""
@@ -51,9 +60,13 @@ class Seen:
         levels = self.levels(axis)
         return levels[-1] - levels[0]
 
+    def about(self, axis: Vector) -> list[Surface]:
+        """The cylinders about the axis, each pointing along it."""
+        return [cylinder.turned(axis) for cylinder in self.cylinders if cylinder.about(axis)]
+
     def diameters(self, axis: Vector) -> list[float]:
         """Diameters of the cylinders about the axis [mm], ascending."""
-        return _distinct(cylinder.diameter for cylinder in self.cylinders if cylinder.about(axis))
+        return _distinct(cylinder.diameter for cylinder in self.about(axis))
 
 
 def look(solid: Shape, count: int = 1) -> Seen:
@@ -63,17 +76,22 @@ def look(solid: Shape, count: int = 1) -> Seen:
     return Seen(
         count,
         planes=tuple(_surface(a.Plane().Axis()) for a in of.get(Kind.GeomAbs_Plane, ())),
-        cylinders=tuple(_cylinder(a.Cylinder()) for a in of.get(Kind.GeomAbs_Cylinder, ())),
+        cylinders=tuple(_cylinder(a) for a in of.get(Kind.GeomAbs_Cylinder, ())),
         spheres=tuple(2 * a.Sphere().Radius() for a in of.get(Kind.GeomAbs_Sphere, ())),
+        tori=tuple(a.Torus().MinorRadius() for a in of.get(Kind.GeomAbs_Torus, ())),
     )
 
 
-def _cylinder(cylinder: Any) -> Surface:
-    return _surface(cylinder.Axis(), 2 * cylinder.Radius())
+def _cylinder(adaptor: BRepAdaptor_Surface) -> Surface:
+    cylinder = adaptor.Cylinder()
+    surface = _surface(cylinder.Axis())
+    start = surface.point.dot(surface.direction)
+    reach = start + adaptor.FirstVParameter(), start + adaptor.LastVParameter()
+    return replace(surface, diameter=2 * cylinder.Radius(), reach=reach)
 
 
-def _surface(axis: Any, diameter: float = 0.0) -> Surface:
-    return Surface(Vector(axis.Location()), Vector(axis.Direction()), diameter)
+def _surface(axis: Any) -> Surface:
+    return Surface(Vector(axis.Location()), Vector(axis.Direction()))
 
 
 def _distinct(values: Iterable[float]) -> list[float]:

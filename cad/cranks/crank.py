@@ -1,0 +1,82 @@
+"""Base of the models of cranks: from checked parameters to the solid, and from its surfaces back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import sin
+
+from cad.cranks.outline import Outline
+from cad.cranks.reading import Webs, counterweight, drilling, fillet, inclination, pin, stubs
+from cad.cranks.rules import CrankRules
+from cad.cranks.throw import End, Throw
+from cad.cranks.volume import volume
+from cad.model import Box, Part, mm
+from cad.surfaces import Seen, Y
+
+
+class CrankModel(CrankRules):
+    """A crank of one solid."""
+
+    def drawn(self) -> Throw:
+        """The parameters as radii, lengths and angles of what is drawn."""
+        front, rear = self.ends()
+        return Throw(
+            outline=Outline(
+                throw=mm(self.R),
+                half_width=mm(self.W) / 2,
+                rectangular=self.web_shape == "rectangular",
+                counterweight=mm(self.R_w),
+                half_angle=float(self.phi_w) / 2,
+            ),
+            web_thickness=mm(self.L_w),
+            journal=mm(self.D_j) / 2,
+            journal_bore=mm(self.d_j) / 2,
+            journal_length=mm(self.L_s),
+            pin=mm(self.D_c) / 2,
+            pin_bore=mm(self.d_c) / 2,
+            pin_length=mm(self.L_c),
+            fillet=mm(self.r_f),
+            drilling=mm(self.d_o) / 2,
+            inclination=float(self.beta),
+            incline_start=mm(self.x_b),
+            front=front,
+            rear=rear,
+        )
+
+    def ends(self) -> tuple[End | None, End | None]:
+        """What lies beyond the main journals, at -z and at +z."""
+        return None, None
+
+    def build(self) -> tuple[Part, ...]:
+        """One solid."""
+        throw = self.drawn()
+        return (Part(self.id, throw.solid(), volume(throw)),)
+
+    def bounding_box(self) -> Box:
+        """Webs, counterweights and ends together."""
+        throw = self.drawn()
+        web, ends = throw.outline, [end for end in (throw.front, throw.rear) if end]
+        around = max([0.0, *(end.radius for end in ends)])
+        wide = max(web.half_width, web.counterweight * sin(web.half_angle), around)
+        low, high = (throw.journal_end + (end.length if end else 0) for end in (throw.front, throw.rear))
+        left = max(web.half_width, web.counterweight, around)
+        return Box((-left, -wide, -low), (max(web.tip, around), wide, high))
+
+    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+        """Every parameter; the angle of a counterweight only if there is one."""
+        found, webs, hollow = seen[self.id], Webs.of(seen[self.id]), bool(self.d_j > 0)
+        journals = [stub[hollow] for stub in stubs(found, webs, hollow)]
+        lengths = [journal.reach[1] - webs.faces[3] for journal in journals]
+        return {
+            "journal_diameter": max(journal.diameter for journal in journals),
+            "journal_length": sum(lengths) / 2 * float(self.L_j / self.L_s),
+            "journal_bore": stubs(found, webs, hollow)[0][0].diameter if hollow else 0.0,
+            **pin(found, hollow=bool(self.d_c > 0)),
+            "pin_length": webs.apart,
+            "web_thickness": webs.thickness,
+            "web_width": found.length(Y),
+            "fillet": fillet(found),
+            "oil_drilling_diameter": drilling(found),
+            **counterweight(found, webs),
+            "face_inclination": inclination(found),
+        }

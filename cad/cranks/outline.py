@@ -1,0 +1,122 @@
+"""Outline of a crank web, seen along the shaft [mm]: its body, and a counterweight if there is one.
+
+The body runs from half a width below the journal's axis to half a width above the pin's, its ends round or
+square. The counterweight is a sector about the journal's axis, on the side away from the pin, as thick as the
+web. Areas and moments here are closed forms; nothing is asked of the kernel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import acos, cos, dist, pi, sin, sqrt, tan
+
+from cadquery import Edge, Vector, Wire
+from cadquery.func import segment, wire
+
+Point = tuple[float, float]
+Run = tuple[Point, ...]  # two points: a line; three: an arc through the second
+
+_NOTHING = 1e-9  # [mm]: the length of a line that is none, as where a flank meets a corner
+
+
+@dataclass(frozen=True)
+class Outline:
+    """The outline of a web [mm]; a counterweight of no radius is none."""
+
+    throw: float
+    half_width: float
+    rectangular: bool
+    counterweight: float  # radius
+    half_angle: float  # of the counterweight, from -x [rad]
+
+    @property
+    def tip(self) -> float:
+        """Where the web ends beyond the pin."""
+        return self.throw + self.half_width
+
+    @property
+    def area(self) -> float:
+        """Area of the whole outline [mm²]."""
+        h, R = self.half_width, self.throw
+        body = 2 * h * (R + 2 * h) if self.rectangular else 2 * h * R + pi * h**2
+        return body + self._sector
+
+    def moment_beyond(self, start: float) -> float:
+        """First moment, about x = start, of the area beyond it [mm³]; starts above the journal's axis."""
+        h, R = self.half_width, self.throw
+        if self.rectangular:
+            return h * (self.tip - start) ** 2
+        straight, u = max(R - start, 0.0), max(start - R, 0.0)
+        chord = sqrt(h**2 - u**2)
+        cap = h**2 * acos(u / h) - u * chord  # area of the round end beyond x = R + u
+        return h * straight**2 + 2 / 3 * chord**3 + (R - start) * cap
+
+    def wire(self, z: float) -> Wire:
+        """The outline at a height."""
+        return wire(*(edge(run, z) for run in self.runs()))
+
+    def runs(self) -> list[Run]:
+        """Lines and arcs, counter-clockwise from the end beyond the pin; the lower side mirrors the upper."""
+        first, upper, last = self._square() if self.rectangular else self._round()
+        if self.counterweight > 0:
+            flank, last = self._flank(upper[-1][-1])
+            upper = [*upper, flank]
+        upper = [run for run in upper if dist(run[0], run[-1]) > _NOTHING]
+        lower = [tuple((x, -y) for x, y in reversed(run)) for run in reversed(upper)]
+        return [first, *upper, last, *lower]
+
+    def _round(self) -> tuple[Run, list[Run], Run]:
+        """A round web: its end beyond the pin, its side up to the flank, its other end if there is none."""
+        h, R = self.half_width, self.throw
+        first, last = ((R, -h), (self.tip, 0.0), (R, h)), ((0.0, h), (-h, 0.0), (0.0, -h))
+        side: Run = ((R, h), (0.0, h))
+        if self.counterweight == 0:
+            return first, [side], last
+        arc = tuple(
+            _on_circle(h, angle) for angle in (pi / 2, (pi / 2 + self.half_angle) / 2, self.half_angle)
+        )
+        return first, [side, arc], last
+
+    def _square(self) -> tuple[Run, list[Run], Run]:
+        """A rectangular web, likewise."""
+        h, a = self.half_width, self.half_angle
+        first, last = ((self.tip, -h), (self.tip, h)), ((-h, h), (-h, -h))
+        if self.counterweight > 0 and a > pi / 4:
+            return first, [((self.tip, h), (-h / tan(a), h))], last
+        side: Run = ((self.tip, h), (-h, h))
+        return first, [side, ((-h, h), (-h, h * tan(a)))] if self.counterweight > 0 else [side], last
+
+    def _flank(self, foot: Point) -> tuple[Run, Run]:
+        """The flank of the counterweight at +y, outwards from its foot, and the rim from flank to flank."""
+        rim = tuple(
+            _on_circle(self.counterweight, angle) for angle in (self.half_angle, 0.0, -self.half_angle)
+        )
+        return (foot, rim[0]), rim
+
+    @property
+    def _sector(self) -> float:
+        """What the counterweight adds to the body [mm²]."""
+        h, a = self.half_width, self.half_angle
+        if self.counterweight == 0:
+            return 0.0
+        if not self.rectangular:
+            return a * (self.counterweight**2 - h**2)
+        within = h**2 * (tan(a) if a <= pi / 4 else 2 - 1 / tan(a))
+        return a * self.counterweight**2 - within
+
+
+def edge(run: Run, z: float) -> Edge:
+    """A line or an arc at a height."""
+    return draw(run, lambda x, y: Vector(x, y, z))
+
+
+def draw(run: Run, place: Callable[[float, float], Vector]) -> Edge:
+    """A line or an arc; `place` puts its points into space."""
+    points = [place(*point) for point in run]
+    return segment(*points) if len(points) == 2 else Edge.makeThreePointArc(*points)
+
+
+def _on_circle(radius: float, angle: float) -> Point:
+    """The point at an angle from -x, towards +y."""
+    return -radius * cos(angle), radius * sin(angle)

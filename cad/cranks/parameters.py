@@ -1,0 +1,157 @@
+"""Parameters of a crank throw, which the models of a throw and of a shaft share, and what follows from them.
+
+A model adds how much of a main journal it draws on each side of the throw (`L_s`). Parameters that are 0
+stand for what is not there: bores, fillet, oil drilling, counterweight, inclination. Without a
+`counterweight_radius` its angle means nothing.
+
+The *face inclination* is the angle by which the outer face of each web leans towards the middle of the throw,
+from beside the journal's fillet to the end beyond the pin. 0 is a flat face and the heaviest web; the larger
+the angle, the more material is taken off. Material that is added on an inclined face, as Punewale et al.
+(2015) do to stiffen a shaft, is thus a smaller `face_inclination`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cad.model import CadModel
+from templates.core.template import Array, choice, derived, formula, given
+
+
+class CrankParameters(CadModel):
+    """What a crank is made from."""
+
+    L_s: Array  # how long the main journal is that is drawn on each side
+
+    D_j: Array = given(
+        "mm",
+        "journal diameter",
+        symbol="D_j",
+        ge=1,
+        le=2000,
+        also=("main journal diameter", "shaft diameter"),
+    )
+
+    @derived("mm", "journal length", symbol="L_j", ge=0.05, le=5000)
+    def L_j(self) -> Array:
+        """Common in engines: 0.7 of its diameter."""
+        return 0.7 * self.D_j
+
+    @derived("mm", "journal bore", symbol="d_j", ge=0, le=2000)
+    def d_j(self) -> Array:
+        """None."""
+        return 0 * self.D_j
+
+    @derived("mm", "pin diameter", symbol="D_c", ge=0.1, le=2000, also=("crankpin diameter",))
+    def D_c(self) -> Array:
+        """A little less than the journal's."""
+        return 0.85 * self.D_j
+
+    @derived("mm", "pin length", symbol="L_c", ge=0.05, le=5000, also=("crankpin length",))
+    def L_c(self) -> Array:
+        """A little less than the journal's."""
+        return 0.6 * self.D_j
+
+    @derived("mm", "pin bore", symbol="d_c", ge=0, le=2000)
+    def d_c(self) -> Array:
+        """None."""
+        return 0 * self.D_j
+
+    @derived("mm", "web thickness", symbol="L_w", ge=0.05, le=5000)
+    def L_w(self) -> Array:
+        """A third of the journal's diameter."""
+        return 0.33 * self.D_j
+
+    @derived("mm", "web width", symbol="W", ge=0.1, le=10000)
+    def W(self) -> Array:
+        """Wide enough for journal and pin with their fillets."""
+        return 1.4 * np.maximum(self.D_j, self.D_c)
+
+    web_shape: str = choice("obround", "rectangular", words="web shape", default="obround")
+
+    @derived("mm", "throw", symbol="R", ge=0.01, le=10000, also=("crank radius",))
+    def R(self) -> Array:
+        """With the other defaults pin and journal overlap."""
+        return 0.75 * self.D_j
+
+    @derived("mm", "fillet", symbol="r_f", ge=0, le=500)
+    def r_f(self) -> Array:
+        """As large as is common, or as lengths and web leave room for."""
+        smaller = np.minimum(self.D_j, self.D_c)
+        room = np.minimum(0.2 * self.L_c, 0.1 * self.L_j)
+        overhang = 0.25 * np.abs(self.W - np.maximum(self.D_j, self.D_c))
+        return np.minimum(np.minimum(0.05 * smaller, room), overhang)
+
+    @derived("mm", "oil drilling diameter", symbol="d_o", ge=0, le=500)
+    def d_o(self) -> Array:
+        """None."""
+        return 0 * self.D_j
+
+    @derived("mm", "counterweight radius", symbol="R_w", ge=0, le=10000)
+    def R_w(self) -> Array:
+        """None."""
+        return 0 * self.D_j
+
+    phi_w: Array = given("deg", "counterweight angle", symbol=r"\varphi_w", default="120 deg", ge=10, le=180)
+
+    beta: Array = given("deg", "face inclination", symbol=r"\beta", default="0 deg", ge=0, le=80)
+
+    @formula("mm", "overlap", symbol="s")
+    def s(self) -> Array:
+        """By how much journal and pin overlap, seen along the shaft; negative if they do not."""
+        return (self.D_j + self.D_c) / 2 - self.R
+
+    @formula("mm", "incline start", symbol="x_b")
+    def x_b(self) -> Array:
+        """Where the outer face of a web begins to slope: beyond the journal and its fillet."""
+        return 0.51 * self.D_j + self.r_f
+
+    @formula("mm", "web end thickness", symbol="L_e")
+    def L_e(self) -> Array:
+        """How thick a web is at its end beyond the pin, where it is inclined most."""
+        return self.L_w - np.tan(self.beta) * (self.R + self.W / 2 - self.x_b)
+
+    @formula("mm", "drilling rise", symbol="h_o")
+    def h_o(self) -> Array:
+        """How far the oil drilling runs along the shaft: mid-pin to mid-length of the journal drawn."""
+        return (self.L_c + self.L_s) / 2 + self.L_w
+
+    @formula("1", "drilling lean", symbol="k_o")
+    def k_o(self) -> Array:
+        """Along the shaft for each length across it."""
+        return self.h_o / (self.R + (self.D_j + self.D_c) / 2)
+
+    @formula("mm", "drilling section", symbol="e_o")
+    def e_o(self) -> Array:
+        """Half the length of the drilling's section in the face of a web."""
+        return self.d_o / 2 * np.sqrt(1 + 1 / self.k_o**2)
+
+    @formula("mm", "drilling mouth in the pin", name="pin_mouth", symbol="m_c")
+    def m_c(self) -> Array:
+        """Half the length of the mouth along the pin, at most."""
+        return self.d_o / 2 * np.sqrt(1 + self.k_o**2) + self.k_o * self.d_o**2 / (2 * self.D_c)
+
+    @formula("mm", "drilling mouth in the journal", name="journal_mouth", symbol="m_j")
+    def m_j(self) -> Array:
+        """Half the length of the mouth along the journal, at most."""
+        return self.d_o / 2 * np.sqrt(1 + self.k_o**2) + self.k_o * self.d_o**2 / (2 * self.D_j)
+
+    @formula("mm", "drilling height at the web's inner face", name="inner_crossing", symbol="x_1")
+    def x_1(self) -> Array:
+        """Above the journal's axis."""
+        return self.R + self.D_c / 2 - self.L_c / 2 / self.k_o
+
+    @formula("mm", "drilling height at the web's outer face", name="outer_crossing", symbol="x_2")
+    def x_2(self) -> Array:
+        """Above the journal's axis."""
+        return self.R + self.D_c / 2 - (self.L_c / 2 + self.L_w) / self.k_o
+
+    @formula("mm", "drilling cover at the start of the incline", name="cover_at_start", symbol="c_1")
+    def c_1(self) -> Array:
+        """From the drilling's axis to the inclined face, along its normal."""
+        return np.cos(self.beta) * self.k_o * (self.x_b - self.x_2)
+
+    @formula("mm", "drilling cover at the web's inner face", name="cover_at_inner_face", symbol="c_2")
+    def c_2(self) -> Array:
+        """From the drilling's axis to the inclined face, along its normal."""
+        return np.cos(self.beta) * self.L_w - np.sin(self.beta) * (self.x_1 - self.x_b)

@@ -1,0 +1,124 @@
+"""The parameters of a crank, read back from the surfaces of the finished solid.
+
+Whatever is there is found by where it is, not by what it should measure: planes across the shaft tell the
+webs, cylinders about the shaft beyond the webs the journals and ends, other cylinders along it the pin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import atan2, degrees
+
+from cadquery import Vector
+
+from cad.surfaces import Seen, Surface, X, Y, Z
+
+_CLEAR = 1e-6  # [mm], and as the sine of an angle
+
+
+@dataclass(frozen=True)
+class Webs:
+    """Where the faces of both webs lie along the shaft [mm], from front to rear."""
+
+    faces: tuple[float, float, float, float]
+
+    @staticmethod
+    def of(seen: Seen) -> Webs:
+        """The two planes across the shaft next to mid-pin, on either side."""
+        levels = seen.levels(Z)
+        front, rear = [z for z in levels if z < 0], [z for z in levels if z > 0]
+        return Webs((front[-2], front[-1], rear[0], rear[1]))
+
+    @property
+    def thickness(self) -> float:
+        """Of a web [mm]."""
+        outer, inner, other_inner, other_outer = self.faces
+        return (inner - outer + other_outer - other_inner) / 2
+
+    @property
+    def apart(self) -> float:
+        """Between the webs [mm]."""
+        return self.faces[2] - self.faces[1]
+
+
+def pin(seen: Seen, hollow: bool) -> dict[str, float]:
+    """Pin diameter, bore and throw."""
+    offset = [c for c in seen.cylinders if c.along(Z) and not c.about(Z)]
+    bores = _smallest(offset) if hollow else []
+    solid = _smallest([c for c in offset if c not in bores])[0]
+    return {
+        "pin_diameter": solid.diameter,
+        "pin_bore": bores[0].diameter if hollow else 0.0,
+        "throw": solid.point.cross(Z).Length,
+    }
+
+
+def stubs(seen: Seen, webs: Webs, hollow: bool) -> tuple[list[Surface], list[Surface]]:
+    """What stands on the webs at the front and at the rear: the cylinders about the shaft, from the web on.
+
+    With a bore it comes first.
+    """
+    behind = [c for c in seen.about(Z) if c.reach[0] > webs.faces[3] - _CLEAR]
+    before = [c.turned(-Z) for c in seen.about(Z) if c.reach[1] < webs.faces[0] + _CLEAR]
+    return _from_web(before, hollow), _from_web(behind, hollow)
+
+
+def counterweight(seen: Seen, webs: Webs) -> dict[str, float]:
+    """Its radius, and its angle [deg] if there is one."""
+    round_ = [
+        c.diameter for c in seen.about(Z) if webs.faces[2] - _CLEAR < c.reach[0] < webs.faces[3] - _CLEAR
+    ]
+    standing_out = [d for d in round_ if d > 1.01 * seen.length(Y)]
+    if not standing_out:
+        return {"counterweight_radius": 0.0}
+    flank = next(
+        p.direction for p in seen.planes
+        if abs(p.direction.dot(Z)) < _CLEAR and abs(p.point.dot(p.direction)) < _CLEAR
+    )  # fmt: skip
+    angle = 2 * degrees(atan2(abs(flank.x), abs(flank.y)))
+    return {"counterweight_radius": max(standing_out) / 2, "counterweight_angle": angle}
+
+
+def fillet(seen: Seen) -> float:
+    """Radius of the fillets, all of which are alike; 0 if there are none.
+
+    Raises
+    ------
+    LookupError
+        If there are any, but not four that are alike.
+    """
+    found = seen.tori
+    if not found:
+        return 0.0
+    if len(found) != 4 or max(found) - min(found) > _CLEAR:
+        raise LookupError(f"four fillets alike; there are {found}")
+    return found[0]
+
+
+def drilling(seen: Seen) -> float:
+    """Diameter of the cylinder that runs askew; 0 if there is none."""
+    return max((c.diameter for c in seen.cylinders if not c.along(Z)), default=0.0)
+
+
+def inclination(seen: Seen) -> float:
+    """Angle [deg] of the planes that are inclined to the shaft; 0 if there are none."""
+    slopes = (
+        degrees(atan2(abs(p.direction.x), abs(p.direction.z))) for p in seen.planes if _askew(p.direction)
+    )
+    return max(slopes, default=0.0)
+
+
+def _askew(normal: Vector) -> bool:
+    return bool(min(abs(normal.dot(X)), abs(normal.dot(Z))) > _CLEAR)
+
+
+def _from_web(cylinders: Sequence[Surface], hollow: bool) -> list[Surface]:
+    bore = _smallest(cylinders)[:1] if hollow else []
+    return bore + sorted((c for c in cylinders if c not in bore), key=lambda c: c.reach[0])
+
+
+def _smallest(cylinders: Sequence[Surface]) -> list[Surface]:
+    """Those of the smallest diameter."""
+    least = min((c.diameter for c in cylinders), default=0.0)
+    return [c for c in cylinders if c.diameter - least < _CLEAR]

@@ -1,0 +1,150 @@
+"""The solid of a crank throw, with or without shaft ends: what is drawn, in millimetres.
+
+z is the axis of the main journals, x points from it to the crankpin, z = 0 is the middle of the pin. Each web
+lies at pin_length/2 ≤ |z| ≤ pin_length/2 + web_thickness; front is at -z, rear at +z.
+
+Whatever turns is turned from one outline, fillets included, and the webs are plates with holes: so the parts
+only touch, in flat faces, and their union asks little of the kernel. Only the drilling and the inclined faces
+are cut.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import sqrt, tan
+
+from cadquery import Shape, Solid, Vector, Wire
+from cadquery.func import cut, face, fuse, polygon, wire
+
+from cad.cranks.outline import Outline, Run, draw
+
+_MIDDLE = 1 - sqrt(0.5)  # of a fillet's arc, in radii from either end
+
+
+@dataclass(frozen=True)
+class End:
+    """A plain cylinder beyond a main journal [mm]."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Throw:
+    """A throw with its journals [mm]; what has no radius is not there."""
+
+    outline: Outline  # of the webs
+    web_thickness: float
+    journal: float  # radius
+    journal_bore: float  # radius; through the journals and their webs
+    journal_length: float  # on each side
+    pin: float  # radius
+    pin_bore: float  # radius; through the pin and both webs
+    pin_length: float
+    fillet: float
+    drilling: float  # radius
+    inclination: float  # of the webs' outer faces [rad]
+    incline_start: float  # x at which the outer faces begin to slope
+    front: End | None = None
+    rear: End | None = None
+
+    @property
+    def inner(self) -> float:
+        """Where the inner face of the web on +z lies."""
+        return self.pin_length / 2
+
+    @property
+    def outer(self) -> float:
+        """Where its outer face lies."""
+        return self.inner + self.web_thickness
+
+    @property
+    def journal_end(self) -> float:
+        """Where the journal on +z ends."""
+        return self.outer + self.journal_length
+
+    @property
+    def drilled(self) -> tuple[Vector, Vector]:
+        """Where the drilling's axis leaves the pin, and where it leaves the journal on +z."""
+        top = Vector(self.outline.throw + self.pin, 0, 0)
+        return top, Vector(-self.journal, 0, self.outer + self.journal_length / 2)
+
+    def solid(self) -> Shape:
+        """Pin, webs and journals joined, then drilled."""
+        web, front, rear = self._web(), self._journal(self.front), self._journal(self.rear)
+        whole = fuse(web, web.mirror("XY"), self._pin(), front.mirror("XY"), rear)
+        return cut(whole, self._drill()) if self.drilling > 0 else whole
+
+    def _web(self) -> Shape:
+        """The web on +z."""
+        bores = ((self.journal_bore, 0.0), (self.pin_bore, self.outline.throw))
+        holes = [
+            Wire.makeCircle(radius, Vector(x, 0, self.inner), Vector(0, 0, 1))
+            for radius, x in bores
+            if radius
+        ]
+        plate = Solid.extrudeLinear(self.outline.wire(self.inner), holes, Vector(0, 0, self.web_thickness))
+        return cut(plate, self._wedge()) if self.inclination > 0 else plate
+
+    def _wedge(self) -> Solid:
+        """What the inclination takes off the web on +z; it stands out into the air on all other sides."""
+        room, slope, start = self.outline.half_width / 4, tan(self.inclination), self.incline_start
+        left, right = start - room, self.outline.tip + room
+        above = self.outer + room * (1 + slope)
+        corners = (
+            (left, self.outer + slope * room),
+            (right, self.outer - slope * (right - start)),
+            (right, above),
+            (left, above),
+        )
+        section = polygon(*(Vector(x, -8 * room, z) for x, z in corners))
+        return Solid.extrudeLinear(section, [], Vector(0, 16 * room, 0))
+
+    def _pin(self) -> Shape:
+        z, edge = self.inner, self.pin + self.fillet
+        lower = _fillet(self.pin, self.fillet, -z, 1)
+        upper = tuple(reversed(_fillet(self.pin, self.fillet, z, -1)))
+        sides: list[Run] = [lower, ((self.pin, self.fillet - z), (self.pin, z - self.fillet)), upper]
+        foot: Run = ((self.pin_bore, -z), (edge, -z))
+        return _turned([foot, *sides, ((edge, z), (self.pin_bore, z))], self.outline.throw, -1)
+
+    def _journal(self, end: End | None) -> Shape:
+        """The journal on +z, with what lies beyond it."""
+        z, top, radius = self.outer, self.journal_end, self.journal
+        foot: Run = ((self.journal_bore, z), (radius + self.fillet, z))
+        side: Run = ((radius, z + self.fillet), (radius, top))
+        corners = [(radius, top), *self._beyond(end), (self.journal_bore, top + (end.length if end else 0))]
+        beyond: list[Run] = [*pairwise(corners)]
+        return _turned([foot, _fillet(radius, self.fillet, z, 1), side, *beyond], 0.0, 1)
+
+    def _beyond(self, end: End | None) -> Sequence[tuple[float, float]]:
+        top = self.journal_end
+        return ((end.radius, top), (end.radius, top + end.length)) if end else ()
+
+    def _drill(self) -> Solid:
+        """What the oil drilling takes away, from beyond the pin to beyond the journal."""
+        top, bottom = self.drilled
+        way = bottom - top
+        lean = way.z / -way.x
+        # As far beyond the mouths as the slant of the drill's flat ends needs, and a tenth more.
+        over = way.normalized() * (1.1 * self.drilling * lean)
+        return Solid.makeCylinder(self.drilling, (way + over * 2).Length, top - over, way)
+
+
+def _fillet(radius: float, size: float, z: float, up: int) -> Run:
+    """The fillet between a face at z and a cylinder up (1) or down (-1) from it; a point if none."""
+    middle = radius + size * _MIDDLE, z + up * size * _MIDDLE
+    return (radius + size, z), middle, (radius, z + up * size)
+
+
+def _turned(runs: Sequence[Run], x: float, side: int) -> Solid:
+    """A closed outline of (distance from the axis, z) turned about the axis through x along z.
+
+    Its seam lies on that side of the axis, towards x or against it: away from the mouth of the drilling.
+    """
+    real = [run for run in runs if run[0] != run[-1]]
+    closing = (real[-1][-1], real[0][0])
+    edges = [draw(run, lambda r, z: Vector(x + side * r, 0, z)) for run in [*real, closing]]
+    return Solid.revolve(face(wire(*edges)), 360, Vector(x, 0, 0), Vector(x, 0, 1))
