@@ -38,7 +38,16 @@ from templates.physics.lubrication_regime import (
     friction_coefficient,
     lubrication_regime,
 )  # fmt: skip
-from templates.physics.oil import density, double_logarithm, temperature_logarithm, walther
+from templates.physics.oil import (
+    by_law,
+    density,
+    double_logarithm,
+    temperature_logarithm,
+    vogel,
+    vogel_factor,
+    vogel_slope,
+    walther,
+)  # fmt: skip
 from templates.physics.oil_grades import grades, viscosity_at_40, viscosity_at_100
 from templates.physics.smallest_film import smallest_film_ISO_7902
 from templates.physics.static_journal import BOUNDARY, FED, JournalFilm, is_fed, ladder, static_film_at
@@ -47,6 +56,7 @@ ISO = "ISO 7902-1:1998"
 NO_COEFFICIENTS = "levels fit and mass_conserving have none; take short_bearing, map or reynolds"
 NO_BALANCE = "needs supply_temperature, or ambient_temperature with heat_transfer"
 NO_SUPPLY = "needs supply_temperature"
+BELOW_POLE = "temperature_1 or temperature_2 lies below the pole of Vogel's law, at minus its offset in degC"
 NEVER_WHIRLS = "stable at every speed, or without mass; levels fit and mass_conserving cannot tell"
 UNBORNE = (
     "no film bears this: change load, clearance, speed or viscosity, or move the grooves; "
@@ -74,6 +84,8 @@ class OilFilm(Template):
     Laminar flow: a warning tells where the film Reynolds number exceeds 41.3 √(D/c).
     The heat balance takes power and side flow from level map whatever the level, so that temperature and
     viscosity do not depend on it; flow driven by the supply pressure is left out, which errs to the hot side.
+    Vogel's law eta = a exp(b/(t + c)), t in °C, takes two viscosities and its offset c, 95 K after Cameron,
+    or all its constants.
     A multigrade oil is thinner at a bearing's shear rates than its kinematic viscosity tells.
     Whirl: coefficients are those at the speed given; the rotor is rigid and carries the load by its mass,
     unless rotor_mass says otherwise.
@@ -94,7 +106,8 @@ class OilFilm(Template):
     Butenschön: Dissertation, Karlsruhe 1976, the tables behind the standards.
     Woloszynski, Podsiadlo, Stachowiak: Tribology Letters 58:18, 2015, for mass-conserving cavitation.
     Lund, Thomsen: ASME 1978, for the coefficients; Lund: Journal of Applied Mechanics 87, 1965, for whirl.
-    ASTM D341 (Walther) for the viscosity, SAE J300 and ISO 3448 for the grades.
+    ASTM D341 (Walther) or Vogel: Physikalische Zeitschrift 22, 1921, p. 645 and Cameron: The Principles of
+    Lubrication, 1966, for the viscosity; SAE J300 and ISO 3448 for the grades.
     """
 
     levels = ("short_bearing", "fit", "map", "reynolds", "mass_conserving")
@@ -123,6 +136,8 @@ class OilFilm(Template):
     grade: str = choice(*grades(), words="oil grade", default="sae_15w_40")
     T_1: Array = given("degC", "temperature 1", default="40 degC", ge=-100, le=500)
     T_2: Array = given("degC", "temperature 2", default="100 degC", ge=-100, le=500)
+    law: str = choice("walther", "vogel", words="viscosity law", default="walther")
+    c_V: Array = given("K", "Vogel offset", symbol="c_{V}", default="95 K", source="Cameron 1966")
     T_ref: Array = given("degC", "reference temperature", default="20 degC", ge=-100, le=500)
     rho_ref: Array = given("kg/m**3", "reference density", default="875 kg/m**3", gt=0)
     T_in: Array = given("degC", "oil inlet temperature", alternative=True, ge=-100, le=500)
@@ -146,6 +161,16 @@ class OilFilm(Template):
     def nu_2(self) -> Array:
         return viscosity_at_100(self.grade)
 
+    @derived("K", "Vogel slope", symbol="b_{V}", shown=True, ge=0, source="Vogel 1921", absent=BELOW_POLE)
+    def b_V(self) -> Array:
+        return vogel_slope(self.eta_1, self.T_1, self.eta_2, self.T_2, self.c_V)
+
+    @derived(
+        "mPa*s", "Vogel factor", symbol="a_{V}", shown=True, gt=0, source="Vogel 1921", absent=BELOW_POLE
+    )
+    def a_V(self) -> Array:
+        return vogel_factor(self.eta_1, self.T_1, self.b_V, self.c_V)
+
     @derived("kg", "rotor mass", symbol="m", ge=0)
     def m(self) -> Array:
         return mass_of_weight(self.F)
@@ -164,6 +189,21 @@ class OilFilm(Template):
     def oil_thins_when_hot(self) -> Truth:
         """The oil is not thicker at the higher temperature."""
         return (self.nu_1 - self.nu_2) * (self.T_2 - self.T_1) >= 0
+
+    @require("viscosity_law", remedy="say viscosity_law vogel, or leave out vogel_factor and vogel_slope")
+    def vogel_is_asked_for(self) -> Truth:
+        """Vogel's constants are given for Vogel's law only."""
+        return (self.law == "vogel") | (np.isnan(self.as_given("a_V")) & np.isnan(self.as_given("b_V")))
+
+    @require("vogel_factor", "vogel_slope", remedy="the one left out would be that of another oil")
+    def vogel_is_whole(self) -> Truth:
+        """Vogel's factor and slope are given both, or neither."""
+        return np.isnan(self.as_given("a_V")) == np.isnan(self.as_given("b_V"))
+
+    @require("temperature_1", "temperature_2", "vogel_offset", remedy="give viscosities above it")
+    def vogel_is_known(self) -> Truth:
+        """Vogel's law is known from two temperatures above its pole, at minus its offset in degC."""
+        return (self.law != "vogel") | (np.isfinite(self.a_V) & np.isfinite(self.b_V))
 
     @require(
         "oil_inlet_temperature", "oil_outlet_temperature", missing=True,
@@ -236,13 +276,22 @@ class OilFilm(Template):
     def A(self) -> Array:
         return double_logarithm(self.nu_2) + self.B * temperature_logarithm(self.T_2)
 
+    @formula("mPa*s", "dynamic viscosity 1", symbol=r"\eta_{1}")
+    def eta_1(self) -> Array:
+        return self.nu_1 * density(self.rho_ref, self.T_1, self.T_ref)
+
+    @formula("mPa*s", "dynamic viscosity 2", symbol=r"\eta_{2}")
+    def eta_2(self) -> Array:
+        return self.nu_2 * density(self.rho_ref, self.T_2, self.T_ref)
+
     @shared
     def balance(self) -> HeatBalance:
         """The heat balance, if one is asked for."""
         return heat_balance(
             Running(
                 self.F, self.D, self.W, self.psi, self.omega_h, self.omega_s,
-                self.A, self.B, self.as_given("eta"), self.rho_ref, self.T_ref,
+                self.A, self.B, by_law(self.law, np.nan, self.a_V), self.b_V, self.c_V,
+                self.as_given("eta"), self.rho_ref, self.T_ref,
                 self.rho_c, self.T_s, self.T_amb, self.kA,
             )
         )  # fmt: skip
@@ -277,9 +326,16 @@ class OilFilm(Template):
     def rho(self) -> Array:
         return density(self.rho_ref, or_reference(self.T_film, self.T_ref), self.T_ref)
 
-    @derived("mPa*s", "dynamic viscosity", shown=True, gt=0, source="ASTM D341")
+    @derived(
+        "mPa*s", "dynamic viscosity", shown=True, gt=0, source="ASTM D341; Vogel 1921",
+        remedy="the oil is stiff here: Walther's law overflows, or Vogel's has its pole at minus its offset",
+    )  # fmt: skip
     def eta(self) -> Array:
-        return walther(self.A, self.B, self.T_film) * self.rho
+        return by_law(
+            self.law,
+            walther(self.A, self.B, self.T_film) * self.rho,
+            vogel(self.a_V, self.b_V, self.c_V, self.T_film),
+        )
 
     @formula("mm**2/s", "kinematic viscosity", gt=0)
     def nu(self) -> Array:

@@ -22,7 +22,7 @@ import numpy as np
 
 from templates.physics.arrays import ECCENTRICITY_LIMIT, Array, Mask
 from templates.physics.film_map import NARROWEST, WIDEST, mapped_load
-from templates.physics.oil import density, walther
+from templates.physics.oil import density, vogel, walther
 from templates.physics.roots import bracketed_root
 from templates.physics.static_journal import static_film_at
 
@@ -51,8 +51,14 @@ class Running:
     """Walther's intercept [-]."""
     B: Any
     """Walther's slope [-]."""
+    a: Any
+    """Vogel's factor, if the viscosity follows from his law, else NaN [Pa s]."""
+    b: Any
+    """Vogel's slope [K]."""
+    offset: Any
+    """Vogel's offset [K]."""
     eta: Any
-    """Dynamic viscosity, if it does not follow from Walther's law, else NaN [Pa s]."""
+    """Dynamic viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
     rho_ref: Any
     """Density at T_ref [kg/m³]."""
     T_ref: Any
@@ -68,7 +74,9 @@ class Running:
 
     def viscosity(self, T: Array) -> Array:
         """Dynamic viscosity [Pa s] at T [K]."""
-        thin = walther(self.A, self.B, T) * density(self.rho_ref, T, self.T_ref)
+        of_walther = walther(self.A, self.B, T) * density(self.rho_ref, T, self.T_ref)
+        of_vogel = vogel(self.a, self.b, self.offset, T)
+        thin = np.where(np.isnan(self.a), of_walther, of_vogel)
         return np.where(np.isnan(self.eta), thin, self.eta)
 
     def power_and_flow(self, T: Array) -> tuple[Array, Array]:

@@ -1,7 +1,15 @@
-"""Density and viscosity of lubricating oil over temperature; the viscosity after Walther (ASTM D341).
+"""Density and viscosity of lubricating oil over temperature, after Walther (ASTM D341) or Vogel.
 
-lg lg(nu + 0.7) = A − B lg T, with nu in mm²/s and T in K. Meant for mineral oils between pour point and
-about 200 °C; nu must exceed 0.3 mm²/s, where the inner logarithm vanishes.
+Walther: lg lg(nu + 0.7) = A − B lg T, with nu in mm²/s and T in K. Meant for mineral oils between pour point
+and about 200 °C; nu must exceed 0.3 mm²/s, where the inner logarithm vanishes.
+
+Vogel: eta = a exp(b/(t + c)), t in °C: three constants of an oil, or with c = 95 K, which Cameron found to
+serve for mineral oils, two viscosities. It has a pole at t = −c and means nothing below.
+
+References
+----------
+H. Vogel: Physikalische Zeitschrift 22, 1921, p. 645.
+A. Cameron: The Principles of Lubrication, 1966, chapter 1.
 """
 
 from __future__ import annotations
@@ -11,6 +19,7 @@ import numpy as np
 from templates.core.declare import Array, units
 
 MM2_PER_S = 1e-6  # m²/s
+_CELSIUS = 273.15  # K
 
 
 @units("kg/m**3", "K", "K", returns="kg/m**3")
@@ -51,3 +60,40 @@ def walther(A: Array, B: Array, T: Array) -> Array:
     ASTM D341, Standard Practice for Viscosity–Temperature Equations for Liquid Petroleum Products.
     """
     return (10 ** (10 ** (A - B * np.log10(T))) - 0.7) * MM2_PER_S
+
+
+@units("Pa*s", "K", "K", "K", returns="Pa*s", latex=r"{0}\,e^{{{1}/\left({3}/\mathrm{{°C}}+{2}\right)}}")
+def vogel(a: Array, b: Array, c: Array, T: Array) -> Array:
+    """Dynamic viscosity [Pa s] at T [K] by Vogel's a [Pa s], b, c [K]; infinite from the pole −c °C down.
+
+    References
+    ----------
+    H. Vogel: Physikalische Zeitschrift 22, 1921, p. 645.
+    """
+    above = T - _CELSIUS + c
+    return np.where(above > 0, a * np.exp(b / np.where(above > 0, above, 1.0)), np.inf)[()]
+
+
+@units("Pa*s", "K", "Pa*s", "K", "K", returns="K")
+def vogel_slope(eta_1: Array, T_1: Array, eta_2: Array, T_2: Array, c: Array) -> Array:
+    """Vogel's b [K] through two viscosities [Pa s] at T_1, T_2 [K]; NaN if one is below its pole."""
+    return np.log(eta_1 / eta_2) / (1 / _above_pole(T_1, c) - 1 / _above_pole(T_2, c))
+
+
+@units("Pa*s", "K", "K", "K", returns="Pa*s")
+def vogel_factor(eta_1: Array, T_1: Array, b: Array, c: Array) -> Array:
+    """Vogel's a [Pa s] from one viscosity [Pa s] at T_1 [K]; NaN from the pole down, or if it is too small."""
+    a = eta_1 * np.exp(-b / _above_pole(T_1, c))
+    return np.where(a > 0, a, np.nan)[()]
+
+
+def _above_pole(T: Array, c: Array) -> Array:
+    """Distance from Vogel's pole −c °C [K]; NaN below."""
+    above = T - _CELSIUS + c
+    return np.where(above > 0, above, np.nan)
+
+
+@units(None, "Pa*s", "Pa*s", returns="Pa*s", latex=r"{1}\ \text{{(Walther) or}}\ {2}\ \text{{(Vogel)}}")
+def by_law(law: str, of_walther: Array | float, of_vogel: Array) -> Array:
+    """The value [Pa s] that belongs to the law `walther` or `vogel`."""
+    return of_vogel if law == "vogel" else np.asarray(of_walther)[()]

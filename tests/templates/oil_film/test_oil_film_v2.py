@@ -107,6 +107,14 @@ class TestLiterature:
             raw = case(oil_inlet_temperature=temperature, oil_outlet_temperature=temperature)
             assert outputs(raw, "kinematic_viscosity") == pytest.approx(viscosity, rel=1e-12)
 
+    def test_literature_oil_of_the_paper_by_vogel(self):
+        """The same two viscosities, through which Vogel's law passes with Cameron's offset of 95 K."""
+        for temperature, viscosity in (("40 degC", 110), ("100 degC", 14.5)):
+            raw = case(
+                oil_inlet_temperature=temperature, oil_outlet_temperature=temperature, viscosity_law="vogel"
+            )
+            assert outputs(raw, "kinematic_viscosity") == pytest.approx(viscosity, rel=1e-12)
+
     @pytest.mark.parametrize(
         ("grade", "at_40", "at_100"),
         [("iso_vg_46", 46, 6.644), ("sae_30", 97.78, 10.9), ("sae_5w_30", 68.4, 10.9)],
@@ -268,6 +276,78 @@ class TestMotion:
         assert "stable at every speed" in answer.reason
 
 
+VOGEL = {
+    "viscosity_law": "vogel",
+    "vogel_factor": "0.1 mPa*s",
+    "vogel_slope": "900 K",
+    "vogel_offset": "90 K",
+}
+
+
+class TestVogel:
+    def test_analytic_constants_make_the_viscosity(self):
+        raw = case(**VOGEL, oil_inlet_temperature="70 degC", oil_outlet_temperature="90 degC")
+        assert outputs(raw, "dynamic_viscosity") == pytest.approx(0.1 * np.exp(900 / 170), rel=1e-12)
+
+    def test_analytic_constants_found_are_those_that_made_the_viscosities(self):
+        """Two viscosities of a Vogel oil give its constants back."""
+        at = {t: 0.1 * np.exp(900 / (t + 90)) for t in (40, 100)}
+        rho = {t: 0.875 * (1 - 0.0007 * (t - 20)) for t in at}
+        nu = [f"{at[t] / rho[t]:.15g} mm**2/s" for t in at]
+        raw = case(
+            viscosity_law="vogel",
+            vogel_offset="90 K",
+            kinematic_viscosity_1=nu[0],
+            kinematic_viscosity_2=nu[1],
+        )
+        found = outputs(raw, "vogel_factor", "vogel_slope")
+        assert found["vogel_factor"] == pytest.approx(0.1, rel=1e-10)
+        assert found["vogel_slope"] == pytest.approx(900, rel=1e-10)
+
+    def test_property_laws_agree_between_their_points_and_part_beyond(self):
+        def film(law, temperature):
+            t = f"{temperature} degC"
+            raw = case(viscosity_law=law, oil_inlet_temperature=t, oil_outlet_temperature=t)
+            return outputs(raw, "dynamic_viscosity")
+
+        assert film("vogel", 70) == pytest.approx(film("walther", 70), rel=0.02)
+        assert abs(film("vogel", -20) / film("walther", -20) - 1) > 0.05
+
+    def test_analytic_heat_balance_closes_with_vogels_viscosity(self):
+        raw = balanced(**VOGEL, supply_temperature="40 degC")
+        found = outputs(raw)
+        assert found["dynamic_viscosity"] == pytest.approx(
+            0.1 * np.exp(900 / (found["film_temperature"] + 90))
+        )
+        carried = 1.8e6 * found["side_flow"] / 6e4 * found["temperature_rise"]
+        assert carried == pytest.approx(found["power_loss"], rel=1e-8)
+
+    @pytest.mark.parametrize(
+        ("change", "names"),
+        [
+            ({"vogel_slope": None}, {"vogel_factor", "vogel_slope"}),
+            ({"vogel_factor": None}, {"vogel_factor", "vogel_slope"}),
+            ({"viscosity_law": "walther"}, {"viscosity_law"}),
+            ({"vogel_factor": None, "vogel_slope": None, "vogel_offset": "-60 K"},
+             {"temperature_1", "temperature_2", "vogel_offset"}),
+            ({"oil_inlet_temperature": "-90 degC", "oil_outlet_temperature": "-91 degC"},
+             {"dynamic_viscosity"}),
+        ],
+    )  # fmt: skip
+    def test_property_half_given_or_beyond_the_pole_is_refused_by_name(self, change, names):
+        raw = {name: value for name, value in {**case(**VOGEL), **change}.items() if value is not None}
+        with pytest.raises(InvalidInputs) as refusal:
+            outputs(raw, "minimum_film_thickness")
+        assert {fault.name for fault in refusal.value.faults} == names
+
+    def test_property_arrays_are_masked_where_the_oil_is_stiff(self):
+        t = {"value": [-95.0, -60.0, 80.0], "unit": "degC"}
+        raw = case(**VOGEL, oil_inlet_temperature=t, oil_outlet_temperature=t)
+        answer = evaluate(OilFilm, raw, outputs=["minimum_film_thickness"]).outputs["minimum_film_thickness"]
+        assert np.isnan(answer.value).tolist() == [True, False, False]
+        assert "pole" in answer.reasons[0]
+
+
 class TestHeatBalance:
     @pytest.mark.parametrize(
         "cooling",
@@ -360,7 +440,8 @@ class TestAbsence:
     def test_property_every_input_is_taken(self, name):
         declared = OilFilm.inputs[name]
         typical = {
-            "oil_grade": "iso_vg_68", "grooves": {"value": [180, 20], "unit": "deg"},
+            "oil_grade": "iso_vg_68", "viscosity_law": "vogel",
+            "grooves": {"value": [180, 20], "unit": "deg"},
             "sleeve_speed": "100 rpm", "load_speed": "100 rpm", "dynamic_viscosity": "15 mPa*s",
             "supply_temperature": "50 degC",
             "ambient_temperature": "20 degC", "heat_transfer": "20 W/K", "supply_pressure": "3 bar",
@@ -369,7 +450,8 @@ class TestAbsence:
             "reference_temperature": "15 degC",
             "reference_density": "860 kg/m**3", "heat_capacity": "1700 kJ/(m**3*K)",
         }  # fmt: skip
-        raw = case(**{name: typical.get(name, OilFilm.example.get(name))})
+        companions = VOGEL if name.startswith("vogel") else {}
+        raw = case(**{**companions, name: typical.get(name, companions.get(name, OilFilm.example.get(name)))})
         assert (
             evaluate(OilFilm, raw, outputs=["minimum_film_thickness"]).inputs[declared.name].source == "given"
         )
