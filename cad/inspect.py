@@ -28,11 +28,13 @@ MEASURES = {
     "volume": "mm**3",
     **{f"centre_{axis}": "mm" for axis in "xyz"},
     **{f"inertia_{axes}": "kg*m**2" for axes in ("xx", "xy", "xz", "yy", "yz", "zz")},
+    "polar_inertia": "kg*m**2",
     **{f"{side}_{axis}": "mm" for side in ("low", "high") for axis in "xyz"},
 }
 """Every measure of a model with its unit.
 
-Inertia is the tensor about the centre of mass: inertia_xy = -∫ x y dm. Low and high are the bounding box.
+Inertia is the tensor about the centre of mass: inertia_xy = -∫ x y dm. The polar inertia is that about the
+model's z axis, on which its shaft turns: ∫ (x² + y²) dm. Low and high are the bounding box.
 """
 
 _PAIRS = [(i, j) for i in range(3) for j in range(i, 3)]
@@ -89,6 +91,7 @@ def summarise(
         "volume": sum(one.volume * len(body.places) for body, one in zip(bodies, measured, strict=True)),
         **{f"centre_{axis}": float(value) for axis, value in zip("xyz", centre, strict=True)},
         **{f"inertia_{'xyz'[i]}{'xyz'[j]}": float(inertia[i, j]) * 1e-6 for i, j in _PAIRS},
+        "polar_inertia": float((inertia + _steiner(mass, centre))[2, 2]) * 1e-6,
         **{f"low_{axis}": value for axis, value in zip("xyz", box.low, strict=True)},
         **{f"high_{axis}": value for axis, value in zip("xyz", box.high, strict=True)},
     }

@@ -28,7 +28,7 @@ __all__ = ["Build", "as_text", "build_key", "regenerate"]
 
 Report = Callable[[float, str], None]
 
-RECIPE = 1
+RECIPE = 2
 """Raised whenever this package makes other bytes or other measures of the same parameters."""
 
 

@@ -89,8 +89,8 @@ def outputs(told: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def measurements(measures: Mapping[str, float], dimensions: Mapping[str, Any]) -> dict[str, Any]:
-    """What a solid measures, as `GET …/measurements` shows it."""
-    told = {name: {"value": measures[name], "unit": unit} for name, unit in MEASURES.items()}
+    """What a solid measures, as `GET …/measurements` shows it; builds of an older recipe measured less."""
+    told = {n: {"value": measures[n], "unit": unit} for n, unit in MEASURES.items() if n in measures}
     inertia = ("xx", "yy", "zz", "xy", "xz", "yz")
     return {
         "bounding_box": {side: _vector(told, side) for side in ("low", "high")},
@@ -98,6 +98,7 @@ def measurements(measures: Mapping[str, float], dimensions: Mapping[str, Any]) -
         "mass": told["mass"],
         "centre": _vector(told, "centre"),
         "inertia": {axes: told[f"inertia_{axes}"] for axes in inertia},
+        **{name: told[name] for name in ("polar_inertia",) if name in told},
         "dimensions": dict(dimensions),
     }
 

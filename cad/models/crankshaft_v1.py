@@ -1,0 +1,124 @@
+"""Crankshaft of a single-cylinder engine: a throw, its two main journals, a flywheel end and a timing end.
+
+z is the axis on which the shaft turns, x points from it to the pin, z = 0 is mid-pin. The timing end is the
+front, at -z; the flywheel end is the rear, at +z. Each main journal is drawn in its whole length, and beyond
+it stands a plain cylinder: a seat for a wheel or, if it is wider than the journal, a flange.
+
+The throw is that of `crank_throw`; only the oil drilling ends in the middle of the whole rear journal. The
+journals' bore goes on through both ends. The face inclination takes material off the outer faces of the webs:
+to add material there, as Punewale et al. do, make it smaller.
+
+References
+----------
+Punewale, Khobragade, Chaudhari and Khandre 2015: a crankshaft changed at pin, journals, throw and on the face
+    inclination of its webs.
+"""
+
+from collections.abc import Mapping
+
+from cad.cranks.crank import CrankModel
+from cad.cranks.reading import Webs, stubs
+from cad.cranks.throw import End
+from cad.model import mm
+from cad.surfaces import Seen
+from templates.core.template import Array, Truth, derived, formula, require
+
+
+class Crankshaft(CrankModel):
+    """Crankshaft with one throw: two main journals, a flywheel end and a timing end.
+
+    Limits
+    ------
+    One throw with two webs alike. Ends are plain cylinders without keyways, threads or fillets at the
+    shoulder; journals and pin have no grooves.
+    """
+
+    example = {
+        "journal_diameter": "40 mm",
+        "journal_length": "32 mm",
+        "journal_bore": "12 mm",
+        "pin_diameter": "36 mm",
+        "pin_length": "26 mm",
+        "pin_bore": "10 mm",
+        "web_thickness": "16 mm",
+        "web_width": "60 mm",
+        "web_shape": "rectangular",
+        "throw": "40 mm",
+        "fillet": "2.5 mm",
+        "oil_drilling_diameter": "5 mm",
+        "counterweight_radius": "64 mm",
+        "counterweight_angle": "130 deg",
+        "face_inclination": "10 deg",
+        "front_length": "45 mm",
+        "front_diameter": "30 mm",
+        "rear_length": "12 mm",
+        "rear_diameter": "70 mm",
+    }
+
+    @formula("mm", "journal length on each side", name="journal_side", symbol="L_s")
+    def L_s(self) -> Array:
+        return self.L_j
+
+    @derived("mm", "front length", symbol="L_f", ge=0.05, le=5000)
+    def L_f(self) -> Array:
+        return 0.8 * self.D_j
+
+    @derived("mm", "front diameter", symbol="D_f", ge=0.1, le=5000)
+    def D_f(self) -> Array:
+        return 0.8 * self.D_j
+
+    @derived("mm", "rear length", symbol="L_r", ge=0.05, le=5000)
+    def L_r(self) -> Array:
+        return 0.8 * self.D_j
+
+    @derived("mm", "rear diameter", symbol="D_r", ge=0.1, le=5000)
+    def D_r(self) -> Array:
+        return 0.9 * self.D_j
+
+    @formula("mm", "overall length", symbol="L")
+    def L(self) -> Array:
+        return self.L_f + 2 * (self.L_j + self.L_w) + self.L_c + self.L_r
+
+    @formula("mm", "wall at the front end", name="front_wall", symbol="w_f")
+    def w_f(self) -> Array:
+        return (self.D_f - self.d_j) / 2
+
+    @formula("mm", "wall at the rear end", name="rear_wall", symbol="w_r")
+    def w_r(self) -> Array:
+        return (self.D_r - self.d_j) / 2
+
+    @require("front_diameter", "journal_bore", remedy="make the front end thicker or the bore smaller")
+    def front_has_wall(self) -> Truth:
+        """The journals' bore takes at most 98 % of the front end's diameter."""
+        return self.d_j <= 0.98 * self.D_f
+
+    @require("rear_diameter", "journal_bore", remedy="make the rear end thicker or the bore smaller")
+    def rear_has_wall(self) -> Truth:
+        """The journals' bore takes at most 98 % of the rear end's diameter."""
+        return self.d_j <= 0.98 * self.D_r
+
+    @require("front_diameter", "journal_diameter", remedy="make them equal, or change one by 0.1 %")
+    def front_shoulder_is_drawable(self) -> Truth:
+        """The front end is as thick as the journal, or differs from it by at least 0.1 %."""
+        return (abs(self.D_f - self.D_j) <= 1e-12 * self.D_j) | (abs(self.D_f - self.D_j) >= 1e-3 * self.D_j)
+
+    @require("rear_diameter", "journal_diameter", remedy="make them equal, or change one by 0.1 %")
+    def rear_shoulder_is_drawable(self) -> Truth:
+        """The rear end is as thick as the journal, or differs from it by at least 0.1 %."""
+        return (abs(self.D_r - self.D_j) <= 1e-12 * self.D_j) | (abs(self.D_r - self.D_j) >= 1e-3 * self.D_j)
+
+    def ends(self) -> tuple[End, End]:
+        """Timing end and flywheel end."""
+        return End(mm(self.D_f) / 2, mm(self.L_f)), End(mm(self.D_r) / 2, mm(self.L_r))
+
+    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+        """Those of the throw, and the cylinders that come last at either end."""
+        found = seen[self.id]
+        front, rear = (stub[-2:] for stub in stubs(found, Webs.of(found), hollow=bool(self.d_j > 0)))
+        return {
+            **super().dimensions(seen),
+            "front_length": front[1].reach[1] - front[0].reach[1],
+            "front_diameter": front[1].diameter,
+            "rear_length": rear[1].reach[1] - rear[0].reach[1],
+            "rear_diameter": rear[1].diameter,
+        }
