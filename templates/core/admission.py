@@ -53,7 +53,7 @@ def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
     meaning = declaration.meaning.at(self.level)
     inside, known = meaning.admits(value), ~np.isnan(value)
     if isinstance(declaration, Profile):
-        inside, known = np.all(inside, axis=-1), np.all(known, axis=-1)
+        inside, known = declaration.inside(inside), declaration.inside(known)
     if (known & ~inside).any():
         remedy = f"; {meaning.remedy}" if meaning.remedy else ""
         reason = f"{declaration.name} must be {meaning.wanted}{remedy}"
@@ -62,7 +62,7 @@ def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
         self.ledger.masks.append(Mask((declaration.attribute,), ~known, why, tells=True))
     if inside.all():
         return value
-    return np.where(inside[..., None] if isinstance(declaration, Profile) else inside, value, np.nan)
+    return np.where(declaration.spread(inside) if isinstance(declaration, Profile) else inside, value, np.nan)
 
 
 def warn_if_outside(ledger: Ledger, declaration: Declaration, value: Any, level: str = "") -> None:

@@ -59,15 +59,19 @@ class Given(Declaration):
 
 
 class Curve(Given):
-    """An input that is an array along the crank angle: its last axis is the cycle.
+    """An input that is an array along the crank angle: its last axis is the cycle, or what `along` names.
 
     A curve means something only as a whole: one point out of its domain refuses it. Axes before the last are
-    points, as of other inputs. Where it may be `constant`, a single value holds all over the cycle.
+    points, as of other inputs. Where it may be `constant`, a single value holds all over the cycle. Curves
+    along the same axis are of one length.
     """
 
-    def __init__(self, meaning: Meaning, default: Any = None, *, constant: bool = False) -> None:
-        super().__init__(meaning, default)
-        self.constant = constant
+    def __init__(
+        self, meaning: Meaning, default: Any = None, *, constant: bool = False, along: str = "cycle",
+        optional: bool = False, alternative: bool = False,
+    ) -> None:  # fmt: skip
+        super().__init__(meaning, default, optional=optional, alternative=alternative)
+        self.constant, self.along = constant, along
 
 
 class Table(Given):
@@ -137,12 +141,23 @@ class Profile(Formula[T]):
     """An output that is an array along its last axis, as along a pad, for each point of the inputs.
 
     It means something only as a whole: one place out of its domain takes the profile of that point.
-    `along` is the name of the profile that says where its places are; its own for that one.
+    `along` is the name of the profile that says where its places are; its own for that one. A profile of
+    several `axes` is a table for each point: mode shapes [mode, inertia].
     """
 
-    def __init__(self, function: Callable[[T], Any], meaning: Meaning, latex: str | None, along: str) -> None:
+    def __init__(
+        self, function: Callable[[T], Any], meaning: Meaning, latex: str | None, along: str, axes: int
+    ) -> None:
         super().__init__(function, meaning, latex)
-        self.along = along
+        self.along, self.axes = along, axes
+
+    def inside(self, places: NDArray[np.bool_]) -> Any:
+        """Where all places of a point hold."""
+        return np.all(places, axis=tuple(range(-self.axes, 0)))
+
+    def spread(self, points: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Points as an array that goes with the profile."""
+        return points[(..., *(None,) * self.axes)]
 
 
 class Text(Formula[T]):
@@ -226,9 +241,18 @@ def limits(
     return Bounds(ge=ge, le=le), Bounds(ge=published[0], le=published[1])
 
 
-def curve(unit: str, words: str, *, default: Any = None, constant: bool = False, **keywords: Any) -> Any:
-    """Declare an input that is an array along the crank angle (last axis), or a `constant` if it may be."""
-    return Curve(meaning(unit, words, **keywords), default, constant=constant)
+def curve(
+    unit: str, words: str, *, default: Any = None, constant: bool = False, along: str = "cycle",
+    optional: bool = False, alternative: bool = False, **keywords: Any,
+) -> Any:  # fmt: skip
+    """Declare an input that is an array along the crank angle (last axis), or a `constant` if it may be.
+
+    `along` names another axis: `inertias`. Optional ones that are missing are NaN, as those of `given`.
+    """
+    return Curve(
+        meaning(unit, words, **keywords), default,
+        constant=constant, along=along, optional=optional, alternative=alternative,
+    )  # fmt: skip
 
 
 def choice(*options: str, words: str, default: str | None = None, name: str | None = None) -> Any:
@@ -251,10 +275,10 @@ def derived(
 
 
 def profile(
-    unit: str, words: str, *, along: str, latex: str | None = None, **keywords: Any
+    unit: str, words: str, *, along: str, axes: int = 1, latex: str | None = None, **keywords: Any
 ) -> Callable[[Callable[[T], Any]], Profile[T]]:
-    """Declare an output that is an array along its last axis, at the places given by `along`."""
-    return lambda function: Profile(function, meaning(unit, words, **keywords), latex, along)
+    """Declare an output that is an array along its last axis, or axes, at the places given by `along`."""
+    return lambda function: Profile(function, meaning(unit, words, **keywords), latex, along, axes)
 
 
 def text(words: str, **keywords: Any) -> Callable[[Callable[[T], Any]], Text[T]]:

@@ -143,7 +143,7 @@ def _joined(rungs: list[Rung], parts: list[_Part]) -> _Part:
 
 def _joined_answer(rungs: list[Rung], formula: Formula[Any], answers: list[Answer]) -> Answer:
     unit = answers[0].unit
-    places = np.shape(answers[0].value)[-1:] if isinstance(formula, Profile) else ()
+    places = np.shape(answers[0].value)[-formula.axes :] if isinstance(formula, Profile) else ()
     values = _scattered(rungs, [answer.value for answer in answers], float if unit else object, places)
     if all(answer.reasons is None for answer in answers):
         return Answer(values, unit)
@@ -200,16 +200,17 @@ def _with_reasons(
 
     A profile has one reason as a whole.
     """
-    beneath, is_profile = template.ancestors(formula.attribute), isinstance(formula, Profile)
+    beneath = template.ancestors(formula.attribute)
+    profile = formula if isinstance(formula, Profile) else None
     masks = [mask for mask in template.ledger.masks if not beneath.isdisjoint(mask.names)]
     if not masks and not np.isnan(si).any():
         return si, None
-    points = si.shape[:-1] if is_profile else si.shape
+    points = si.shape[: -profile.axes] if profile else si.shape
     shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), points)
     covering = (mask.where for mask in masks if not mask.tells)
     covered = reduce(np.logical_or, covering, np.zeros(shape, dtype=bool))
-    value = np.where(covered[..., None] if is_profile else covered, np.nan, si)
-    holes = np.isnan(value).any(axis=-1) if is_profile else np.isnan(value)
+    value = np.where(profile.spread(covered) if profile else covered, np.nan, si)
+    holes = ~profile.inside(~np.isnan(value)) if profile else np.isnan(value)
     reasons = np.full(shape, None, dtype=object)
     reasons[holes] = "the formula has no finite value here"
     for mask in reversed(masks):

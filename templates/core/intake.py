@@ -77,8 +77,8 @@ def _bounded(declared: Input, typed: Typed, ledger: Ledger, faults: list[Fault])
             warn_if_outside(ledger, declared, value)
         return value
     inside = meaning.admits(value)
-    if is_curve and not isinstance(value, np.ndarray):
-        told = f"{meaning.words} is a curve: give an array over the cycle, in {meaning.unit}"
+    if isinstance(declared, Curve) and is_curve and not isinstance(value, np.ndarray):
+        told = f"{meaning.words} is a curve: give an array over the {declared.along}, in {meaning.unit}"
         faults.append(Fault(declared.name, "not_a_curve", told))
     elif is_curve or not isinstance(value, np.ndarray):
         value = value if is_curve else np.float64(value)
@@ -142,7 +142,11 @@ def check_shapes(self: Template) -> None:
     arrays = {n: v for n, v in vars(self).items() if isinstance(v, np.ndarray)}
     try:
         points_of(self, arrays)
-        np.broadcast_shapes(*(v.shape[-1:] for n, v in arrays.items() if is_curve(self, n)))
+        curves = {n: d for n, d in self.declarations.items() if isinstance(d, Curve) and n in arrays}
+        for along in {curve.along for curve in curves.values()}:
+            np.broadcast_shapes(
+                *(arrays[n].shape[-1:] for n, curve in curves.items() if curve.along == along)
+            )
     except ValueError:
         names = {self.declarations[n].name: v.shape for n, v in arrays.items()}
         told = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())

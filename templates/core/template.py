@@ -231,7 +231,7 @@ class Template:
                 if why is None:
                     raise InvalidInputs([refusal(self, declaration, value)])
                 self.ledger.absent[declaration.attribute] = why
-        elif isinstance(declaration, Profile) and value.ndim == 1:
+        elif isinstance(declaration, Profile) and value.ndim == declaration.axes:
             value = whole(self, declaration, value)
         elif isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
             value = masked(self, declaration, value)

@@ -263,6 +263,18 @@ class Beam(Template):
         return stations(self.s)
 
 
+class Chain(Template):
+    """A chain of masses with springs between them."""
+
+    m = curve("kg", "masses", along="mass", gt=0)
+    k = curve("N/m", "springs", along="spring", alternative=True, gt=0)
+    limit = given("kg", "limit", default="100 kg")
+
+    @profile("kg", "sums of masses", along="masses", axes=2, lt=10, remedy="take lighter masses")
+    def sums(self):
+        return self.m[..., None, :] + self.m[..., :, None] + 0 * np.asarray(self.limit)[..., None, None]
+
+
 class TestProfiles:
     MANY = {"load": "4 N", "sag": "1 m", "length": {"value": [1, -1, 3], "unit": "m"}}
 
@@ -285,6 +297,21 @@ class TestProfiles:
         shown = rendering.answer(moment)
         assert shown["value"] == [[0, 2, 4], None, None]
         assert json.loads(json.dumps(shown))["reasons"] == list(moment.reasons)
+
+    def test_property_profile_of_two_axes_is_one_thing_for_each_point(self):
+        pairs = evaluate(Chain, {"masses": ["1 kg", "2 kg", "3 kg"], "springs": ["1 N/m", "5 N/m"]})
+        np.testing.assert_array_equal(pairs.outputs["sums_of_masses"].value[0], [2, 3, 4])
+        many = {"masses": {"value": [[1, 2], [9, 1], [3, 3]], "unit": "kg"}}
+        found = evaluate(Chain, many).outputs["sums_of_masses"]
+        assert [bool(reason) for reason in found.reasons] == [False, True, False]
+        assert rendering.answer(found)["value"] == [[[2, 3], [3, 4]], None, [[6, 6], [6, 6]]]
+        limits = evaluate(Chain, {"masses": ["1 kg"], "limit": ["1 kg", "2 kg"]})
+        assert limits.outputs["sums_of_masses"].value.shape == (2, 1, 1)
+
+    def test_property_a_curve_may_be_missing_but_is_no_single_value(self):
+        assert np.isnan(Chain.from_quantities({"masses": ["1 kg"]}).k)
+        with pytest.raises(InvalidInputs, match="give an array over the mass, in kg"):
+            Chain.from_quantities({"masses": "1 kg"})
 
     def test_property_profile_is_no_target(self):
         with pytest.raises(InvalidInputs, match="single value") as refusal:
