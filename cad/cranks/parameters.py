@@ -77,10 +77,10 @@ class CrankParameters(CadModel):
     @derived("mm", "fillet", symbol="r_f", ge=0, le=500)
     def r_f(self) -> Array:
         """As large as is common, or as lengths and web leave room for."""
-        smaller = np.minimum(self.D_j, self.D_c)
-        room = np.minimum(0.2 * self.L_c, 0.1 * self.L_j)
-        overhang = 0.25 * np.abs(self.W - np.maximum(self.D_j, self.D_c))
-        return np.minimum(np.minimum(0.05 * smaller, room), overhang)
+        return np.minimum(
+            np.minimum(0.05 * np.minimum(self.D_j, self.D_c), 0.1 * np.minimum(self.L_j, self.L_c)),
+            0.25 * np.abs(self.W - np.maximum(self.D_j, self.D_c)),
+        )
 
     @derived("mm", "oil drilling diameter", symbol="d_o", ge=0, le=500)
     def d_o(self) -> Array:
@@ -100,6 +100,21 @@ class CrankParameters(CadModel):
     def s(self) -> Array:
         """By how much journal and pin overlap, seen along the shaft; negative if they do not."""
         return (self.D_j + self.D_c) / 2 - self.R
+
+    @formula("mm", "journal wall", symbol="w_j")
+    def w_j(self) -> Array:
+        """Between the journal's bore and its surface."""
+        return (self.D_j - self.d_j) / 2
+
+    @formula("mm", "pin wall", symbol="w_c")
+    def w_c(self) -> Array:
+        """Between the pin's bore and its surface."""
+        return (self.D_c - self.d_c) / 2
+
+    @formula("mm**2", "counterweight sector", symbol="A_w")
+    def A_w(self) -> Array:
+        """Area of the sector that makes a counterweight, from the journal's axis on."""
+        return self.phi_w / 2 * self.R_w**2
 
     @formula("mm", "incline start", symbol="x_b")
     def x_b(self) -> Array:
