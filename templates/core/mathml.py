@@ -67,7 +67,8 @@ def unit_symbol(text: str) -> str:
 def amount(value: float, unit: str) -> str:
     """A number with its unit, as LaTeX."""
     printed = unit_symbol(unit)
-    return number(value) + (rf"\,\text{{{printed}}}" if printed else "")
+    shown = r"\%" if printed == "%" else rf"\text{{{printed}}}"  # in a text it would begin a comment
+    return number(value) + (rf"\,{shown}" if printed else "")
 
 
 def expression(formula: Formula[Any], symbols: Mapping[str, str], times: str = r"\,") -> str:
