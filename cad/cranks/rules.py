@@ -164,6 +164,11 @@ class CrankRules(CrankParameters):
         """The inclined face, from the journal's fillet to the web's end, is at least 5 % of its width."""
         return (self.beta <= 0) | (self.R + self.W / 2 - self.x_b >= 0.05 * self.W)
 
+    @require("face_inclination", remedy="use 0 for flat faces")
+    def inclination_is_drawable(self) -> Truth:
+        """The face inclination is 0, or at least 0.01°."""
+        return (self.beta <= 0) | (self.beta >= radians(0.0099))
+
     @require(
         "journal_bore",
         "pin_bore",
