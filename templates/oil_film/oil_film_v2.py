@@ -53,11 +53,11 @@ from templates.physics.smallest_film import smallest_film_ISO_7902
 from templates.physics.static_journal import BOUNDARY, FED, JournalFilm, is_fed, ladder, static_film_at
 
 ISO = "ISO 7902-1:1998"
-NO_COEFFICIENTS = "levels fit and mass_conserving have none; take short_bearing, map or reynolds"
+NO_COEFFICIENTS = "level fit has none, nor a film whose cavities do not settle; take another level"
 NO_BALANCE = "needs supply_temperature, or ambient_temperature with heat_transfer"
 NO_SUPPLY = "needs supply_temperature"
 BELOW_POLE = "temperature_1 or temperature_2 lies below the pole of Vogel's law, at minus its offset in degC"
-NEVER_WHIRLS = "stable at every speed, or without mass; levels fit and mass_conserving cannot tell"
+NEVER_WHIRLS = "stable at every speed, or without mass; level fit cannot tell"
 UNBORNE = (
     "no film bears this: change load, clearance, speed or viscosity, or move the grooves; "
     "supply pressure alone may lift more"
@@ -451,7 +451,7 @@ class OilFilm(Template):
     @shared
     def linear(self) -> Linear:
         """Stiffness, damping and threshold mass, dimensionless."""
-        return linear_at(self.level, self.eps, self.b)
+        return linear_at(self.level, self.eps, self.b, self.beta, self.P_s, self.grooves)
 
     @formula("N/m", "stiffness scale", symbol=r"k_{0}")
     def k_0(self) -> Array:

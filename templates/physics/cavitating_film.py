@@ -10,28 +10,28 @@ the width converges more slowly, 10 % and more. The film turns in the positive s
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_array, diags_array, eye_array, kron
 
 from templates.physics.arrays import Array, Mask, require, require_film
+from templates.physics.cavitating_network import Groove, Ring, fed_network, grooved_ring
 from templates.physics.cavitation import Cavitation, Network, cavitation
-from templates.physics.film_equations import dual_widths, midpoints
-from templates.physics.film_mesh import gap, ring_mesh
+from templates.physics.film_equations import dual_widths
+from templates.physics.film_mesh import gap
 
 _COARSEST = 16, 6
 
 
 @dataclass(frozen=True)
-class Groove:
-    """An axial groove or pocket, full at its pressure; a width of 0 makes a line."""
+class SolvedRing:
+    """A solved film on its nodes."""
 
-    centre: float
-    """From the narrowest gap in the sense of rotation [rad]."""
-    width: float
-    """Extent around [rad]."""
-    length: float = 1.0
-    """Extent across over the bearing's width, 0 … 1 [-]."""
-    P: float = 0.0
-    """Supply pressure above that of the cavity [-]."""
+    ring: Ring
+    """Where the nodes are."""
+    network: Network
+    """Their balances of flow."""
+    solution: Cavitation
+    """Pressure and void."""
+    fed: Mask
+    """(n, m + 1) nodes fed by grooves."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,14 @@ class CavitatingFilm:
 def cavitating_film(
     eps: float, ratio: float, grooves: list[Groove], ambient: float = 0.0, around: int = 128, across: int = 16
 ) -> CavitatingFilm:
-    """Solve the static film with cavities.
+    """Solve and measure the static film with cavities; as `solved_ring`."""
+    return measured(solved_ring(eps, ratio, grooves, ambient, around, across))
+
+
+def solved_ring(
+    eps: float, ratio: float, grooves: list[Groove], ambient: float = 0.0, around: int = 128, across: int = 16
+) -> SolvedRing:
+    """Solve the static film with cavities, from a coarse mesh to the one asked for.
 
     Args:
         eps: relative eccentricity, 0 … 1 − 1e-7 [-].
@@ -82,107 +89,54 @@ def cavitating_film(
     require(np.asarray(len(grooves) > 0), "grooves: at least one must feed the film")
     pressures = np.array([ambient, *(groove.P for groove in grooves)])
     require((pressures >= 0) & np.isfinite(pressures), "pressures must be 0 or more above that of the cavity")
-    start = None
+    found: SolvedRing | None = None
     for shift in (3, 2, 1, 0):
         n, m = max(around >> shift, _COARSEST[0]), max(across >> shift, _COARSEST[1])
-        phi, zeta = _nodes(eps, ratio, grooves, n, m)
-        network, fed = _network(eps, ratio, phi, zeta, grooves, ambient)
-        solution = cavitation(network, None if start is None else _interpolated(*start, phi, zeta))
-        start = solution, phi, zeta
-    return _measure(eps, ratio, phi, zeta, network, solution, fed)
+        ring = grooved_ring(eps, ratio, grooves, n, m)
+        network, fed = fed_network(ring, grooves, ambient)
+        solution = cavitation(network, None if found is None else _interpolated(found, ring))
+        found = SolvedRing(ring, network, solution, fed)
+    assert found is not None
+    return found
 
 
-def _nodes(eps: float, ratio: float, grooves: list[Groove], n: int, m: int) -> tuple[Array, Array]:
-    """A graded mesh whose nearest nodes are moved to the edges of the grooves."""
-    mesh = ring_mesh(eps, ratio, n, m)
-    edges = [groove.centre + side * groove.width / 2 for groove in grooves for side in (-1, 1)]
-    return _snapped(mesh.phi, _wrapped(np.array(edges))), _snapped(
-        mesh.zeta, np.array([g.length for g in grooves])
-    )
-
-
-def _wrapped(angle: Array) -> Array:
-    """The same angle in [−pi, pi)."""
-    return (angle + np.pi) % (2 * np.pi) - np.pi
-
-
-def _snapped(nodes: Array, places: Array) -> Array:
-    """Move the inner node nearest to each place there."""
-    nodes = nodes.copy()
-    for place in places[(places > nodes[0]) & (places < nodes[-1])]:
-        nodes[1 + np.abs(nodes[1:-1] - place).argmin()] = place
-    return nodes
-
-
-def _inside(groove: Groove, phi: Array, zeta: Array) -> Mask:
-    """Nodes of a groove; a groove narrower than the mesh still has the node that was moved to it."""
-    around = np.abs(_wrapped(phi - groove.centre)) <= groove.width / 2 + 1e-9
-    return around[:, None] & (zeta <= groove.length + 1e-9)
-
-
-def _network(
-    eps: float, ratio: float, phi: Array, zeta: Array, grooves: list[Groove], ambient: float
-) -> tuple[Network, Mask]:
-    """Balances of flow on the ring of nodes, and which of them are fed by grooves."""
-    n, dual = phi.size - 1, dual_widths(zeta)
-    upwind = eye_array(n)
-    step = csc_array((np.ones(n), (np.arange(n), np.arange(1, n + 1) % n)), shape=(n, n)) - upwind
-    H_mid, width = gap(midpoints(phi), eps), dual_widths(phi)
-    axial = eye_array(zeta.size - 1, zeta.size, k=1) - eye_array(zeta.size - 1, zeta.size)
-    conductance = gap(phi, eps) ** 3 * width / ratio**2
-    conductance[0] += conductance[-1]
-    around = kron(step.T @ diags_array(H_mid**3 / np.diff(phi)) @ step, diags_array(dual))
-    across = kron(diags_array(conductance[:-1]), axial.T @ diags_array(1 / np.diff(zeta)) @ axial)
-    shear = kron(-step.T @ diags_array(6 * H_mid) @ upwind, diags_array(dual))
-    P_fixed, fed = np.full((n, zeta.size), -1.0), np.zeros((n, zeta.size), bool)
-    P_fixed[:, -1] = ambient
-    for groove in grooves:
-        inside = _inside(groove, phi[:-1], zeta)
-        P_fixed[inside] = groove.P
-        fed |= inside
-    network = Network(csc_array(around + across), csc_array(shear), (P_fixed >= 0).ravel(), P_fixed.ravel())
-    return network, fed
-
-
-def _interpolated(
-    solution: Cavitation, phi: Array, zeta: Array, finer_phi: Array, finer_zeta: Array
-) -> tuple[Array, Array]:
+def _interpolated(found: SolvedRing, finer: Ring) -> tuple[Array, Array]:
     """Carry pressure and void to the nodes of a finer mesh, linearly along each direction."""
+    ring = found.ring
 
     def carried(values: Array) -> Array:
-        ring = _closed(values, zeta.size)
-        rows = np.stack([np.interp(finer_phi[:-1], phi, column) for column in ring.T], axis=1)
-        return np.stack([np.interp(finer_zeta, zeta, row) for row in rows]).ravel()
+        columns = ring.closed(values).T
+        rows = np.stack([np.interp(finer.phi[:-1], ring.phi, column) for column in columns], axis=1)
+        return np.stack([np.interp(finer.zeta, ring.zeta, row) for row in rows]).ravel()
 
-    return carried(solution.P), carried(solution.void)
-
-
-def _closed(values: Array, columns: int) -> Array:
-    """Node values as an array around × across whose last row repeats the first."""
-    rows = values.reshape(-1, columns)
-    return np.concatenate([rows, rows[:1]])
+    return carried(found.solution.P), carried(found.solution.void)
 
 
-def _measure(
-    eps: float, ratio: float, phi: Array, zeta: Array, network: Network, solution: Cavitation, fed: Mask
-) -> CavitatingFilm:
+def force(ring: Ring, P: Array) -> Array:
+    """Force along and ahead of the line of centres of a pressure at the nodes, in the units of So, (2,)."""
+    weight = dual_widths(ring.phi)
+    axes = np.array([np.cos(ring.phi), np.sin(ring.phi)]) * weight
+    return axes @ ring.closed(P) @ dual_widths(ring.zeta) / 2
+
+
+def measured(found: SolvedRing) -> CavitatingFilm:
     """Integrate load, friction and flow."""
-    P, void = _closed(solution.P, zeta.size), _closed(solution.void, zeta.size)
-    weight, dual = dual_widths(phi), dual_widths(zeta)
-    along, ahead = (np.array([np.cos(phi), np.sin(phi)]) * weight) @ P @ dual / 2
-    shear = weight / gap(phi, eps) @ (1 - void) @ dual / 2
-    loss = network.loss(solution.P, solution.void).reshape(fed.shape)
+    ring, solution, fed = found.ring, found.solution, found.fed
+    P, void = ring.closed(solution.P), ring.closed(solution.void)
+    along, ahead = force(ring, solution.P)
+    shear = dual_widths(ring.phi) / gap(ring.phi, ring.eps) @ (1 - void) @ dual_widths(ring.zeta) / 2
+    loss = found.network.loss(solution.P, solution.void).reshape(fed.shape)
     supply, side = loss[fed].sum(), -loss[:, -1][~fed[:, -1]].sum()
     return CavitatingFilm(
         So=float(np.hypot(along, ahead)),
         attitude=float(np.arctan2(-ahead, along)),
         P_max=float(P.max()),
-        friction=float(shear - eps * ahead / 2),
-        side_flow=float(ratio / 6 * side),
-        supply_flow=float(ratio / 6 * supply),
+        friction=float(shear - ring.eps * ahead / 2),
+        side_flow=float(ring.ratio / 6 * side),
+        supply_flow=float(ring.ratio / 6 * supply),
         imbalance=float((supply - side) / 6),
-        phi=phi,
-        zeta=zeta,
+        phi=ring.phi,
+        zeta=ring.zeta,
         P=P,
         void=void,
     )

@@ -1,27 +1,34 @@
 """Static position of a journal in a mass-conserving film, from its load: eccentricity and attitude found.
 
 The film is fed by a line at the widest gap, or by grooves that stand still relative to the load. Films are
-those of `cavitating_film`, searched for on 64 × 8 intervals to 1e-4 of the load and then extrapolated from
-twice as many; what is left is made up by the slope of the film map. No answer, where the supply pressure
-alone lifts more than the load.
+those of `cavitating_film`, searched for on 64 × 8 intervals and then extrapolated from twice as many, after
+which their stiffness makes up for what the load still lacks. No answer, where the supply pressure alone lifts
+more than the load, or the search has not come to rest after 20 films.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from templates.physics.arrays import ECCENTRICITY_LIMIT, Array
-from templates.physics.cavitating_film import CavitatingFilm, Groove, cavitating_film
-from templates.physics.film_map import mapped_load
+from templates.physics.cavitating_dynamics import LinearFilm, linear_film
+from templates.physics.cavitating_film import CavitatingFilm, SolvedRing, measured, solved_ring
+from templates.physics.cavitating_network import Groove
+from templates.physics.film_map import mapped_film, mapped_load
 from templates.physics.film_map_inverse import mapped_eccentricity
 
 _COARSE, _FINE = (64, 8), (128, 16)
-_ACCURACY = 1e-4
-_STEPS = 14
+_ACCURACY = 1e-3
+"""Share of the load at which the search ends; the rest is linear."""
+_SHORTEST = 1e-4
+"""Step of y, over its size if below 1, at which it ends likewise: where pressure outweighs the load [-]."""
+_HUNTED = 0.03
+"""The same where the force has a step [-]."""
+_STEPS = 20
 _SMALLEST = 1e-3
-_LONGEST = 2.0
-"""Largest change of ln So of the map in one step [-]."""
+"""Eccentricity below which a film without supply pressure is taken in proportion [-]."""
+_LONGEST = 1.0
+"""Longest step of atanh(eps); halved whenever the search turns back [-]."""
 
 
 @dataclass(frozen=True)
@@ -45,63 +52,180 @@ class FedFilm:
     """A film whose load is nearly the one wanted; dimensionless as in `cavitating_film`."""
 
     eps: float
-    So: float
+    """Eccentricity at the load wanted."""
+    solved_eps: float
+    """Eccentricity of the film whose measures follow."""
     attitude: float
+    """At the load wanted [rad]."""
     P_max: float
     peak: float
-    friction: float
+    shear: float
     side_flow: float
 
 
 @dataclass(frozen=True)
-class Position:
-    """A film whose load is nearly the one wanted."""
+class Place:
+    """Where the journal is: a vector y along and ahead of the load, as long as atanh(eps).
 
-    eps: float
-    film: CavitatingFilm
-    tried: float
-    """Attitude at which the grooves were placed [rad]."""
+    So no step of y leaves the bearing, and near its wall a step of 1 is one of the load's size.
+    """
+
+    y: Array
+
+    @property
+    def eps(self) -> float:
+        """Relative eccentricity [-]."""
+        return min(float(np.tanh(np.hypot(*self.y))), ECCENTRICITY_LIMIT)
+
+    @property
+    def attitude(self) -> float:
+        """Angle from the load to the narrowest gap [rad]."""
+        return float(np.arctan2(self.y[1], self.y[0]))
+
+    def moved(self, step: Array) -> "Place":
+        """The place after a step of y, kept inside the eccentricities that films are solved for."""
+        y = self.y + step
+        size = max(float(np.hypot(*y)), 1e-300)
+        return Place(y * min(1.0, float(np.arctanh(ECCENTRICITY_LIMIT)) / size))
+
+
+@dataclass(frozen=True)
+class Lack:
+    """What a film lacks to bear the load."""
+
+    share: float
+    """Over the load; infinite without one [-]."""
+    step: Array
+    """Change of y that would make up for it, as far as it is linear."""
+
+
+def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> tuple[Array, Array]:
+    """Stiffness and damping in axes of the load, psi²/(B D eta omega_h) times those in c and omega_h, (2, 2).
+
+    Args:
+        eps: relative eccentricity [-].
+        ratio: width over diameter B/D [-].
+        attitude: angle from the load to the narrowest gap; without grooves the film has its own [rad].
+        feed: grooves and supply pressure.
+
+    Returns:
+        Both, NaN where the cavities do not settle.
+    """
+    try:
+        film = linear_film(solved_ring(max(eps, _SMALLEST), ratio, feed.placed(attitude), 0.0, *_FINE))
+    except (ArithmeticError, RuntimeError):
+        return np.full((2, 2), np.nan), np.full((2, 2), np.nan)
+    own = float(np.arctan2(-film.force[1], film.force[0]))
+    film = film.turned(attitude if feed.grooves else own)
+    return film.K, film.B
 
 
 def fed_film(So: float, ratio: float, feed: Feed) -> FedFilm | None:
-    """Find the film that bears So, to 1e-4; None if there is none or it does not settle.
-
-    Below eps 1e-3 an unpressurised film is proportional to eps, and the film there stands for all.
+    """Find the film that bears So; None if there is none or it is not found.
 
     Args:
         So: Sommerfeld number F psi²/(B D eta omega_h), 0 or more [-].
         ratio: width over diameter B/D, 0.01 … 100 [-].
         feed: grooves and supply pressure.
     """
-
-    low, high = np.log(mapped_load(np.array([_SMALLEST, ECCENTRICITY_LIMIT]), np.array(ratio)))
-
-    def position(x: float, attitude: float) -> Position:
-        eps = float(mapped_eccentricity(np.exp(min(max(x, low), high)), np.array(ratio)))
-        return Position(eps, cavitating_film(eps, ratio, feed.placed(attitude), 0.0, *_COARSE), attitude)
-
-    wanted = float(np.log(max(So, 1e-300)))
-    if feed.pressure == 0:
-        wanted = max(wanted, low)
+    smallest = 0.0 if feed.pressure > 0 else float(mapped_load(np.array(_SMALLEST), np.array(ratio)))
+    search = Search(max(So, smallest), ratio, feed)
     try:
-        found = _grooved(position, wanted) if feed.grooves else _lined(position, wanted, low, high)
-        return None if found is None else _extrapolated(found, ratio, feed)
-    except (ArithmeticError, ValueError, RuntimeError):  # the last: a singular matrix
+        place = search.found()
+        film = None if place is None else search.extrapolated(place)
+    except (ArithmeticError, ValueError, RuntimeError):  # the last two: a singular matrix
         return None
+    return film if film is None or So >= smallest else replace(film, eps=film.eps * So / smallest)
 
 
-def _extrapolated(found: Position, ratio: float, feed: Feed) -> FedFilm:
-    """By Richardson: load and attitude converge with order 2, shear and flow, which see the front, with 1."""
-    coarse = found.film
-    fine = cavitating_film(found.eps, ratio, feed.placed(found.tried), 0.0, *_FINE)
-    second = {name: _towards(coarse, fine, name, 1 / 3) for name in ("So", "attitude", "P_max")}
-    first = {name: _towards(coarse, fine, name, 1.0) for name in ("friction", "side_flow")}
-    return FedFilm(eps=found.eps, peak=_peak(fine), **second, **first)
+@dataclass(frozen=True)
+class Search:
+    """The search for the place at which a film bears a load."""
 
+    load: float
+    """Sommerfeld number [-]."""
+    ratio: float
+    """Width over diameter B/D [-]."""
+    feed: Feed
+    """Grooves, which stand still, or none: then the line that feeds turns with the journal."""
 
-def _towards(coarse: CavitatingFilm, fine: CavitatingFilm, name: str, share: float) -> float:
-    value = float(getattr(fine, name))
-    return value + share * (value - float(getattr(coarse, name)))
+    def found(self) -> Place | None:
+        """The place, by Newton's method; steps are halved whenever it turns back.
+
+        The mesh follows the grooves, so that the force has steps; where the search hunts about one, the place
+        nearest to rest is taken.
+        """
+        place, longest, before = self.start(), _LONGEST, np.zeros(2)
+        best, nearest = place, np.inf
+        for _ in range(_STEPS):
+            lack = self.lack(place, linear_film(self.solved(place, _COARSE)))
+            distance = float(np.hypot(*lack.step)) / min(1.0, float(np.hypot(*place.y)))
+            if distance < nearest:
+                best, nearest = place, distance
+            if lack.share <= _ACCURACY or distance <= _SHORTEST:
+                return place
+            if lack.step @ before < 0:
+                longest /= 2
+            if longest <= _HUNTED and nearest <= _HUNTED:
+                break
+            before = lack.step * min(1.0, longest / float(np.hypot(*lack.step)))
+            place = place.moved(before)
+        return best if nearest <= _HUNTED else None
+
+    def start(self) -> Place:
+        """Where the film map has the journal."""
+        eps = mapped_eccentricity(np.array(self.load), np.array(self.ratio))
+        eps = np.where(np.isnan(eps), ECCENTRICITY_LIMIT, np.maximum(eps, _SMALLEST))
+        attitude = mapped_film(eps, np.array(self.ratio))["attitude"]
+        return Place(np.arctanh(eps) * np.array([np.cos(attitude), np.sin(attitude)]))
+
+    def solved(self, place: Place, mesh: tuple[int, int]) -> SolvedRing:
+        """The film at a place."""
+        return solved_ring(place.eps, self.ratio, self.feed.placed(place.attitude), 0.0, *mesh)
+
+    def lack(self, place: Place, film: LinearFilm) -> Lack:
+        """What the film there lacks; `film` is in axes of the line of centres."""
+        step = self._step_to_grooves if self.feed.grooves else self._step_with_line
+        missing, displacement = step(place, film)
+        share = float(np.hypot(*missing)) / self.load if self.load > 0 else np.inf
+        along, ahead = displacement
+        size = float(np.arctanh(place.eps))
+        radial, turned = place.y / size, np.array([-place.y[1], place.y[0]]) / size
+        return Lack(share, along / (1 - place.eps**2) * radial + ahead * size / place.eps * turned)
+
+    def _step_to_grooves(self, place: Place, film: LinearFilm) -> tuple[Array, Array]:
+        """The force that is missing, and the displacement for it, in axes of the line of centres."""
+        load = self.load * np.array([np.cos(place.attitude), -np.sin(place.attitude)])
+        missing: Array = load - film.force
+        return missing, np.asarray(np.linalg.solve(film.K, missing))
+
+    def _step_with_line(self, place: Place, film: LinearFilm) -> tuple[Array, Array]:
+        """Likewise; only along the line of centres, since the film turns as a whole."""
+        borne = float(np.hypot(*film.force))
+        missing = (self.load - borne) * film.force / borne
+        along = (self.load - borne) / (film.force / borne @ film.K[:, 0])
+        return missing, np.array([max(along, -0.9 * place.eps), 0.0])
+
+    def extrapolated(self, place: Place) -> FedFilm:
+        """The film there by Richardson, and the place for what it still lacks.
+
+        Load and peak converge with order 2, shear and flow, which see the front, with 1.
+        """
+        rings = [self.solved(place, mesh) for mesh in (_COARSE, _FINE)]
+        coarse, fine = (measured(ring) for ring in rings)
+        linear = linear_film(rings[1])
+        force = linear.force + (linear.force - linear_film(rings[0]).force) / 3
+        final = place.moved(self.lack(place, replace(linear, force=force)).step)
+        friction, side_flow = (2 * getattr(fine, n) - getattr(coarse, n) for n in ("friction", "side_flow"))
+        return FedFilm(
+            eps=final.eps,
+            solved_eps=place.eps,
+            attitude=final.attitude if self.feed.grooves else float(np.arctan2(-force[1], force[0])),
+            P_max=fine.P_max + (fine.P_max - coarse.P_max) / 3,
+            peak=_peak(fine),
+            shear=friction + place.eps * force[1] / 2,
+            side_flow=side_flow,
+        )
 
 
 def _peak(film: CavitatingFilm) -> float:
@@ -111,45 +235,3 @@ def _peak(film: CavitatingFilm) -> float:
     x = film.phi[k - 1 : k + 2] - film.phi[k]
     bend, slope, _ = np.polyfit(x / x[2], P[k - 1 : k + 2], 2)
     return float(film.phi[k] - (x[2] * slope / (2 * bend) if bend < 0 else 0.0))
-
-
-def _lined(
-    position: Callable[[float, float], Position], wanted: float, low: float, high: float
-) -> Position | None:
-    """Step along ln So of the map, on which the film's ln So rises about one for one; then bisect."""
-    x = min(max(wanted, low), high)
-    for _ in range(4 * _STEPS):
-        found = position(x, 0.0)
-        excess = float(np.log(found.film.So)) - wanted
-        if abs(excess) < _ACCURACY:
-            return found
-        low, high = (low, x) if excess > 0 else (x, high)
-        step = x - min(max(excess, -_LONGEST), _LONGEST)
-        x = step if low < step < high else (low + high) / 2
-        if high - low < _ACCURACY:
-            return None
-    return None
-
-
-def _grooved(position: Callable[[float, float], Position], wanted: float) -> Position | None:
-    """Broyden's method for ln So and the attitude together."""
-    x, inverse = np.array([wanted, np.pi / 4]), np.diag([1.0, -0.5])
-    found, residual = _residual(position, x, wanted)
-    for _ in range(_STEPS):
-        if np.abs(residual).max() < 10 * _ACCURACY:
-            return found
-        step = -np.clip(inverse @ residual, -0.5 * _LONGEST, 0.5 * _LONGEST)
-        x = x + step
-        found, new = _residual(position, x, wanted)
-        change = inverse @ (new - residual)
-        inverse += np.outer(step - change, step @ inverse) / (step @ change)
-        residual = new
-    return None
-
-
-def _residual(
-    position: Callable[[float, float], Position], x: Array, wanted: float
-) -> tuple[Position, Array]:
-    found = position(*x)
-    turned = (found.film.attitude - x[1] + np.pi) % (2 * np.pi) - np.pi
-    return found, np.array([np.log(found.film.So) - wanted, turned])

@@ -82,13 +82,6 @@ def ring_mesh(eps: float, ratio: float, n: int, m: int) -> Mesh:
     return _mesh(eps, ratio, n, m, np.pi)
 
 
-def land_mesh(start: float, end: float, n: int, m: int) -> Mesh:
-    """Uniform mesh of a land between two axial grooves."""
-    axial = np.linspace(0, 1, m + 1), 2 * gregory(m) / m
-    around = np.linspace(start, end, n + 1), gregory(n) * (end - start) / n
-    return Mesh(around[0], axial[0], around[1], axial[1])
-
-
 def _mesh(eps: float, ratio: float, n: int, m: int, end: float) -> Mesh:
     phi, slope = _graded_around(eps, ratio, n, end)
     zeta, axial_slope = graded_across(np.sqrt(1 - eps) / ratio, m)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from templates.physics.arrays import Array
+from templates.physics.fed_film import Feed, fed_coefficients
 from templates.physics.film_dynamics import plain_coefficients
 from templates.physics.film_map import mapped_coefficients, mapped_load
 from templates.physics.short_bearing import load_Ocvirk_1952
@@ -37,9 +38,19 @@ class Linear:
     """M omega² c psi²/(B D eta omega_h), M of the rotor's share; infinite where every mass is stable."""
 
 
-def linear_at(level: str, eps: Array, ratio: Array) -> Linear:
-    """Stiffness, damping and threshold mass; NaN at points that are NaN and at levels without them [-]."""
-    K, B = coefficients_at(level, eps, ratio)
+def linear_at(
+    level: str,
+    eps: Array,
+    ratio: Array,
+    attitude: Array | float = 0.0,
+    pressure: Array | float = 0.0,
+    grooves: tuple[tuple[float, float], ...] = (),
+) -> Linear:
+    """Stiffness, damping and threshold mass; NaN at points that are NaN and at level fit [-].
+
+    Arguments as of `coefficients_at`.
+    """
+    K, B = coefficients_at(level, eps, ratio, attitude, pressure, grooves)
     entries = {
         f"{name}_{xy}": matrix[..., i, j][()]
         for name, matrix in (("K", K), ("B", B))
@@ -51,42 +62,61 @@ def linear_at(level: str, eps: Array, ratio: Array) -> Linear:
     return Linear(**entries, M_c=np.where(known, mass, np.nan)[()])
 
 
-def coefficients_at(level: str, eps: Array, ratio: Array) -> tuple[Array, Array]:
-    """Stiffness and damping, (..., 2, 2) each; NaN at points that are NaN and at levels without them [-].
+def coefficients_at(
+    level: str,
+    eps: Array,
+    ratio: Array,
+    attitude: Array | float = 0.0,
+    pressure: Array | float = 0.0,
+    grooves: tuple[tuple[float, float], ...] = (),
+) -> tuple[Array, Array]:
+    """Stiffness and damping, (..., 2, 2) each; NaN at points that are NaN and at level fit [-].
 
     Args:
         level: as in `static_journal`.
         eps: relative eccentricity [-].
         ratio: width over diameter B/D [-].
+        attitude: angle from the load to the narrowest gap; mass_conserving places grooves by it [rad].
+        pressure: supply pressure above ambient; likewise [-].
+        grooves: (angle from the load, width) of each; likewise [rad].
     """
-    eps, ratio = np.broadcast_arrays(np.asarray(eps, float), np.asarray(ratio, float))
-    known = np.isfinite(eps) & np.isfinite(ratio) & (level in SOLVERS)
-    K, B = np.full((2, *eps.shape, 2, 2), np.nan)
+    points = np.broadcast_arrays(*(np.asarray(a, float) for a in (eps, ratio, attitude, pressure)))
+    known = np.isfinite(points).all(axis=0) & (level in SOLVERS)
+    K, B = np.full((2, *known.shape, 2, 2), np.nan)
     if known.any():
-        K[known], B[known] = SOLVERS[level](np.maximum(eps[known], _CENTRED), ratio[known])
+        eps, ratio, attitude, pressure = (point[known] for point in points)
+        feeds = [Feed(p, grooves) for p in pressure]
+        K[known], B[known] = SOLVERS[level](np.maximum(eps, _CENTRED), ratio, attitude, feeds)
     return K, B
 
 
-def _short(eps: Array, ratio: Array) -> tuple[Array, Array]:
+def _short(eps: Array, ratio: Array, *_: object) -> tuple[Array, Array]:
     return _times(load_Ocvirk_1952(eps, ratio), *coefficients_Holmes_1960(eps))
 
 
-def _mapped(eps: Array, ratio: Array) -> tuple[Array, Array]:
+def _mapped(eps: Array, ratio: Array, *_: object) -> tuple[Array, Array]:
     return _times(mapped_load(eps, ratio), *mapped_coefficients(eps, ratio))
 
 
-def _solved(eps: Array, ratio: Array) -> tuple[Array, Array]:
+def _solved(eps: Array, ratio: Array, *_: object) -> tuple[Array, Array]:
     films = [plain_coefficients(float(e), float(b), 256, 32) for e, b in zip(eps, ratio, strict=True)]
     So, K, B = (np.array([getattr(film, name) for film in films]) for name in ("So", "K", "B"))
     return _times(So, K, B)
+
+
+def _conserving(eps: Array, ratio: Array, attitude: Array, feeds: list[Feed]) -> tuple[Array, Array]:
+    films = [fed_coefficients(*point) for point in zip(eps, ratio, attitude, feeds, strict=True)]
+    K, B = np.array(films).swapaxes(0, 1)
+    return K, B
 
 
 def _times(So: Array, K: Array, B: Array) -> tuple[Array, Array]:
     return So[..., None, None] * K, So[..., None, None] * B
 
 
-SOLVERS: dict[str, Callable[[Array, Array], tuple[Array, Array]]] = {
+SOLVERS: dict[str, Callable[[Array, Array, Array, list[Feed]], tuple[Array, Array]]] = {
     "short_bearing": _short,
     "map": _mapped,
     "reynolds": _solved,
+    "mass_conserving": _conserving,
 }

@@ -82,7 +82,7 @@ def vogel_slope(eta_1: Array, T_1: Array, eta_2: Array, T_2: Array, c: Array) ->
 
 @units("Pa*s", "K", "K", "K", returns="Pa*s")
 def vogel_factor(eta_1: Array, T_1: Array, b: Array, c: Array) -> Array:
-    """Vogel's a [Pa s] from one viscosity [Pa s] at T_1 [K]; NaN from the pole down, or if it is too small."""
+    """Vogel's a [Pa s] from one viscosity [Pa s] at T_1 [K]; NaN from the pole down, or if too small."""
     a = eta_1 * np.exp(-b / _above_pole(T_1, c))
     return np.where(a > 0, a, np.nan)[()]
 

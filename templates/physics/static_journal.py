@@ -186,19 +186,16 @@ def _solved(eps: float, ratio: float) -> list[float]:
 
 
 def conserving_film(So: Array, ratio: Array, feeds: list[Feed]) -> JournalFilm:
-    """Film by film with cavities."""
-    films = [_conserving(*point) for point in zip(So, ratio, feeds, strict=True)]
-    return _moved(So, ratio, np.array(films))
-
-
-def _conserving(So: float, ratio: float, feed: Feed) -> list[float]:
-    """The fields of `JournalFilm` near So; NaN where no film bears it; the shear as there is oil."""
-    found = fed_film(So, ratio, feed)
-    if found is None:
-        return [np.nan] * 7
-    shear = found.friction - found.eps * found.So * np.sin(found.attitude) / 2
-    film = found.So, found.attitude, found.P_max, found.peak, shear, found.side_flow
-    return [found.eps, *film]
+    """Film by film with cavities; shear as there is oil; measures moved to the load as the map's would."""
+    films = [fed_film(*point) for point in zip(So, ratio, feeds, strict=True)]
+    found = {
+        name: np.array([np.nan if film is None else getattr(film, name) for film in films])
+        for name in ("eps", "solved_eps", "attitude", "P_max", "peak", "shear", "side_flow")
+    }
+    there, here = (_mapped(np.nan_to_num(found[name]), ratio) for name in ("eps", "solved_eps"))
+    with np.errstate(invalid="ignore"):
+        moved = {n: found[n] * getattr(there, n) / getattr(here, n) for n in ("P_max", "shear", "side_flow")}
+    return JournalFilm(eps=found["eps"], So=So, attitude=found["attitude"], peak=found["peak"], **moved)
 
 
 def _moved(So: Array, ratio: Array, near: Array) -> JournalFilm:

@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from grooved_lands import grooved_coefficients
 
-from templates.physics.cavitating_film import Groove, cavitating_film
+from templates.physics.cavitating_dynamics import LinearFilm, linear_film
+from templates.physics.cavitating_film import cavitating_film, solved_ring
+from templates.physics.cavitating_network import Groove
 from templates.physics.cavitating_slider import PocketedSlider, discrete_slider, film_Fowell_2007
-from templates.physics.film_dynamics import grooved_coefficients
-from templates.physics.grooved_film import grooved_film
+from templates.physics.fed_film import Feed, fed_coefficients, fed_film
+from templates.physics.film_dynamics import plain_coefficients
 from templates.physics.reynolds import extrapolated_film
 
 SLIDER = PocketedSlider(1e-2, 1.05e-6, 1e-6, 2e-3, 5e-3, 1e-6, eta=1e-2, speed=1.0, ambient=1e5)
@@ -59,10 +62,69 @@ def test_refusals_name_the_argument() -> None:
 
 
 @pytest.mark.parametrize("eps", [0.244, 0.655, 0.95])
-def test_grooved_film_finds_the_attitude_of_the_ruptured_one(eps: float) -> None:
+def test_fed_film_finds_the_place_of_the_ruptured_one(eps: float) -> None:
     """Two grooves at ambient pressure: nearly nothing re-forms outside them, so Swift and Stieber agree."""
-    width = np.radians(20)
-    film = grooved_film(eps, 0.5, [Groove(-np.pi / 2, width), Groove(np.pi / 2, width)])
-    static = grooved_coefficients(eps, 0.5, [(-np.pi / 2, width), (np.pi / 2, width)])
-    assert film.So == pytest.approx(static.So, rel=0.01)
-    assert film.attitude == pytest.approx(static.attitude, abs=0.01)
+    grooves = ((-np.pi / 2, np.radians(20)), (np.pi / 2, np.radians(20)))
+    static = grooved_coefficients(eps, 0.5, list(grooves))
+    film = fed_film(static.So, 0.5, Feed(0.0, grooves))
+    assert film is not None
+    assert 1 - film.eps == pytest.approx(1 - eps, rel=0.005)
+    assert film.attitude == pytest.approx(static.attitude, abs=0.005)
+
+
+LATE = Feed(0.3, ((-1.2, 0.4), (2.9, 0.0)))
+
+
+def borne(y: np.ndarray, feed: Feed) -> LinearFilm:
+    """The film of a journal at y, in units of the radial clearance, along and ahead of the load."""
+    attitude = float(np.arctan2(y[1], y[0]))
+    solved = solved_ring(float(np.hypot(*y)), 0.7, feed.placed(attitude), 0.0, 256, 16)
+    return linear_film(solved).turned(attitude)
+
+
+@pytest.mark.parametrize("eps", [0.3, 0.7, 0.9])
+def test_stiffness_is_the_slope_of_the_force_where_the_film_re_forms(eps: float) -> None:
+    """By a displacement that moves the front over many nodes: less would see the steps of the mesh."""
+    place, step = eps * np.array([np.cos(0.7), np.sin(0.7)]), 0.02 * (1 - eps)
+    film = borne(place, LATE)
+    for k, axis in enumerate(np.eye(2)):
+        slope = (borne(place + step * axis, LATE).force - borne(place - step * axis, LATE).force) / (2 * step)
+        assert film.K[:, k] == pytest.approx(slope, abs=0.05 * np.abs(film.K).max())
+
+
+@pytest.mark.parametrize("eps", [0.01, 0.5, 0.95, 0.999])
+def test_coefficients_near_those_of_the_ruptured_film(eps: float) -> None:
+    """Fed at the widest gap both films rupture alike."""
+    K, B = fed_coefficients(eps, 0.5, 0.0, Feed())
+    ruptured = plain_coefficients(eps, 0.5, 256, 32)
+    for found, known in ((K, ruptured.So * ruptured.K), (B, ruptured.So * ruptured.B)):
+        assert found == pytest.approx(known, abs=0.015 * np.abs(known).max())
+
+
+def drawn_feeds(seed: int, count: int) -> list[tuple[float, float, Feed]]:
+    """Loads, widths and feeds over the range of physics.md, section 5, odd grooves among them."""
+    rng = np.random.default_rng(seed)
+    points = []
+    for _ in range(count):
+        So = 10 ** rng.uniform(-8, 6) * (rng.random() > 0.05)
+        P = 0.0 if rng.random() < 0.4 else 10 ** rng.uniform(-4, 3)
+        widths = [rng.choice([0.0, 10 ** rng.uniform(-3, 0.3)]) for _ in range(rng.integers(0, 5))]
+        grooves = tuple((float(rng.uniform(-2 * np.pi, 4 * np.pi)), float(width)) for width in widths)
+        points.append((float(So), float(10 ** rng.uniform(-2, 2)), Feed(float(P), grooves)))
+    return points
+
+
+@pytest.mark.slow
+def test_fed_films_bear_their_load_on_a_finer_mesh() -> None:
+    """At random feeds the film found carries the load, to what a mesh that follows the grooves leaves."""
+    found = 0
+    for So, ratio, feed in drawn_feeds(3, 120):
+        film = fed_film(So, ratio, feed)
+        if film is None or not feed.grooves or film.eps < 1e-3 or So < 1e-3:
+            continue
+        fine = solved_ring(film.eps, ratio, feed.placed(film.attitude), 0.0, 256, 32)
+        linear = linear_film(fine).turned(film.attitude)
+        off = np.linalg.solve(linear.K, linear.force - [So, 0.0])
+        assert np.hypot(*off) < 0.05 * min(film.eps, 1 - film.eps), (So, ratio, feed)
+        found += 1
+    assert found > 20

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from grooved_lands import grooved_coefficients
 
-from templates.physics.film_dynamics import grooved_coefficients
 from templates.physics.film_fit import attitude_ISO_7902, load_ISO_7902
 from templates.physics.long_bearing import (
     attitude_Gumbel_1914,

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from finite_slider import finite_slider, leakage_factor
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from templates.physics.finite_slider import finite_slider, leakage_factor
 from templates.physics.slider import (
     centre_of_pressure_Rayleigh_1918,
     film_velocity,

@@ -125,7 +125,7 @@ class TestLiterature:
             assert outputs(raw, "kinematic_viscosity") == pytest.approx(viscosity, rel=1e-12)
 
     def test_literature_lund_thomsen_1978(self):
-        """Two axial grooves of 20° at ±90° to the load: eccentricity and attitude."""
+        """Two axial grooves of 20° at ±90° to the load: eccentricity, attitude, all coefficients."""
         rows = table("lund_thomsen_1978.csv")
         grooves = {"value": [[90, 20], [270, 20]], "unit": "deg"}
         So = 1 / (2 * np.pi * rows["S"])
@@ -133,6 +133,15 @@ class TestLiterature:
             found = outputs(bearing(float(So[i]), float(rows["length_ratio"][i]), grooves=grooves))
             assert found["relative_eccentricity"] == pytest.approx(rows["eps"][i], abs=0.002)
             assert found["attitude_angle"] == pytest.approx(rows["phi_deg"][i], abs=0.3)
+            unit = (
+                So[i] * rows["length_ratio"][i] * 2 * ETA * OMEGA * D / PSI**3
+            )  # load over radial clearance
+            for xy in ("xx", "xy", "yx", "yy"):
+                over_load = found[f"stiffness_{xy}"] / unit
+                assert over_load == pytest.approx(rows[f"K{xy}"][i], rel=0.05, abs=0.03), xy
+            for xy in ("xx", "xy", "yy"):
+                over_load = found[f"damping_{xy}"] * OMEGA / unit
+                assert over_load == pytest.approx(rows[f"B{xy}"][i], rel=0.05, abs=0.03), xy
 
     @pytest.mark.parametrize(
         ("d", "rpm", "film"), [(50, 300, 3), (50, 5000, 7), (100, 100, 4), (500, 3000, 16)]

@@ -1,4 +1,6 @@
-"""Plane slider of finite width: a fixed incline with side leakage, by the equations of the journal film.
+"""A second solver of the plane slider of finite width, by the equations of the journal film.
+
+The independent check of `templates.physics.slider_film`: another mesh, another quadrature, another solution.
 
 Boundary condition: P = 0 on all four sides; a converging film does not rupture.
 x runs from the inlet (0) to the outlet (1) over the length l, zeta = 2z/b from the middle to the side.
