@@ -32,6 +32,8 @@ THINNEST = 2e-6
 """Gap 1 − eps below which a film is taken to bear nothing: the mobility map ends at half of it [-]."""
 
 _COARSEST = 64
+_LAST = 2
+"""Stride up to which a case that has not settled on a coarser ring is tried again from the start."""
 _MOST_STEPS = 60
 _THINNER, _LONGEST = 0.25, 0.7
 """A Newton step leaves this share of the gap, and is no longer than this eccentricity."""
@@ -39,6 +41,8 @@ _STUCK = 0.1
 """A journal at the wall that moves less than this, over its gap, stays there."""
 ROUGHEST = 2e-3
 """Relative error of the smallest gap by the step, beyond which the steps are made shorter [-]."""
+UNKNOWN = 0.1
+"""The same beyond which an orbit is not taken for one: it may owe its film to the steps [-]."""
 _FINER = 4
 """How many times: where the film is thin, a degree is a long time."""
 _BLOCK = 1 << 16
@@ -104,7 +108,7 @@ class Ring:
 
 
 def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
-    """The orbit of every case, by the mobility of a law.
+    """The orbit of every case, by the mobility of a law; NaN where none was found.
 
     Args:
         load: the cycle; a case without any load has no orbit of its own and is NaN.
@@ -117,6 +121,10 @@ def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
         part = borne & (np.arange(cases) // size == start // size)
         _fill(whole, load, law, part, finer=1)
         _fill(whole, load, law, part & ~(whole.step_error < ROUGHEST), finer=_FINER)
+    unknown = ~(whole.step_error < UNKNOWN)
+    whole.eps[:, unknown] = np.nan
+    for values in (whole.least_gap, whole.least_angle, whole.step_error):
+        values[unknown] = np.nan
     return whole
 
 
@@ -161,14 +169,15 @@ def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array]:
     """Orbits on the finest ring, from coarser ones; which settled, and the error of the smallest gap."""
     stride = 1 << max(0, int(np.log2(ring.place.size / _COARSEST)))
     tolerance = _ROUGH if stride > 1 else TOLERANCE
-    e, settled = _settled(ring.every(stride), law, np.zeros_like(ring.S[..., ::stride]), tolerance)
+    every = np.ones(ring.w.shape[0], bool)
+    e, settled = _settled(ring.every(stride), law, np.zeros_like(ring.S[..., ::stride]), tolerance, every)
     error = np.full(settled.shape, np.nan)
     while stride > 1:
         stride //= 2
         coarse, known = e, settled
         finer, tolerance = ring.every(stride), _ROUGH if stride > 1 else TOLERANCE
         start = np.where(known[:, None], _halved(coarse, finer.place.size), 0.0)
-        e, settled = _settled(finer, law, start, tolerance)
+        e, settled = _settled(finer, law, start, tolerance, known | (stride <= _LAST))
         shared = 1 - np.hypot(*e[..., ::2]).max(axis=-1)
         change = shared - (1 - np.hypot(*coarse).max(axis=-1))
         error = np.where(known, np.abs(change) / (3 * shared), np.nan)
@@ -183,11 +192,11 @@ def _halved(e: Array, nodes: int) -> Array:
     return finer
 
 
-def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float) -> tuple[Array, Mask]:
-    """Newton's method from a start; which cases have settled away from the wall."""
-    left, settled = np.ones(ring.w.shape[0], bool), np.zeros(ring.w.shape[0], bool)
+def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float, tried: Mask) -> tuple[Array, Mask]:
+    """Newton's method from a start, for the cases tried; which have settled away from the wall."""
+    left, settled = tried.copy(), np.zeros(tried.shape, bool)
     a = differences(ring.steps())
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MOST_STEPS if left.any() else 0):
         some = ring if left.all() else ring.of(left)
         f, slopes = _rate(some, e[:, left], law if left.all() else law.of(left))
         change = newton_step(a, imbalance(a, e[:, left], f), slopes)

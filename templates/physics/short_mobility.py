@@ -13,6 +13,8 @@ import numpy as np
 from templates.physics.arrays import Array, require, require_film
 from templates.physics.roots import bracketed_root
 
+_BLOCK = 4096
+"""Points whose pressure is sought together."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
 
 
@@ -106,6 +108,51 @@ def mobility_Booker_1971(eps: Array, ratio: Array, load_direction: Array) -> Arr
     along = thin**2.5 / (np.pi * ratio**2)
     ahead = 4 * eps * sin * thin**1.5 / (np.pi * ratio) ** 2
     return np.stack([along * cos - ahead * sin, along * sin + ahead * cos])
+
+
+def short_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
+    r"""What the half film does under a load that moves the journal as `mobility_Booker_1971` says [-].
+
+    .. math:: p_{max} = \tfrac32\frac{\eta B^2 v}{h^3}\cos(\varphi-\alpha) \text{ at its largest},\quad
+        \sin(\varphi-\alpha)+\epsilon\sin(2\varphi-\alpha)+2\epsilon\sin\alpha = 0
+
+    Args:
+        xi: relative eccentricity along the load on the journal [-].
+        eta: the same ahead of the load [-].
+        ratio: width over diameter B/D [-].
+
+    Returns:
+        (2, ...) as `mobility_map.mapped_film_under_load`: largest pressure p_max B D/F, and side flow
+        Q/(B D v), which is all that the journal displaces, 1.
+    """
+    xi, eta, ratio = np.broadcast_arrays(*(np.asarray(x, float) for x in (xi, eta, ratio)))
+    eps = np.hypot(xi, eta)
+    along, ahead = (1 - xi) ** 2.5 / (np.pi * ratio**2), -4 * eta * (1 - xi) ** 1.5 / (np.pi * ratio) ** 2
+    direction = np.arctan2(ahead, along) - np.arctan2(eta, xi)
+    turn = np.abs((direction + np.pi) % (2 * np.pi) - np.pi)
+    rise = np.empty(eps.shape)
+    for start in range(0, eps.size, _BLOCK):
+        part = slice(start, start + _BLOCK)
+        rise.reshape(-1)[part] = _steepest(eps.ravel()[part], turn.ravel()[part])
+    return np.stack([6 * ratio**2 * np.hypot(along, ahead) * rise, np.ones_like(rise)])
+
+
+def _steepest(eps: Array, direction: Array) -> Array:
+    """Largest cos(phi − alpha)/H³ over the half film: the best of some places, then by Newton's method."""
+    start, end = _sommerfeld_angle(direction - np.pi / 2, eps), _sommerfeld_angle(direction + np.pi / 2, eps)
+    gamma = start + np.linspace(0, 1, 49)[:, None] * (end - start)
+    phi = 2 * np.arctan2(np.sin(gamma / 2) * np.sqrt(1 - eps), np.cos(gamma / 2) * np.sqrt(1 + eps))
+
+    def height(at: Array) -> Array:
+        return np.asarray(np.cos(at - direction) / ((1 - eps) + 2 * eps * np.sin(at / 2) ** 2) ** 3)
+
+    best = np.take_along_axis(phi, height(phi).argmax(axis=0)[None], axis=0)[0]
+    top = best
+    for _ in range(4):
+        slope = np.cos(top - direction) + 2 * eps * np.cos(2 * top - direction)
+        left = np.sin(top - direction) + eps * np.sin(2 * top - direction) + 2 * eps * np.sin(direction)
+        top = top - left / np.where(slope == 0, 1.0, slope)
+    return np.fmax(height(best), np.where(np.cos(top - direction) >= 0, height(top), 0.0))
 
 
 def _sommerfeld_angle(phi: Array, eps: Array) -> Array:

@@ -295,7 +295,7 @@ def assert_pointwise(cls, inputs, points):
     together = numbers(cls, shown)
     compared = 0
     for i in points:
-        alone = evaluated_alone(cls, {name: point(value, i) for name, value in shown.items()})
+        alone = evaluated_alone(cls, {n: point(cls.inputs[n], value, i) for n, value in shown.items()})
         at = {name: at_points(cls, name, answer, len(points))[i] for name, answer in together.items()}
         if alone is None:
             assert not at or any(np.isnan(value).any() for value in at.values()), (
@@ -317,8 +317,9 @@ def at_points(cls, name, answer, size):
     return np.broadcast_to(value, (size, *places))
 
 
-def point(value, i):
-    is_array = isinstance(value, dict) and isinstance(value["value"], list)
+def point(declared, value, i):
+    """One of the points that an input spans; a curve is the same at all of them here."""
+    is_array = isinstance(value, dict) and isinstance(value["value"], list) and not isinstance(declared, Curve)
     return {**value, "value": value["value"][i]} if is_array else value
 
 
