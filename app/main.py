@@ -13,6 +13,7 @@ from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
 from app import health, problems
+from app.calculations.film_pressure import router as film_pressure
 from app.calculations.routes import router as calculations
 from app.calculations.routes import worksheets
 from app.catalogue.finding import find_templates
@@ -37,6 +38,7 @@ from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.folder import DataFolder
 from app.storage.migrations import migrate
+from app.web import assembly as pages
 from app.workers.local import LocalProcesses
 from cad.catalogue import models as find_models
 
@@ -73,11 +75,22 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         },
     )
     # Routers are tried one after another; that of `evaluate`, which is called most, is the first.
-    for router in (calculations, worksheets, catalogue, designs, design_files, design_events, models, jobs):
+    for router in (
+        calculations,
+        worksheets,
+        film_pressure,
+        catalogue,
+        designs,
+        design_files,
+        design_events,
+        models,
+        jobs,
+    ):
         app.include_router(router)
     app.include_router(health.router)
     app.include_router(problems.router)
     problems.install(app)
+    pages.install(app)
     app.add_middleware(BodyLimit, limit=chosen.body_limit, refuse=_too_large)
     app.add_middleware(Metrics)
     app.openapi = partial(_openapi_3_1, app)  # type: ignore[method-assign]

@@ -1,0 +1,177 @@
+"""What forms do: each is a call of the REST interface, then the page that shows what came of it.
+
+Without a script in the browser these are all actions there are; with one, `static/design.js` saves by itself.
+A form from another site is refused: a browser would send it without asking anyone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+from urllib.parse import urlsplit
+
+from fastapi import APIRouter, Depends, HTTPException, Request, Response
+
+from app.web.api import Api, Refused, TheApi
+from app.web.design_page import design_page
+from app.web.forms import fields, kept, patch_of, value_of
+from app.web.gallery import GALLERY
+from app.web.rendering import go
+from app.web.routes import Id, Number
+
+AT_ONCE = {"Prefer": "wait=1"}  # the page shows how the rest goes on
+STALE = 412
+ILL_NAMED = 422
+
+
+async def same_site(request: Request) -> None:
+    """Let forms of our own pages through only."""
+    kind, origin = request.headers.get("sec-fetch-site"), request.headers.get("origin")
+    foreign = kind not in (None, "same-origin", "none")
+    if foreign or (origin and urlsplit(origin).netloc != request.headers.get("host")):
+        raise HTTPException(403, "this form was sent from another site")
+
+
+router = APIRouter(include_in_schema=False, dependencies=[Depends(same_site)])
+
+
+@router.post("/designs")
+async def create(request: Request, api: TheApi) -> Response:
+    """A design from the gallery, or one with a template and a model of one's choice."""
+    typed = await fields(request)
+    example = GALLERY.get(typed.get("example", ""))
+    document = example["document"] if example else await _blank(api, typed)
+    made = (await api.send("POST", "/designs", json=document, headers=AT_ONCE)).json()
+    if not example and made["models"]:
+        await api.send("POST", f"/designs/{made['id']}/auto-map", params={"apply": True}, headers=AT_ONCE)
+    return go(f"/designs/{made['id']}")
+
+
+@router.post("/designs/{id}")
+async def save(id: Id, request: Request, api: TheApi) -> Response:
+    """A new revision; where it is refused, the form again with what was typed and what is wrong."""
+    typed = await fields(request)
+    design = await api.get(f"/designs/{id}")
+    based = typed.get("revision", "")
+    patch = patch_of(design, typed)
+    try:
+        if based != str(design["revision"]):
+            raise Refused(STALE, {"detail": f"revision {design['revision']} was saved since"})
+        await _change(api, id, based, patch, typed.get("note", ""))
+    except Refused as refused:
+        return await _again(request, api, id, typed, refused)
+    return go(f"/designs/{id}")
+
+
+@router.post("/designs/{id}/blocks")
+async def add(id: Id, request: Request, api: TheApi) -> Response:
+    """A parameter, a template or a model more, or one less."""
+    typed = await fields(request)
+    patch = await _block(api, typed)
+    try:
+        await _change(api, id, typed.get("revision", ""), patch, "")
+    except Refused as refused:
+        return await _again(request, api, id, {}, refused)
+    return go(f"/designs/{id}")
+
+
+@router.post("/designs/{id}/auto-map")
+async def auto_map(id: Id, request: Request, api: TheApi) -> Response:
+    """Save the proposals."""
+    typed = await fields(request)
+    headers = {**AT_ONCE, "If-Match": f'"{typed.get("revision", "")}"'}
+    await api.send("POST", f"/designs/{id}/auto-map", params={"apply": True}, headers=headers)
+    return go(f"/designs/{id}")
+
+
+@router.post("/designs/{id}/copy")
+async def copy(id: Id, api: TheApi) -> Response:
+    """A copy, shown at once."""
+    made = (await api.send("POST", f"/designs/{id}/copy", headers=AT_ONCE)).json()
+    return go(f"/designs/{made['id']}")
+
+
+@router.post("/designs/{id}/delete")
+async def delete(id: Id, api: TheApi) -> Response:
+    """Take a design from the lists."""
+    await api.send("DELETE", f"/designs/{id}")
+    return go("/#designs")
+
+
+@router.post("/designs/{id}/revisions/{number}/restore")
+async def restore(id: Id, number: Number, api: TheApi) -> Response:
+    """A new revision equal to an old one."""
+    await api.send("POST", f"/designs/{id}/revisions/{number}/restore", headers=AT_ONCE)
+    return go(f"/designs/{id}")
+
+
+@router.post("/designs/{id}/jobs/{job}/cancel")
+async def cancel(id: Id, job: Id, api: TheApi) -> Response:
+    """Stop the regeneration; a job that has ended meanwhile is left as it is."""
+    try:
+        await api.send("DELETE", f"/jobs/{job}")
+    except Refused as refused:
+        if refused.status != 409:
+            raise
+    return go(f"/designs/{id}")
+
+
+async def _change(api: Api, id: str, revision: str, patch: Mapping[str, Any], note: str) -> None:
+    noted = {**patch, "note": note} if note.strip() else patch
+    headers = {**AT_ONCE, "If-Match": f'"{revision}"'}
+    await api.send("PATCH", f"/designs/{id}", json=noted, headers=headers)
+
+
+async def _again(request: Request, api: Api, id: str, typed: Mapping[str, str], refused: Refused) -> Response:
+    """The page with a form that was refused; of a stale one, only what its user changed is kept."""
+    if refused.status not in (STALE, ILL_NAMED):
+        raise refused
+    notice = (
+        f"Somebody else saved this design meanwhile: {refused.problem['detail']}. Your changes are kept in "
+        "the fields below; look at them once more, then save."
+        if refused.status == STALE
+        else None
+    )
+    faults = refused.faults or ({} if notice else {"design": refused.problem["detail"]})
+    return await design_page(
+        request, api, id, typed=kept(typed), faults=faults, notice=notice, status=refused.status
+    )
+
+
+async def _blank(api: Api, typed: Mapping[str, str]) -> dict[str, Any]:
+    """A new design with one template, at its example, and perhaps a model."""
+    document: dict[str, Any] = {"name": typed.get("name", "").strip() or "new design"}
+    if typed.get("template"):
+        name, step = await _step(api, typed["template"])
+        document["steps"] = {name: step}
+    if typed.get("model"):
+        document["model"] = _versioned("id", typed["model"])
+    return document
+
+
+async def _step(api: Api, chosen: str) -> tuple[str, dict[str, Any]]:
+    step = _versioned("template", chosen)
+    told = await api.get(f"/templates/{step['template']}/versions/{step['version']}")
+    return step["template"], {**step, "inputs": told["example"]}
+
+
+def _versioned(key: str, chosen: str) -> dict[str, Any]:
+    """`oil_film/2` as the id and version that the interface takes."""
+    id, _, version = chosen.partition("/")
+    return {key: id, "version": int(version) if version.isdecimal() else "latest"}
+
+
+async def _block(api: Api, typed: Mapping[str, str]) -> dict[str, Any]:
+    """The merge patch that adds or removes what a form names."""
+    name = typed.get("name", "").strip()
+    match typed.get("add", ""):
+        case "parameter":
+            return {"parameters": {name: value_of(typed.get("value", ""))}}
+        case "template":
+            id, step = await _step(api, typed.get("template", ""))
+            return {"steps": {name or id: step}}
+        case "model":
+            model = _versioned("id", typed.get("model", ""))
+            return {"models": {name or model["id"]: model}}
+    group, _, removed = typed.get("remove", "").partition(".")
+    return {group: {removed: None}}

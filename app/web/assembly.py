@@ -1,0 +1,38 @@
+"""The pages as a part of the app: routes, files, errors, compression."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fastapi import FastAPI
+from fastapi.staticfiles import StaticFiles
+from starlette.middleware.gzip import GZipMiddleware
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from app.web import actions, problems, routes
+
+STATIC = Path(__file__).with_name("static")
+SMALLEST, LEVEL = 1000, 6  # of what is compressed [bytes], and how hard
+PLAIN = ("/events", "/evaluate", ".png", ".step")
+"""Ends of paths that are sent as they are: streams, short answers, what is compressed already."""
+
+
+class Compression:
+    """ASGI middleware that compresses pages and answers, but no stream."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app, self.compressed = app, GZipMiddleware(app, minimum_size=SMALLEST, compresslevel=LEVEL)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on, compressed or not."""
+        plain = scope["type"] != "http" or scope["path"].endswith(PLAIN)
+        await (self.app if plain else self.compressed)(scope, receive, send)
+
+
+def install(app: FastAPI) -> None:
+    """Add the pages; call it after the interface is complete."""
+    app.include_router(routes.router)
+    app.include_router(actions.router)
+    app.mount("/static", StaticFiles(directory=STATIC), name="static")
+    problems.install(app)
+    app.add_middleware(Compression)

@@ -1,0 +1,108 @@
+"""Fields of a form and the JSON of the interface: typed text becomes a value, a value becomes text.
+
+`static/typed.js` does the same in the browser; `tests/web` compares the two.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+from urllib.parse import parse_qsl
+
+from fastapi import Request
+
+OPTIONS = ("level", "tolerance")  # of a step, beside its inputs
+
+
+async def fields(request: Request) -> dict[str, str]:
+    """The fields of a form that was sent."""
+    body = (await request.body()).decode(errors="replace")
+    return dict(parse_qsl(body, keep_blank_values=True))
+
+
+def value_of(text: str) -> Any:
+    """What a field means: a text as it is; a list `[1, 2] mm`, or an object of JSON, as such."""
+    stripped = text.strip()
+    if not stripped.startswith(("[", "{")):
+        return stripped
+    end = stripped.rfind("]" if stripped[0] == "[" else "}") + 1
+    try:
+        inside, unit = json.loads(stripped[:end]), stripped[end:].strip()
+    except ValueError:
+        return stripped  # the interface says what is wrong with it
+    return {"value": inside, "unit": unit} if unit else inside
+
+
+def text_of(value: Any) -> str:
+    """How a value as typed stands in a field."""
+    if value is None:
+        return ""
+    if isinstance(value, Mapping) and set(value) == {"value", "unit"}:
+        inside = value["value"] if isinstance(value["value"], str) else json.dumps(value["value"])
+        return f"{inside} {value['unit']}" if value["unit"] != "1" else inside
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+
+
+def patch_of(design: Mapping[str, Any], typed: Mapping[str, str]) -> dict[str, Any]:
+    """The merge patch with what a form's user changed."""
+    patch: dict[str, Any] = {}
+    for name, text in kept(typed).items():
+        if _is_field(design, name):
+            _put(patch, design, name, value_of(text))
+    return patch
+
+
+def kept(typed: Mapping[str, str]) -> dict[str, str]:
+    """What differs from what the form said at first, which its hidden field `was` holds."""
+    try:
+        was = json.loads(typed.get("was", "{}"))
+    except ValueError:
+        was = {}
+    old = was if isinstance(was, dict) else {}
+    return {name: text for name, text in typed.items() if text.strip() != str(old.get(name, "")).strip()}
+
+
+def _is_field(design: Mapping[str, Any], name: str) -> bool:
+    block, _, tail = name.partition(".")
+    return name in design["parameters"] or bool(tail and block in {**design["steps"], **design["models"]})
+
+
+def texts(design: Mapping[str, Any]) -> dict[str, str]:
+    """What a design says, field by field: `scale`, `film.radial_load`, `film.level`, `model.width`."""
+    found = {name: text_of(value) for name, value in design["parameters"].items()}
+    for group, inside in (("steps", "inputs"), ("models", "parameters")):
+        for block, told in design[group].items():
+            found |= {f"{block}.{name}": text_of(value) for name, value in told[inside].items()}
+    for step, told in design["steps"].items():
+        found |= {f"{step}.{option}": text_of(told[option]) for option in OPTIONS}
+    return found
+
+
+def _put(patch: dict[str, Any], design: Mapping[str, Any], name: str, value: Any) -> None:
+    """One value in its place; what was emptied is removed."""
+    block, _, tail = name.partition(".")
+    told = None if value == "" else value
+    if not tail:
+        patch.setdefault("parameters", {})[name] = told
+    elif block in design["models"]:
+        _inside(patch, "models", block, "parameters")[tail] = told
+    elif tail in OPTIONS:
+        patch.setdefault("steps", {}).setdefault(block, {})[tail] = _option(tail, told)
+    else:
+        _inside(patch, "steps", block, "inputs")[tail] = told
+
+
+def _inside(patch: dict[str, Any], group: str, block: str, part: str) -> dict[str, Any]:
+    inside: dict[str, Any] = patch.setdefault(group, {}).setdefault(block, {}).setdefault(part, {})
+    return inside
+
+
+def _option(name: str, value: Any) -> Any:
+    """A tolerance is a number; the interface says what is wrong with one that is none."""
+    if name != "tolerance" or value is None:
+        return value
+    try:
+        return float(value)
+    except ValueError:
+        return value

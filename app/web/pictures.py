@@ -1,0 +1,146 @@
+"""Which pictures a calculation gets: one table, by what its outputs are called and whether they are curves.
+
+`static/pictures.js` draws them, in the page, from the same answer of the interface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+FEWEST = 3  # points of a curve
+AXES = ("crank_angle",)  # of curves that say no other
+MOST_LINES = 6  # in one picture
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What to draw (`kind`), of which values (by API name), and how it is called."""
+
+    kind: str
+    title: str
+    names: Mapping[str, Any]
+
+    def told(self, scope: str) -> dict[str, Any]:
+        """The picture for the script that draws it."""
+        return {"kind": self.kind, "scope": scope, **self.names}
+
+
+Values = Mapping[str, Any]
+Rule = Callable[[Values, Mapping[str, Any]], Iterable[Picture]]
+
+
+def pictures(scope: str, template: Mapping[str, Any], told: Mapping[str, Any]) -> list[Picture]:
+    """The pictures of one evaluation, in the order of the table below."""
+    values = {**told.get("inputs", {}), **told.get("outputs", {})}
+    if not told.get("outputs"):
+        return []
+    declared = {**template["inputs"]["properties"], **template["outputs"]["properties"]}
+    return [picture for rule in TABLE for picture in rule(values, declared)]
+
+
+def _have(values: Values, *names: str) -> bool:
+    return all(name in values and values[name].get("value") is not None for name in names)
+
+
+def _single(values: Values, *names: str) -> bool:
+    return _have(values, *names) and not any(isinstance(values[name]["value"], list) for name in names)
+
+
+def _clearance(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+    if _single(values, "relative_eccentricity", "minimum_film_thickness"):
+        names = {
+            "eccentricity": "relative_eccentricity",
+            "film": "minimum_film_thickness",
+            "attitude": "attitude_angle" if _single(values, "attitude_angle") else None,
+        }
+        yield Picture("clearance", "Journal in its clearance circle", names)
+
+
+FILM = ("relative_eccentricity", "bearing_diameter", "bearing_width", "diametral_clearance",
+        "dynamic_viscosity")  # fmt: skip
+
+
+def _pressure(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+    speed = "hydrodynamic_speed" if "hydrodynamic_speed" in values else "speed"
+    if _single(values, *FILM, speed):
+        yield Picture(
+            "pressure", "Film pressure, unrolled", {"inputs": {**{n: n for n in FILM}, "speed": speed}}
+        )
+
+
+def _polar(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+    for name in values:
+        across = f"{name[:-1]}y"
+        if name.endswith("load_x") and _is_curve(values, name) and _is_curve(values, across):
+            words = name.removesuffix("_x").replace("_", " ")
+            yield Picture("polar", f"Polar diagram of the {words}", {"x": name, "y": across})
+
+
+def _orbit(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+    if _is_curve(values, "eccentricity_x") and _is_curve(values, "eccentricity_y"):
+        yield Picture(
+            "orbit",
+            "Orbit of the journal in its clearance circle",
+            {"x": "eccentricity_x", "y": "eccentricity_y", "clearance": "diametral_clearance"},
+        )
+
+
+def _campbell(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+    if _have(values, "natural_frequencies", "engine_orders"):
+        names = {"frequencies": "natural_frequencies", "orders": "engine_orders", "range": "speed_range"}
+        yield Picture("campbell", "Campbell diagram", names)
+
+
+def _modes(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+    if _have(values, "mode_shapes", "natural_frequencies"):
+        names = {"shapes": "mode_shapes", "frequencies": "natural_frequencies"}
+        yield Picture("modes", "Mode shapes", names)
+
+
+def _curves(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+    """Every curve over its axis: those of one unit and axis together."""
+    groups: dict[tuple[str, str], list[str]] = {}
+    for name, about in declared.items():
+        axis = _axis(values, declared, name)
+        if axis and name != axis and name not in ("mode_shapes", "natural_frequencies"):
+            groups.setdefault((axis, about["unit"]), []).append(name)
+    for (axis, _), names in groups.items():
+        for first in range(0, len(names), MOST_LINES):
+            lines = names[first : first + MOST_LINES]
+            words = ", ".join(declared[name]["title"] for name in lines)
+            yield Picture("curves", f"{words} over {declared[axis]['title']}", {"x": axis, "y": lines})
+
+
+def _axis(values: Values, declared: Mapping[str, Any], name: str) -> str | None:
+    """What a curve is drawn over: what it goes along, the crank angle, or the input that is an array."""
+    if not _is_curve(values, name) or "unit" not in declared[name]:
+        return None
+    length = len(values[name]["value"])
+    along: str | None = declared[name].get("along")
+    arrays = [other for other in values if other in declared and _is_curve(values, other)]
+    given = [other for other in arrays if values[other].get("from") == "given"]
+    for axis in filter(None, (along, *AXES, *given)):
+        if axis in arrays and len(values[axis]["value"]) == length:
+            return axis
+    return None
+
+
+def _is_curve(values: Values, name: str) -> bool:
+    value = values.get(name, {}).get("value")
+    return isinstance(value, list) and len(value) >= FEWEST and not isinstance(value[0], (list, str))
+
+
+TABLE: tuple[Rule, ...] = (_clearance, _pressure, _polar, _orbit, _campbell, _modes, _curves)
+
+
+def painted(steps: Iterable[Mapping[str, Any]], models: Iterable[Mapping[str, Any]]) -> dict[str, Any] | None:
+    """The film pressure to paint on a model: that of the step to whose bearing diameter its bore is tied."""
+    for step in steps:
+        pressure = next((picture for picture in step["pictures"] if picture.kind == "pressure"), None)
+        for model in models:
+            relation = next((f.text for f in model["fields"] if f.name.endswith(".inner_diameter")), "")
+            if pressure and f"{step['name']}.bearing_diameter" in relation:
+                return {**pressure.told(step["name"]), "model": model["name"]}
+    return None

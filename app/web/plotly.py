@@ -1,0 +1,38 @@
+"""Plotly's browser file, as its installed Python package holds it: served compressed, never copied.
+
+Under the pages' Content-Security-Policy Plotly may add no style element. It looks for two elements by their
+ids first, and adds none where it finds them: `plotly.js-style-global`, whose sheet it fills (a linked one
+will do), and one for the maps it bundles, which no page of ours shows. Pages with plots hold both.
+"""
+
+from __future__ import annotations
+
+import gzip
+import re
+from functools import cache
+from importlib.metadata import version
+from importlib.resources import files
+
+ROOM_OF_MAPS = re.compile(rb'getElementById\("([0-9a-f]{64})"\)')
+
+
+@cache
+def script() -> bytes:
+    """The browser file, compressed by gzip; equal bytes for equal versions."""
+    return gzip.compress(_plain(), 9, mtime=0)
+
+
+@cache
+def tag() -> str:
+    """What tells one version of the file from another."""
+    return f'"plotly-{version("plotly")}"'
+
+
+@cache
+def ids_of_styles() -> tuple[str, ...]:
+    """The ids under which the file looks for styles of maps before it adds them."""
+    return tuple(sorted({found.decode() for found in ROOM_OF_MAPS.findall(_plain())}))
+
+
+def _plain() -> bytes:
+    return files("plotly").joinpath("package_data", "plotly.min.js").read_bytes()

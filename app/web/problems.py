@@ -1,0 +1,55 @@
+"""Errors as pages: for a browser that asks for a page; the interface keeps its problems."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from typing import cast
+
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from starlette.exceptions import HTTPException
+
+from app import problems
+from app.web.api import BASE, Refused
+from app.web.rendering import show
+
+Handler = Callable[[Request, Exception], Awaitable[Response]]
+
+
+def install(app: FastAPI) -> None:
+    """Answer what goes wrong under a page with a page; call it after `problems.install`."""
+    app.add_exception_handler(Refused, _refused)
+    for cls in (HTTPException, RequestValidationError):
+        app.add_exception_handler(cls, _page_or(cast(Handler, app.exception_handlers[cls])))
+
+
+def _page_or(others: Handler) -> Handler:
+    """A handler that answers browsers with a page, and leaves the rest to another."""
+
+    async def handle(request: Request, error: Exception) -> Response:
+        if not _is_page(request):
+            return await others(request, error)
+        if isinstance(error, HTTPException):
+            return _page(request, error.status_code, error.detail)
+        return _page(request, 404, "there is no such page")
+
+    return handle
+
+
+def _is_page(request: Request) -> bool:
+    return not request.url.path.startswith(BASE) and "text/html" in request.headers.get("accept", "")
+
+
+async def _refused(request: Request, error: Exception) -> Response:
+    """What the interface refused under a page."""
+    assert isinstance(error, Refused)
+    if not _is_page(request):
+        return JSONResponse(dict(error.problem), error.status, media_type=problems.MEDIA_TYPE)
+    return _page(request, error.status, error.problem.get("detail", ""), error.problem.get("title"))
+
+
+def _page(request: Request, status: int, detail: str, title: str | None = None) -> Response:
+    titles = {404: "There is no such page", 403: "Not allowed", 405: "Not allowed here"}
+    shown = title or titles.get(status, "Something went wrong")
+    return show(request, "problem.html", status, title=shown, detail=detail, code=status)

@@ -1,0 +1,48 @@
+"""Pages as responses: the template rendered, a strict Content-Security-Policy, the display units kept."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+from fastapi import Request, Response
+from fastapi.responses import HTMLResponse, RedirectResponse
+
+from app.calculations.display import System
+from app.web import plotly
+from app.web.environment import pages
+
+POLICY = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+"""No inline script or style, no eval, no outside address: on every page, without an exception."""
+
+HEADERS = {
+    "Content-Security-Policy": POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "same-origin",
+    "Cache-Control": "no-store",  # going back shows what is, not what was
+    "Vary": "Cookie",
+}
+YEAR = 365 * 24 * 3600  # s
+
+environment = pages()
+environment.globals["ids_of_styles"] = plotly.ids_of_styles
+
+
+def units_of(request: Request) -> System:
+    """The system of units asked for: by the address, else as last time, else SI."""
+    asked = request.query_params.get("units") or request.cookies.get("units")
+    return next((system for system in get_args(System) if system == asked), "si")
+
+
+def show(request: Request, name: str, status: int = 200, **context: Any) -> Response:
+    """A page."""
+    units = units_of(request)
+    told = environment.get_template(name).render(units=units, path=request.url.path, **context)
+    answer = HTMLResponse(told, status, headers=HEADERS)
+    if "units" in request.query_params:
+        answer.set_cookie("units", units, max_age=YEAR, samesite="lax", httponly=True)
+    return answer
+
+
+def go(path: str) -> Response:
+    """To another page, after a form did its work."""
+    return RedirectResponse(path, 303)

@@ -1,0 +1,122 @@
+"""The pages that are read. Each asks the REST interface and shows the answer."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Path, Query, Request, Response
+
+from app.web import plotly
+from app.web.api import TheApi
+from app.web.design_page import design_page, revision_page
+from app.web.gallery import offered
+from app.web.model_page import model_page
+from app.web.rendering import go, show, units_of
+from app.web.template_page import template_page
+
+router = APIRouter(include_in_schema=False)
+
+Id = Annotated[str, Path(max_length=64, pattern=r"^[A-Za-z0-9_]+$")]
+Number = Annotated[int, Path(ge=1, le=10**9)]
+ON_HOME = 6  # designs, with pictures
+
+
+@router.get("/")
+async def home(request: Request, api: TheApi) -> Response:
+    """Designs, templates, models, and where to start."""
+    designs, templates, models = await asyncio.gather(
+        api.get("/designs", limit=ON_HOME), api.get("/templates", limit=500), api.get("/models", limit=500)
+    )
+    latest = [item for item in templates["items"] if item["latest"]]
+    return show(
+        request,
+        "home.html",
+        designs=designs,
+        templates=templates["items"],
+        latest=latest,
+        models=[item for item in models["items"] if item["latest"]],
+        gallery=offered(templates["items"], models["items"]),
+    )
+
+
+@router.get("/designs")
+async def designs(
+    request: Request, api: TheApi, cursor: Annotated[str | None, Query(max_length=64)] = None
+) -> Response:
+    """All designs, page by page."""
+    query = {"cursor": cursor} if cursor else {}
+    return show(request, "designs.html", designs=await api.get("/designs", limit=50, **query))
+
+
+@router.get("/templates/{id}")
+async def newest_template(id: Id, api: TheApi) -> Response:
+    """The latest version."""
+    return go(await _newest(api, "templates", id))
+
+
+@router.get("/templates/{id}/{version}")
+async def template(id: Id, version: Number, request: Request, api: TheApi) -> Response:
+    """A template, with a form to try it; what is typed stands in the address."""
+    return await template_page(request, api, id, version)
+
+
+@router.get("/models/{id}")
+async def newest_model(id: Id, api: TheApi) -> Response:
+    """The latest version."""
+    return go(await _newest(api, "models", id))
+
+
+@router.get("/models/{id}/{version}")
+async def model(id: Id, version: Number, request: Request, api: TheApi) -> Response:
+    """A CAD model, with a form to build it; what is typed stands in the address."""
+    return await model_page(request, api, id, version)
+
+
+@router.get("/designs/{id}")
+async def design(id: Id, request: Request, api: TheApi) -> Response:
+    """A design at its newest revision, to be changed."""
+    return await design_page(request, api, id)
+
+
+@router.get("/designs/{id}/revisions/{number}")
+async def revision(
+    id: Id,
+    number: Number,
+    request: Request,
+    api: TheApi,
+    other: Annotated[int | None, Query(alias="with", ge=1, le=10**9)] = None,
+) -> Response:
+    """A revision, and what differs from another."""
+    return await revision_page(request, api, id, number, other)
+
+
+@router.get("/designs/{id}/explain/{parameter}")
+async def explanation(
+    id: Id, parameter: Annotated[str, Path(max_length=130)], request: Request, api: TheApi
+) -> Response:
+    """Where a model parameter comes from."""
+    design, chain = await asyncio.gather(
+        api.get(f"/designs/{id}"), api.get(f"/designs/{id}/explain/{parameter}")
+    )
+    return show(request, "explain.html", design=design, chain=chain)
+
+
+@router.get("/designs/{id}/report")
+async def report(id: Id, request: Request) -> Response:
+    """The report, as the interface answers it."""
+    return go(f"/api/v1/designs/{id}/report?units={units_of(request)}")
+
+
+@router.get("/static/plotly.min.js")
+async def plotly_script(request: Request) -> Response:
+    """Plotly's browser file, compressed; the same until its package changes."""
+    headers = {"ETag": plotly.tag(), "Cache-Control": "public, max-age=3600", "Content-Encoding": "gzip"}
+    if request.headers.get("if-none-match") == plotly.tag():
+        return Response(status_code=304, headers={"ETag": plotly.tag()})
+    return Response(plotly.script(), media_type="text/javascript", headers=headers)
+
+
+async def _newest(api: TheApi, group: str, id: str) -> str:
+    versions: list[dict[str, Any]] = (await api.get(f"/{group}/{id}"))["items"]
+    return f"/{group}/{id}/{next(item['version'] for item in versions if item['latest'])}"

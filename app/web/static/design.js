@@ -1,0 +1,117 @@
+// The design page while it is used: previews, the draft, saving, progress. Every action is a call of the API.
+import { Refused, call, units } from "./api.js";
+import { Draft } from "./draft.js";
+import { live } from "./live.js";
+import { drawPictures } from "./pictures.js";
+import { showParameters, showValues } from "./parameters.js";
+import { follow } from "./progress.js";
+import { showFaults, showResults } from "./results.js";
+import { startSolids } from "./solids.js";
+import { patchOf } from "./typed.js";
+
+const form = document.getElementById("sheet");
+const { design: id, revision } = form.dataset;
+const api = `/api/v1/designs/${id}`;
+const draft = new Draft(form, JSON.parse(form.elements.was.value));
+const models = new Set([...document.querySelectorAll("[data-model]")].map((part) => part.dataset.model));
+const state = form.querySelector("[data-state]");
+const trouble = form.querySelector("[data-trouble]");
+const patch = () => patchOf(draft.changed(), models);
+let steps = {};
+
+const preview = live(
+  (signal) => call("POST", `${api}/preview?worksheet=true&units=${units()}`, patch(), { signal }),
+  ({ told }) => {
+    clear();
+    show(told);
+    state.textContent = draft.keep() ? "previewed, not saved" : "";
+  },
+  refuse,
+);
+
+function show(told) {
+  steps = told.steps;
+  for (const [step, answer] of Object.entries(told.steps)) {
+    showResults(step, answer);
+    showValues(form, step, answer);
+    drawPictures(document, step, answer);
+  }
+  showValues(form, "", { inputs: told.parameters });
+  showParameters(told.model_parameters);
+}
+
+function clear() {
+  showFaults(form, new Map());
+  trouble.hidden = true;
+}
+
+function refuse(error) {
+  if (!(error instanceof Refused)) return tell(`The service does not answer: ${error.message}`);
+  const loose = showFaults(form, error.faults);
+  state.textContent = "not possible so: see the message beside the field";
+  if (loose.size || !error.faults.size) tell([...loose.values()].join("; ") || error.message);
+}
+
+function tell(words) {
+  trouble.textContent = words;
+  trouble.hidden = false;
+}
+
+function showDraft() {
+  const names = Object.keys(draft.changed());
+  const notice = form.querySelector("[data-draft]");
+  notice.hidden = !draft.keep();
+  notice.querySelector("[data-draft-text]").textContent = names.map((name) => name.replaceAll("_", " ")).join(", ");
+}
+
+form.addEventListener("input", (event) => {
+  if (event.target.name === "note") return;
+  showDraft();
+  preview();
+});
+
+form.querySelector("[data-discard]").addEventListener("click", () => {
+  draft.forget();
+  location.reload();
+});
+
+form.addEventListener("submit", async (event) => {
+  event.preventDefault();
+  const note = form.elements.note.value.trim();
+  const headers = { "If-Match": `"${revision}"`, Prefer: "respond-async", "Idempotency-Key": crypto.randomUUID() };
+  state.textContent = "saving …";
+  try {
+    const { status, location: job } = await call("PATCH", api, { ...patch(), ...(note && { note }) }, { headers });
+    draft.forget();
+    if (status === 202) await follow(job);
+    location.reload();
+  } catch (error) {
+    if (error.status === 412) conflict();
+    else refuse(error);
+  }
+});
+
+// Somebody else saved: the draft is kept, and put onto the newest revision when the page is loaded anew.
+function conflict() {
+  state.textContent = "not saved";
+  tell("Somebody else saved this design meanwhile. Your changes are kept. ");
+  const again = Object.assign(document.createElement("button"), { type: "button", textContent: "Show the newest, with my changes" });
+  again.addEventListener("click", () => location.reload());
+  trouble.append(again);
+}
+
+async function start() {
+  const from = draft.restore();
+  if (from !== null) showDraft();
+  if (from !== null && from !== Number(revision)) tell(`Revision ${revision} was saved since you typed these changes; look at them once more.`);
+  const running = document.querySelector("[data-progress]").dataset.job;
+  if (running) follow(`/api/v1/jobs/${running}`).then(() => location.reload());
+  startSolids(() => steps);
+  try {
+    show((await call("POST", `${api}/preview?worksheet=true&units=${units()}`, patch())).told);
+  } catch (error) {
+    refuse(error);
+  }
+}
+
+start();

@@ -1,0 +1,45 @@
+// What was typed and not saved, kept in the browser: one draft for every design and revision.
+export class Draft {
+  constructor(form, was) {
+    this.form = form;
+    this.was = was;
+    this.key = `draft:${form.dataset.design}:${form.dataset.revision}`;
+  }
+
+  fields() {
+    return [...this.form.elements].filter((field) => field.name && field.type !== "hidden" && field.name !== "note");
+  }
+
+  changed() {
+    const differs = (field) => field.value.trim() !== (this.was[field.name] ?? "").trim();
+    return Object.fromEntries(this.fields().filter(differs).map((field) => [field.name, field.value]));
+  }
+
+  // Keep what differs; true if anything does.
+  keep() {
+    const changed = this.changed();
+    for (const field of this.fields()) field.classList.toggle("changed", field.name in changed);
+    const any = Object.keys(changed).length > 0;
+    if (any) localStorage.setItem(this.key, JSON.stringify(changed));
+    else localStorage.removeItem(this.key);
+    return any;
+  }
+
+  // Put back what was kept, for this revision; for an older one if somebody else saved since. Returns its revision.
+  restore() {
+    const prefix = `draft:${this.form.dataset.design}:`;
+    const keys = Object.keys(localStorage).filter((key) => key.startsWith(prefix)).sort(byRevision);
+    const key = keys.at(-1);
+    if (!key) return null;
+    const kept = JSON.parse(localStorage.getItem(key));
+    for (const field of this.fields()) if (field.name in kept) field.value = kept[field.name];
+    for (const old of keys) if (old !== this.key) localStorage.removeItem(old);
+    return Number(key.slice(prefix.length));
+  }
+
+  forget() {
+    localStorage.removeItem(this.key);
+  }
+}
+
+const byRevision = (one, other) => Number(one.split(":")[2]) - Number(other.split(":")[2]);

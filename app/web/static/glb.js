@@ -1,0 +1,47 @@
+// Reads a GLB file as cad/gltf.py writes it: every body with the triangles of all its places, in millimetres.
+const JSON_CHUNK = 0x4e4f534a;
+
+export function readGlb(buffer) {
+  const view = new DataView(buffer);
+  if (view.getUint32(0, true) !== 0x46546c67) throw new Error("this is no GLB file");
+  const length = view.getUint32(12, true);
+  if (view.getUint32(16, true) !== JSON_CHUNK) throw new Error("this GLB file does not begin with its description");
+  const about = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 20, length)));
+  const read = (index) => accessor(about, buffer, 28 + length, index);
+  const nodes = about.nodes[0].children.map((child) => about.nodes[child]);
+  return about.meshes.map((mesh, index) => {
+    const drawn = mesh.primitives[0];
+    const places = nodes.filter((node) => node.mesh === index).map((node) => node.matrix);
+    const colour = about.materials[drawn.material].pbrMetallicRoughness.baseColorFactor;
+    return { mesh: placed(read(drawn.attributes.POSITION), read(drawn.indices), places), colour: screenColour(colour) };
+  });
+}
+
+function accessor(about, buffer, start, index) {
+  const { bufferView, componentType, type, count } = about.accessors[index];
+  const offset = start + about.bufferViews[bufferView].byteOffset;
+  const length = count * (type === "VEC3" ? 3 : 1);
+  return componentType === 5126 ? new Float32Array(buffer, offset, length) : new Uint32Array(buffer, offset, length);
+}
+
+// The triangles of a body at each of its places (4 × 4, column by column).
+function placed(points, corners, places) {
+  const mesh = { x: [], y: [], z: [], i: [], j: [], k: [] };
+  for (const m of places) {
+    const first = mesh.x.length;
+    for (let p = 0; p < points.length; p += 3) {
+      const [x, y, z] = [points[p], points[p + 1], points[p + 2]];
+      mesh.x.push(m[0] * x + m[4] * y + m[8] * z + m[12]);
+      mesh.y.push(m[1] * x + m[5] * y + m[9] * z + m[13]);
+      mesh.z.push(m[2] * x + m[6] * y + m[10] * z + m[14]);
+    }
+    for (let c = 0; c < corners.length; c += 3) {
+      mesh.i.push(first + corners[c]);
+      mesh.j.push(first + corners[c + 1]);
+      mesh.k.push(first + corners[c + 2]);
+    }
+  }
+  return mesh;
+}
+
+const screenColour = (linear) => `rgb(${linear.slice(0, 3).map((part) => Math.round(255 * part ** (1 / 2.2))).join(",")})`;

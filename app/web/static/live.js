@@ -1,0 +1,19 @@
+// Asks for a preview while something is typed: at most one call at a time, the newest wins.
+const PAUSE = 120; // ms without a key
+
+export function live(ask, show, refuse) {
+  let timer, running;
+  return () => {
+    clearTimeout(timer);
+    timer = setTimeout(async () => {
+      running?.abort();
+      const mine = (running = new AbortController());
+      try {
+        const answer = await ask(mine.signal);
+        if (!mine.signal.aborted) show(answer);
+      } catch (error) {
+        if (error.name !== "AbortError" && !mine.signal.aborted) refuse(error);
+      }
+    }, PAUSE);
+  };
+}

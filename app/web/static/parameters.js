@@ -1,0 +1,46 @@
+// Values beside the fields: what a relation comes to, and model parameters old → new with their status.
+import { told, unit } from "./numbers.js";
+
+export function showValues(form, block, { inputs }) {
+  for (const [tail, quantity] of Object.entries(inputs ?? {})) {
+    const name = block ? `${block}.${tail}` : tail;
+    const place = form.querySelector(`[data-value="${name}"]`);
+    const field = form.elements[name];
+    if (!place || !field) continue;
+    const isRelation = field.value.trim().startsWith("=");
+    if (isRelation) place.textContent = `= ${told(quantity)}`;
+    else if (field.value.trim()) place.textContent = "";
+  }
+}
+
+export function showParameters(parameters) {
+  for (const [name, { old, new: now, status, detail }] of Object.entries(parameters)) {
+    const line = document.querySelector(`[data-parameter="${name}"]`);
+    if (!line) continue;
+    const differs = status === "ok" && old;
+    if (differs || status !== "unchanged") {
+      line.classList.toggle("changed-value", Boolean(differs));
+      line.querySelector(".comes-to").replaceChildren(...shown(differs ? old : null, now));
+      line.querySelector(".comes-to").append(tag(status, detail));
+    } else if (line.dataset.previewed) {
+      line.classList.remove("changed-value");
+      line.querySelector(".comes-to").replaceChildren(...shown(null, now), tag(status));
+    }
+    line.dataset.previewed = "true";
+  }
+}
+
+function shown(old, now) {
+  if (!now) return [];
+  const parts = [span("new", told({ value: now.value })), " ", span("unit", unit(now.unit))];
+  return old ? [span("old", `${told({ value: old.value })} → `), ...parts] : parts;
+}
+
+function tag(status, detail) {
+  const made = span(`tag status ${status === "missing" || status === "unit_mismatch" ? "failed" : "pending"}`, status.replaceAll("_", " "));
+  made.hidden = status === "ok" || status === "unchanged";
+  if (detail) made.title = detail;
+  return made;
+}
+
+const span = (className, textContent) => Object.assign(document.createElement("span"), { className, textContent });

@@ -1,0 +1,32 @@
+// Plotly, loaded when the first plot is drawn, and what all plots have in common.
+let loading;
+
+export function plotly() {
+  loading ??= new Promise((resolve, reject) => {
+    const script = document.createElement("script");
+    script.src = "/static/plotly.min.js";
+    script.onload = () => resolve(window.Plotly);
+    script.onerror = () => reject(new Error("the plots could not be loaded"));
+    document.head.append(script);
+  });
+  return loading;
+}
+
+export const CONFIG = { displaylogo: false, responsive: true, displayModeBar: false };
+export const COLOURS = ["#1b4f7f", "#b5651d", "#1d6b3a", "#8e2f6b", "#5a5f66", "#0f8a8a"];
+const FONT = { family: "Liberation Sans, Segoe UI, Arial, sans-serif", size: 12, color: "#1b2733" };
+
+export function layout(more = {}) {
+  const axis = { gridcolor: "#e3e8ed", zerolinecolor: "#9aa7b3", automargin: true, linecolor: "#9aa7b3" };
+  return {
+    font: FONT, paper_bgcolor: "#fff", plot_bgcolor: "#fff", height: 300, colorway: COLOURS,
+    margin: { l: 55, r: 15, t: 10, b: 45 }, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
+    ...more,
+    xaxis: { ...axis, ...more.xaxis }, yaxis: { ...axis, ...more.yaxis },
+  };
+}
+
+export async function draw(place, traces, more) {
+  const Plotly = await plotly();
+  await Plotly.react(place, traces, layout(more), CONFIG);
+}

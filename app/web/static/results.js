@@ -1,0 +1,80 @@
+// Writes an evaluation into the page: formulas with their numbers, results, errors, warnings.
+import { aligned, percent, told, unit } from "./numbers.js";
+
+export function showResults(scope, answer) {
+  for (const row of answer.formulas ?? []) showFormula(`${scope}.${row.name}`, row);
+  for (const [name, quantity] of Object.entries(answer.outputs ?? {})) {
+    showOutput(`${scope}.${name}`, quantity, answer.error?.[name]);
+  }
+  showWarnings(scope, answer.warnings ?? []);
+}
+
+function showFormula(name, row) {
+  const line = document.querySelector(`[data-formula="${name}"] .formula-math`);
+  if (!line) return;
+  for (const part of ["numbers", "result"]) {
+    let place = line.querySelector(`.${part}`);
+    if (!place) place = line.appendChild(Object.assign(document.createElement("span"), { className: `part ${part}` }));
+    if (place.dataset.shown === row[part]) continue;
+    place.dataset.shown = row[part];
+    place.innerHTML = row.mathml[part]; // MathML that the service escaped
+  }
+}
+
+function showOutput(name, quantity, error) {
+  const line = document.querySelector(`[data-output="${name}"]`);
+  if (!line) return;
+  for (const old of line.querySelectorAll("td.value, td.unit")) old.remove();
+  line.querySelector(".symbol").after(...cells(quantity));
+  line.querySelector(".band").textContent = typeof error !== "number" ? "" : error === 0 ? "same at all levels" : `± ${percent(error)}`;
+}
+
+function cells(quantity) {
+  const value = Object.assign(document.createElement("td"), { className: "value" });
+  if (typeof quantity.value !== "number") {
+    value.classList.add("text");
+    value.colSpan = 2;
+    value.textContent = told(quantity);
+    return [value];
+  }
+  value.append(numberOf(quantity.value));
+  return [value, Object.assign(document.createElement("td"), { className: "unit", textContent: unit(quantity.unit) })];
+}
+
+function numberOf(value) {
+  const parts = aligned(value).map((text, place) => part(["whole", "rest"][place], text));
+  const number = part("number", "");
+  number.append(...parts);
+  return number;
+}
+
+const part = (className, textContent) => Object.assign(document.createElement("span"), { className, textContent });
+
+export function showWarnings(scope, warnings) {
+  const list = document.querySelector(`[data-warnings="${scope}"]`);
+  list?.replaceChildren(...warnings.map(warning));
+}
+
+function warning({ name, detail }) {
+  const item = Object.assign(document.createElement("li"), { className: "warning" });
+  item.append(Object.assign(document.createElement("strong"), { textContent: name.replaceAll("_", " ") }), ` ${detail}`);
+  return item;
+}
+
+// Messages beside the fields of a form; those of no field are returned.
+export function showFaults(form, faults) {
+  const loose = new Map(faults);
+  for (const field of form.querySelectorAll("input[id], select[id]")) {
+    const message = document.getElementById(`${field.id}-error`);
+    if (!message) continue;
+    const detail = faults.get(field.name);
+    loose.delete(field.name);
+    message.hidden = !detail;
+    message.textContent = detail ?? "";
+    field.toggleAttribute("aria-invalid", Boolean(detail));
+    if (detail) field.setAttribute("aria-invalid", "true");
+    if (detail) field.setAttribute("aria-describedby", message.id);
+    else field.removeAttribute("aria-describedby");
+  }
+  return loose;
+}

@@ -1,0 +1,7 @@
+// The pictures of a revision, from what the interface answers about it.
+import { call, units } from "./api.js";
+import { drawPictures } from "./pictures.js";
+
+const [, id, number] = location.pathname.match(/designs\/([^/]+)\/revisions\/(\d+)/);
+const { told } = await call("GET", `/api/v1/designs/${id}/revisions/${number}/worksheet?units=${units()}`);
+for (const [step, answer] of Object.entries(told.steps)) drawPictures(document, step, answer);

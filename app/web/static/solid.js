@@ -1,0 +1,86 @@
+// The part in three dimensions: a GLB file read and drawn by Plotly, with its size told below.
+import { readGlb } from "./glb.js";
+import { CONFIG, plotly } from "./plots.js";
+import { pressureOf } from "./pressure.js";
+import { plain } from "./numbers.js";
+
+const LIGHT = { lighting: { ambient: 0.55, diffuse: 0.7, specular: 0.25, roughness: 0.5, fresnel: 0.1 }, lightposition: { x: 2e4, y: -3e4, z: 4e4 } };
+const AGAIN = 1500, TIMES = 20; // ms
+
+export async function showSolid(place) {
+  place.setAttribute("aria-busy", "true");
+  try {
+    const bodies = readGlb(await fetched(place.dataset.solid));
+    await drawSolid(place, bodies);
+    tellSize(place, bodies);
+  } catch (error) {
+    place.textContent = `The part cannot be shown: ${error.message}`;
+  } finally {
+    place.removeAttribute("aria-busy");
+  }
+}
+
+// The file; while it is still being made (202), it is asked for again.
+async function fetched(path) {
+  for (let tried = 0; tried < TIMES; tried++) {
+    const answer = await fetch(path, { headers: { Prefer: "wait=10" } });
+    if (answer.status === 200) return answer.arrayBuffer();
+    if (answer.status !== 202) throw new Error((await answer.json()).detail);
+    await new Promise((done) => setTimeout(done, AGAIN));
+  }
+  throw new Error("it takes too long to be drawn");
+}
+
+async function drawSolid(place, bodies) {
+  const Plotly = await plotly();
+  const figure = document.createElement("div");
+  place.replaceChildren(figure);
+  const hidden = { visible: false, showbackground: false };
+  const layout = {
+    height: 380, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "#fff", uirevision: "kept", showlegend: false,
+    scene: { aspectmode: "data", xaxis: hidden, yaxis: hidden, zaxis: hidden, camera: { eye: { x: 1.1, y: -1.3, z: 0.95 }, projection: { type: "orthographic" } } },
+  };
+  const traces = bodies.map((body) => ({ type: "mesh3d", ...body.mesh, color: body.colour, hoverinfo: "skip", flatshading: false, ...LIGHT }));
+  await Plotly.newPlot(figure, traces, layout, CONFIG);
+}
+
+// How large it is, in the order x, y, z.
+function tellSize(place, bodies) {
+  const sizes = ["x", "y", "z"].map((axis) => {
+    let low = Infinity, high = -Infinity;
+    for (const { mesh } of bodies) for (const value of mesh[axis]) {
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+    }
+    return plain(high - low);
+  });
+  const told = document.createElement("p");
+  told.className = "size muted";
+  told.textContent = `${sizes.join(" × ")} mm; drag to turn, scroll to zoom`;
+  place.dataset.size = sizes.join(" ");
+  place.append(told);
+}
+
+// Paint the film pressure on the bore, its load towards +y; or take it away.
+export async function paint(place, picture, values, wanted) {
+  const Plotly = await plotly();
+  const figure = place.querySelector(".js-plotly-plot");
+  const painted = figure.data.findIndex((trace) => trace.name === "film pressure");
+  if (painted >= 0) await Plotly.deleteTraces(figure, painted);
+  if (!wanted) return;
+  const field = await pressureOf(picture, values);
+  const radius = 0.497 * millimetres(values.bearing_diameter);
+  const start = Math.PI / 2 + (field.attitude_angle.value * Math.PI) / 180;
+  const angles = field.angle.value.map((angle) => start + (angle * Math.PI) / 180);
+  const rows = field.place.value;
+  const surface = {
+    type: "surface", name: "film pressure", surfacecolor: field.pressure.value, colorscale: "Viridis",
+    x: rows.map(() => angles.map((angle) => radius * Math.cos(angle))),
+    y: rows.map(() => angles.map((angle) => radius * Math.sin(angle))),
+    z: rows.map((z) => angles.map(() => z)),
+    colorbar: { title: { text: `p [${field.pressure.unit}]` }, thickness: 12, len: 0.7 }, lighting: { ambient: 0.9, diffuse: 0.2 }, hovertemplate: "%{surfacecolor:.3g} " + field.pressure.unit + "<extra></extra>",
+  };
+  await Plotly.addTraces(figure, surface);
+}
+
+const millimetres = ({ value, unit }) => value * ({ mm: 1, cm: 10, m: 1000, inch: 25.4, in: 25.4, um: 1e-3 }[unit] ?? 1);

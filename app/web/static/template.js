@@ -1,0 +1,43 @@
+// A template's page while it is used: results follow what is typed; the address keeps it.
+import { Refused, call, units } from "./api.js";
+import { drawAccuracy } from "./accuracy.js";
+import { live } from "./live.js";
+import { drawPictures, whenSeen } from "./pictures.js";
+import { showFaults, showResults } from "./results.js";
+import { valueOf } from "./typed.js";
+
+const form = document.querySelector("[data-try]");
+const state = form.querySelector("[data-state]");
+
+function asked() {
+  const typed = [...new FormData(form)].filter(([, text]) => text.trim());
+  const inputs = Object.fromEntries(typed.filter(([name]) => name !== "level" && name !== "tolerance").map(([name, text]) => [name, valueOf(text)]));
+  const { level, tolerance } = Object.fromEntries(typed);
+  const number = Number.isNaN(Number(tolerance)) ? tolerance : Number(tolerance);
+  return { inputs, ...(level && { level }), ...(tolerance && { tolerance: number }) };
+}
+
+const tried = (signal) => call("POST", `${form.dataset.try}/worksheet?units=${units()}`, asked(), { signal });
+
+function show({ told }) {
+  showFaults(form, new Map());
+  showResults("", told);
+  drawPictures(document, "", told);
+  state.textContent = told.level ? `level ${told.level}` : "";
+}
+
+function refuse(error) {
+  const loose = error instanceof Refused ? showFaults(form, error.faults) : new Map();
+  state.textContent = [...loose.values()].join("; ") || (error.faults?.size ? "see the message beside the field" : error.message);
+}
+
+const preview = live(tried, show, refuse);
+form.addEventListener("input", () => {
+  const filled = [...new FormData(form)].filter(([, text]) => text.trim());
+  history.replaceState(null, "", `?${new URLSearchParams(filled)}`);
+  preview();
+});
+
+if (document.querySelector("[data-output]")) tried().then(show, refuse);
+const accuracy = document.querySelector("[data-accuracy]");
+if (accuracy) whenSeen(accuracy, () => drawAccuracy(accuracy));

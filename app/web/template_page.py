@@ -1,0 +1,69 @@
+"""A template's page: what it says of itself, and a form to try it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from fastapi import Request, Response
+
+from app.web import sheet
+from app.web.api import Api, Refused
+from app.web.forms import OPTIONS, value_of
+from app.web.pictures import pictures
+from app.web.rendering import show, units_of
+
+ABOUT = {"units"}  # of the address, beside the inputs
+
+
+async def template_page(request: Request, api: Api, id: str, version: int) -> Response:
+    """The page, with the answer to what the address asks; to the example, where it asks nothing."""
+    path = f"/templates/{id}/versions/{version}"
+    told = await api.get(path)
+    typed = {name: text for name, text in request.query_params.items() if name not in ABOUT}
+    asked = _asked(told, typed)
+    answer, faults = await _tried(api, path, asked, units_of(request))
+    used = answer["inputs"] if answer else {}
+    return show(
+        request,
+        "template.html",
+        status=422 if faults else 200,
+        template=told,
+        versions=(await api.get(f"/templates/{id}"))["items"],
+        accuracy=await api.find(f"{path}/accuracy"),
+        fields=sheet.of_block(told["inputs"], "", asked["inputs"], used, typed, faults),
+        typed=typed,
+        answer=answer,
+        pictures=pictures("", told, answer or {}),
+        faults=faults,
+        path_of_api=f"/api/v1{path}",
+    )
+
+
+def _asked(told: Mapping[str, Any], typed: Mapping[str, str]) -> dict[str, Any]:
+    """The body of `evaluate` for what was typed."""
+    inputs = {n: value_of(text) for n, text in typed.items() if n not in OPTIONS and text.strip()}
+    asked: dict[str, Any] = {"inputs": inputs if typed else told["example"]}
+    if typed.get("level"):
+        asked["level"] = typed["level"]
+    if tolerance := typed.get("tolerance", "").strip():
+        asked["tolerance"] = _number(tolerance)
+    return asked
+
+
+def _number(text: str) -> Any:
+    try:
+        return float(text)
+    except ValueError:
+        return text  # the interface says what is wrong with it
+
+
+async def _tried(
+    api: Api, path: str, asked: Mapping[str, Any], units: str
+) -> tuple[dict[str, Any] | None, dict[str, str]]:
+    try:
+        return await api.post(f"{path}/worksheet", asked, units=units), {}
+    except Refused as refused:
+        if refused.status not in (413, 422):
+            raise
+        return None, refused.faults or {"inputs": refused.problem["detail"]}
