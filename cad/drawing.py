@@ -1,4 +1,7 @@
-"""SVG: the visible edges of the bodies as lines, true to scale (1 mm is 1 mm), hidden ones dashed."""
+"""SVG: the visible edges of the bodies as lines, true to scale (1 mm is 1 mm), hidden ones dashed.
+
+Where one face runs smoothly into another, as at a fillet, the line is thin.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,8 @@ def write_svg(bodies: Sequence[Body]) -> bytes:
     hidden_line = _projected(Compound.makeCompound(shapes))
     visible = (hidden_line.VCompound(), hidden_line.OutLineVCompound())
     hidden = (hidden_line.HCompound(), hidden_line.OutLineHCompound())
-    return _document(list(_lines(visible)), list(_lines(hidden))).encode()
+    smooth = (hidden_line.Rg1LineVCompound(),)
+    return _document(*(list(_lines(some)) for some in (visible, hidden, smooth))).encode()
 
 
 def _projected(shape: Shape) -> HLRBRep_HLRToShape:
@@ -59,18 +63,20 @@ def _line(edge: Edge) -> Line:
     return [(value.X(), -value.Y()) for value in values]
 
 
-def _document(visible: Sequence[Line], hidden: Sequence[Line]) -> str:
+def _document(visible: Sequence[Line], hidden: Sequence[Line], smooth: Sequence[Line]) -> str:
     points = np.array([point for line in (*visible, *hidden) for point in line])
     low, high = points.min(axis=0), points.max(axis=0)
     size = float((high - low).max())
     (x, y), (width, height) = low - _MARGIN * size, high - low + 2 * _MARGIN * size
     stroke = _LINE * size
+    thin = f'<path stroke="#5b6671" stroke-width="{stroke / 2:.4g}" d="{_path(smooth)}"/>' if smooth else ""
     return f"""<?xml version="1.0" encoding="UTF-8"?>
 <svg xmlns="http://www.w3.org/2000/svg" width="{width:.4g}mm" height="{height:.4g}mm"
   viewBox="{x:.6g} {y:.6g} {width:.6g} {height:.6g}">
 <rect x="{x:.6g}" y="{y:.6g}" width="{width:.6g}" height="{height:.6g}" fill="white"/>
 <g fill="none" stroke-linejoin="round" stroke-linecap="round" stroke-width="{stroke:.4g}">
 <path stroke="#a8b0b8" stroke-dasharray="{3 * stroke:.4g}" d="{_path(hidden)}"/>
+{thin}
 <path stroke="#1d2733" d="{_path(visible)}"/>
 </g>
 </svg>
