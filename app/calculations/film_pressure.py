@@ -88,9 +88,10 @@ def solved(raw: dict[str, Any]) -> dict[str, Any]:
             [Fault("diametral_clearance", "not_finite", "the pressure has no finite value here")]
         )
     field = static_field(max(float(film.eps), 1e-9), ratio, AROUND, ACROSS)
-    half = field.rupture.P.T * scale
+    around = np.r_[field.mesh.phi, np.pi]  # beyond the mesh the film has ruptured
+    half = np.pad(field.rupture.P.T * scale, ((0, 0), (0, 1)))
     return {
-        "angle": {"value": np.degrees(field.mesh.phi).tolist(), "unit": "deg"},
+        "angle": {"value": np.degrees(around).tolist(), "unit": "deg"},
         "place": {
             "value": (np.r_[-field.mesh.zeta[:0:-1], field.mesh.zeta] * float(film.W) * 500).tolist(),
             "unit": "mm",

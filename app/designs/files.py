@@ -61,10 +61,10 @@ async def model_file(
 
     model, key, file = await run_in_threadpool(find)
     if file is None:
-        job = await run_in_threadpool(lambda: models.request(models.shape_of(key), ("step", wanted)))
+        job = await run_in_threadpool(lambda: models.request_file(key, wanted))
         if not await finished(jobs, job, prefer):
             return accepted(job)
-        if job and (failed := await run_in_threadpool(lambda: jobs.get(job).problem)):
+        if failed := await run_in_threadpool(lambda: jobs.get(job).problem):
             return problems.answer(failed)
         file = await run_in_threadpool(models.file, key, wanted)
     headers = {"Design-Revision": str(model.number), "Vary": "Accept"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,7 @@ from templates.core.catalogue import Catalogue
 from templates.core.errors import TemplateError
 
 BUILD = "build"
+FAILURES = (TemplateError, GeometryError, DeadlineExceeded, MemoryExceeded)  # that the model brings about
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,13 @@ class Models:
             "parameters": as_text(shape),
             "kinds": [*kinds],
         }
+        return self._enqueued(payload)
 
+    def request_file(self, key: str, kind: str) -> str:
+        """The job that makes a file of a finished build, whichever recipe it was made by."""
+        return self._enqueued({"build": key, "kinds": [kind]})
+
+    def _enqueued(self, payload: dict[str, Any]) -> str:
         def unit(session: Session) -> str:
             return self.jobs.waiting(session, BUILD, payload) or self.jobs.enqueue(session, BUILD, payload)
 
@@ -138,13 +146,21 @@ class ModelBuild:
             With the problem, for anything that the model itself brings about.
         """
         asked = job.payload
+        if "build" in asked:
+            return self._derived(asked["build"], asked["kinds"], context)
         shape = self.catalogue.get(asked["model"], asked["version"]).from_quantities(asked["parameters"])
         key = build_key(shape)
         try:
             self.builds.make(shape, context)
-            for kind in asked["kinds"]:
+        except FAILURES as error:
+            raise JobFailed(describe(error)) from error
+        return self._derived(key, asked["kinds"], context)
+
+    def _derived(self, key: str, kinds: Iterable[str], context: JobContext) -> Completion:
+        try:
+            for kind in kinds:
                 if kind in DERIVED:
                     self.builds.derive(key, kind, context)
-        except (TemplateError, GeometryError, DeadlineExceeded, MemoryExceeded) as error:
+        except FAILURES as error:
             raise JobFailed(describe(error)) from error
         return lambda session: f"/api/v1/builds/{key}"

@@ -1,8 +1,7 @@
 """Plotly's browser file, as its installed Python package holds it: served compressed, never copied.
 
-Under the pages' Content-Security-Policy Plotly may add no style element. It looks for two elements by their
-ids first, and adds none where it finds them: `plotly.js-style-global`, whose sheet it fills (a linked one
-will do), and one for the maps it bundles, which no page of ours shows. Pages with plots hold both.
+Under the pages' Content-Security-Policy it may add no style. It adds one for the maps that it bundles, which
+no page of ours shows, unless it finds an element of a certain id: pages with plots hold such an element.
 """
 
 from __future__ import annotations

@@ -101,6 +101,8 @@ def _hint(declared: Mapping[str, Any]) -> str:
     """What an empty field stands for, or how it is written."""
     if "default" in declared:
         return numbers.told(declared["default"])
+    if "default_formula" in declared:
+        return "follows from the rest"
     example = declared.get("examples", [None])[0]
     return f"such as {text_of(example)}" if example is not None else "not given"
 

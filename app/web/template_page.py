@@ -8,6 +8,7 @@ from typing import Any
 from fastapi import Request, Response
 
 from app.web import sheet
+from app.web.accuracy import table
 from app.web.api import Api, Refused
 from app.web.forms import OPTIONS, value_of
 from app.web.pictures import pictures
@@ -22,6 +23,7 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
     told = await api.get(path)
     typed = {name: text for name, text in request.query_params.items() if name not in ABOUT}
     asked = _asked(told, typed)
+    measured = await api.find(f"{path}/accuracy")
     answer, faults = await _tried(api, path, asked, units_of(request))
     used = answer["inputs"] if answer else {}
     return show(
@@ -30,7 +32,8 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
         status=422 if faults else 200,
         template=told,
         versions=(await api.get(f"/templates/{id}"))["items"],
-        accuracy=await api.find(f"{path}/accuracy"),
+        accuracy=measured,
+        levels=table(measured) if measured else None,
         fields=sheet.of_block(told["inputs"], "", asked["inputs"], used, typed, faults),
         typed=typed,
         answer=answer,

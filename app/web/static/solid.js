@@ -2,9 +2,8 @@
 import { readGlb } from "./glb.js";
 import { CONFIG, plotly } from "./plots.js";
 import { pressureOf } from "./pressure.js";
-import { plain } from "./numbers.js";
 
-const LIGHT = { lighting: { ambient: 0.55, diffuse: 0.7, specular: 0.25, roughness: 0.5, fresnel: 0.1 }, lightposition: { x: 2e4, y: -3e4, z: 4e4 } };
+const LIGHT = { lighting: { ambient: 0.62, diffuse: 0.85, specular: 0.35, roughness: 0.6, fresnel: 0.2 }, lightposition: { x: -1e4, y: -3e4, z: 6e4 } };
 const AGAIN = 1500, TIMES = 20; // ms
 
 export async function showSolid(place) {
@@ -12,7 +11,7 @@ export async function showSolid(place) {
   try {
     const bodies = readGlb(await fetched(place.dataset.solid));
     await drawSolid(place, bodies);
-    tellSize(place, bodies);
+    tellSize(place);
   } catch (error) {
     place.textContent = `The part cannot be shown: ${error.message}`;
   } finally {
@@ -44,20 +43,9 @@ async function drawSolid(place, bodies) {
   await Plotly.newPlot(figure, traces, layout, CONFIG);
 }
 
-// How large it is, in the order x, y, z.
-function tellSize(place, bodies) {
-  const sizes = ["x", "y", "z"].map((axis) => {
-    let low = Infinity, high = -Infinity;
-    for (const { mesh } of bodies) for (const value of mesh[axis]) {
-      low = Math.min(low, value);
-      high = Math.max(high, value);
-    }
-    return plain(high - low);
-  });
-  const told = document.createElement("p");
-  told.className = "size muted";
-  told.textContent = `${sizes.join(" × ")} mm; drag to turn, scroll to zoom`;
-  place.dataset.size = sizes.join(" ");
+function tellSize(place) {
+  const told = Object.assign(document.createElement("p"), { className: "size muted" });
+  told.textContent = `${place.dataset.size}; drag to turn, scroll to zoom`;
   place.append(told);
 }
 
