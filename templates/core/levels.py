@@ -47,7 +47,8 @@ class Accuracy:
         """
         names, tables = list(outputs), self.errors.get(template.level or SINGLE, {})
         exact = {name for name in names if _same_at_all_levels(template, name)}
-        measured = [name for name in names if name in tables and name not in exact]
+        known = tables if template.is_measured() else {}
+        measured = [name for name in names if name in known and name not in exact]
         cell = self._cell(template) if measured else None
         found = {name: _looked_up(tables[name], cell) for name in measured}
         none = np.zeros(_shape(template))[()]

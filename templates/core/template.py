@@ -169,6 +169,10 @@ class Template:
         """The levels that answer the question these inputs ask, cheapest first."""
         return self.levels
 
+    def is_measured(self) -> bool:
+        """Whether the measured errors are those of such inputs."""
+        return True
+
     def starting_level(self) -> str:
         """The level that is taken when none is asked for."""
         ladder = self.ladder()

@@ -80,7 +80,8 @@ class OilFilm(Template):
     Levels map and reynolds: B/D 0.01 … 100 and eps up to 1 − 1e-7.
     Level mass_conserving alone knows grooves and supply pressure; where either is given it is taken unless
     another level is asked for by name. Its friction is by the oil there is; elsewhere shear acts over the
-    full circle, as in the standards.
+    full circle, as in the standards. Its error was measured without grooves and supply pressure; with them
+    none is told: grooves narrower than 5° or nearer to each other are not resolved.
     Laminar flow: a warning tells where the film Reynolds number exceeds 41.3 √(D/c).
     The heat balance takes power and side flow from level map whatever the level, so that temperature and
     viscosity do not depend on it; flow driven by the supply pressure is left out, which errs to the hot side.
@@ -229,6 +230,10 @@ class OilFilm(Template):
     def ladder(self) -> tuple[str, ...]:
         """The levels that know how the bearing is fed."""
         return ladder(self.levels, self.p_s, self.grooves)
+
+    def is_measured(self) -> bool:
+        """Errors were measured without grooves and supply pressure; at other levels these are not used."""
+        return not (self.level == FED and is_fed(self.p_s, self.grooves))
 
     @shared
     def viscosity_is_known(self) -> Truth:

@@ -90,8 +90,8 @@ def solved_ring(
     pressures = np.array([ambient, *(groove.P for groove in grooves)])
     require((pressures >= 0) & np.isfinite(pressures), "pressures must be 0 or more above that of the cavity")
     found: SolvedRing | None = None
-    for shift in (3, 2, 1, 0):
-        n, m = max(around >> shift, _COARSEST[0]), max(across >> shift, _COARSEST[1])
+    meshes = [(max(around >> k, _COARSEST[0]), max(across >> k, _COARSEST[1])) for k in (3, 2, 1, 0)]
+    for n, m in dict.fromkeys(meshes):
         ring = grooved_ring(eps, ratio, grooves, n, m)
         network, fed = fed_network(ring, grooves, ambient)
         solution = cavitation(network, None if found is None else _interpolated(found, ring))

@@ -1,8 +1,7 @@
 """A second way to a bearing with axial grooves: its lands one by one, with rupture after Swift and Stieber.
 
 The independent check of `templates.physics.fed_film`, which solves the whole circle with cavities that
-re-form:
-where grooves stand at ambient pressure nearly nothing re-forms outside them, and both agree.
+re-form: where grooves stand at ambient pressure nearly nothing re-forms outside them, and both agree.
 """
 
 import numpy as np

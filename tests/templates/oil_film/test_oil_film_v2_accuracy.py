@@ -74,6 +74,16 @@ class TestTolerance:
         assert made.error["sommerfeld_number"] == 0
         assert np.isnan(made.error["boundary_condition"])
 
+    def test_property_no_error_is_told_where_none_was_measured(self):
+        """The tables were made without grooves."""
+        grooves = {"grooves": {"value": [[90, 20], [270, 20]], "unit": "deg"}}
+        made = evaluate(OilFilm, {**bearing(1.0, 0.5), **grooves}, outputs=["attitude_angle"], tolerance=0.01)
+        assert made.level == "mass_conserving"
+        assert np.isnan(made.error["attitude_angle"])
+        assert [w.code for w in made.warnings] == ["tolerance_unmet"]
+        plain = evaluate(OilFilm, bearing(1.0, 0.5), outputs=["attitude_angle"], level="mass_conserving")
+        assert 0 < plain.error["attitude_angle"] < 0.01
+
     def test_property_paper_tells_its_own_error(self):
         """The worked case: +22 % at So 3.95, W/D 0.376 (physics.md 1.1)."""
         made = evaluate(Paper, Paper.example, outputs=["minimum_film_thickness", "density"])
