@@ -60,9 +60,9 @@ def stepped(
     """
     eps, P, void = start.eps, start.P.copy(), start.void.copy()
     stored = 12 * before * 2 * np.pi / journal.phi.size * dual_widths(journal.zeta)[:-1]
+    feed = int(journal.gap(eps, journal.phi).argmax())  # where it was: to move it within a step may not end
+    P[feed] = void[feed] = 0
     for _ in range(_MOST_STEPS):
-        feed = int(journal.gap(eps, journal.phi).argmax())
-        P[feed] = void[feed] = 0
         flows = balance(journal, eps, w, rate)
         dP, dvoid, de, worst = _newton(journal, flows, eps, P, void, stored, feed, load, (w, rate))
         if not np.isfinite(de).all():
@@ -101,8 +101,6 @@ def _newton(
     right -= flows.by_pressure(np.where(full, 0, rest) / scale[0])
     columns = [right, *(-d for d in _by_eps(journal, eps, P, void, stored, loss, motion))]
     kept = flows.solve(alpha, beta, np.stack(columns), feed)
-    inflow = np.abs(loss).sum(axis=1)
-    inflow[feed] = 0
     fed = np.arange(P.shape[0]) == feed
     offset = np.where(full | fed[:, None], 0, rest / scale[0])
     shares = alpha * np.where(fed[:, None], 0, 1)
@@ -112,9 +110,10 @@ def _newton(
     k = kept[0] + de[0] * kept[1] + de[1] * kept[2]
     dP, dvoid = shares * k + offset, np.where(full, rest / scale[1], 0) - beta * k
     dvoid[feed] = 0
-    total = max(float(np.abs(flows.stored).max() + np.abs(flows.carried).max()), 1e-30)
-    short = float(np.hypot(*(load - journal.load(P))) / max(np.hypot(*load), 1e-30))
-    return dP, dvoid, de, max(float(inflow.max()) / total, short)
+    unmet = np.where(fed[:, None], 0, np.maximum(np.abs(loss), np.abs(fischer)))
+    total = (np.abs(flows.stored).max() + np.abs(flows.carried).max()) * flows.width.min()
+    short = np.hypot(*(load - journal.load(P))) / max(np.hypot(*load), np.finfo(float).tiny)
+    return dP, dvoid, de, float(max(unmet.max() / total, short))
 
 
 def _loss(flows: Balance, P: Array, void: Array, stored: Array) -> Array:
