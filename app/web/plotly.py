@@ -1,7 +1,9 @@
 """Plotly's browser file, as its installed Python package holds it: served compressed, never copied.
 
-Under the pages' Content-Security-Policy it may add no style. It adds one for the maps that it bundles, which
-no page of ours shows, unless it finds an element of a certain id: pages with plots hold such an element.
+Under the pages' Content-Security-Policy it may add no style element. It looks for two elements by their ids
+first, and adds none where it finds them: `plotly.js-style-global`, whose sheet it fills by calls (a linked
+sheet will do), and one for the maps that it bundles, which no page of ours shows. Pages with plots hold both.
+Colour bars set style attributes when they are drawn again: `static/plots.js` has a scale of its own.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
 // Plotly, loaded when the first plot is drawn, and what all plots have in common.
+import { plain } from "./numbers.js";
+
 let loading;
 
 export function plotly() {
@@ -24,6 +26,13 @@ export function layout(more = {}) {
     ...more,
     xaxis: { ...axis, ...more.xaxis }, yaxis: { ...axis, ...more.yaxis },
   };
+}
+
+// A scale of colours with its ends, in the place of Plotly's own, which sets style attributes.
+export function scale(low, high, unit) {
+  const made = Object.assign(document.createElement("p"), { className: "colours" });
+  for (const text of [plain(low), "", `${plain(high)} ${unit}`]) made.append(Object.assign(document.createElement("span"), { textContent: text }));
+  return made;
 }
 
 export async function draw(place, traces, more) {

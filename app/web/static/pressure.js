@@ -1,7 +1,7 @@
 // The pressure of a journal's film: asked for once for equal inputs, drawn unrolled or as a surface.
 import { call } from "./api.js";
 import { unit } from "./numbers.js";
-import { draw } from "./plots.js";
+import { draw, scale } from "./plots.js";
 
 const known = new Map();
 
@@ -16,17 +16,18 @@ const typedOf = ({ value, unit }) => ({ value, unit });
 
 export async function drawPressure(place, picture, values) {
   const field = await pressureOf(picture, values);
-  const x = field.angle.value, y = field.place.value, z = field.pressure.value;
-  place.replaceChildren(...(place.children.length === 2 ? place.children : [pane(), pane()]));
-  const bar = { title: { text: unit(field.pressure.unit), side: "right" }, thickness: 12, len: 0.9 };
-  const scale = { colorscale: "Viridis", colorbar: bar };
-  await draw(place.children[0], [{ type: "contour", x, y, z, ...scale, contours: { showlines: false }, ncontours: 24 }], {
-    height: 240, margin: { l: 55, r: 10, t: 10, b: 45 },
+  const x = field.angle.value, y = field.place.value, z = field.pressure.value, shown = unit(field.pressure.unit);
+  if (place.children.length !== 3) place.replaceChildren(pane(), pane(), pane());
+  const [map, legend, surface] = place.children;
+  const colours = { colorscale: "Viridis", showscale: false };
+  legend.replaceChildren(scale(0, field.maximum_pressure.value, shown));
+  await draw(map, [{ type: "contour", x, y, z, ...colours, contours: { showlines: false }, ncontours: 24 }], {
+    height: 230, margin: { l: 55, r: 10, t: 10, b: 45 },
     xaxis: { title: { text: "angle from the narrowest gap, with the rotation [°]" }, dtick: 60 }, yaxis: { title: { text: `along the shaft [${unit(field.place.unit)}]` } },
   });
-  await draw(place.children[1], [{ type: "surface", x, y, z, colorscale: "Viridis", showscale: false }], {
+  await draw(surface, [{ type: "surface", x, y, z, ...colours }], {
     height: 320, margin: { l: 0, r: 0, t: 0, b: 0 },
-    scene: { xaxis: { title: { text: "angle [°]" } }, yaxis: { title: { text: `along [${unit(field.place.unit)}]` } }, zaxis: { title: { text: `p [${unit(field.pressure.unit)}]` } }, aspectratio: { x: 1.6, y: 0.8, z: 0.8 }, camera: { eye: { x: -1.1, y: -1.7, z: 0.9 } } },
+    scene: { xaxis: { title: { text: "angle [°]" } }, yaxis: { title: { text: unit(field.place.unit) } }, zaxis: { title: { text: shown } }, aspectratio: { x: 1.6, y: 0.8, z: 0.8 }, camera: { eye: { x: -1.2, y: -1.8, z: 0.9 } } },
   });
 }
 

@@ -1,6 +1,6 @@
 // The part in three dimensions: a GLB file read and drawn by Plotly, with its size told below.
 import { readGlb } from "./glb.js";
-import { CONFIG, plotly } from "./plots.js";
+import { CONFIG, plotly, scale } from "./plots.js";
 import { pressureOf } from "./pressure.js";
 
 const LIGHT = { lighting: { ambient: 0.62, diffuse: 0.85, specular: 0.35, roughness: 0.6, fresnel: 0.2 }, lightposition: { x: -1e4, y: -3e4, z: 6e4 } };
@@ -55,6 +55,7 @@ export async function paint(place, picture, values, wanted) {
   const figure = place.querySelector(".js-plotly-plot");
   const painted = figure.data.findIndex((trace) => trace.name === "film pressure");
   if (painted >= 0) await Plotly.deleteTraces(figure, painted);
+  place.querySelector(".colours")?.remove();
   if (!wanted) return;
   const field = await pressureOf(picture, values);
   const radius = 0.497 * millimetres(values.bearing_diameter);
@@ -66,9 +67,10 @@ export async function paint(place, picture, values, wanted) {
     x: rows.map(() => angles.map((angle) => radius * Math.cos(angle))),
     y: rows.map(() => angles.map((angle) => radius * Math.sin(angle))),
     z: rows.map((z) => angles.map(() => z)),
-    colorbar: { title: { text: `p [${field.pressure.unit}]` }, thickness: 12, len: 0.7 }, lighting: { ambient: 0.9, diffuse: 0.2 }, hovertemplate: "%{surfacecolor:.3g} " + field.pressure.unit + "<extra></extra>",
+    showscale: false, lighting: { ambient: 0.9, diffuse: 0.2 }, hovertemplate: "%{surfacecolor:.3g} " + field.pressure.unit + "<extra></extra>",
   };
   await Plotly.addTraces(figure, surface);
+  place.append(scale(0, field.maximum_pressure.value, field.pressure.unit));
 }
 
 const millimetres = ({ value, unit }) => value * ({ mm: 1, cm: 10, m: 1000, inch: 25.4, in: 25.4, um: 1e-3 }[unit] ?? 1);
