@@ -176,7 +176,7 @@ def _units(cls: type[Template], units: Mapping[str, str], faults: list[Fault]) -
 def _answer(template: Template, formula: Formula[Any], shown_in: Unit | None) -> Answer:
     si = getattr(template, formula.attribute)
     if isinstance(formula, Text):
-        return _words(si, absence(template, formula))
+        return _words(template, formula, si)
     scale = shown_in or formula.meaning.scale
     if formula.attribute in template.ledger.absent:
         return Answer(None, scale.text, reason=template.ledger.absent[formula.attribute])
@@ -186,11 +186,21 @@ def _answer(template: Template, formula: Formula[Any], shown_in: Unit | None) ->
     return Answer(scale.from_si(value), scale.text, reasons=reasons)
 
 
-def _words(value: Any, why: str | None) -> Answer:
-    """An answer in words; an empty word is none."""
+def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
+    """An answer in words; an empty word is none, and there is none where a mask of anything beneath lies."""
+    why = absence(template, formula) or "there is nothing to tell here"
     if isinstance(value, str):
-        return Answer(value or None, None, reason=None if value else why or "there is nothing to tell here")
-    return Answer(np.where(value == "", None, value), None)
+        return Answer(value or None, None, reason=None if value else why)
+    beneath = template.ancestors(formula.attribute)
+    masks = [m for m in template.ledger.masks if not (m.tells or beneath.isdisjoint(m.names))]
+    shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), value.shape)
+    told = np.broadcast_to(value, shape).astype(object)
+    reasons = np.full(shape, None, dtype=object)
+    reasons[told == ""] = why
+    for mask in reversed(masks):
+        reasons[np.broadcast_to(mask.where, shape)] = mask.reason
+    told[reasons != None] = None  # noqa: E711
+    return Answer(told, None, reasons=reasons if reasons.any() else None)
 
 
 def _with_reasons(
