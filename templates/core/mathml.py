@@ -27,6 +27,9 @@ _GREEK = {
 }  # fmt: skip
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PRINTED = {"deg": "°", "degC": "°C", "degF": "°F", "um": "µm", "ohm": "Ω", "thou": "mil", "inch": "in"}
+_OPERATOR = re.compile(
+    r"\\operatorname\{([^{}]*)\}"
+)  # which latex2mathml would set in italics, letter by letter
 _NAMES = re.compile(r"(<mi>(?:lg|ln|exp|sin|cos|tan)</mi>)(?=<m(?!o[ >]))")  # but for before a bracket
 _LESS, _MORE = "\ue000", "\ue001"  # private letters, which no formula has
 _SPECIAL = {"eps": r"\varepsilon"}
@@ -96,10 +99,16 @@ def symbols(cls: type[Template]) -> dict[str, str]:
 def mathml(latex: str) -> str:
     """LaTeX as MathML that browsers draw themselves; what it quotes of a user's words is escaped."""
     # latex2mathml copies texts as they are: signs of its own stand for the brackets of markup meanwhile.
-    told: str = latex2mathml.converter.convert(latex.replace("<", _LESS).replace(">", _MORE))
+    upright = _OPERATOR.sub(_upright, latex)
+    told: str = latex2mathml.converter.convert(upright.replace("<", _LESS).replace(">", _MORE))
     for letter, entity in ((_LESS, "&lt;"), (_MORE, "&gt;")):
         told = told.replace(f"<mi>{letter}</mi>", f"<mo>{entity}</mo>").replace(letter, entity)
     return _NAMES.sub(r'\1<mspace width="0.167em" />', told)
+
+
+def _upright(operator: re.Match[str]) -> str:
+    words = operator[1].replace(r"\ ", " ")
+    return rf"\operatorname{{\text{{{words}}}}}"
 
 
 class Writer:

@@ -13,7 +13,8 @@ export function readGlb(buffer) {
     const drawn = mesh.primitives[0];
     const places = nodes.filter((node) => node.mesh === index).map((node) => node.matrix);
     const colour = about.materials[drawn.material].pbrMetallicRoughness.baseColorFactor;
-    return { mesh: placed(read(drawn.attributes.POSITION), read(drawn.indices), places), colour: screenColour(colour) };
+    const mesh = placed(read(drawn.attributes.POSITION), read(drawn.attributes.NORMAL), read(drawn.indices), places);
+    return { ...mesh, colour: screenColour(colour) };
   });
 }
 
@@ -25,8 +26,8 @@ function accessor(about, buffer, start, index) {
 }
 
 // The triangles of a body at each of its places (4 × 4, column by column).
-function placed(points, corners, places) {
-  const mesh = { x: [], y: [], z: [], i: [], j: [], k: [] };
+function placed(points, normals, corners, places) {
+  const mesh = { x: [], y: [], z: [], i: [], j: [], k: [] }, light = [];
   for (const m of places) {
     const first = mesh.x.length;
     for (let p = 0; p < points.length; p += 3) {
@@ -34,6 +35,7 @@ function placed(points, corners, places) {
       mesh.x.push(m[0] * x + m[4] * y + m[8] * z + m[12]);
       mesh.y.push(m[1] * x + m[5] * y + m[9] * z + m[13]);
       mesh.z.push(m[2] * x + m[6] * y + m[10] * z + m[14]);
+      light.push(brightness(m, normals[p], normals[p + 1], normals[p + 2]));
     }
     for (let c = 0; c < corners.length; c += 3) {
       mesh.i.push(first + corners[c]);
@@ -41,7 +43,16 @@ function placed(points, corners, places) {
       mesh.k.push(first + corners[c + 2]);
     }
   }
-  return mesh;
+  return { mesh, light };
 }
 
-const screenColour = (linear) => `rgb(${linear.slice(0, 3).map((part) => Math.round(255 * part ** (1 / 2.2))).join(",")})`;
+// How bright a surface is: two lamps, which turn with the part, and the light of the room.
+const LAMPS = [{ x: -0.42, y: -0.68, z: 0.6, power: 0.62 }, { x: 0.8, y: -0.1, z: 0.59, power: 0.28 }];
+const ROOM = 0.42;
+
+function brightness(m, x, y, z) {
+  const [nx, ny, nz] = [m[0] * x + m[4] * y + m[8] * z, m[1] * x + m[5] * y + m[9] * z, m[2] * x + m[6] * y + m[10] * z];
+  return LAMPS.reduce((sum, lamp) => sum + lamp.power * Math.max(0, nx * lamp.x + ny * lamp.y + nz * lamp.z), ROOM);
+}
+
+const screenColour = (linear) => linear.slice(0, 3).map((part) => Math.round(255 * part ** (1 / 2.2)));

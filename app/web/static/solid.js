@@ -3,7 +3,8 @@ import { readGlb } from "./glb.js";
 import { CONFIG, plotly, scale } from "./plots.js";
 import { pressureOf } from "./pressure.js";
 
-const LIGHT = { lighting: { ambient: 0.62, diffuse: 0.85, specular: 0.35, roughness: 0.6, fresnel: 0.2 }, lightposition: { x: -1e4, y: -3e4, z: 6e4 } };
+const PLAIN = { ambient: 1, diffuse: 0, specular: 0, fresnel: 0 }; // the light is in the colours of the corners
+const shade = (colour, power) => `rgb(${colour.map((part) => Math.min(255, Math.round(part * power * 1.25))).join(",")})`;
 const AGAIN = 1500, TIMES = 20; // ms
 
 export async function showSolid(place) {
@@ -39,7 +40,7 @@ async function drawSolid(place, bodies) {
     height: 380, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "#fff", uirevision: "kept", showlegend: false,
     scene: { aspectmode: "data", xaxis: hidden, yaxis: hidden, zaxis: hidden, camera: { eye: { x: 1.1, y: -1.3, z: 0.95 }, projection: { type: "orthographic" } } },
   };
-  const traces = bodies.map((body) => ({ type: "mesh3d", ...body.mesh, color: body.colour, hoverinfo: "skip", flatshading: false, ...LIGHT }));
+  const traces = bodies.map(({ mesh, light, colour }) => ({ type: "mesh3d", ...mesh, vertexcolor: light.map((power) => shade(colour, power)), hoverinfo: "skip", lighting: PLAIN }));
   await Plotly.newPlot(figure, traces, layout, CONFIG);
 }
 
