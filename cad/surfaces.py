@@ -33,6 +33,11 @@ class Surface:
         """Whether the surface turns about that axis through the origin."""
         return self.along(axis) and bool(self.point.cross(axis).Length < _COINCIDENT)
 
+    def holds(self, axis: Vector) -> bool:
+        """Whether the plane holds that axis through the origin."""
+        flat, upright = self.point.dot(self.direction), self.direction.dot(axis)
+        return bool(abs(flat) < _COINCIDENT and abs(upright) < _COINCIDENT)
+
     def turned(self, axis: Vector) -> Surface:
         """The same surface, its direction that of the axis and not against it."""
         if self.direction.dot(axis) >= 0:

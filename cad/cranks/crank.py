@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from math import sin
 
 from cad.cranks.outline import Outline
-from cad.cranks.reading import Webs, counterweight, drilling, fillet, inclination, pin, stubs
+from cad.cranks.reading import Webs, counterweight, drilling, fillet, inclination, journal_bore, pin, stubs
 from cad.cranks.rules import CrankRules
 from cad.cranks.throw import End, Throw
 from cad.cranks.volume import volume
-from cad.model import Box, Part, mm
+from cad.model import Box, Part, Shaft, mm
 from cad.surfaces import Seen, Y
 
 
@@ -62,16 +62,21 @@ class CrankModel(CrankRules):
         left = max(web.half_width, web.counterweight, around)
         return Box((-left, -wide, -low), (max(web.tip, around), wide, high))
 
+    def shaft(self) -> Shaft:
+        """Held by its end face at -z, loaded at +z."""
+        box = self.bounding_box()
+        return Shaft(box.low[2], box.high[2])
+
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
         """Every parameter; the angle of a counterweight only if there is one."""
-        found, webs, hollow = seen[self.id], Webs.of(seen[self.id]), bool(self.d_j > 0)
-        journals = [stub[hollow] for stub in stubs(found, webs, hollow)]
-        lengths = [journal.reach[1] - webs.faces[3] for journal in journals]
+        found, webs = seen[self.id], Webs.of(seen[self.id])
+        front, rear = (stub[0] for stub in stubs(found, webs))
+        length = (front.reach[1] + webs.faces[0] + rear.reach[1] - webs.faces[3]) / 2
         return {
-            "journal_diameter": max(journal.diameter for journal in journals),
-            "journal_length": sum(lengths) / 2 * float(self.L_j / self.L_s),
-            "journal_bore": stubs(found, webs, hollow)[0][0].diameter if hollow else 0.0,
-            **pin(found, hollow=bool(self.d_c > 0)),
+            "journal_diameter": max(front.diameter, rear.diameter),
+            "journal_length": length * float(self.L_j / self.L_s),
+            "journal_bore": journal_bore(found, webs),
+            **pin(found, webs),
             "pin_length": webs.apart,
             "web_thickness": webs.thickness,
             "web_width": found.length(Y),

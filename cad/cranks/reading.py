@@ -6,7 +6,6 @@ webs, cylinders about the shaft beyond the webs the journals and ends, other cyl
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan2, degrees
 
@@ -42,40 +41,39 @@ class Webs:
         return self.faces[2] - self.faces[1]
 
 
-def pin(seen: Seen, hollow: bool) -> dict[str, float]:
-    """Pin diameter, bore and throw."""
-    offset = [c for c in seen.cylinders if c.along(Z) and not c.about(Z)]
-    bores = _smallest(offset) if hollow else []
-    solid = _smallest([c for c in offset if c not in bores])[0]
-    return {
-        "pin_diameter": solid.diameter,
-        "pin_bore": bores[0].diameter if hollow else 0.0,
-        "throw": solid.point.cross(Z).Length,
-    }
+def pin(seen: Seen, webs: Webs) -> dict[str, float]:
+    """Pin diameter, bore and throw: the pin stands between the webs, its bore goes through both."""
+    _, front, rear, _ = webs.faces
+    beside = [c.turned(Z) for c in seen.cylinders if c.along(Z) and not c.about(Z)]
+    found = next(c for c in beside if front - _CLEAR < c.reach[0] and c.reach[1] < rear + _CLEAR)
+    bores = [c.diameter for c in beside if c.reach[0] < front - _CLEAR and rear + _CLEAR < c.reach[1]]
+    throw = found.point.cross(Z).Length
+    return {"pin_diameter": found.diameter, "pin_bore": max(bores, default=0.0), "throw": throw}
 
 
-def stubs(seen: Seen, webs: Webs, hollow: bool) -> tuple[list[Surface], list[Surface]]:
-    """What stands on the webs at the front and at the rear: the cylinders about the shaft, from the web on.
-
-    With a bore it comes first.
-    """
+def stubs(seen: Seen, webs: Webs) -> tuple[list[Surface], list[Surface]]:
+    """What stands on the webs at the front and at the rear: the cylinders about the shaft, from the web on."""
     behind = [c for c in seen.about(Z) if c.reach[0] > webs.faces[3] - _CLEAR]
     before = [c.turned(-Z) for c in seen.about(Z) if c.reach[1] < webs.faces[0] + _CLEAR]
-    return _from_web(before, hollow), _from_web(behind, hollow)
+    return sorted(before, key=_start), sorted(behind, key=_start)
+
+
+def journal_bore(seen: Seen, webs: Webs) -> float:
+    """Diameter of the cylinder about the shaft that goes on through the web; 0 if there is none."""
+    through = (
+        c for c in seen.about(Z) if c.reach[0] < webs.faces[3] - _CLEAR < webs.faces[3] + _CLEAR < c.reach[1]
+    )
+    return max((c.diameter for c in through), default=0.0)
 
 
 def counterweight(seen: Seen, webs: Webs) -> dict[str, float]:
-    """Its radius, and its angle [deg] if there is one."""
-    round_ = [
-        c.diameter for c in seen.about(Z) if webs.faces[2] - _CLEAR < c.reach[0] < webs.faces[3] - _CLEAR
-    ]
-    standing_out = [d for d in round_ if d > 1.01 * seen.length(Y)]
+    """Its radius, and its angle [deg] if there is one: as thick as the web, and further out than its width."""
+    _, _, inner, outer = webs.faces
+    within = (c for c in seen.about(Z) if inner - _CLEAR < c.reach[0] and c.reach[1] < outer + _CLEAR)
+    standing_out = [c.diameter for c in within if c.diameter > 1.01 * seen.length(Y)]
     if not standing_out:
         return {"counterweight_radius": 0.0}
-    flank = next(
-        p.direction for p in seen.planes
-        if abs(p.direction.dot(Z)) < _CLEAR and abs(p.point.dot(p.direction)) < _CLEAR
-    )  # fmt: skip
+    flank = next(p.direction for p in seen.planes if p.holds(Z))
     angle = 2 * degrees(atan2(abs(flank.x), abs(flank.y)))
     return {"counterweight_radius": max(standing_out) / 2, "counterweight_angle": angle}
 
@@ -113,12 +111,5 @@ def _askew(normal: Vector) -> bool:
     return bool(min(abs(normal.dot(X)), abs(normal.dot(Z))) > _CLEAR)
 
 
-def _from_web(cylinders: Sequence[Surface], hollow: bool) -> list[Surface]:
-    bore = _smallest(cylinders)[:1] if hollow else []
-    return bore + sorted((c for c in cylinders if c not in bore), key=lambda c: c.reach[0])
-
-
-def _smallest(cylinders: Sequence[Surface]) -> list[Surface]:
-    """Those of the smallest diameter."""
-    least = min((c.diameter for c in cylinders), default=0.0)
-    return [c for c in cylinders if c.diameter - least < _CLEAR]
+def _start(cylinder: Surface) -> float:
+    return cylinder.reach[0]

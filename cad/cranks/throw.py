@@ -3,19 +3,18 @@
 z is the axis of the main journals, x points from it to the crankpin, z = 0 is the middle of the pin. Each web
 lies at pin_length/2 ≤ |z| ≤ pin_length/2 + web_thickness; front is at -z, rear at +z.
 
-Whatever turns is turned from one outline, fillets included, and the webs are plates with holes: so the parts
-only touch, in flat faces, and their union asks little of the kernel. Only the drilling and the inclined faces
-are cut.
+Whatever turns is turned from one outline, fillets included, and the webs are plates: so the parts only touch,
+in flat faces, and their union asks little of the kernel. Only bores, drilling and inclined faces are cut.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import sqrt, tan
 
-from cadquery import Shape, Solid, Vector, Wire
+from cadquery import Shape, Solid, Vector
 from cadquery.func import cut, face, fuse, polygon, wire
 
 from cad.cranks.outline import Outline, Run, draw
@@ -72,22 +71,31 @@ class Throw:
         return top, Vector(-self.journal, 0, self.outer + self.journal_length / 2)
 
     def solid(self) -> Shape:
-        """Pin, webs and journals joined, then drilled."""
+        """Pin, webs and journals joined, then bored and drilled at once."""
         web, front, rear = self._web(), self._journal(self.front), self._journal(self.rear)
         parts = web, web.mirror("XY"), self._pin(), front.mirror("XY"), rear
         whole = fuse(*parts, glue="partial")  # they touch and do not cross: half the time
-        return cut(whole, self._drill()) if self.drilling > 0 else whole
+        tools = [*self._bores()]
+        return whole.cut(*tools) if tools else whole
 
     def _web(self) -> Shape:
         """The web on +z."""
-        bores = ((self.journal_bore, 0.0), (self.pin_bore, self.outline.throw))
-        holes = [
-            Wire.makeCircle(radius, Vector(x, 0, self.inner), Vector(0, 0, 1))
-            for radius, x in bores
-            if radius
-        ]
-        plate = Solid.extrudeLinear(self.outline.wire(self.inner), holes, Vector(0, 0, self.web_thickness))
+        plate = Solid.extrudeLinear(self.outline.wire(self.inner), [], Vector(0, 0, self.web_thickness))
         return cut(plate, self._wedge()) if self.inclination > 0 else plate
+
+    def _bores(self) -> Iterator[Solid]:
+        """What the bores and the drilling take away; each ends in the air.
+
+        Bores go through the whole, not through its parts: where a bore crosses from part to part it would
+        have an edge, and a drilling that touches such an edge came out wrong.
+        """
+        beyond = max([end.length for end in (self.front, self.rear) if end], default=0.0) + self.journal
+        if self.journal_bore > 0:
+            yield _bore(self.journal_bore, self.journal_end + beyond, 0.0)
+        if self.pin_bore > 0:
+            yield _bore(self.pin_bore, self.outer + self.journal_length / 2, self.outline.throw)
+        if self.drilling > 0:
+            yield self._drill()
 
     def _wedge(self) -> Solid:
         """What the inclination takes off the web on +z; it stands out into the air on all other sides."""
@@ -107,22 +115,22 @@ class Throw:
         z, edge = self.inner, self.pin + self.fillet
         lower = _fillet(self.pin, self.fillet, -z, 1)
         upper = tuple(reversed(_fillet(self.pin, self.fillet, z, -1)))
-        sides: list[Run] = [lower, ((self.pin, self.fillet - z), (self.pin, z - self.fillet)), upper]
-        foot: Run = ((self.pin_bore, -z), (edge, -z))
-        return _turned([foot, *sides, ((edge, z), (self.pin_bore, z))], self.outline.throw, -1)
+        side: Run = (lower[-1], upper[0])
+        return _turned(
+            [((0, -z), (edge, -z)), lower, side, upper, ((edge, z), (0, z))], self.outline.throw, -1
+        )
 
     def _journal(self, end: End | None) -> Shape:
         """The journal on +z, with what lies beyond it."""
         z, top, radius = self.outer, self.journal_end, self.journal
-        foot: Run = ((self.journal_bore, z), (radius + self.fillet, z))
-        side: Run = ((radius, z + self.fillet), (radius, top))
-        corners = [(radius, top), *self._beyond(end), (self.journal_bore, top + (end.length if end else 0))]
-        beyond: list[Run] = [*pairwise(corners)]
-        return _turned([foot, _fillet(radius, self.fillet, z, 1), side, *beyond], 0.0, 1)
-
-    def _beyond(self, end: End | None) -> Sequence[tuple[float, float]]:
-        top = self.journal_end
-        return ((end.radius, top), (end.radius, top + end.length)) if end else ()
+        root = _fillet(radius, self.fillet, z, 1)
+        beyond = (
+            [(end.radius, top), (end.radius, top + end.length), (0.0, top + end.length)]
+            if end
+            else [(0.0, top)]
+        )
+        corners = [root[-1], (radius, top), *beyond]
+        return _turned([((0, z), root[0]), root, *pairwise(corners)], 0.0, 1)
 
     def _drill(self) -> Solid:
         """What the oil drilling takes away, from beyond the pin to beyond the journal."""
@@ -138,6 +146,11 @@ def _fillet(radius: float, size: float, z: float, up: int) -> Run:
     """The fillet between a face at z and a cylinder up (1) or down (-1) from it; a point if none."""
     middle = radius + size * _MIDDLE, z + up * size * _MIDDLE
     return (radius + size, z), middle, (radius, z + up * size)
+
+
+def _bore(radius: float, reach: float, x: float) -> Solid:
+    """A cylinder along z through x, as far up as down."""
+    return Solid.makeCylinder(radius, 2 * reach, Vector(x, 0, -reach), Vector(0, 0, 1))
 
 
 def _turned(runs: Sequence[Run], x: float, side: int) -> Solid:

@@ -114,7 +114,7 @@ class Crankshaft(CrankModel):
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
         """Those of the throw, and the cylinders that come last at either end."""
         found = seen[self.id]
-        front, rear = (stub[-2:] for stub in stubs(found, Webs.of(found), hollow=bool(self.d_j > 0)))
+        front, rear = stubs(found, Webs.of(found))
         return {
             **super().dimensions(seen),
             "front_length": front[1].reach[1] - front[0].reach[1],
