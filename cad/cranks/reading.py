@@ -52,7 +52,7 @@ def pin(seen: Seen, webs: Webs) -> dict[str, float]:
 
 
 def stubs(seen: Seen, webs: Webs) -> tuple[list[Surface], list[Surface]]:
-    """What stands on the webs at the front and at the rear: the cylinders about the shaft, from the web on."""
+    """What stands on the webs at the front and at the rear: cylinders about the shaft, from the web on."""
     behind = [c for c in seen.about(Z) if c.reach[0] > webs.faces[3] - _CLEAR]
     before = [c.turned(-Z) for c in seen.about(Z) if c.reach[1] < webs.faces[0] + _CLEAR]
     return sorted(before, key=_start), sorted(behind, key=_start)
@@ -60,10 +60,9 @@ def stubs(seen: Seen, webs: Webs) -> tuple[list[Surface], list[Surface]]:
 
 def journal_bore(seen: Seen, webs: Webs) -> float:
     """Diameter of the cylinder about the shaft that goes on through the web; 0 if there is none."""
-    through = (
-        c for c in seen.about(Z) if c.reach[0] < webs.faces[3] - _CLEAR < webs.faces[3] + _CLEAR < c.reach[1]
-    )
-    return max((c.diameter for c in through), default=0.0)
+    low, high = webs.faces[3] - _CLEAR, webs.faces[3] + _CLEAR
+    through = (c.diameter for c in seen.about(Z) if c.reach[0] < low and high < c.reach[1])
+    return max(through, default=0.0)
 
 
 def counterweight(seen: Seen, webs: Webs) -> dict[str, float]:

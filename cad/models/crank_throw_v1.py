@@ -1,21 +1,8 @@
 """Crank throw: two webs, the crankpin between them, and half a main journal on each side.
 
 The part of a crankshaft from mid-journal to mid-journal, as stiffness formulas and finite elements take it.
-z is the axis of the main journals, x points from it to the pin, z = 0 is mid-pin; the cut faces stand across
-the shaft at z = ±(pin_length + 2 web_thickness + journal_length)/2. Without oil drilling it is its own mirror
-image in z = 0, and always in y = 0.
-
-Fillets run round the pin and the journals where they meet a web. The journals' bore goes through the journals
-and their webs, the pin's through the pin and both webs. The oil drilling is a straight one, from mid-pin on
-the side away from the shaft, through the web at +z, to the middle of the half journal on its other side. The
-counterweights are sectors about the shaft opposite to the pin, as thick as their webs. The face inclination
-takes material off the outer face of each web, from beside the journal's fillet to the end beyond the pin: to
-add material there, as Punewale et al. do, make it smaller.
-
-References
-----------
-Punewale, Khobragade, Chaudhari and Khandre 2015: material on the face inclination of the webs, and what it
-    does to stiffness.
+Without oil drilling it is its own mirror image in z = 0, and always in y = 0. What its words mean is said in
+the class below, which users read; parameters, rules and the solid are those of `cad.cranks`.
 """
 
 from cad.cranks.crank import CrankModel
@@ -25,10 +12,29 @@ from templates.core.template import Array, formula
 class CrankThrow(CrankModel):
     """Crank throw from mid-journal to mid-journal, solid or bored, with fillets and counterweights.
 
+    z is the axis of the main journals, x points from it to the pin, z = 0 is mid-pin; the cut faces stand
+    across the shaft at z = ±(pin_length + 2 web_thickness + journal_length)/2. Of the journal_length half is
+    drawn on each side. A bore, fillet, oil drilling, counterweight or inclination of 0 is none.
+
+    Fillets run round the pin and the journals where they meet a web. The journals' bore goes through the
+    journals and their webs, the pin's through the pin and both webs. The oil drilling is straight: from
+    mid-pin, on the side away from the shaft, through the web at +z, to mid-length of the half journal, on its
+    other side. The counterweights are sectors about the shaft opposite to the pin, as thick as their webs.
+
+    The face inclination takes material off the outer face of each web, from beside the journal's fillet to
+    the end beyond the pin: 0 is the heaviest web. To add material there, as Punewale et al. do, make it
+    smaller.
+
     Limits
     ------
-    One throw with two webs alike. Journals and pin are plain cylinders without grooves, edges other than at
-    the fillets are sharp, and a counterweight has the thickness of its web.
+    One throw with two webs alike, at least 2 % wider than journal and pin with their fillets. Journals and
+    pin are plain cylinders without grooves; edges other than at the fillets are sharp; a counterweight spans
+    at most half a turn.
+
+    References
+    ----------
+    Punewale, Khobragade, Chaudhari and Khandre 2015: material on the face inclination of the webs, and what
+        it does to stiffness.
     """
 
     example = {

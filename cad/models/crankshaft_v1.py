@@ -1,17 +1,7 @@
 """Crankshaft of a single-cylinder engine: a throw, its two main journals, a flywheel end and a timing end.
 
-z is the axis on which the shaft turns, x points from it to the pin, z = 0 is mid-pin. The timing end is the
-front, at -z; the flywheel end is the rear, at +z. Each main journal is drawn in its whole length, and beyond
-it stands a plain cylinder: a seat for a wheel or, if it is wider than the journal, a flange.
-
-The throw is that of `crank_throw`; only the oil drilling ends in the middle of the whole rear journal. The
-journals' bore goes on through both ends. The face inclination takes material off the outer faces of the webs:
-to add material there, as Punewale et al. do, make it smaller.
-
-References
-----------
-Punewale, Khobragade, Chaudhari and Khandre 2015: a crankshaft changed at pin, journals, throw and on the face
-    inclination of its webs.
+For mass, inertia and torsion of a whole shaft. Its throw is that of `crank_throw`; what its words mean is
+said in the class below, which users read.
 """
 
 from collections.abc import Mapping
@@ -27,10 +17,30 @@ from templates.core.template import Array, Truth, derived, formula, require
 class Crankshaft(CrankModel):
     """Crankshaft with one throw: two main journals, a flywheel end and a timing end.
 
+    z is the axis on which the shaft turns, x points from it to the pin, z = 0 is mid-pin. The timing end is
+    the front, at -z; the flywheel end is the rear, at +z. Both main journals are drawn in their whole length.
+    Beyond each stands a plain cylinder: a seat for a wheel or, if it is wider than the journal, a flange. A
+    bore, fillet, oil drilling, counterweight or inclination of 0 is none.
+
+    Fillets run round the pin and the journals where they meet a web. The journals' bore goes through the
+    whole shaft, the pin's through the pin and both webs. The oil drilling is straight: from mid-pin, on the
+    side away from the shaft, through the web at +z, to mid-length of the rear journal, on its other side. The
+    counterweights are sectors about the shaft opposite to the pin, as thick as their webs.
+
+    The face inclination takes material off the outer face of each web, from beside the journal's fillet to
+    the end beyond the pin: 0 is the heaviest web. To add material there, as Punewale et al. do, make it
+    smaller.
+
     Limits
     ------
-    One throw with two webs alike. Ends are plain cylinders without keyways, threads or fillets at the
-    shoulder; journals and pin have no grooves.
+    One throw with two webs alike, at least 2 % wider than journal and pin with their fillets. Journals, pin
+    and ends are plain cylinders without grooves, keyways, threads or fillets at the ends' shoulders; a
+    counterweight spans at most half a turn.
+
+    References
+    ----------
+    Punewale, Khobragade, Chaudhari and Khandre 2015: a crankshaft changed at pin, journals, throw and on the
+        face inclination of its webs.
     """
 
     example = {
