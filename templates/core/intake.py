@@ -70,6 +70,10 @@ def _bounded(declared: Input, typed: Typed, ledger: Ledger, faults: list[Fault])
     meaning, value = declared.meaning, typed.si
     if isinstance(declared, Table):
         return _rows(declared, value, faults)
+    if is_single(declared) and isinstance(value, np.ndarray):
+        told = f"{meaning.words} is one value for all points: give a number, not an array"
+        faults.append(Fault(declared.name, "not_single", told))
+        return np.float64(np.nan)
     is_curve = isinstance(declared, Curve) and not (declared.constant and isinstance(value, float))
     if isinstance(value, float) and not is_curve and meaning.admits(value):
         value = np.float64(value)
@@ -156,6 +160,11 @@ def check_shapes(self: Template) -> None:
         raise InvalidInputs([Fault(name, "shape", detail) for name in names]) from None
 
 
+def is_single(declared: Declaration) -> bool:
+    """Whether an input is one value for all points."""
+    return isinstance(declared, Given) and declared.single
+
+
 def is_curve(self: Template, attribute: str) -> bool:
     """Whether an attribute is an input along the crank angle."""
     return isinstance(self.declarations[attribute], Curve)
@@ -193,6 +202,8 @@ def _shown(self: Template, declared: Declaration) -> str:
     value = getattr(self, declared.attribute)
     if isinstance(value, str):
         return value
+    if isinstance(value, tuple):
+        return str([[float(f"{declared.meaning.scale.from_si(v):.6g}") for v in row] for row in value])
     if np.ndim(value):
         return f"{np.shape(value)[-1]} values from {declared.meaning.told(value.flat[0])}"
     return "not given" if np.isnan(value) else declared.meaning.told(value)

@@ -82,6 +82,7 @@ class OilFilm(Template):
     another level is asked for by name. Its friction is by the oil there is; elsewhere shear acts over the
     full circle, as in the standards. Its error was measured without grooves and supply pressure; with them
     none is told: grooves narrower than 5° or nearer to each other are not resolved.
+    Angles count from the load in the sense of the hydrodynamic speed, those of grooves too.
     Laminar flow: a warning tells where the film Reynolds number exceeds 41.3 √(D/c).
     The heat balance takes power and side flow from level map whatever the level, so that temperature and
     viscosity do not depend on it; flow driven by the supply pressure is left out, which errs to the hot side.
@@ -221,6 +222,11 @@ class OilFilm(Template):
     def mean_not_overruled(self) -> Truth:
         """Inlet and outlet temperature are not used where a heat balance gives the film temperature."""
         return self.mean_is_used
+
+    @require("grooves", remedy="give rows of angle and width")
+    def grooves_fit(self) -> Truth:
+        """Seen around the bearing each groove is 0° to 360° wide."""
+        return all(0 <= width <= 2 * np.pi + 1e-9 for _, width in self.grooves)
 
     @require("grooves", "supply_pressure", warning="unused_input", remedy="take level mass_conserving")
     def feed_is_used(self) -> Truth:
@@ -439,7 +445,8 @@ class OilFilm(Template):
         return duty_parameter(self.eta, self.omega_s, self.D, self.W, self.F)
 
     @formula(
-        "um", "smallest permissible film", symbol=r"h_{lim}", source="ISO 7902-3:1998",
+        "um", "smallest permissible film", symbol=r"h_{lim}",
+        source="ISO 7902-3:1998 as textbooks quote it, not checked",
         absent="the table covers journals above 24 mm up to 2500 mm",
     )  # fmt: skip
     def h_lim(self) -> Array:

@@ -131,8 +131,8 @@ def fed_film(So: float, ratio: float, feed: Feed) -> FedFilm | None:
     smallest = 0.0 if feed.pressure > 0 else float(mapped_load(np.array(_SMALLEST), np.array(ratio)))
     search = Search(max(So, smallest), ratio, feed)
     try:
-        place = search.found()
-        film = None if place is None else search.extrapolated(place)
+        found = search.found()
+        film = None if found is None else search.extrapolated(*found)
     except (ArithmeticError, ValueError, RuntimeError):  # the last two: a singular matrix
         return None
     return film if film is None or So >= smallest else replace(film, eps=film.eps * So / smallest)
@@ -149,28 +149,29 @@ class Search:
     feed: Feed
     """Grooves, which stand still, or none: then the line that feeds turns with the journal."""
 
-    def found(self) -> Place | None:
-        """The place, by Newton's method; steps are halved whenever it turns back.
+    def found(self) -> tuple[Place, SolvedRing] | None:
+        """The place and its film on the coarse mesh, by Newton's method; steps are halved when it turns back.
 
         The mesh follows the grooves, so that the force has steps; where the search hunts about one, the place
         nearest to rest is taken.
         """
         place, longest, before = self.start(), _LONGEST, np.zeros(2)
-        best, nearest = place, np.inf
+        best, nearest = None, _HUNTED
         for _ in range(_STEPS):
-            lack = self.lack(place, linear_film(self.solved(place, _COARSE)))
+            ring = self.solved(place, _COARSE)
+            lack = self.lack(place, linear_film(ring))
             distance = float(np.hypot(*lack.step)) / min(1.0, float(np.hypot(*place.y)))
-            if distance < nearest:
-                best, nearest = place, distance
+            if distance <= nearest:
+                best, nearest = (place, ring), distance
             if lack.share <= _ACCURACY or distance <= _SHORTEST:
-                return place
+                return place, ring
             if lack.step @ before < 0:
                 longest /= 2
-            if longest <= _HUNTED and nearest <= _HUNTED:
+            if longest <= _HUNTED and best is not None:
                 break
             before = lack.step * min(1.0, longest / float(np.hypot(*lack.step)))
             place = place.moved(before)
-        return best if nearest <= _HUNTED else None
+        return best
 
     def start(self) -> Place:
         """Where the film map has the journal."""
@@ -206,21 +207,21 @@ class Search:
         along = (self.load - borne) / (film.force / borne @ film.K[:, 0])
         return missing, np.array([max(along, -0.9 * place.eps), 0.0])
 
-    def extrapolated(self, place: Place) -> FedFilm:
-        """The film there by Richardson, and the place for what it still lacks.
+    def extrapolated(self, place: Place, ring: SolvedRing) -> FedFilm:
+        """The film there by Richardson from that on the coarse mesh, and the place for what it still lacks.
 
         Load and peak converge with order 2, shear and flow, which see the front, with 1.
         """
-        rings = [self.solved(place, mesh) for mesh in (_COARSE, _FINE)]
-        coarse, fine = (measured(ring) for ring in rings)
-        linear = linear_film(rings[1])
-        force = linear.force + (linear.force - linear_film(rings[0]).force) / 3
+        finer = self.solved(place, _FINE)
+        coarse, fine, linear = measured(ring), measured(finer), linear_film(finer)
+        force = linear.force + (linear.force - linear_film(ring).force) / 3
         final = place.moved(self.lack(place, replace(linear, force=force)).step)
+        turning = force + linear.K[:, 0] * (final.eps - place.eps)
         friction, side_flow = (2 * getattr(fine, n) - getattr(coarse, n) for n in ("friction", "side_flow"))
         return FedFilm(
             eps=final.eps,
             solved_eps=place.eps,
-            attitude=final.attitude if self.feed.grooves else float(np.arctan2(-force[1], force[0])),
+            attitude=final.attitude if self.feed.grooves else float(np.arctan2(-turning[1], turning[0])),
             P_max=fine.P_max + (fine.P_max - coarse.P_max) / 3,
             peak=_peak(fine),
             shear=friction + place.eps * force[1] / 2,

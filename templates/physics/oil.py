@@ -71,7 +71,8 @@ def vogel(a: Array, b: Array, c: Array, T: Array) -> Array:
     H. Vogel: Physikalische Zeitschrift 22, 1921, p. 645.
     """
     above = T - _CELSIUS + c
-    return np.where(above > 0, a * np.exp(b / np.where(above > 0, above, 1.0)), np.inf)[()]
+    with np.errstate(over="ignore"):  # just above the pole it is as good as infinite
+        return np.where(above > 0, a * np.exp(b / np.where(above > 0, above, np.inf)), np.inf)[()]
 
 
 @units("Pa*s", "K", "Pa*s", "K", "K", returns="K")

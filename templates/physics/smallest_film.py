@@ -1,5 +1,8 @@
 """Smallest film that may be planned for a journal bearing, after DIN 31652-3 / ISO 7902-3, table 1.
 
+The numbers are those that textbooks quote; they were not checked against the standard, of which no public
+copy was found.
+
 References
 ----------
 DIN 31652-3:1983; ISO 7902-3:1998: from experience, against wear and dirt, for Rz of the journal up to 4 µm.

@@ -118,7 +118,7 @@ def drawn_feeds(seed: int, count: int) -> list[tuple[float, float, Feed]]:
 def test_fed_films_bear_their_load_on_a_finer_mesh() -> None:
     """At random feeds, odd ones among them: how far the journal is from where a finer mesh would have it.
 
-    Over the film left, or the eccentricity; one in ten has grooves finer than the mesh, or hardly a stiffness.
+    Over the film left, or the eccentricity; one in ten has grooves finer than the mesh, or little stiffness.
     """
     distances = []
     for So, ratio, feed in drawn_feeds(3, 150):

@@ -147,7 +147,7 @@ class TestLiterature:
         ("d", "rpm", "film"), [(50, 300, 3), (50, 5000, 7), (100, 100, 4), (500, 3000, 16)]
     )
     def test_literature_smallest_permissible_film(self, d, rpm, film):
-        """DIN 31652-3, table 1."""
+        """DIN 31652-3, table 1, as textbooks quote it: not checked against the standard."""
         size = {"bearing_diameter": f"{d} mm", "bearing_width": f"{d / 2} mm"}
         raw = case(diametral_clearance=f"{d / 1000} mm", speed=f"{rpm} rpm", **size)
         assert outputs(raw, "smallest_permissible_film") == film
@@ -201,7 +201,8 @@ class TestLevels:
             evaluate(OilFilm, bearing(np.ones(500), np.ones(500)), level="reynolds")
 
     def test_property_tables_are_checked(self):
-        for wrong in ({"value": [1, 2, 3], "unit": "deg"}, {"value": [[[1, 2]]], "unit": "deg"}):
+        shapes = ([1, 2, 3], [[[1, 2]]], [[90, 20]] * 13, [[90, -400]], [[900, 10]])
+        for wrong in ({"value": rows, "unit": "deg"} for rows in shapes):
             with pytest.raises(InvalidInputs, match="grooves are at most 12 rows of angle from the load"):
                 evaluate(OilFilm, bearing(1, 0.5, grooves=wrong))
 
@@ -512,6 +513,63 @@ class TestExtremes:
             film = outputs(bearing(np.geomspace(1e-8, 1e6, 4000), b), "minimum_film_thickness", level=level)
             assert (np.diff(film[np.isfinite(film)]) < 0).mean() > 0.7  # below 1e-16 of the gap it cannot
             assert (np.diff(film[np.isfinite(film)]) <= 0).all()
+
+    @pytest.mark.slow
+    def test_property_odd_feeds_answer_or_refuse_by_name(self):
+        """Grooves anywhere, supply pressure, load or none, speeds of either sense or none."""
+        rng, refused = np.random.default_rng(8), []
+        for _ in range(60):
+            raw = bearing(
+                10 ** rng.uniform(-8, 3) * (rng.random() > 0.1),
+                10 ** rng.uniform(-2, 2),
+                speed=si(rng.choice([-1, 0, 1], p=[0.3, 0.1, 0.6]) * 10 ** rng.uniform(-2, 4), "rad/s"),
+                load_speed=si(rng.choice([0, -30, 50]), "rad/s"),
+                supply_pressure=si(rng.choice([0.0, 10 ** rng.uniform(2, 8)]), "Pa"),
+                grooves=si(np.radians([[rng.uniform(-360, 720), w] for w in rng.uniform(0, 80, 3)]), "rad"),
+            )
+            try:
+                answers = evaluate(OilFilm, raw).outputs
+            except InvalidInputs as refusal:
+                refused += [fault.name for fault in refusal.faults]
+                continue
+            for name, answer in answers.items():
+                assert answer.reason or answer.unit is None or np.isfinite(answer.value), name
+        assert set(refused) <= {"relative_eccentricity", "hydrodynamic_speed"}
+        assert 0 < len(refused) < 40
+
+    @pytest.mark.parametrize(
+        "grooves",
+        [[[450, 20], [270, 20]], [[-270, 20], [-90, 20]], [[90, 20], [90, 20], [270, 20]],
+         [[90, 20], [95, 10], [270, 20]]],
+    )  # fmt: skip
+    def test_analytic_grooves_turned_full_circle_or_doubled_are_the_same(self, grooves):
+        def film(rows):
+            return outputs(
+                bearing(1.0, 0.5, grooves={"value": rows, "unit": "deg"}), "minimum_film_thickness"
+            )
+
+        assert film(grooves) == pytest.approx(film([[90, 20], [270, 20]]), rel=1e-6)
+
+    @pytest.mark.parametrize("width", [-20, 361])
+    def test_property_groove_of_impossible_width_is_refused(self, width):
+        raw = bearing(1.0, 0.5, grooves={"value": [[90, 20], [270, width]], "unit": "deg"})
+        with pytest.raises(InvalidInputs, match="each groove is 0° to 360° wide") as refusal:
+            outputs(raw, "minimum_film_thickness")
+        assert [fault.name for fault in refusal.value.faults] == ["grooves"]
+
+    def test_property_a_groove_all_around_bears_nothing(self):
+        raw = bearing(1.0, 0.5, grooves={"value": [[0, 360]], "unit": "deg"})
+        with pytest.raises(InvalidInputs, match="move the grooves"):
+            outputs(raw, "minimum_film_thickness")
+
+    def test_property_groove_of_no_width_is_a_line(self):
+        line, narrow = (
+            outputs(
+                bearing(1.0, 0.5, grooves={"value": [[200, width]], "unit": "deg"}), "relative_eccentricity"
+            )
+            for width in (0, 1)
+        )
+        assert line == pytest.approx(narrow, abs=0.01)
 
     @pytest.mark.slow
     @pytest.mark.parametrize("level", ["reynolds", "mass_conserving"])

@@ -1,0 +1,49 @@
+"""One bearing at all five levels of `oil_film` 2, side by side, as a table in Markdown.
+
+    python -m benchmarks.levels
+
+The bearing is the template's example. The error is what the template tells of the minimum film thickness
+there; the cost is processor time a point among many, stiffness apart, as a multiple of the closed form's.
+"""
+
+from benchmarks.accuracy import cost
+from templates.core.evaluate import evaluate
+from templates.oil_film.oil_film_v2 import OilFilm
+
+COLUMNS = {
+    "minimum_film_thickness": ("h_min", "um", ".3f"),
+    "attitude_angle": ("attitude", "deg", ".2f"),
+    "maximum_pressure": ("p_max", "MPa", ".1f"),
+    "friction_coefficient": ("friction", "1", ".5f"),
+    "stiffness_xx": ("stiffness_xx", "kN/um", ".3f"),
+}
+
+
+def row(level: str) -> list[str]:
+    """The cells of one level but for its cost."""
+    units = {name: unit for name, (_, unit, _) in COLUMNS.items()}
+    made = evaluate(OilFilm, OilFilm.example, level=level, outputs=list(COLUMNS), units=units)
+    values = [made.outputs[name].value for name in COLUMNS]
+    told = [
+        "none" if v is None else format(v, how)
+        for v, (_, _, how) in zip(values, COLUMNS.values(), strict=True)
+    ]
+    return [f"`{level}`", *told, f"{100 * made.error['minimum_film_thickness']:.2g} %"]
+
+
+def main() -> None:
+    """Print the bearing and the table."""
+    film = evaluate(OilFilm, OilFilm.example).outputs
+    names = ("width_ratio", "sommerfeld_number", "relative_eccentricity")
+    print(", ".join(f"{name} {film[name].value:.3g}" for name in names))
+    heads = [f"{word} [{unit}]" if unit != "1" else word for word, unit, _ in COLUMNS.values()]
+    print("\n| level | " + " | ".join([*heads, "error of h_min", "cost"]) + " |")
+    print("|" + "---|" * (len(heads) + 3))
+    costs = {level: cost(level)["vectorised"] for level in OilFilm.levels}
+    for level in OilFilm.levels:
+        multiple = f"{costs[level] / costs['short_bearing']:.1g}"
+        print("| " + " | ".join([*row(level), f"{float(multiple):,.0f}".replace(",", " ")]) + " |")
+
+
+if __name__ == "__main__":
+    main()
