@@ -20,6 +20,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Generic, TypeVar
 
+from templates.core.declare import Declaration, Requirement, Shared
 from templates.core.errors import UnknownTemplate, UnusableFile, plain
 from templates.core.template import VERSIONED, Template
 
@@ -151,11 +152,24 @@ def _declared_in(module: ModuleType, path: Path) -> type[Template]:
 
 
 def digest(cls: type[Template]) -> str:
-    """SHA-256 of the template's file, without docstrings, comments, layout and the mark `withdrawn`."""
+    """SHA-256 of the template's file, without docstrings, comments, layout and the mark `withdrawn`.
+
+    The files of groups, which hand it givens, formulas or rules, are part of it.
+    """
+    parts = dict.fromkeys(_bare(base) for base in cls.__mro__ if base is cls or _declares(base))
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def _declares(base: type) -> bool:
+    """Whether a base declares anything of its own; the bases that are the language do not."""
+    return any(isinstance(value, (Declaration, Requirement, Shared)) for value in vars(base).values())
+
+
+def _bare(cls: type) -> str:
+    """The file of a class, as far as it calculates."""
     module = inspect.getmodule(cls)
     assert module is not None
-    tree = _Bare().visit(ast.parse(inspect.getsource(module)))
-    return hashlib.sha256(ast.unparse(tree).encode()).hexdigest()
+    return ast.unparse(_Bare().visit(ast.parse(inspect.getsource(module))))
 
 
 class _Bare(ast.NodeTransformer):

@@ -43,14 +43,19 @@ class Declaration:
 
 
 class Given(Declaration):
-    """An input: a quantity that the user gives, its default, or NaN if it is optional and missing."""
+    """An input: a quantity that the user gives, its default, or NaN if it is optional and missing.
+
+    A `single` one is one value for all points: it says how many values a curve has, say.
+    """
 
     def __init__(
-        self, meaning: Meaning, default: Any = None, *, optional: bool = False, alternative: bool = False
-    ) -> None:
+        self, meaning: Meaning, default: Any = None, *, optional: bool = False, alternative: bool = False,
+        single: bool = False,
+    ) -> None:  # fmt: skip
         super().__init__(meaning)
         self.default: Typed | None = None if default is None else read(default, meaning.unit)
         self.optional, self.alternative = optional or alternative, alternative
+        self.single = single
 
     @property
     def required(self) -> bool:
@@ -217,14 +222,17 @@ def given(
     default: Any = None,
     optional: bool = False,
     alternative: bool = False,
+    single: bool = False,
     **keywords: Any,
 ) -> Any:
     """Declare an input in `unit`, with bounds in that unit; required unless it has a default or is optional.
 
     An optional input that is missing is NaN; outputs that need it do not exist, and say so. An `alternative`
     is optional too, but one of several ways to say something: its formulas deal with the NaN themselves.
+    Of a `single` one arrays are refused: all points share its value.
     """
-    return Given(meaning(unit, words, **keywords), default, optional=optional, alternative=alternative)
+    meant = meaning(unit, words, **keywords)
+    return Given(meant, default, optional=optional, alternative=alternative, single=single)
 
 
 def table(unit: str, words: str, *columns: str, most: int = 12, **keywords: Any) -> Any:

@@ -19,7 +19,7 @@ from templates.core.declare import (
     Table,
     Text,
 )
-from templates.core.intake import Input
+from templates.core.intake import Input, is_single
 from templates.core.mathml import expression, mathml, symbol, symbols
 from templates.core.meaning import Bounds
 from templates.core.template import Template
@@ -111,7 +111,8 @@ def _quantity_in(declared: Declaration) -> dict[str, Any]:
     """The written forms of a quantity: text, object, and bare numbers where the unit is 1."""
     values = {"type": "array", "minItems": 1}
     listed = isinstance(declared, Table) or (isinstance(declared, Curve) and not declared.constant)
-    magnitude = values if listed else {"type": ["number", "array"]}
+    single = is_single(declared)
+    magnitude = values if listed else {"type": "number" if single else ["number", "array"]}
     typed = {
         "type": "object",
         "required": ["value", "unit"],
@@ -125,7 +126,7 @@ def _quantity_in(declared: Declaration) -> dict[str, Any]:
     }
     bare = [{"type": "number"}] if declared.meaning.unit == "1" and not listed else []
     text = [] if listed else [{"type": "string"}]
-    return {"anyOf": [*text, *bare, typed, values]}
+    return {"anyOf": [*text, *bare, typed, *([] if single else [values])]}
 
 
 def _quantity_out(formula: Formula[Any]) -> dict[str, Any]:

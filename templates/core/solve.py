@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 from templates.core.declare import Choice, Curve, Formula, Profile, Table, Text
 from templates.core.errors import Fault, FaultyText, InvalidInputs, Unreachable, unknown_name
 from templates.core.evaluate import Evaluation, evaluate
-from templates.core.intake import Input
+from templates.core.intake import Input, is_single
 from templates.core.ledger import Notice
 from templates.core.quantity import Typed, read
 from templates.core.template import Template
@@ -126,7 +126,9 @@ def _unknown(cls: type[Template], name: str, faults: list[Fault]) -> Input | Non
 
 def _solvable(cls: type[Template]) -> list[str]:
     discrete = (Choice, Curve, Table)
-    return [n for n, d in cls.inputs.items() if not (isinstance(d, discrete) or d.meaning.integer)]
+    return [
+        n for n, d in cls.inputs.items() if not (isinstance(d, discrete) or d.meaning.integer or is_single(d))
+    ]
 
 
 def _ends(declared: Input, bounds: Sequence[Any], faults: list[Fault]) -> tuple[float, float]:

@@ -17,6 +17,7 @@ from templates.core.catalogue import digest, find
 from templates.core.declare import Choice, Curve, Derived, Given, Profile, Text
 from templates.core.errors import InvalidInputs
 from templates.core.evaluate import evaluate, is_told
+from templates.core.intake import is_single
 from templates.core.schema import describe, inputs_schema
 from templates.core.template import Template
 
@@ -238,7 +239,9 @@ def numbers(cls, raw):
 
 def bounded_givens(cls):
     plain = (
-        d for n, d in cls.inputs.items() if type(d) is Given and n in starting(cls) and not d.meaning.integer
+        d
+        for n, d in cls.inputs.items()
+        if type(d) is Given and n in starting(cls) and not (d.meaning.integer or is_single(d))
     )
     return [d.name for d in plain if d.meaning.domain_si is not None]
 
@@ -266,7 +269,7 @@ def starting(cls):
 
 
 def spread(declared, value, rng, size):
-    if isinstance(declared, (Choice, Curve)) or declared.meaning.integer:
+    if isinstance(declared, (Choice, Curve)) or declared.meaning.integer or is_single(declared):
         return value
     return value * rng.uniform(0.98, 1.02, size)
 
@@ -277,7 +280,7 @@ def extremes(cls, rng, size):
 
 def extreme(declared, value, rng, size):
     """Near the example, decades away, at and beside the bounds, zero, negative, tiny and huge."""
-    if isinstance(declared, (Choice, Curve)):
+    if isinstance(declared, (Choice, Curve)) or is_single(declared):
         return value
     bounds = declared.meaning.domain_si
     limits = [x for x in (vars(bounds).values() if bounds else ()) if x is not None]
@@ -319,7 +322,9 @@ def at_points(cls, name, answer, size):
 
 def point(declared, value, i):
     """One of the points that an input spans; a curve is the same at all of them here."""
-    is_array = isinstance(value, dict) and isinstance(value["value"], list) and not isinstance(declared, Curve)
+    is_array = (
+        isinstance(value, dict) and isinstance(value["value"], list) and not isinstance(declared, Curve)
+    )
     return {**value, "value": value["value"][i]} if is_array else value
 
 

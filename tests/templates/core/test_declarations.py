@@ -2,6 +2,7 @@
 
 import json
 
+import jsonschema_rs
 import numpy as np
 import pytest
 
@@ -488,3 +489,33 @@ class TestDimensions:
 
         (fault,) = dimensions.faults(Wrong)
         assert fault.startswith("A length is less than a mass: Cannot convert")
+
+
+class Stepped(Template):
+    """Steps of a length."""
+
+    example = {"length": "2 m", "steps": "3"}
+
+    a = given("m", "length", gt=0)
+    n = given("1", "steps", integer=True, single=True, ge=1, le=9)
+
+    @profile("m", "places", along="places")
+    def x(self):
+        return np.asarray(self.a)[..., None] * np.arange(int(self.n))
+
+
+class TestSingle:
+    def test_property_one_value_serves_all_points(self):
+        outputs = evaluate(Stepped, {"length": {"value": [1, 2], "unit": "m"}, "steps": 3}).outputs
+        assert outputs["places"].value.tolist() == [[0, 1, 2], [0, 2, 4]]
+
+    def test_property_an_array_is_refused_by_name(self):
+        with pytest.raises(InvalidInputs) as refusal:
+            Stepped.from_quantities({"length": "1 m", "steps": [3, 4]})
+        assert [(fault.name, fault.code) for fault in refusal.value.faults] == [("steps", "not_single")]
+
+    def test_property_schema_takes_no_array(self):
+        forms = inputs_schema(Stepped)["properties"]["steps"]
+        assert not jsonschema_rs.is_valid(forms, [3, 4])
+        assert not jsonschema_rs.is_valid(forms, {"value": [3, 4], "unit": "1"})
+        assert jsonschema_rs.is_valid(forms, 3)

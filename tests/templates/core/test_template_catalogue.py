@@ -163,3 +163,54 @@ class TestFreezing:
 def test_property_errors_come_whole_out_of_another_process(error):
     again = pickle.loads(pickle.dumps(error))
     assert (type(again), str(again), vars(again)) == (type(error), str(error), vars(error))
+
+
+GROUP = '''"""A group."""
+
+from templates.core.template import Template, given, require
+
+
+class Sized(Template):
+    """A length."""
+
+    a = given("m", "length", gt=0, le={most})
+
+    @require("length", remedy="take another")
+    def whole(self):
+        """The length is real."""
+        return self.a == self.a
+'''
+MEMBER = '''"""A member."""
+
+import {group}
+from templates.core.template import formula
+
+
+class Member({group}.Sized):
+    """Twice a length."""
+
+    example = {{"length": "2 m"}}
+
+    @formula("m", "twice the length")
+    def r(self):
+        """Doubled."""
+        return 2 * self.a
+'''
+
+
+class TestGroups:
+    def member(self, folder, monkeypatch, group, most):
+        folder.mkdir()
+        monkeypatch.syspath_prepend(str(folder))
+        (folder / f"{group}.py").write_text(GROUP.format(most=most), encoding="utf-8")
+        return only(written(folder, "member_v1", MEMBER.format(group=group)))
+
+    def test_golden_digest_covers_the_file_of_a_group(self, tmp_path, monkeypatch):
+        """The member's own file differs by the name of its group alone."""
+        one = self.member(tmp_path / "one", monkeypatch, "group_one", 2)
+        two = self.member(tmp_path / "two", monkeypatch, "group_two", 3)
+        bare = {digest(cls) for cls in (one, two)}
+        monkeypatch.setattr(one.__mro__[1], "__module__", two.__mro__[1].__module__)
+        assert digest(one) not in bare
+        assert list(one.inputs) == ["length"]
+        assert evaluate(one, one.example).outputs["twice_the_length"].value == 4

@@ -1,0 +1,1 @@
+"""Groups: givens, formulas and rules that several templates share."""
