@@ -66,7 +66,7 @@ def journal_bore(seen: Seen, webs: Webs) -> float:
 
 
 def counterweight(seen: Seen, webs: Webs) -> dict[str, float]:
-    """Its radius, and its angle [deg] if there is one: as thick as the web, and further out than its width."""
+    """Its radius, and its angle [deg] if there is one: as thick as the web, and wider than it is."""
     _, _, inner, outer = webs.faces
     within = (c for c in seen.about(Z) if inner - _CLEAR < c.reach[0] and c.reach[1] < outer + _CLEAR)
     standing_out = [c.diameter for c in within if c.diameter > 1.01 * seen.length(Y)]

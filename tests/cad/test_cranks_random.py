@@ -1,0 +1,113 @@
+"""Random and hostile parameters of cranks: a checked solid, or a refusal by name before it is drawn.
+
+`regenerate` lets nothing pass but one valid solid of the right volume, box and dimensions; that dimensions
+are those requested is asserted here once more.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from cad.model import CadModel
+from cad.models.crank_throw_v1 import CrankThrow
+from cad.models.crankshaft_v1 import Crankshaft
+from cad.regenerate import regenerate
+from templates.core.errors import InvalidInputs
+
+CRANKS = [CrankThrow, Crankshaft]
+
+# Of the journal's diameter: wide enough that pin and journal overlap or not, and that many sets are refused.
+RANGES = {
+    "journal_length": (0.3, 1.5), "pin_diameter": (0.5, 1.2), "pin_length": (0.3, 1.2),
+    "web_thickness": (0.1, 0.8), "web_width": (1.2, 2.2), "throw": (0.2, 2.5), "fillet": (0.01, 0.12),
+    "journal_bore": (0.05, 0.6), "pin_bore": (0.05, 0.5), "oil_drilling_diameter": (0.02, 0.2),
+    "counterweight_radius": (0.7, 3), "front_length": (0.2, 3), "front_diameter": (0.4, 2.5),
+    "rear_length": (0.2, 3), "rear_diameter": (0.4, 2.5),
+}  # fmt: skip
+MAY_BE_NONE = {"fillet", "journal_bore", "pin_bore", "oil_drilling_diameter", "counterweight_radius"}
+
+D = 0.055
+HOSTILE: list[dict[str, Any]] = [
+    *({"journal_diameter": value} for value in (math.nan, math.inf, -D, 0.0, 1e12, 1e-12)),
+    {"journal_length": 0.0}, {"journal_length": 5.0}, {"pin_length": 5e-5, "fillet": 0.0}, {"pin_length": 5.0},
+    {"journal_bore": D}, {"journal_bore": 2 * D}, {"journal_bore": 1e-9}, {"pin_bore": math.inf},
+    {"pin_bore": 0.9 * D},
+    {"pin_diameter": 1e-4, "throw": D}, {"pin_diameter": 2.0}, {"pin_diameter": math.nan},
+    {"web_width": 0.8 * D}, {"web_width": 10.0}, {"web_thickness": 5e-5}, {"web_thickness": -1.0},
+    {"throw": 0.0}, {"throw": 10.0}, {"throw": 1e300}, {"throw": 0.02 * D},
+    {"fillet": 0.0}, {"fillet": 0.5 * D}, {"fillet": 1e-9}, {"fillet": -1e-3},
+    {"oil_drilling_diameter": 0.85 * D}, {"oil_drilling_diameter": 0.3 * D}, {"oil_drilling_diameter": 1e-4},
+    {"counterweight_radius": 10.0}, {"counterweight_radius": 0.7 * D},
+    {"counterweight_radius": 2 * D, "counterweight_angle": math.pi},
+    {"counterweight_radius": 2 * D, "counterweight_angle": math.pi - 1e-6},
+    {"counterweight_radius": 2 * D, "counterweight_angle": math.pi / 2, "web_shape": "rectangular"},
+    {"counterweight_angle": 0.0}, {"counterweight_angle": 2 * math.pi},
+    {"face_inclination": math.pi / 2}, {"face_inclination": 1e-8}, {"face_inclination": math.nan},
+    {"face_inclination": 0.2, "throw": 0.51 * D, "fillet": 0.0},
+    {"web_shape": "heart-shaped"},
+]  # fmt: skip
+
+
+def sample(cls: type[CadModel], rng: np.random.Generator) -> dict[str, Any]:
+    """Random parameters [SI]: each length is left out, 0 where that means none, or anything in its range."""
+    size = 10 ** rng.uniform(-3, 0.3)
+    chosen: dict[str, Any] = {
+        "journal_diameter": size,
+        "web_shape": rng.choice(["obround", "rectangular"]).item(),
+    }
+    chosen["web_shape"] = rng.choice(["obround", "rectangular"]).item()
+    for name, (low, high) in RANGES.items():
+        if name in cls.inputs and rng.random() < 0.55:
+            none = name in MAY_BE_NONE and rng.random() < 0.3
+            chosen[name] = 0.0 if none else size * low * (high / low) ** rng.random()
+    if rng.random() < 0.4:
+        chosen["face_inclination"] = rng.uniform(0, 0.5)
+    if rng.random() < 0.5:
+        chosen["counterweight_angle"] = rng.choice([math.pi / 2, math.pi, rng.uniform(0.2, 3.1)]).item()
+    return chosen
+
+
+def refused(cls: type[CadModel], given: dict[str, Any]) -> set[str]:
+    try:
+        cls.from_si(given)
+    except InvalidInputs as error:
+        return {fault.name for fault in error.faults}
+    return set()
+
+
+def drawn(cls: type[CadModel], given: dict[str, Any]) -> bool:
+    """Whether a solid was made of it, after a look at its dimensions; what is refused is refused by name."""
+    if named := refused(cls, given):
+        assert named & set(given)
+        return False
+    model, found = cls.from_si(given), regenerate(cls.id, cls.version, given)
+    for name, value in found.dimensions.items():
+        declared = cls.inputs[name]
+        wanted = declared.meaning.scale.from_si(float(getattr(model, declared.attribute)))
+        assert value == pytest.approx(wanted, rel=1e-12, abs=1e-6), name
+    return True
+
+
+def solids_among(cls: type[CadModel], sets: int, seed: int) -> int:
+    rng = np.random.default_rng(seed)
+    return sum(drawn(cls, sample(cls, rng)) for _ in range(sets))
+
+
+@pytest.mark.parametrize("cls", CRANKS)
+def test_property_some_random_cranks(cls: type[CadModel]) -> None:
+    assert 2 < solids_among(cls, 30, seed=1) < 30
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("cls", CRANKS)
+def test_property_many_random_cranks(cls: type[CadModel]) -> None:
+    assert 50 < solids_among(cls, 700, seed=2) < 700
+
+
+@pytest.mark.parametrize("cls", CRANKS)
+@pytest.mark.parametrize("given", HOSTILE, ids=str)
+def test_property_hostile_cranks(cls: type[CadModel], given: dict[str, Any]) -> None:
+    bad = any(isinstance(v, float) and not (0 <= v < 1e9) for v in given.values())
+    assert not (drawn(cls, {"journal_diameter": D, **given}) and bad)
