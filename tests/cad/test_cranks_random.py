@@ -31,7 +31,8 @@ MAY_BE_NONE = {"fillet", "journal_bore", "pin_bore", "oil_drilling_diameter", "c
 D = 0.055
 HOSTILE: list[dict[str, Any]] = [
     *({"journal_diameter": value} for value in (math.nan, math.inf, -D, 0.0, 1e12, 1e-12)),
-    {"journal_length": 0.0}, {"journal_length": 5.0}, {"pin_length": 5e-5, "fillet": 0.0}, {"pin_length": 5.0},
+    {"journal_length": 0.0}, {"journal_length": 5.0},
+    {"pin_length": 5e-5, "fillet": 0.0}, {"pin_length": 5.0},
     {"journal_bore": D}, {"journal_bore": 2 * D}, {"journal_bore": 1e-9}, {"pin_bore": math.inf},
     {"pin_bore": 0.9 * D},
     {"pin_diameter": 1e-4, "throw": D}, {"pin_diameter": 2.0}, {"pin_diameter": math.nan},
