@@ -39,7 +39,7 @@ from templates.physics.slider_film import spread
 BOOKER = "Booker 1965"
 UNBORNE = (
     "no orbit that repeats bears this with a film that can be told: the load may turn at the mean speed of "
-    "journal and sleeve, or be too large"
+    "journal and sleeve, or be too large; at level transient it may not repeat in 8 cycles"
 )
 LIGHT = "so light a load does not say where the journal runs; without any load it runs anywhere"
 MARCHED = "level transient is marched in time; its error is measured, see accuracy"
@@ -56,6 +56,8 @@ class OilFilmCycle(Template):
     ------
     Rigid, aligned, laminar, isothermal film at one viscosity; a journal without mass; plain bore.
     The load acts on the journal, in a frame that turns with frame_speed; x turns to y with a positive speed.
+    With the force of the sleeve on the journal for it (bearing_load: rod on crank, frame on crank) the orbit
+    is turned by 180°, and the film the same.
     All speeds are those seen from the engine's block. Load and speeds are linear between the angles.
     The angles rise and cover one cycle of 360° or 720°; equal steps are not needed. Time runs with the crank,
     whose speed is that of the journal, in the mean, unless crank_speed says otherwise.
@@ -63,13 +65,13 @@ class OilFilmCycle(Template):
     7.5 % to 0.9 against the short bearing's half film, which bears too much where B/D exceeds 1/4.
     Level mobility: the finite bearing's mobility, B/D 0.02 … 10. Both take the film as always full of oil.
     Level transient: mass-conserving cavities, oil at ambient pressure along the widest gap; it takes some
-    ten seconds, marches 8 cycles at most, and is refused where they do not repeat to 0.1 % of the gap.
+    ten seconds, marches 8 cycles at most, and is refused where they do not repeat to 2 % of the gap.
     Boundary conditions differ between the levels and from those of oil_film 2: see boundary_condition.
     Under a constant load the journal settles where oil_film 2 has it only as far as these agree.
     Largest pressure, loss and flow follow from the film under the load along the orbit. Power loss is the
     shear of a full film by the difference of journal and sleeve speed (transient: by the oil there is), and
-    the work of the load on the film. Side flow is what the motion of the journal displaces from the ends; flow
-    driven by a supply pressure is left out.
+    the work of the load on the film. Side flow is what the motion of the journal displaces from the ends;
+    flow driven by a supply pressure is left out.
     A load number below 1e-4 is refused: with a mean speed of half the crank's, a journal in a four-stroke
     engine may then whirl as it likes.
 

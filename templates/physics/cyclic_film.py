@@ -19,7 +19,7 @@ from templates.physics.journal_orbit import CyclicLoad, Orbit, periodic_orbit
 from templates.physics.mobility_law import MapLaw, MobilityLaw, ShortLaw
 from templates.physics.mobility_map import NARROWEST, WIDEST, mapped_film_under_load
 from templates.physics.short_mobility import short_film_under_load
-from templates.physics.transient_orbit import TransientOrbit, transient_orbit
+from templates.physics.transient_orbit import Marching, TransientOrbit, transient_orbit
 
 BOUNDARY = {
     "mobility_short": "half film: p = 0 at the ends and wherever the gap widens; always full of oil",
@@ -38,6 +38,8 @@ WIDTHS = {
 }
 """Width ratios B/D that each level takes [-]."""
 
+MARCHING = Marching()
+"""Mesh and step of level transient."""
 FEWEST, MOST = 12, 3600
 """Angles of a cycle."""
 
@@ -121,15 +123,15 @@ class CycleFilm:
     """Oil that leaves at both ends, Q/(B D c Omega), c the radial clearance, mean over the cycle, (...)."""
 
 
-def cycle_orbit(level: str, duty: Duty) -> CycleOrbit:
-    """The periodic orbit of each point, at a level of fidelity."""
+def cycle_orbit(level: str, duty: Duty, marching: Marching = MARCHING) -> CycleOrbit:
+    """The periodic orbit of each point, at a level of fidelity; marching counts at level transient."""
     cases = _cases(level, duty)
     start = periodic_orbit(cases.load, _law(level, cases.ratio))
     if level != "transient":
         return _shaped(start, cases.points)
     marched = None
     if np.isfinite(start.least_gap).all():
-        marched = transient_orbit(cases.load, float(cases.ratio[0]), start.eps[:, 0, 0])
+        marched = transient_orbit(cases.load, float(cases.ratio[0]), start.eps[:, 0, 0], marching)
     return _shaped(_sampled(marched, cases.load), cases.points, marched)
 
 

@@ -17,8 +17,9 @@ from templates.physics.transient_film import State, stepped
 
 MOST_CYCLES = 8
 """Cycles after which an orbit that does not repeat is given up."""
-REPEATS = 1e-3
-"""Largest difference between two cycles, over the gap, of an orbit that repeats [-]."""
+REPEATS = 0.02
+"""Largest difference between two cycles, over the gap, of an orbit that repeats; where the journal is
+nearly centred, the node at which oil is fed may change from cycle to cycle [-]."""
 MOST_NODES = 2000
 """Steps of a cycle that are taken at most."""
 
@@ -53,7 +54,7 @@ class TransientOrbit:
 
 
 def transient_orbit(
-    load: CyclicLoad, ratio: float, start: Array, marching: Marching = Marching()
+    load: CyclicLoad, ratio: float, start: Array, marching: Marching
 ) -> TransientOrbit | None:
     """March one case until it repeats; None where the film is not found or does not repeat.
 
