@@ -53,7 +53,7 @@ def cycles_Basquin_1910(amplitude: Array, coefficient: Array, exponent: Array, e
     return np.exp(np.where(endless, np.nan, logarithm))[()]
 
 
-@units("Pa", "Pa", "1", "1", returns="Pa")
+@units("Pa", "Pa", "1", "1", returns="Pa", latex=r"\max\left({1}\,\left(2\,{3}\right)^{{{2}}},{0}\right)")
 def allowable_amplitude(endurance: Array, coefficient: Array, exponent: Array, life: Array) -> Array:
     """The reversed amplitude [Pa] that is borne for so many cycles, or for ever where no life is asked for.
 
@@ -62,7 +62,7 @@ def allowable_amplitude(endurance: Array, coefficient: Array, exponent: Array, l
     return np.fmax(coefficient * (2 * life) ** exponent, endurance)
 
 
-@units(None, "Pa", "Pa", "1", returns="1")
+@units(None, "Pa", "Pa", "1", returns="1", latex=r"n\left(\frac{{{1}}}{{{2}}},{3}\right)")
 def load_safety_factor(correction: str, amplitude: Array, allowable: Array, share: Array) -> Array:
     """By how much amplitude [Pa] and mean stress, with its share [1], may grow together; NaN if without end.
 
@@ -74,7 +74,7 @@ def load_safety_factor(correction: str, amplitude: Array, allowable: Array, shar
     return np.where(total > 0, 1 / np.where(total > 0, total, 1.0), np.nan)[()]
 
 
-@units("Pa", "Pa", returns="1")
+@units("Pa", "Pa", returns="1", latex=r"\frac{{{0}}}{{{1}}}")
 def ratio_or_none(strength: Array, stress: Array) -> Array:
     """Strength over stress, both in Pa [1]; NaN without stress."""
     return np.where(stress > 0, strength / np.where(stress > 0, stress, 1.0), np.nan)[()]

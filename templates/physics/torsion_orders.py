@@ -24,7 +24,7 @@ def critical_speeds(omega: Array, orders: Array) -> Array:
     return omega[..., None, :] / np.atleast_1d(orders)[..., :, None]
 
 
-@units("rad/s", returns="rad/s")
+@units("rad/s", returns="rad/s", latex=r"{0}_1+\frac{{i}}{{20}}\left({0}_2-{0}_1\right)")
 def campbell_speeds(speeds: Array) -> Array:
     """Equally spaced speeds [rad/s] along the diagram, from the lower to the upper one of [..., 2]."""
     if not np.ndim(speeds):
@@ -32,7 +32,7 @@ def campbell_speeds(speeds: Array) -> Array:
     return np.linspace(speeds[..., 0], speeds[..., -1], PLACES, axis=-1)
 
 
-@units("1", "rad/s", returns="rad/s")
+@units("1", "rad/s", returns="rad/s", latex=r"{0}\,{1}")
 def excitation(orders: Array, speeds: Array) -> Array:
     """Angular frequencies [rad/s; ..., order, speed] that orders excite at speeds [rad/s; ..., speed]."""
     return np.atleast_1d(orders)[..., :, None] * speeds[..., None, :]

@@ -49,7 +49,7 @@ def reason(overlap: Array, effective_throw: Array) -> Any:
     return _told(cases, [TOO_SHORT, OVERLAPPING, APART])
 
 
-@units("m", "N*m/rad", "N*m/rad", returns="N*m/rad")
+@units("m", "N*m/rad", "N*m/rad", returns="N*m/rad", latex=r"{2}\text{{ if }}{0}>0\text{{, else }}{1}")
 def recommended_stiffness(overlap: Array, carter: Array, wilson: Array) -> Array:
     """The stiffness [N m/rad] after the formula that is recommended at this overlap [m]."""
     return np.where(overlap > 0, wilson, carter)[()]
