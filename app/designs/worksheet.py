@@ -15,6 +15,7 @@ from templates.core.catalogue import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.evaluate import evaluate
 from templates.core.template import Template
+from templates.core.verdicts import Check, checks
 
 REMEMBERED = 256  # steps; a revision never changes
 
@@ -46,18 +47,30 @@ def previewed(
     }
 
 
+def checked(told: Mapping[str, Any], catalogue: Catalogue[Template]) -> list[Check]:
+    """Every bound and rule of a revision's step, held against its values."""
+    return _again(told, catalogue, "si")[1]
+
+
 def _formulas(
     told: Mapping[str, Any], catalogue: Catalogue[Template], system: System
 ) -> list[dict[str, Any]]:
+    return _again(told, catalogue, system)[0]
+
+
+def _again(
+    told: Mapping[str, Any], catalogue: Catalogue[Template], system: System
+) -> tuple[list[dict[str, Any]], list[Check]]:
+    """Formulas and checks of a step that has results, calculated as its job did."""
     if not told["outputs"]:
-        return []
+        return [], []
     level = told["level"] if isinstance(told["level"], str) else None
     inputs = {name: _retyped(value) for name, value in told["inputs"].items() if value["from"] == "given"}
     try:
         cls: Any = catalogue.get(told["template"]["id"], told["template"]["version"])
         return _written_out(cls, to_json(inputs), tuple(told["outputs"]), level, system)
     except TemplateError:  # the file of this version was taken away, or changed: its results stay
-        return []
+        return [], []
 
 
 def _retyped(echo: Mapping[str, Any]) -> Any:
@@ -68,6 +81,6 @@ def _retyped(echo: Mapping[str, Any]) -> Any:
 @lru_cache(maxsize=REMEMBERED)
 def _written_out(
     cls: Any, inputs: bytes, outputs: tuple[str, ...], level: str | None, system: System
-) -> list[dict[str, Any]]:
+) -> tuple[list[dict[str, Any]], list[Check]]:
     made = evaluate(cls, from_json(inputs), outputs=outputs, level=level)
-    return formulas(made.template, system, made.outputs)
+    return formulas(made.template, system, made.outputs), list(checks(made.template))

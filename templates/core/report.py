@@ -43,8 +43,8 @@ def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator
     """
     cls = type(template)
     names, shown_in = symbols(cls), units or {}
-    values = {attribute: _shown(template, attribute, shown_in) for attribute in cls.declarations}
-    result = {a: _shown(template, a, shown_in, absolute=True) for a in cls.declarations}
+    values = {attribute: shown(template, attribute, shown_in) for attribute in cls.declarations}
+    result = {a: shown(template, a, shown_in, absolute=True) for a in cls.declarations}
     for formula in cls.formulas.values():
         if formula.attribute in vars(template):
             complete = all(values.get(used) for used in formula.uses)
@@ -59,7 +59,7 @@ def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator
             )
 
 
-def _shown(template: Template, attribute: str, units: Mapping[str, str], *, absolute: bool = False) -> str:
+def shown(template: Template, attribute: str, units: Mapping[str, str], *, absolute: bool = False) -> str:
     """The value of a declaration with its unit, as LaTeX; empty where it has none or is an array.
 
     A temperature inside an expression stands in kelvin: only there do sums and ratios hold.
