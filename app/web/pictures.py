@@ -120,7 +120,8 @@ def _axis(values: Values, declared: Mapping[str, Any], name: str) -> str | None:
     length = len(values[name]["value"])
     along: str | None = declared[name].get("along")
     arrays = [other for other in values if other in declared and _is_curve(values, other)]
-    given = [other for other in arrays if values[other].get("from") == "given"]
+    is_output = "from" not in values[name]
+    given = [other for other in arrays if is_output and values[other].get("from") == "given"]
     for axis in filter(None, (along, *AXES, *given)):
         if axis in arrays and len(values[axis]["value"]) == length:
             return axis

@@ -9,8 +9,7 @@ export function readGlb(buffer) {
   const about = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 20, length)));
   const read = (index) => accessor(about, buffer, 28 + length, index);
   const nodes = about.nodes[0].children.map((child) => about.nodes[child]);
-  return about.meshes.map((mesh, index) => {
-    const drawn = mesh.primitives[0];
+  return about.meshes.map(({ primitives: [drawn] }, index) => {
     const places = nodes.filter((node) => node.mesh === index).map((node) => node.matrix);
     const colour = about.materials[drawn.material].pbrMetallicRoughness.baseColorFactor;
     const mesh = placed(read(drawn.attributes.POSITION), read(drawn.attributes.NORMAL), read(drawn.indices), places);

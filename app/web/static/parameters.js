@@ -20,11 +20,10 @@ export function showParameters(parameters) {
     const differs = status === "ok" && old;
     if (differs || status !== "unchanged") {
       line.classList.toggle("changed-value", Boolean(differs));
-      line.querySelector(".comes-to").replaceChildren(...shown(differs ? old : null, now));
-      line.querySelector(".comes-to").append(tag(status, detail));
+      line.querySelector(".comes-to").replaceChildren(...shown(differs ? old : null, now), ...tag(status, detail));
     } else if (line.dataset.previewed) {
       line.classList.remove("changed-value");
-      line.querySelector(".comes-to").replaceChildren(...shown(null, now), tag(status));
+      line.querySelector(".comes-to").replaceChildren(...shown(null, now));
     }
     line.dataset.previewed = "true";
   }
@@ -37,10 +36,10 @@ function shown(old, now) {
 }
 
 function tag(status, detail) {
+  if (status === "ok" || status === "unchanged") return [];
   const made = span(`tag status ${status === "missing" || status === "unit_mismatch" ? "failed" : "pending"}`, status.replaceAll("_", " "));
-  made.hidden = status === "ok" || status === "unchanged";
   if (detail) made.title = detail;
-  return made;
+  return [" ", made];
 }
 
 const span = (className, textContent) => Object.assign(document.createElement("span"), { className, textContent });

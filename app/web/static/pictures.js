@@ -13,7 +13,8 @@ const KINDS = {
 
   curves(place, picture, values) {
     const x = values[picture.x], lines = picture.y.map((name) => ({ x: x.value, y: values[name].value, name: words(name), mode: "lines" }));
-    const only = picture.y.length === 1 ? named(picture.y[0], values[picture.y[0]]) : `[${unit(values[picture.y[0]].unit)}]`;
+    const measured = unit(values[picture.y[0]].unit);
+    const only = picture.y.length === 1 ? named(picture.y[0], values[picture.y[0]]) : measured && `[${measured}]`;
     return draw(place, lines, { showlegend: lines.length > 1, xaxis: { title: { text: named(picture.x, x) } }, yaxis: { title: { text: only } } });
   },
 
@@ -31,8 +32,9 @@ const KINDS = {
 
   campbell(place, picture, values) {
     const frequencies = values[picture.frequencies].value.filter((f) => f > 1e-9), orders = values[picture.orders].value;
-    const top = Math.max(...frequencies) * 1.15, fastest = values[picture.range]?.value?.at(-1);
-    const rpm = fastest ?? (60 * top) / Math.min(...orders);
+    const fastest = values[picture.range]?.value?.at(-1), highest = Math.max(...frequencies);
+    const rpm = fastest ?? (60 * highest) / Math.min(...orders);
+    const top = 1.15 * Math.max(frequencies[0], Math.min(highest, (Math.max(...orders) * rpm) / 60));
     const modes = frequencies.map((f, n) => ({ x: [0, rpm], y: [f, f], mode: "lines", name: `mode ${n + 1}`, line: { width: 2 } }));
     const rays = orders.map((order) => ({ x: [0, rpm], y: [0, (order * rpm) / 60], mode: "lines", name: `order ${order}`, line: { dash: "dot", width: 1, color: "#51606f" } }));
     return draw(place, [...modes, ...rays], { xaxis: { title: { text: "speed [rpm]" } }, yaxis: { title: { text: "frequency [Hz]" }, range: [0, top] } });

@@ -1,6 +1,8 @@
 // Writes an evaluation into the page: formulas with their numbers, results, errors, warnings.
 import { aligned, percent, told, unit } from "./numbers.js";
 
+const TEXT = "\\text{"; // how an answer in words begins
+
 export function showResults(scope, answer) {
   for (const row of answer.formulas ?? []) showFormula(`${scope}.${row.name}`, row);
   for (const [name, quantity] of Object.entries(answer.outputs ?? {})) {
@@ -17,7 +19,8 @@ function showFormula(name, row) {
     if (!place) place = line.appendChild(Object.assign(document.createElement("span"), { className: `part ${part}` }));
     if (place.dataset.shown === row[part]) continue;
     place.dataset.shown = row[part];
-    place.innerHTML = row.mathml[part]; // MathML that the service escaped
+    if (row[part].startsWith(TEXT)) place.textContent = `= ${row[part].slice(TEXT.length, -1)}`;
+    else place.innerHTML = row.mathml[part]; // MathML that the service escaped
   }
 }
 

@@ -1,0 +1,145 @@
+"""What a newcomer does: from the gallery to a STEP file, in a browser."""
+
+import re
+from math import hypot
+
+from playwright.sync_api import expect
+
+from cad.inspect import look_at
+from cad.step import read_step
+from cad.surfaces import Z
+
+PART = "document.querySelector('.solid .js-plotly-plot')"
+PAINT = "((trace) => trace.name === 'film pressure')"
+PATIENCE = 60_000  # for a part to be built [ms]
+
+
+def created(watched, example="paper"):
+    """The design page of an example, its part drawn."""
+    page = watched.page
+    watched.open("/")
+    page.locator(f'button[data-example="{example}"]').click()
+    expect(page.locator("[data-design-state]")).to_have_text("current", timeout=PATIENCE)
+    expect(page.locator(".solid .js-plotly-plot")).to_be_visible(timeout=PATIENCE)
+    return page
+
+
+def width(page):
+    """How wide the part is that is drawn [mm]."""
+    script = f"Array.from({PART}.data).flatMap((trace) => Array.from(trace.x))"
+    across = page.evaluate(script)
+    return max(across) - min(across)
+
+
+def film(page):
+    return page.locator('[data-output="film.minimum_film_thickness"] .number').inner_text()
+
+
+def parameter(page, name):
+    return page.locator(f'[data-parameter="{name}"] .comes-to')
+
+
+def save(page, revision):
+    page.get_by_role("button", name=re.compile("Save as revision")).click()
+    expect(page.locator(".page-head")).to_contain_text(f"revision {revision}", timeout=PATIENCE)
+    expect(page.locator("[data-design-state]")).to_have_text("current", timeout=PATIENCE)
+
+
+def test_the_paper_in_a_browser(watched, tmp_path):
+    page = created(watched)
+    expect(parameter(page, "model.inner_diameter")).to_have_text("50 mm")
+    assert abs(width(page) - 90) < 0.2
+    before = film(page)
+
+    page.get_by_label("scale", exact=True).fill("1")
+    expect(parameter(page, "model.inner_diameter")).to_contain_text("50 → 48 mm")
+    expect(page.locator("[data-draft]")).to_be_visible()
+    expect(page.locator('[data-output="film.minimum_film_thickness"] .number')).not_to_have_text(before)
+    assert film(page) == "3.2449"
+    expect(page.locator('[data-formula="film.minimum_film_thickness"] .result')).to_contain_text("3.2449")
+
+    load = page.get_by_label("Radial load")
+    load.fill("25 mm")
+    message = page.locator("#film-radial_load-error")
+    expect(message).to_contain_text("a force is wanted")
+    assert load.get_attribute("aria-describedby") == "film-radial_load-error"
+    load.fill("25 kN")
+    expect(message).to_be_hidden()
+
+    page.get_by_placeholder("why, for the history").fill("the size of the paper")
+    save(page, 2)
+    expect(parameter(page, "model.inner_diameter")).to_have_text("50 → 48 mm")
+    expect(page.locator(".solid .js-plotly-plot")).to_be_visible(timeout=PATIENCE)
+    assert abs(width(page) - 88) < 0.2
+    expect(page.locator(".history")).to_contain_text("the size of the paper")
+
+    with page.expect_download() as download:
+        page.get_by_role("link", name="STEP", exact=True).click()
+    download.value.save_as(tmp_path / "bearing.step")
+    step = (tmp_path / "bearing.step").read_bytes()
+    assert step_diameters(step) >= {48.0, 88.0}
+    assert [fault for fault in watched.faults() if "422" not in str(fault)] == []
+
+
+def step_diameters(step: bytes) -> set[float]:
+    """The diameters of all cylinders about the shaft in a STEP file [mm]."""
+    return {round(size, 6) for seen in look_at(read_step(step)).values() for size in seen.diameters(Z)}
+
+
+def test_what_is_not_saved_survives_a_reload_and_can_be_discarded(watched):
+    page = created(watched)
+    page.get_by_label("Radial load").fill("31 kN")
+    expect(page.locator("[data-draft-text]")).to_have_text("film.radial load")
+    page.reload()
+    expect(page.get_by_label("Radial load")).to_have_value("31 kN")
+    expect(page.locator("[data-draft]")).to_be_visible()
+    page.get_by_role("button", name="Discard").click()
+    expect(page.get_by_label("Radial load")).to_have_value("25 kN")
+    expect(page.locator("[data-draft]")).to_be_hidden()
+    assert watched.faults() == []
+
+
+def test_a_change_by_somebody_else_is_told_and_ours_is_kept(watched, http):
+    page = created(watched)
+    place = page.url.removeprefix(watched.url)
+    page.get_by_label("Radial load").fill("31 kN")
+    patch = {"steps": {"film": {"inputs": {"speed": "4000 rpm"}}}}
+    http.patch(f"/api/v1{place}", json=patch, headers={"If-Match": '"1"', "Prefer": "wait=30"})
+    page.get_by_role("button", name=re.compile("Save as revision")).click()
+    expect(page.locator("[data-trouble]")).to_contain_text("Somebody else saved")
+    page.get_by_role("button", name="Show the newest").click()
+    expect(page.locator(".page-head")).to_contain_text("revision 2")
+    expect(page.get_by_label("Speed", exact=True)).to_have_value("4000 rpm")
+    expect(page.get_by_label("Radial load")).to_have_value("31 kN")
+    save(page, 3)
+    told = http.get(f"/api/v1{place}").json()["steps"]["film"]["inputs"]
+    assert (told["radial_load"], told["speed"]) == ("31 kN", "4000 rpm")
+
+
+def test_the_pressure_is_painted_on_the_bore(watched):
+    page = created(watched, "shell")
+    page.get_by_label("show the film pressure").check()
+    page.wait_for_function(f"{PART}.data.some({PAINT})")
+    x, y = (page.evaluate(f"{PART}.data.at(-1).{axis}[0][0]") for axis in "xy")
+    radius = hypot(x, y)
+    assert abs(radius - 24) < 0.2
+    page.get_by_label("show the film pressure").uncheck()
+    page.wait_for_function(f"!{PART}.data.some({PAINT})")
+    assert watched.faults() == []
+
+
+def test_the_back_button_and_deep_links(watched):
+    page = created(watched)
+    place = page.url
+    page.get_by_role("link", name="revision 1", exact=True).click()
+    expect(page.get_by_role("heading", level=1)).to_contain_text("Revision 1")
+    page.go_back()
+    assert page.url == place
+    page.get_by_role("link", name="inner diameter", exact=True).click()
+    expect(page.locator(".tree")).to_contain_text("= scale * 48 mm")
+    watched.open("/templates/oil_film/1")
+    page.get_by_label("Radial load").fill("12 kN")
+    expect(page).to_have_url(re.compile("radial_load=12"))
+    page.reload()
+    expect(page.get_by_label("Radial load")).to_have_value("12 kN")
+    assert watched.faults() == []

@@ -1,0 +1,264 @@
+"""Property: pages as the server writes them, without a browser."""
+
+import json
+
+import pytest
+from conftest import created, settled
+from sqlalchemy import text
+
+from app.web.forms import kept, patch_of, text_of, value_of
+from app.web.numbers import aligned, percent, told, unit
+from app.web.rendering import POLICY
+from templates.physics.reynolds import extrapolated_film
+
+HOSTILE = "<script>alert(1)</script>&\"'"
+PAGES = (
+    "/",
+    "/designs",
+    "/templates/oil_film/1",
+    "/templates/oil_film/2?units=us",
+    "/templates/third/1",
+    "/models/ball_bearing/1",
+    "/models/plain_bearing/1?inner_diameter=40+mm",
+)
+
+
+@pytest.mark.parametrize("path", PAGES)
+def test_a_page_is_shown_under_the_strict_policy(http, path):
+    answer = http.get(path)
+    assert answer.status_code == 200
+    assert answer.headers["content-type"].startswith("text/html")
+    assert answer.headers["content-security-policy"] == POLICY
+    assert POLICY.startswith("default-src 'self';")
+    assert "unsafe" not in POLICY
+    assert 'style="' not in answer.text
+    assert "<script>" not in answer.text
+
+
+def test_every_template_and_model_has_its_page(http):
+    for group in ("templates", "models"):
+        for item in http.get(f"/api/v1/{group}", params={"limit": 500}).json()["items"]:
+            answer = http.get(f"/{group}/{item['id']}/{item['version']}")
+            assert answer.status_code == 200, item
+            assert item["title"].partition(",")[0] in answer.text.replace("&#39;", "'")
+
+
+def test_the_latest_version_is_where_no_version_is_named(http):
+    assert http.get("/templates/oil_film").headers["location"] == "/templates/oil_film/2"
+
+
+def test_the_design_page_shows_formulas_with_numbers_and_results(http, paper):
+    page = http.get(paper).text
+    assert 'data-output="film.minimum_film_thickness"' in page
+    assert '<span class="whole">3</span><span class="rest">.2489</span>' in page or "whole" in page
+    assert 'value="= scale * 48 mm"' in page
+    assert "= 50 mm" in page
+    assert "stretchy" in page
+
+
+def test_what_a_user_typed_is_shown_as_text_and_never_as_markup(http):
+    document = {"name": HOSTILE, "parameters": {"scale": "1"}}
+    made = http.post("/api/v1/designs", json=document).json()
+    for path in ("/", "/designs", f"/designs/{made['id']}", f"/designs/{made['id']}/revisions/1"):
+        page = http.get(path).text
+        assert HOSTILE not in page
+        assert "&lt;script&gt;" in page
+    refused = http.post(
+        f"/designs/{made['id']}", content=f"revision=1&was=%7B%7D&scale={HOSTILE}&note={HOSTILE}"
+    )
+    assert refused.status_code == 422
+    assert "<script>alert" not in refused.text
+
+
+def test_a_missing_page_is_a_page_for_a_browser_and_a_problem_for_others(http):
+    page = http.get("/nowhere")
+    assert (page.status_code, page.headers["content-type"]) == (404, "text/html; charset=utf-8")
+    assert "There is no such page" in page.text
+    for path in ("/designs/nothing", "/templates/oil_film/99", "/templates/a b/1", "/models/none/1"):
+        answer = http.get(path)
+        assert answer.status_code == 404, path
+        assert answer.headers["content-type"].startswith("text/html")
+    for path, accept in (("/nowhere", "*/*"), ("/api/v1/nowhere", "text/html"), ("/designs/nothing", "*/*")):
+        problem = http.get(path, headers={"Accept": accept})
+        assert problem.status_code == 404
+        assert problem.headers["content-type"] == "application/problem+json"
+
+
+def test_a_form_is_saved_as_a_revision(http, paper):
+    was = json.dumps({"scale": "= 50 / 48"})
+    answer = http.post(paper, data={"revision": "1", "was": was, "scale": "1", "note": "as drawn"})
+    assert (answer.status_code, answer.headers["location"]) == (303, paper)
+    design = settled(http, paper)
+    assert (design["revision"], design["parameters"]) == (2, {"scale": "1"})
+    page = http.get(paper).text
+    assert "50 → " in page
+    assert "as drawn" in page
+    compared = http.get(f"{paper}/revisions/2").text
+    assert "model.inner_diameter" in compared
+
+
+def test_a_wrong_form_is_shown_again_with_the_reason_beside_the_field(http, paper):
+    was = json.dumps({"film.radial_load": "25 kN", "film.speed": "5000 rpm"})
+    typed = {"revision": "1", "was": was, "film.radial_load": "25 mm", "film.speed": "50 Hz"}
+    answer = http.post(paper, data=typed)
+    assert answer.status_code == 422
+    for name in ("film-radial_load", "film-speed"):
+        assert f'aria-describedby="{name}-error"' in answer.text
+    assert 'value="25 mm"' in answer.text
+    assert "a force is wanted" in answer.text
+    assert http.get(f"/api/v1{paper}").json()["revision"] == 1
+
+
+def test_a_form_on_an_older_revision_is_refused_and_keeps_what_was_typed(http, paper):
+    http.patch(f"/api/v1{paper}", json={"note": "x", "name": "renamed"}, headers={"If-Match": '"1"'})
+    was = json.dumps({"film.radial_load": "25 kN"})
+    answer = http.post(paper, data={"revision": "1", "was": was, "film.radial_load": "27 kN"})
+    assert answer.status_code == 412
+    assert "Somebody else saved" in answer.text
+    assert 'value="27 kN"' in answer.text
+
+
+def test_a_form_from_another_site_is_refused(http, paper):
+    for headers in ({"Sec-Fetch-Site": "cross-site"}, {"Origin": "http://elsewhere.example"}):
+        answer = http.post(f"{paper}/delete", headers=headers)
+        assert answer.status_code == 403
+    assert http.get(f"/api/v1{paper}").status_code == 200
+
+
+def test_a_design_is_built_up_copied_restored_and_deleted_by_forms(http):
+    made = http.post("/designs", data={"name": "own", "template": "oil_film/1", "model": "plain_bearing/1"})
+    place = made.headers["location"]
+    design = settled(http, place)
+    assert design["models"]["model"]["parameters"]["inner_diameter"] == "= oil_film.bearing_diameter"
+    revision = str(design["revision"])
+    http.post(
+        f"{place}/blocks", data={"revision": revision, "add": "parameter", "name": "k", "value": "2 mm"}
+    )
+    design = settled(http, place)
+    assert design["parameters"] == {"k": "2 mm"}
+    http.post(f"{place}/blocks", data={"revision": str(design["revision"]), "remove": "parameters.k"})
+    assert settled(http, place)["parameters"] == {}
+    http.post(f"{place}/revisions/{design['revision']}/restore")
+    assert settled(http, place)["parameters"] == {"k": "2 mm"}
+    copy = http.post(f"{place}/copy").headers["location"]
+    assert http.get(copy).status_code == 200
+    assert http.post(f"{copy}/delete").headers["location"] == "/#designs"
+    assert copy.rpartition("/")[2] not in http.get("/designs").text
+
+
+def test_display_units_are_kept_and_change_results_only(http):
+    page = http.get("/templates/oil_film/1?units=us").text
+    assert '<td class="unit">mil</td>' in page
+    assert 'value="25 kN"' in page
+    assert '<td class="unit">mil</td>' in http.get("/templates/oil_film/1").text
+    assert '<td class="unit">µm</td>' in http.get("/templates/oil_film/1?units=si").text
+
+
+def test_pages_are_compressed_and_streams_are_not(http, paper):
+    assert http.get(paper).headers["content-encoding"] == "gzip"
+    with http.stream("GET", f"/api/v1{paper}/events") as stream:
+        assert "content-encoding" not in stream.headers
+
+
+def test_the_pressure_of_a_film_is_that_of_the_solution_beneath(http):
+    inputs = {
+        "relative_eccentricity": 0.8,
+        "bearing_diameter": "50 mm",
+        "bearing_width": "25 mm",
+        "diametral_clearance": "50 um",
+        "speed": "3000 rpm",
+        "dynamic_viscosity": "20 mPa*s",
+    }
+    told = http.post("/api/v1/film-pressure", json={"inputs": inputs}).json()
+    film, _ = extrapolated_film(0.8, 0.5)
+    scale = 0.02 * 3000 * 3.141592653589793 / 30 * 1000**2 / 1e6
+    assert told["maximum_pressure"]["value"] == pytest.approx(film.P_max * scale, rel=2e-3)
+    rows, columns = len(told["place"]["value"]), len(told["angle"]["value"])
+    assert (len(told["pressure"]["value"]), len(told["pressure"]["value"][0])) == (rows, columns)
+    wrong = http.post(
+        "/api/v1/film-pressure", json={"inputs": {**inputs, "relative_eccentricity": [0.1, 0.2]}}
+    )
+    assert wrong.status_code == 422
+    huge = http.post("/api/v1/film-pressure", json={"inputs": {**inputs, "diametral_clearance": "1e-300 m"}})
+    assert huge.status_code == 422
+
+
+def test_a_preview_with_its_worksheet_is_what_is_saved(http, paper):
+    patch = {"parameters": {"scale": "1"}}
+    seen = http.post(f"/api/v1{paper}/preview?worksheet=true&units=us", json=patch).json()
+    headers = {"If-Match": '"1"', "Prefer": "wait=60"}
+    http.patch(f"/api/v1{paper}", json=patch, headers=headers)
+    saved = http.get(f"/api/v1{paper}/revisions/2/worksheet?units=us").json()["steps"]["film"]
+    assert seen["steps"]["film"]["outputs"] == saved["outputs"]
+    assert seen["steps"]["film"]["formulas"] == saved["formulas"]
+    film = next(row for row in saved["formulas"] if row["name"] == "minimum_film_thickness")
+    assert film["result"] == r"0.12775\,\text{mil}"
+    assert saved["inputs"]["bearing_diameter"] == {"value": 48.0, "unit": "mm", "from": "given"}
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [(3.2449116, "3.2449"), (1.2e-7, "1.2·10⁻⁷"), (-50.0, "−50"), (123456.0, "123460"), (0.0, "0")],
+)
+def test_numbers_are_written_with_five_digits(value, shown):
+    assert "".join(aligned(value)) == shown
+
+
+def test_units_and_quantities_are_written_once():
+    assert [unit(text) for text in ("mm**2/s", "N*m", "degC", "1", None)] == ["mm²/s", "N·m", "°C", "", ""]
+    assert told({"value": 48.0, "unit": "mm", "plus": 0.1}) == "48 mm +0.1"
+    assert told({"value": list(range(9)), "unit": "deg"}) == "[0 … 8] (9 values) °"
+    assert told({"value": None, "unit": "1", "reason": "no load"}) == "no load"
+    assert percent(0.24) == "24 %"
+
+
+@pytest.mark.parametrize(
+    ("typed", "value"),
+    [
+        ("25 kN", "25 kN"),
+        ("= scale * 48 mm", "= scale * 48 mm"),
+        ("[1, 2] mm", {"value": [1, 2], "unit": "mm"}),
+        ('["= a", "3 mm"]', ["= a", "3 mm"]),
+        ("[1, 2", "[1, 2"),
+    ],
+)
+def test_a_field_means_what_it_says(typed, value):
+    assert value_of(typed) == value
+    assert text_of(value) == typed
+
+
+def test_a_patch_holds_what_was_changed_and_nothing_else(http, paper):
+    design = http.get(f"/api/v1{paper}").json()
+    was = json.dumps({"scale": "= 50 / 48", "film.radial_load": "25 kN", "model.inner_diameter": "= x"})
+    typed = {"was": was, "scale": "= 50 / 48", "film.radial_load": "26 kN", "film.tolerance": "0.01",
+             "model.inner_diameter": "", "note": "n", "nothing.here": "1"}  # fmt: skip
+    assert patch_of(design, typed) == {
+        "steps": {"film": {"inputs": {"radial_load": "26 kN"}, "tolerance": 0.01}},
+        "models": {"model": {"parameters": {"inner_diameter": None}}},
+    }
+    assert kept({"was": "no json", "a": "1"})["a"] == "1"
+
+
+def test_a_revision_made_by_an_older_recipe_gives_its_other_files(http, served, paper):
+    """A build stays what it is when the recipe that makes new ones moves on."""
+    build = http.get(f"/api/v1{paper}/revisions/1").json()["models"]["model"]["build"]
+    names = {"older": "0" * len(build), "build": build, "design": paper.rpartition("/")[2]}
+    statements = (
+        "INSERT INTO build SELECT :older, model, version, parameters, measurements, created FROM build "
+        "WHERE key = :build",
+        "INSERT INTO artifact SELECT :older, kind, sha256, size, created FROM artifact "
+        "WHERE build_key = :build AND kind = 'step'",
+        "UPDATE revision_model SET build_key = :older WHERE design_id = :design",
+    )
+
+    def age(session):
+        for statement in statements:
+            session.execute(text(statement), {n: v for n, v in names.items() if f":{n}" in statement})
+
+    served.app.state.database.write(age)
+    answer = http.get(f"/api/v1{paper}/model.stl", headers={"Prefer": "wait=60"})
+    assert (answer.status_code, answer.headers["content-type"]) == (200, "model/stl")
+
+
+def test_the_gallery_offers_only_what_can_be_made(http):
+    assert created(http, "shell")
