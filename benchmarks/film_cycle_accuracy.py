@@ -7,9 +7,10 @@ About ten minutes; writes templates/oil_film/oil_film_cycle_v1.accuracy.json.
 Two duties in the middle of every cell: a four-stroke big end whose sleeve swings with the rod, and a main
 bearing of a two-stroke engine. Errors of the mobility levels are differences from level transient, which has
 another boundary condition and a history of its oil: that, not numerical error, is most of them. The error
-of level transient is its change from a coarser mesh. Of a cell the largest counts, half of it added.
-Errors are relative; of curves, the largest difference over the largest value; of an eccentricity, of the
-clearance. An angle is not told: of two films nearly alike now one, now the other is the smallest.
+of level transient is its change from a coarser mesh, for the main bearing. Of a cell the largest counts,
+half of it added. Errors are relative; of curves, the largest difference over the largest value; of an
+eccentricity, of the clearance. An angle is not told: of two films nearly alike now one, now the other is
+the smallest.
 """
 
 import itertools
@@ -100,10 +101,12 @@ def errors(found: dict[str, Array], truth: dict[str, Array]) -> dict[str, float]
 def cell(S: float, ratio: float) -> dict[str, dict[str, float]]:
     """The largest errors of every level in the middle of a cell."""
     cases: list[dict[str, dict[str, float]]] = []
+    shortest = main_bearing(S, ratio)
+    finest = {main_bearing: at_level("transient", shortest)}
+    own = errors(at_level("transient", shortest, COARSER), finest[main_bearing])
     for make in DUTIES:
         asked = make(S, ratio)
-        truth = at_level("transient", asked)
-        own = errors(at_level("transient", asked, COARSER), truth)
+        truth = finest[make] if make in finest else at_level("transient", asked)
         levels = {level: errors(at_level(level, asked), truth) for level in ("mobility_short", "mobility")}
         with_own = {level: {n: e + own[n] for n, e in found.items()} for level, found in levels.items()}
         cases.append({**with_own, "transient": own})

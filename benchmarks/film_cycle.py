@@ -1,0 +1,160 @@
+"""What `oil_film_cycle` costs, and its three levels side by side on one big end of published size.
+
+    python -m benchmarks.film_cycle
+
+Two minutes. Writes benchmarks/results/film_cycle.json and docs/pictures/oil_film_cycle.png, prints the table
+of docs/oil_film_cycle.md. The bearing has the size of a big end that is often calculated (Ruston & Hornsby
+6VEB-X Mk III): bore 0.2032 m, width 0.127 m (Mechanics & Industry 19, 2018, 607, table 3), here without its
+groove. Its load diagram was not at hand: the load is that of an idealised diesel cylinder with masses of our
+own, as are clearance, viscosity and speed.
+"""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+
+from benchmarks.film_cycle_accuracy import ROD_RATIO, firing
+from templates.core.evaluate import evaluate
+from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
+from templates.physics.arrays import Array
+from templates.physics.cyclic_film import cycle_orbit
+
+RESULTS = Path("benchmarks/results/film_cycle.json")
+PICTURE = Path("docs/pictures/oil_film_cycle.png")
+SHOWN = ["minimum_film_thickness", "minimum_film_angle", "maximum_pressure", "power_loss", "side_flow",
+         "step_error", "level_spread"]  # fmt: skip
+UNITS = {"minimum_film_thickness": "µm", "minimum_film_angle": "°", "maximum_pressure": "MPa",
+         "power_loss": "W", "side_flow": "l/min"}  # fmt: skip
+CURVES = ("eccentricity_x", "eccentricity_y", "film_thickness")
+BORE, STROKE, SPEED = 0.318, 0.368, 600 * np.pi / 30
+RECIPROCATING, TURNING, PEAK = 120.0, 60.0, 7.5e6
+CASES = 1000
+
+
+def quantity(value: Any, unit: str) -> dict[str, Any]:
+    """As a user types it."""
+    return {"value": np.asarray(value, float).tolist(), "unit": unit}
+
+
+def big_end(step: float = 1.0, sizes: Array | None = None) -> dict[str, Any]:
+    """Inputs: the rod's load on the crankpin, seen from the engine, and the rod as a sleeve that swings."""
+    angle = np.radians(np.arange(0, 720, step))
+    tilt = np.arcsin(np.sin(angle) / ROD_RATIO)
+    area, throw = np.pi / 4 * BORE**2, STROKE / 2
+    along = RECIPROCATING * SPEED**2 * throw * (np.cos(angle) + np.cos(2 * angle) / ROD_RATIO)
+    along -= PEAK * area * firing(angle, 2 * np.pi + 0.2, 0.6, 4 * np.pi)
+    turning = TURNING * SPEED**2 * throw
+    x, y = along + turning * np.cos(angle), -along * np.tan(tilt) + turning * np.sin(angle)
+    sleeve = -SPEED * np.cos(angle) / np.sqrt(ROD_RATIO**2 - np.sin(angle) ** 2)
+    size = np.ones(()) if sizes is None else sizes[:, None]
+    return {
+        "crank_angle": quantity(np.degrees(angle), "deg"),
+        "load_x": quantity(size * x, "N"),
+        "load_y": quantity(size * y, "N"),
+        "speed": quantity(SPEED, "rad/s"),
+        "sleeve_speed": quantity(sleeve, "rad/s"),
+        "bearing_diameter": quantity(0.2032, "m"),
+        "bearing_width": quantity(0.127, "m"),
+        "diametral_clearance": quantity(165.0, "um"),
+        "dynamic_viscosity": quantity(15.0, "mPa*s"),
+    }
+
+
+def least(function: Callable[[], object], repeats: int) -> float:
+    """Least wall time of several calls [s]."""
+    times = []
+    for _ in range(repeats):
+        begin = perf_counter()
+        function()
+        times.append(perf_counter() - begin)
+    return min(times)
+
+
+def orbit_seconds(level: str) -> float:
+    """Wall time of the big end's orbit [s]."""
+    duty = OilFilmCycle.from_quantities(big_end()).at(level).duty
+    return least(lambda: cycle_orbit(level, duty), 1 if level == "transient" else 20)
+
+
+def levels() -> dict[str, Any]:
+    """Every level on the big end at 1°, with its cost."""
+    found: dict[str, Any] = {}
+    for level in OilFilmCycle.levels:
+        answers = evaluate(OilFilmCycle, big_end(), level=level).outputs
+        found[level] = {name: answers[name].value for name in SHOWN} | {"orbit_seconds": orbit_seconds(level)}
+        found[level]["curves"] = {name: answers[name].value for name in CURVES}
+    return found
+
+
+def costs() -> dict[str, float]:
+    """One cycle of 720 points to periodicity, and each of a thousand at once, by finite-length mobility."""
+    one = OilFilmCycle.from_quantities(big_end()).at("mobility").duty
+    sizes = np.linspace(0.5, 1.5, CASES)
+    size = sizes[:, None]
+    many = replace(one, F_x=size * one.F_x, F_y=size * one.F_y)
+    single, whole = (
+        least(lambda: cycle_orbit("mobility", one), 20),
+        least(lambda: cycle_orbit("mobility", many), 1),
+    )
+    asked = big_end()
+    through = least(lambda: evaluate(OilFilmCycle, asked, outputs=["minimum_film_thickness"]), 10)
+    return {
+        "one": single,
+        "each_of_1000": whole / CASES,
+        "ratio": single / (whole / CASES),
+        "evaluate": through,
+    }
+
+
+def draw(found: dict[str, Any]) -> None:
+    """The orbits, and the films over the cycle."""
+    mpl.use("Agg")
+    figure, (left, right) = plt.subplots(
+        1, 2, figsize=(10, 4.6), width_ratios=(1, 1.35), layout="constrained"
+    )
+    turn = np.linspace(0, 2 * np.pi, 200)
+    left.plot(np.cos(turn), np.sin(turn), color="0.6", lw=1)
+    styles = {"mobility_short": ":", "mobility": "-", "transient": "--"}
+    for level, answers in found.items():
+        curves = answers["curves"]
+        x, y = (np.append(curves[name], curves[name][0]) for name in CURVES[:2])
+        left.plot(x, y, styles[level], lw=1.4, label=level)
+        right.semilogy(np.arange(720), curves["film_thickness"], styles[level], lw=1.4, label=level)
+    left.set(
+        aspect="equal",
+        xlabel="eccentricity x [-]",
+        ylabel="eccentricity y [-]",
+        title="orbit of the crankpin",
+    )
+    right.set(
+        xlabel="crank angle [°]", ylabel="film thickness [µm]", xlim=(0, 720), xticks=np.arange(0, 721, 90)
+    )
+    right.grid(alpha=0.3, which="both")
+    right.legend(frameon=False)
+    PICTURE.parent.mkdir(exist_ok=True)
+    figure.savefig(PICTURE, dpi=110)
+
+
+def main() -> None:
+    """Measure, write, print."""
+    found, cost = levels(), costs()
+    draw(found)
+    told = {level: {n: v for n, v in answers.items() if n != "curves"} for level, answers in found.items()}
+    RESULTS.write_text(json.dumps({"levels": told, "mobility": cost}, indent=1) + "\n", encoding="utf-8")
+    base = told["mobility"]["orbit_seconds"]
+    print("| level |", " | ".join(f"{n} [{UNITS[n]}]" if n in UNITS else n for n in SHOWN), "| cost |")
+    for level, answers in told.items():
+        row = ("none" if answers[n] is None else f"{answers[n]:.4g}" for n in SHOWN)
+        print(f"| `{level}` |", " | ".join(row), f"| {answers['orbit_seconds'] / base:.3g} |")
+    print({name: round(value, 5) for name, value in cost.items()})
+
+
+if __name__ == "__main__":
+    main()
