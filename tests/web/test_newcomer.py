@@ -10,7 +10,6 @@ from cad.step import read_step
 from cad.surfaces import Z
 
 PART = "document.querySelector('.solid .js-plotly-plot')"
-PAINT = "((trace) => trace.name === 'film pressure')"
 PATIENCE = 60_000  # for a part to be built [ms]
 
 
@@ -32,7 +31,7 @@ def width(page):
 
 
 def film(page):
-    return page.locator('[data-output="film.minimum_film_thickness"] .number').inner_text()
+    return page.locator('[data-output="film.minimum_film_thickness"] .number').text_content()
 
 
 def parameter(page, name):
@@ -119,12 +118,14 @@ def test_a_change_by_somebody_else_is_told_and_ours_is_kept(watched, http):
 def test_the_pressure_is_painted_on_the_bore(watched):
     page = created(watched, "shell")
     page.get_by_label("show the film pressure").check()
-    page.wait_for_function(f"{PART}.data.some({PAINT})")
+    expect(page.locator(".solid .colours")).to_contain_text("MPa")
     x, y = (page.evaluate(f"{PART}.data.at(-1).{axis}[0][0]") for axis in "xy")
+    assert "film pressure" in page.evaluate(f"{PART}.data.map((trace) => trace.name)")
     radius = hypot(x, y)
     assert abs(radius - 24) < 0.2
     page.get_by_label("show the film pressure").uncheck()
-    page.wait_for_function(f"!{PART}.data.some({PAINT})")
+    expect(page.locator(".solid .colours")).to_have_count(0)
+    assert "film pressure" not in page.evaluate(f"{PART}.data.map((trace) => trace.name)")
     assert watched.faults() == []
 
 

@@ -17,7 +17,7 @@ const models = new Set([...document.querySelectorAll("[data-model]")].map((part)
 const state = form.querySelector("[data-state]");
 const trouble = form.querySelector("[data-trouble]");
 const patch = () => patchOf(draft.changed(), models);
-let steps = {};
+let steps = {}, conflicted = false;
 
 const preview = live(
   (signal) => call("POST", `${api}/preview?worksheet=true&units=${units()}`, patch(), { signal }),
@@ -42,7 +42,7 @@ function show(told) {
 
 function clear() {
   showFaults(form, new Map());
-  trouble.hidden = true;
+  trouble.hidden = !conflicted;
 }
 
 function refuse(error) {
@@ -93,6 +93,7 @@ form.addEventListener("submit", async (event) => {
 
 // Somebody else saved: the draft is kept, and put onto the newest revision when the page is loaded anew.
 function conflict() {
+  conflicted = true;
   state.textContent = "not saved";
   tell("Somebody else saved this design meanwhile. Your changes are kept. ");
   const again = Object.assign(document.createElement("button"), { type: "button", textContent: "Show the newest, with my changes" });

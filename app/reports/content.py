@@ -1,0 +1,150 @@
+"""What a report says, in plain data: built once, shown by the page and by the typesetter alike.
+
+Formulas are MathML, numbers are texts; nothing here knows HTML or Typst.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from app.reports.cells import Cell
+
+
+@dataclass(frozen=True)
+class Line:
+    """A value with its words: an input, a result, a measure."""
+
+    words: str
+    symbol: str  # MathML
+    value: Cell
+    si: Cell = Cell()
+    origin: str = ""  # given, default, or the relation
+    error: str = ""
+
+
+@dataclass(frozen=True)
+class Formula:
+    """One line of the calculation, in MathML; parts that do not exist are empty."""
+
+    words: str
+    source: str
+    lead: str  # symbol = expression
+    numbers: str
+    result: str
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A bound or a rule held against the values."""
+
+    words: str
+    kind: str
+    demand: str  # MathML
+    numbers: str  # MathML
+    used: str  # of the allowance
+    share: float | None
+    holds: bool
+    remark: str
+
+
+@dataclass(frozen=True)
+class Warned:
+    """A warning of a step."""
+
+    name: str
+    detail: str
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Which version of a template or model, and the digest of its code."""
+
+    id: str
+    version: int
+    digest: str
+    title: str
+    withdrawn: str
+
+
+@dataclass(frozen=True)
+class Step:
+    """A calculation."""
+
+    name: str
+    template: Identity
+    state: str  # "done", or why there are no results
+    level: str
+    inputs: list[Line]
+    formulas: list[Formula]
+    results: list[Line]
+    checks: list[Verdict]
+    warnings: list[Warned]
+    references: list[str]
+
+
+@dataclass(frozen=True)
+class Mapped:
+    """A parameter of a model: the relation that drives it, what it was and is, and what the solid has."""
+
+    words: str
+    symbol: str
+    relation: str
+    old: Cell
+    new: Cell
+    measured: Cell
+    changed: bool
+
+
+@dataclass(frozen=True)
+class File:
+    """A file of a build."""
+
+    kind: str
+    sha256: str
+
+
+@dataclass(frozen=True)
+class Model:
+    """A part."""
+
+    name: str
+    model: Identity
+    state: str
+    build: str
+    compared: str  # with which revision
+    parameters: list[Mapped]
+    measures: list[Line]
+    checks: list[Verdict]
+    files: list[File]
+    remark: str  # on pictures that could not be had
+
+
+@dataclass(frozen=True)
+class Round:
+    """One round of an iteration."""
+
+    number: int
+    through: str
+    assumed: Cell
+    measured: Cell
+
+
+@dataclass(frozen=True)
+class Report:
+    """A revision, whole."""
+
+    title: str
+    design: str
+    revision: int
+    newest: int
+    note: str
+    date: str
+    state: str
+    problem: str
+    program: str
+    units: str
+    summary: list[str]
+    parameters: list[Line]
+    steps: list[Step]
+    models: list[Model]
+    rounds: list[Round] = field(default_factory=list)

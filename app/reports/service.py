@@ -1,0 +1,167 @@
+"""Reports: a revision gathered into one report, its pictures made, the paper typeset.
+
+A revision's report is the same each time; only files that are made when first asked for (pictures, the
+drawing) may come later, and the report says so.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
+from functools import lru_cache
+from importlib.metadata import version
+from typing import Any
+
+from pydantic_core import to_json
+from sqlalchemy.orm import Session
+
+from app.calculations.display import System, converted
+from app.designs import repository, views
+from app.designs.graph import Catalogues
+from app.designs.worksheet import worksheets
+from app.models.service import Models
+from app.reports.cells import cell
+from app.reports.content import Line, Model, Report, Round, Step, Verdict
+from app.reports.models import DRAWING, KEPT, PICTURE, model_of
+from app.reports.steps import step_of
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.web import numbers
+from app.web.forms import text_of
+
+PENDING = "its picture and drawing were still being made when this report was written"
+NO_PICTURE = "no picture and drawing could be made of it"
+
+
+class Reports:
+    """Gathers reports of revisions."""
+
+    def __init__(
+        self, database: Database, store: ArtifactStore, models: Models, catalogues: Catalogues
+    ) -> None:
+        self.database, self.store, self.models, self.catalogues = database, store, models, catalogues
+
+    def number(self, id: str, number: int | None) -> int:
+        """The revision meant: the newest, if none is named.
+
+        Raises
+        ------
+        NotFound
+            If there is no such design or revision.
+        """
+        with self.database.read() as session:
+            row = repository.head(session, id) if number is None else repository.revision(session, id, number)
+            return row.number
+
+    def told(self, id: str, number: int, system: System) -> dict[str, Any]:
+        """A revision with its formulas written out, as its worksheet tells it."""
+        with self.database.read() as session:
+            told = views.revision(session, repository.revision(session, id, number))
+        models = converted(told["models"], system)
+        return {**told, "models": models, "steps": worksheets(told["steps"], self.catalogues.templates, system)}
+
+    def request_pictures(self, id: str, number: int) -> list[str]:
+        """The jobs that make what a report shows of every built model; none if all is there."""
+        with self.database.read() as session:
+            row = repository.revision(session, id, number)
+            keys = {m.build_key for m in row.models if m.build_key and repository.build(session, m.build_key)}
+            missing = {key: _missing(session, key) for key in sorted(keys)}
+        return [self.models.request_files(key, kinds) for key, kinds in missing.items() if kinds]
+
+    def gather(self, id: str, number: int, system: System, *, pending: bool) -> Report:
+        """All that the report says; `pending` if its pictures are still being made."""
+        told = self.told(id, number, system)
+        with self.database.read() as session:
+            row = repository.revision(session, id, number)
+            models = [
+                self._model(session, id, number, name, model, system, pending)
+                for name, model in told["models"].items()
+            ]
+            document, head = row.document, repository.newest_number(session, id)
+        steps = [
+            step_of(name, step, document["steps"][name], self.catalogues.templates, system)
+            for name, step in told["steps"].items()
+        ]
+        problem = told["problem"]
+        return Report(
+            title=told["name"],
+            design=id,
+            revision=number,
+            newest=head,
+            note=told["note"] or "",
+            date=told["created"],
+            state=told["state"],
+            problem=f"{problem['title']}: {problem['detail']}" if problem else "",
+            program=f"Crankwright {version('crankwright')}",
+            units=system,
+            summary=_summary(steps, models),
+            parameters=[Line(n, "", cell(_typed(value))) for n, value in told["parameters"].items()],
+            steps=steps,
+            models=models,
+            rounds=[_round(one) for one in told["iterations"]],
+        )
+
+    def pictures(self, report: Report) -> dict[str, dict[str, bytes]]:
+        """Picture and drawing of every model that has them."""
+        files = {model.name: {file.kind: file.sha256 for file in model.files} for model in report.models}
+        return {
+            name: {kind: self.store.read(shas[kind]) for kind in (PICTURE, DRAWING) if kind in shas}
+            for name, shas in files.items()
+        }
+
+    def _model(
+        self, session: Session, id: str, number: int, name: str, told: Any, system: System, pending: bool
+    ) -> Model:
+        has_all = not told["build"] or not repository.build(session, told["build"])
+        has_all = has_all or {PICTURE, DRAWING} <= told["artifacts"].keys()
+        remark = "" if has_all else (PENDING if pending else NO_PICTURE)
+        return model_of(session, id, number, name, told, self.catalogues.models, system, remark)
+
+
+def tag(report: Report, kind: str) -> str:
+    """A strong ETag: equal reports have equal tags."""
+    return f'"{hashlib.sha256(to_json([asdict(report), kind])).hexdigest()[:32]}"'
+
+
+@lru_cache(maxsize=1)
+def kinds_of_pictures() -> tuple[str, ...]:
+    """The derived files that a report tells of."""
+    return tuple(kind for kind in KEPT if kind != views.STEP)
+
+
+def _missing(session: Session, key: str) -> tuple[str, ...]:
+    there = repository.artifacts(session, key)
+    return tuple(kind for kind in kinds_of_pictures() if kind not in there)
+
+
+def _typed(value: Any) -> Any:
+    return text_of(value)
+
+
+def _round(told: Mapping[str, Any]) -> Round:
+    unit = told["unit"]
+    assumed, measured = ({"value": told[name], "unit": unit} for name in ("assumed", "measured"))
+    return Round(told["round"], told["through"], cell(assumed), cell(measured))
+
+
+def _summary(steps: Iterable[Step], models: Iterable[Model]) -> list[str]:
+    """What a checker wants to know first."""
+    blocks = [*steps, *models]
+    checks = [(block.name, check) for block in blocks for check in block.checks]
+    warnings = sum(len(step.warnings) for step in blocks if isinstance(step, Step))
+    broken = [f"{name}: {check.words}" for name, check in checks if not check.holds]
+    said = [
+        f"{len(checks)} checks, {len(broken) or 'none'} not met" if checks else "no checks",
+        f"{warnings or 'no'} warning{'' if warnings == 1 else 's'}",
+    ]
+    worst = _worst(checks)
+    return [", ".join(said), *([worst] if worst else []), *(f"not met: {told}" for told in broken)]
+
+
+def _worst(checks: Iterable[tuple[str, Verdict]]) -> str:
+    shares = [(check.share, name, check.words) for name, check in checks if check.share is not None]
+    if not shares:
+        return ""
+    share, name, words = max(shares)
+    return f"largest share of an allowance that is used: {numbers.percent(share)}, {name}: {words}"
