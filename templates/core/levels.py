@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 
 from templates.core.declare import Text
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.intake import points_of
 from templates.core.template import Template
 
 Array = NDArray[np.float64]
@@ -51,7 +50,7 @@ class Accuracy:
         measured = [name for name in names if name in known and name not in exact]
         cell = self._cell(template) if measured else None
         found = {name: _looked_up(tables[name], cell) for name in measured}
-        none = np.zeros(_shape(template))[()]
+        none = np.zeros(template.shape_of_points())[()]
         unknown = none + np.nan
         return {n: found[n] if n in found else none if n in exact else unknown for n in names}
 
@@ -141,7 +140,7 @@ def climb(template: Template, outputs: Iterable[str], tolerance: float) -> Itera
     """
     measured = accuracy(type(template))
     names = [name for name in outputs if not isinstance(template.formulas[name], Text)]
-    ladder, left = template.ladder(), np.ones(_shape(template), dtype=bool)
+    ladder, left = template.ladder(), np.ones(template.shape_of_points(), dtype=bool)
     for level in ladder:
         rung = at_level(template, level, None if left.all() else left)
         met = level == ladder[-1] or (measured is not None and _meets(measured, rung, names, tolerance))
@@ -165,7 +164,7 @@ def at_level(template: Template, level: str, where: NDArray[np.bool_] | None = N
     InvalidInputs
         If there are too many.
     """
-    count = int(np.prod(_shape(template))) if where is None else int(where.sum())
+    count = int(np.prod(template.shape_of_points())) if where is None else int(where.sum())
     most = template.most_points.get(level, count)
     if count > most:
         told = f"level {level} takes at most {most} points at once, not {count}; ask for fewer, or for less"
@@ -181,9 +180,3 @@ def _meets(measured: Accuracy, rung: Template, names: list[str], tolerance: floa
         return np.logical_and.reduce([e <= tolerance for e in measured.of(rung, names).values()])
     except InvalidInputs:
         return False
-
-
-def _shape(template: Template) -> tuple[int, ...]:
-    """The shape of the points that the inputs make."""
-    given = {name: vars(template)[name] for name in template.ledger.handed}
-    return points_of(template, {name: v for name, v in given.items() if isinstance(v, np.ndarray)})

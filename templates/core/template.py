@@ -47,6 +47,7 @@ from templates.core.intake import (
     as_typed,
     check_shapes,
     is_curve,
+    points_of,
     read_inputs,
     violations,
 )
@@ -160,6 +161,11 @@ class Template:
             masks = [Mask(m.names, np.broadcast_to(m.where, where.shape)[where], m.reason) for m in masks]
         ledger = Ledger(typed=self.ledger.typed, masks=masks, missing=self.ledger.missing)
         return type(self)({**values, "level": level}, ledger)
+
+    def shape_of_points(self) -> tuple[int, ...]:
+        """The shape of the points that the inputs make; a curve is one thing for each."""
+        given = {name: vars(self)[name] for name in self.ledger.handed}
+        return points_of(self, {name: v for name, v in given.items() if isinstance(v, np.ndarray)})
 
     def as_given(self, attribute: str) -> Any:
         """The value of an input as it was given, or its default; NaN where its formula has to make it."""
