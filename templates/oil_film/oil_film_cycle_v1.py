@@ -64,8 +64,10 @@ class OilFilmCycle(Template):
     Level mobility_short: Booker's closed form, itself a fit: its mobility errs by up to 2.6 % to eps 0.5 and
     7.5 % to 0.9 against the short bearing's half film, which bears too much where B/D exceeds 1/4.
     Level mobility: the finite bearing's mobility, B/D 0.02 … 10. Both take the film as always full of oil.
-    Level transient: mass-conserving cavities, oil at ambient pressure along the widest gap; it takes some
-    ten seconds, marches 8 cycles at most, and is refused where they do not repeat to 2 % of the gap.
+    Level transient: mass-conserving cavities, oil fed at ambient pressure along the widest gap and nowhere
+    else; where the load changes side the film starves, and the journal, without mass, crosses what is empty
+    at once. It takes ten seconds or more, marches 8 cycles at most, and is refused where they do not repeat
+    to 2 % of the gap, as with light loads.
     Boundary conditions differ between the levels and from those of oil_film 2: see boundary_condition.
     Under a constant load the journal settles where oil_film 2 has it only as far as these agree.
     Largest pressure, loss and flow follow from the film under the load along the orbit. Power loss is the
@@ -184,16 +186,9 @@ class OilFilmCycle(Template):
     def duty(self) -> Duty:
         """What the bearing has to do."""
         return Duty(
-            self.theta,
-            self.F_x,
-            self.F_y,
-            self.omega_J,
-            self.omega_B,
-            self.omega_F,
-            self.Omega,
-            self.s,
-            self.b,
-        )
+            self.theta, self.F_x, self.F_y, self.omega_J, self.omega_B, self.omega_F,
+            self.Omega, self.S_max / self.F_max, self.b,
+        )  # fmt: skip
 
     @shared
     def any_orbit(self) -> CycleOrbit:

@@ -259,7 +259,12 @@ class TestRefusals:
         assert turned == pytest.approx(outputs(inputs(X, Y))["film_thickness"], rel=1e-9)
 
     def test_property_no_load_at_all(self):
-        assert "load" in refusal(inputs(0.0, 0.0))["load_number"]
+        with pytest.raises(InvalidInputs, match="without any load it runs anywhere"):
+            evaluate(OilFilmCycle, inputs(0.0, 0.0), outputs=["power_loss"])
+        sizes = np.array([0.0, 1.0])[:, None]
+        film = evaluate(OilFilmCycle, inputs(sizes * X, sizes * Y)).outputs["minimum_film_thickness"]
+        assert np.isnan(film.value).tolist() == [True, False]
+        assert "runs anywhere" in film.reasons[0]
 
     def test_property_load_through_zero_is_borne(self):
         pulse = np.where(np.cos(ANGLE) > 0, np.cos(ANGLE), 0.0)
