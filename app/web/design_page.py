@@ -17,6 +17,12 @@ from app.web.pictures import painted, pictures
 from app.web.rendering import show, units_of
 from cad.export import MEDIA_TYPES
 
+REPORTS = {
+    "html": "text/html",
+    "pdf": "application/pdf",
+    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+    "csv": "text/csv",
+}
 UNFINISHED = ("queued", "running")
 
 
@@ -208,9 +214,10 @@ async def _job(api: Api, design: Mapping[str, Any]) -> dict[str, Any] | None:
 
 
 def _reports(request: Request) -> list[str]:
-    """The kinds of report that the interface offers."""
+    """The kinds of report that the interface says it offers; none before it has any."""
     paths: Mapping[str, Any] = request.app.openapi()["paths"]
-    return [path for path in paths if path.startswith("/api/v1/designs/{id}/report")]
+    told = paths.get("/api/v1/designs/{id}/report", {}).get("get", {}).get("responses", {}).get("200", {})
+    return [kind for kind, media in REPORTS.items() if media in told.get("content", {})]
 
 
 async def _choices(api: Api) -> dict[str, list[dict[str, Any]]]:

@@ -1,15 +1,11 @@
 """One server for all tests of the pages, and Chromium where it is installed."""
 
 import shutil
-import sys
-from pathlib import Path
 
 import httpx
 import pytest
-
-sys.path.append(str(Path(__file__).parents[1] / "app"))
-
-from serving import API, serving
+from browsing import THIRD, Watched, created
+from serving import serving
 
 from app.settings import Settings
 
@@ -18,24 +14,6 @@ FLAGS = (
     "--no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
     "--disable-component-update --disable-sync"
 ).split()
-
-THIRD = '''
-"""A third of a length, for tests of the pages."""
-
-from templates.core.template import Array, Template, formula, given
-
-
-class Third(Template):
-    """A third of a length, found nowhere else."""
-
-    example = {"whole_length": "9 mm"}
-
-    l: Array = given("mm", "whole length", gt=0)
-
-    @formula("mm", "third of the length", symbol="t", source="Euclid, book 5")
-    def t(self) -> Array:
-        return self.l / 3
-'''
 
 
 @pytest.fixture(scope="session")
@@ -72,49 +50,6 @@ def browser():
         browser.close()
 
 
-class Watched:
-    """A page and all that went wrong on it: outside addresses, failures, breaches of the policy."""
-
-    def __init__(self, page, url: str) -> None:
-        self.page, self.url = page, url
-        self.outside, self.failed, self.told, self.requests = [], [], [], []
-        page.route("**/*", self._route)
-        page.on("requestfailed", self._on_failure)
-        page.on("response", self._on_response)
-        page.on("console", self._on_console)
-        page.on("pageerror", lambda error: self.told.append(str(error)))
-
-    def _route(self, route) -> None:
-        address = route.request.url
-        if address.startswith((self.url, "data:", "blob:")):
-            self.requests.append(address)
-            route.continue_()
-        else:
-            self.outside.append(address)
-            route.abort()
-
-    def _on_failure(self, request) -> None:
-        # A preview that a newer one overtakes is cancelled, and so is what a page asks for when it is left.
-        if request.failure != "net::ERR_ABORTED":
-            self.failed.append((request.url, request.failure))
-
-    def _on_response(self, response) -> None:
-        if response.status >= 400:
-            self.failed.append((response.url, response.status))
-
-    def _on_console(self, message) -> None:
-        if message.type == "error":
-            self.told.append(message.text)
-
-    def open(self, path: str, **options):
-        """Go to a page of the service."""
-        return self.page.goto(self.url + path, **options)
-
-    def faults(self) -> list:
-        """Everything that went wrong since the page was made."""
-        return [*self.outside, *self.failed, *self.told]
-
-
 @pytest.fixture
 def watched(browser, served):
     """A page of a fresh visitor, on a wide screen."""
@@ -135,19 +70,3 @@ def plain(browser, served):
 def paper(http):
     """The address of the paper's design, created from the gallery, once its part is built."""
     return created(http, "paper")
-
-
-def created(http, example: str) -> str:
-    """The address of a design from the gallery, once its part is built."""
-    answer = http.post("/designs", content=f"example={example}")
-    assert answer.status_code == 303, answer.text
-    place = answer.headers["location"]
-    settled(http, place)
-    return place
-
-
-def settled(http, place: str) -> dict:
-    """The design of a page once its regeneration has ended."""
-    while (design := http.get(f"{API}{place}").json())["state"] == "regenerating":
-        http.get(f"{API}{place}/model.step", headers={"Prefer": "wait=10"})
-    return design

@@ -4,7 +4,7 @@ import re
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from conftest import created
+from browsing import created
 from playwright.sync_api import expect
 
 from app.web.numbers import aligned, unit

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from conftest import created, settled
+from browsing import created, settled
 from sqlalchemy import text
 
 from app.web.forms import kept, patch_of, text_of, value_of
