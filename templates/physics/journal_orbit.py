@@ -120,7 +120,8 @@ def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
     for start in range(0, cases, size):
         part = borne & (np.arange(cases) // size == start // size)
         _fill(whole, load, law, part, finer=1)
-        _fill(whole, load, law, part & ~(whole.step_error < ROUGHEST), finer=_FINER)
+        if node_counts(load, _FINER).sum() > node_counts(load).sum():
+            _fill(whole, load, law, part & ~(whole.step_error < ROUGHEST), finer=_FINER)
     unknown = ~(whole.step_error < UNKNOWN)
     whole.eps[:, unknown] = np.nan
     for values in (whole.least_gap, whole.least_angle, whole.step_error):
@@ -131,7 +132,7 @@ def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
 def node_counts(load: CyclicLoad, finer: int = 1) -> NDArray[np.intp]:
     """How many steps each interval between the load's angles is divided into, (N,)."""
     widths = np.diff(load.angle, append=load.angle[0] + load.period)
-    return finer * np.maximum(1, np.ceil(widths / LARGEST_STEP - 1e-6)).astype(np.intp)
+    return np.maximum(1, np.ceil(finer * widths / LARGEST_STEP - 1e-6)).astype(np.intp)
 
 
 def ring_of(load: CyclicLoad, finer: int = 1) -> tuple[Ring, NDArray[np.intp]]:
