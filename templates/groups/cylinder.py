@@ -114,7 +114,7 @@ class Cylinder(Template):
     @require("gas_cycle", "strokes", remedy="take otto, diesel or a table for two strokes")
     def cycle_has_its_strokes(self) -> Truth:
         """The practical four-stroke cycle has four strokes."""
-        return (self.gas_cycle != "four_stroke") | (self.strokes == 4)
+        return (self.gas_cycle != "four_stroke") | (self.strokes != 2)
 
     @require("suction_pressure", remedy="an absolute pressure, with that of the crankcase", missing=True)
     def suction_is_known(self) -> Truth:
@@ -165,7 +165,7 @@ class Cylinder(Template):
     @require("cutoff", "compression_ratio", "exhaust_opens", remedy="burn for a shorter time")
     def burns_in_time(self) -> Truth:
         """Combustion ends before the exhaust opens."""
-        return burns_before_exhaust(self.gas_cycle, self.gas)
+        return burns_before_exhaust(self.gas_cycle, lambda: self.gas)
 
     @require("combustion_pressure", warning="pressure_falls", remedy="check pressures, ratio and exponent")
     def pressure_rises(self) -> Truth:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -38,9 +39,11 @@ def valves_in_order(io: Array, ic: Array, eo: Array, ec: Array) -> Truth:
 
 
 @units(None, None, returns="1")
-def burns_before_exhaust(name: str, gas: GasCycle) -> Truth:
-    """Whether combustion ends before the exhaust opens."""
-    return gas.v_cut < gas.v_opened if isinstance(gas, Polytropic) else name not in POLYTROPIC
+def burns_before_exhaust(name: str, gas: Callable[[], GasCycle]) -> Truth:
+    """Whether combustion ends before the exhaust opens; what is not given is told by other rules."""
+    if name not in POLYTROPIC or not isinstance(made := gas(), Polytropic):
+        return True
+    return ~(made.v_cut >= made.v_opened)
 
 
 @units(None, returns="1")
@@ -62,7 +65,7 @@ def angles_rise(name: str, angle: Array, p: Array) -> Truth:
 @units(None, "1", "rad", "Pa", returns="1")
 def full_cycle(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
     """Whether a table of rising angles covers the cycle: from its end to its begin is at most a step."""
-    if name != "table" or not angles_rise(name, angle, p):
+    if name != "table" or np.ndim(p) == 0 or not angles_rise(name, angle, p):
         return True  # which another rule tells
     if np.shape(p)[-1:] < (FEWEST,):
         return False
