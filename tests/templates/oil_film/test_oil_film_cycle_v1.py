@@ -279,3 +279,22 @@ class TestRefusals:
     def test_property_transient_takes_one_case(self):
         sizes = np.array([1.0, 2.0])[:, None]
         assert "at most 1 points" in refusal(inputs(sizes * X, sizes * Y), "transient")["level"]
+
+
+class TestAccuracy:
+    def test_property_tolerance_takes_the_cheapest_level_that_meets_it(self):
+        """Measured differences from level transient: large, as the boundary conditions differ."""
+        raw, film = inputs(X, Y, 0.4), "minimum_film_thickness"
+        told = {
+            level: evaluate(OilFilmCycle, raw, level=level, outputs=[film]).error[film]
+            for level in ("mobility_short", "mobility")
+        }
+        assert 0.05 < told["mobility"] < told["mobility_short"]
+        for level, error in told.items():
+            found = evaluate(OilFilmCycle, raw, outputs=[film], tolerance=error * 1.01)
+            assert found.level == level
+            assert found.warnings == [] or found.warnings[0].code == "outside_published_range"
+
+    def test_property_error_is_not_told_where_it_was_not_measured(self):
+        film = "minimum_film_thickness"
+        assert np.isnan(evaluate(OilFilmCycle, inputs(X, Y, 3.0), outputs=[film]).error[film])
