@@ -41,7 +41,10 @@ UNBORNE = (
     "no orbit that repeats bears this with a film that can be told: the load may turn at the mean speed of "
     "journal and sleeve, or be too large; at level transient it may not repeat in 8 cycles"
 )
-LIGHT = "so light a load does not say where the journal runs; without any load it runs anywhere"
+UNTOLD = (
+    "below, the load does not say where the journal runs (without any load it runs anywhere); above, no film "
+    "is left"
+)
 MARCHED = "level transient is marched in time; its error is measured, see accuracy"
 CYCLE = "crank_angle"
 
@@ -124,7 +127,7 @@ class OilFilmCycle(Template):
     h_lim: Array = given("um", "permissible film", symbol=r"h_{lim}", alternative=True, ge=0)
     p_lim: Array = given("MPa", "permissible pressure", symbol=r"p_{lim}", alternative=True, gt=0)
 
-    @derived("rpm", "crank speed", symbol=r"\Omega", gt=0)
+    @derived("rpm", "crank speed", symbol=r"\Omega", gt=0, remedy="give it where the journal does not turn")
     def Omega(self) -> Array:
         return mean_speed(self.omega_J)
 
@@ -178,7 +181,7 @@ class OilFilmCycle(Template):
     def s(self) -> Array:
         return self.psi**2 / (self.D * self.W * self.eta * self.Omega)
 
-    @formula("1", "load number", symbol=r"S_{max}", ge=1e-4, le=1e6, remedy=LIGHT, source=BOOKER)
+    @formula("1", "load number", symbol=r"S_{max}", ge=1e-4, le=1e6, remedy=UNTOLD, source=BOOKER)
     def S_max(self) -> Array:
         return self.F_max * self.s
 
