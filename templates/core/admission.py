@@ -51,7 +51,10 @@ def whole(self: Template, declaration: Formula[Any], value: Array) -> Array:
 def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
     """The results with NaN where they mean nothing, the reason noted; a profile is masked as a whole."""
     meaning = declaration.meaning.at(self.level)
-    inside, known = meaning.admits(value), ~np.isnan(value)
+    inside = meaning.admits(value)
+    if inside.all():
+        return value
+    known = ~np.isnan(value)
     if isinstance(declaration, Profile):
         inside, known = declaration.inside(inside), declaration.inside(known)
     if (known & ~inside).any():
@@ -60,8 +63,6 @@ def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
         self.ledger.masks.append(Mask((declaration.attribute,), known & ~inside, reason))
     if not known.all() and (why := absence(self, declaration)):
         self.ledger.masks.append(Mask((declaration.attribute,), ~known, why, tells=True))
-    if inside.all():
-        return value
     return np.where(declaration.spread(inside) if isinstance(declaration, Profile) else inside, value, np.nan)
 
 

@@ -229,11 +229,11 @@ def _with_reasons(
 
 
 def is_told(template: Template, declared: Input) -> bool:
-    """Whether an input is worth telling: it was given, has a default, or is not shown as an output anyway."""
+    """Whether an input is worth telling: given, or with a default that exists and is no output anyway."""
     if declared.name in template.ledger.typed:
         return True
     if isinstance(declared, Derived):
-        return not declared.shown
+        return not (declared.shown or np.all(np.isnan(getattr(template, declared.attribute))))
     return not (isinstance(declared, Given) and declared.optional)
 
 
@@ -257,8 +257,15 @@ def _default(declared: Given) -> Echo:
 
 def _shown(declared: Given | Derived[Any], si: Any, source: str) -> Echo:
     shown = declared.meaning.scale.from_si(si)
-    plain = shown.tolist() if isinstance(shown, np.ndarray) else float(shown)
+    plain = _with_nulls(shown) if isinstance(shown, np.ndarray) else float(shown)
     return Echo(plain, declared.meaning.unit, source, {})
+
+
+def _with_nulls(shown: NDArray[np.float64]) -> list[Any]:
+    """An array as a list, None where a default follows from an input that means nothing."""
+    plain = shown.astype(object)
+    plain[np.isnan(shown)] = None
+    return plain.tolist()
 
 
 def _standing(cls: type[Template]) -> list[Notice]:

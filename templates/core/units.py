@@ -56,7 +56,7 @@ class Unit:
 
     def from_si(self, value: Value) -> Value:
         """The value [SI] in this unit."""
-        return (value - self.offset) / self.factor
+        return ((value - self.offset) if self.offset else value) / self.factor
 
 
 @lru_cache(maxsize=4096)

@@ -77,6 +77,16 @@ class TestSingleExtremes:
             assert curve.min() < 0 < curve.max()
 
     @BOTH
+    def test_property_default_that_does_not_exist_is_not_told(self, cls):
+        """No suction, no exhaust pressure; and null for the point of an array at which there is none."""
+        raw = {n: v for n, v in cls.example.items() if n not in ("suction_pressure", "exhaust_pressure")}
+        told = rendering.evaluation(evaluate(cls, {**raw, "gas_cycle": "none"}))
+        assert "exhaust_pressure" not in told["inputs"]
+        some = {**raw, "suction_pressure": {"value": [1, -1], "unit": "bar"}}
+        told = json.loads(json.dumps(rendering.evaluation(evaluate(cls, some)), allow_nan=False))
+        assert told["inputs"]["exhaust_pressure"]["value"] == [1, None]
+
+    @BOTH
     def test_property_too_many_values_are_refused(self, cls):
         speeds = {"value": list(range(1000, 2000)), "unit": "rpm"}
         with pytest.raises(InvalidInputs) as refusal:
