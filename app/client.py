@@ -51,6 +51,7 @@ class Client:
     """A connection to a service."""
 
     def __init__(self, url: str, *, timeout: float = 60.0) -> None:
+        self.url = url
         self._http = httpx.Client(
             base_url=url, timeout=timeout, transport=httpx.HTTPTransport(retries=_RETRIES), trust_env=False
         )

@@ -47,7 +47,8 @@ def _from_attribute(attribute: str) -> str:
     letter = _SPECIAL.get(head) or (f"\\{head}" if head in _GREEK else plain)
     if not index:
         return letter
-    subscript = index if len(index) == 1 else rf"\mathrm{{{index}}}"
+    words = index.replace("_", r"\ ")
+    subscript = index if len(index) == 1 else rf"\mathrm{{{words}}}"
     return f"{letter}_{{{subscript}}}"
 
 

@@ -5,7 +5,7 @@ import shutil
 import httpx
 import pytest
 from browsing import THIRD, Watched, created
-from serving import serving
+from serving import folder_of_models, serving
 
 from app.settings import Settings
 
@@ -20,10 +20,9 @@ FLAGS = (
 def served(tmp_path_factory):
     """The real service, with one template more in a folder of its own."""
     folder = tmp_path_factory.mktemp("web")
-    own = folder / "templates" / "own"
-    own.mkdir(parents=True)
-    (own / "third_v1.py").write_text(THIRD.lstrip())
-    settings = Settings(data=folder / "data", template_folders=(folder / "templates",), wait_seconds=5)
+    own = folder_of_models(folder / "templates")
+    (own / "own" / "third_v1.py").write_text(THIRD.lstrip())
+    settings = Settings(data=folder / "data", template_folders=(own,), wait_seconds=5)
     with serving(settings) as server:
         yield server
 

@@ -4,6 +4,7 @@ import re
 from math import hypot
 
 from playwright.sync_api import expect
+from serving import moody
 
 from cad.inspect import look_at
 from cad.step import read_step
@@ -119,7 +120,7 @@ def test_the_pressure_is_painted_on_the_bore(watched):
     page = created(watched, "shell")
     page.get_by_label("show the film pressure").check()
     expect(page.locator(".solid .colours")).to_contain_text("MPa")
-    x, y = (page.evaluate(f"{PART}.data.at(-1).{axis}[0][0]") for axis in "xy")
+    x, y = (page.evaluate(f"{PART}.data.at(-1).{axis}[8].find((value) => value !== null)") for axis in "xy")
     assert "film pressure" in page.evaluate(f"{PART}.data.map((trace) => trace.name)")
     radius = hypot(x, y)
     assert abs(radius - 24) < 0.2
@@ -143,4 +144,21 @@ def test_the_back_button_and_deep_links(watched):
     expect(page).to_have_url(re.compile("radial_load=12"))
     page.reload()
     expect(page.get_by_label("Radial load")).to_have_value("12 kN")
+    assert watched.faults() == []
+
+
+def test_long_work_shows_its_progress_and_can_be_cancelled(watched, http):
+    made = http.post("/api/v1/designs", json=moody(), headers={"Prefer": "wait=60"}).json()
+    page = watched.page
+    watched.open(f"/designs/{made['id']}")
+    expect(page.locator(".solid .js-plotly-plot")).to_be_visible(timeout=PATIENCE)
+    page.get_by_label("Mood").select_option("loops")
+    page.get_by_role("button", name=re.compile("Save as revision")).click()
+    progress = page.locator("[data-progress]")
+    expect(progress).to_be_visible()
+    expect(progress.locator("progress")).to_be_visible()
+    progress.get_by_role("button", name="Cancel").click()
+    expect(page.locator("[data-design-state]")).to_have_text("failed")
+    expect(page.locator(".page-head")).to_contain_text("The last good part stays below")
+    expect(page.locator(".solid .js-plotly-plot")).to_be_visible(timeout=PATIENCE)
     assert watched.faults() == []

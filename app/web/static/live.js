@@ -1,5 +1,5 @@
 // Asks for a preview while something is typed: at most one call at a time, the newest wins.
-const PAUSE = 120; // ms without a key
+const PAUSE = 80; // ms without a key
 
 export function live(ask, show, refuse) {
   let timer, running;

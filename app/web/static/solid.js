@@ -5,6 +5,7 @@ import { pressureOf } from "./pressure.js";
 
 const PLAIN = { ambient: 1, diffuse: 0, specular: 0, fresnel: 0 }; // the light is in the colours of the corners
 const shade = (colour, power) => `rgb(${colour.map((part) => Math.min(255, Math.round(part * power * 1.25))).join(",")})`;
+const LEAST = 0.003; // of the largest pressure: what is painted
 const AGAIN = 1500, TIMES = 20; // ms
 
 export async function showSolid(place) {
@@ -62,12 +63,11 @@ export async function paint(place, picture, values, wanted) {
   const radius = 0.497 * millimetres(values.bearing_diameter);
   const start = Math.PI / 2 + (field.attitude_angle.value * Math.PI) / 180;
   const angles = field.angle.value.map((angle) => start + (angle * Math.PI) / 180);
-  const rows = field.place.value;
+  const rows = field.place.value, least = LEAST * field.maximum_pressure.value;
+  const on = (value) => rows.map((z, row) => angles.map((angle, n) => (field.pressure.value[row][n] < least ? null : value(angle, z))));
   const surface = {
     type: "surface", name: "film pressure", surfacecolor: field.pressure.value, colorscale: "Viridis",
-    x: rows.map(() => angles.map((angle) => radius * Math.cos(angle))),
-    y: rows.map(() => angles.map((angle) => radius * Math.sin(angle))),
-    z: rows.map((z) => angles.map(() => z)),
+    x: on((angle) => radius * Math.cos(angle)), y: on((angle) => radius * Math.sin(angle)), z: on((_, z) => z),
     showscale: false, lighting: { ambient: 0.9, diffuse: 0.2 }, hovertemplate: "%{surfacecolor:.3g} " + field.pressure.unit + "<extra></extra>",
   };
   await Plotly.addTraces(figure, surface);

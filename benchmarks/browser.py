@@ -1,0 +1,42 @@
+"""A service of its own with the examples of the gallery, and Chromium to look at its pages."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import httpx
+from playwright.sync_api import Browser, sync_playwright
+
+from app.client import Client
+from app.demo import service
+
+FLAGS = (
+    "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
+    "--disable-component-update --disable-sync"
+).split()
+
+
+@contextmanager
+def examples(names: tuple[str, ...]) -> Iterator[tuple[str, list[str], Client]]:
+    """The address of a running service, the pages of designs from its gallery, and its client."""
+    with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as client:
+        with httpx.Client(base_url=client.url, timeout=60, trust_env=False) as http:
+            made = [http.post("/designs", data={"example": name}).headers["location"] for name in names]
+        for page in made:
+            while client.design(page.rpartition("/")[2]).state == "regenerating":
+                time.sleep(0.2)
+        yield client.url, made, client
+
+
+@contextmanager
+def chromium() -> Iterator[Browser]:
+    """Debian's Chromium."""
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        yield browser
+        browser.close()

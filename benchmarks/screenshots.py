@@ -1,0 +1,65 @@
+"""Draws docs/pictures/{home,template,design,report}-{wide,narrow}.png from a running service.
+
+    python -m benchmarks.screenshots
+
+Needs Debian's package chromium. Nothing is retouched: the pages are shown as a visitor sees them first.
+"""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+from PIL import Image
+from playwright.sync_api import Page
+
+from benchmarks.browser import chromium, examples
+
+PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
+SCREENS = {"wide": (1440, 900), "narrow": (390, 844)}
+COLOURS = 160  # of a picture: enough for the eye, and small
+MOST_BYTES = 300_000
+
+
+def main() -> None:
+    """Take a picture of every page on every screen."""
+    with examples(("paper", "shell")) as (url, (paper, shell), client), chromium() as browser:
+        design = client.design(paper.rpartition("/")[2])
+        client.change(design, {"parameters": {"scale": "1"}, "note": "the size of the paper"})
+        pages = {
+            "home": "/",
+            "template": "/templates/oil_film/1",
+            "design": paper,
+            "shell": shell,
+            "report": f"{paper}/report",
+        }
+        for screen, (width, height) in SCREENS.items():
+            page = browser.new_page(viewport={"width": width, "height": height})
+            for name, path in pages.items():
+                picture = PICTURES / f"{name}-{screen}.png"
+                _write(picture, _seen(page, url + path, painted=name == "shell"))
+                print(f"{picture.name:22} {picture.stat().st_size / 1000:6.0f} kB")
+
+
+def _seen(page: Page, address: str, *, painted: bool) -> bytes:
+    """The first screen of a page, once all that it shows is drawn."""
+    answer = page.goto(address, wait_until="networkidle")
+    assert answer is not None
+    assert answer.ok, f"{address} answers {answer.status}"
+    page.wait_for_timeout(1500)  # pictures that appear are drawn after the network is silent
+    if painted:
+        page.get_by_label("show the film pressure").check()
+        page.locator(".solid .colours").wait_for()
+        page.evaluate("scrollTo(0, 0)")
+    return page.screenshot()
+
+
+def _write(path: Path, png: bytes) -> None:
+    """Write a picture with few colours."""
+    picture = Image.open(io.BytesIO(png)).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+    picture.save(path, optimize=True)
+    assert path.stat().st_size < MOST_BYTES, f"{path} is too large"
+
+
+if __name__ == "__main__":
+    main()
