@@ -8,11 +8,11 @@ from typing import Annotated, Any
 from fastapi import APIRouter, HTTPException, Path, Query, Request, Response
 
 from app.web import plotly
-from app.web.api import TheApi
+from app.web.api import Api, TheApi
 from app.web.design_page import REPORTS, design_page, revision_page
 from app.web.gallery import offered
 from app.web.model_page import model_page
-from app.web.rendering import go, show
+from app.web.rendering import go, show, units_of
 from app.web.template_page import template_page
 
 router = APIRouter(include_in_schema=False)
@@ -34,6 +34,7 @@ async def home(request: Request, api: TheApi) -> Response:
         request,
         "home.html",
         designs=designs,
+        pictures=dict(await asyncio.gather(*(_picture(api, item["id"]) for item in designs["items"]))),
         templates=templates["items"],
         latest=latest,
         models=[item for item in models["items"] if item["latest"]],
@@ -104,18 +105,21 @@ async def explanation(
 
 
 @router.get("/designs/{id}/report")
-async def report(id: Id, api: TheApi) -> Response:
+async def report(id: Id, request: Request, api: TheApi) -> Response:
     """The report, to be read in the browser."""
-    return await report_as(id, "html", api)
+    return await report_as(id, "html", request, api)
 
 
 @router.get("/designs/{id}/report.{kind}")
-async def report_as(id: Id, kind: Annotated[str, Path(max_length=8)], api: TheApi) -> Response:
+async def report_as(
+    id: Id, kind: Annotated[str, Path(max_length=8)], request: Request, api: TheApi
+) -> Response:
     """The report as the interface answers it, in a kind that the address names: a link sends no Accept."""
     if kind not in REPORTS:
         raise HTTPException(404, f"there is no report.{kind}; there are {', '.join(REPORTS)}")
     headers = {"Accept": REPORTS[kind], "Prefer": "wait=60"}
-    made = await api.send("GET", f"/designs/{id}/report", headers=headers)
+    query = {"units": units_of(request)}
+    made = await api.send("GET", f"/designs/{id}/report", headers=headers, params=query)
     kept = {name: made.headers[name] for name in KEPT if name in made.headers}
     return Response(made.content, made.status_code, headers=kept)
 
@@ -127,6 +131,12 @@ async def plotly_script(request: Request) -> Response:
     if request.headers.get("if-none-match") == plotly.tag():
         return Response(status_code=304, headers={"ETag": plotly.tag()})
     return Response(plotly.script(), media_type="text/javascript", headers=headers)
+
+
+async def _picture(api: Api, id: str) -> tuple[str, str | None]:
+    """A design's id, and the picture of the first of its parts, if it has one by now."""
+    parts = await api.get(f"/designs/{id}/measurements")
+    return id, next((f"/api/v1/designs/{id}/models/{name}/model.png" for name in parts), None)
 
 
 async def _newest(api: TheApi, group: str, id: str) -> str:

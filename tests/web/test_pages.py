@@ -69,6 +69,13 @@ def test_what_a_user_typed_is_shown_as_text_and_never_as_markup(http):
     assert "<script>alert" not in refused.text
 
 
+def test_a_design_without_a_part_has_no_picture_at_home(http, paper):
+    bare = http.post("/api/v1/designs", json={"name": "bare"}).json()["id"]
+    home = http.get("/").text
+    assert f"/api/v1{paper}/models/model/model.png" in home
+    assert f"/api/v1/designs/{bare}/" not in home
+
+
 def test_a_missing_page_is_a_page_for_a_browser_and_a_problem_for_others(http):
     page = http.get("/nowhere")
     assert (page.status_code, page.headers["content-type"]) == (404, "text/html; charset=utf-8")

@@ -70,6 +70,16 @@ form.addEventListener("input", (event) => {
   preview();
 });
 
+// Enter in a field calculates, as on a worksheet; Ctrl+S or Ctrl+Enter saves.
+document.addEventListener("keydown", (event) => {
+  const saves = (event.ctrlKey || event.metaKey) && ["s", "Enter"].includes(event.key);
+  const isField = event.target.form === form && event.target.matches("input, select");
+  if (!saves && !(event.key === "Enter" && isField && event.target.name !== "note")) return;
+  event.preventDefault();
+  if (saves) form.requestSubmit();
+  else preview();
+});
+
 form.querySelector("[data-discard]").addEventListener("click", () => {
   draft.forget();
   location.reload();
