@@ -91,16 +91,31 @@ class Running:
         power = half * (film.shear * self.omega_s**2 / self.omega_m + couple * self.omega_m)
         return power, film.side_flow * (self.D / 2) ** 3 * self.psi * self.omega_m
 
-    def carried(self, T: Array, flow: Array) -> Array:
-        """Heat that oil and air carry off at T [K], per second [W]."""
-        by_oil = self.heat_capacity * flow * 2 * (T - self.T_supply)
-        by_air = self.kA * (T - self.T_ambient)
-        return np.nan_to_num(by_oil, nan=0.0) + np.nan_to_num(by_air, nan=0.0)
+    def coldest(self) -> Array:
+        """The colder of supply and ambient air, where given [K]."""
+        return np.fmin(self.T_supply, np.where(np.isfinite(self.kA), self.T_ambient, np.nan))
 
-    def excess(self, T: Array) -> Array:
+    def heat(self, rise: Array) -> tuple[Array, Array, Array]:
+        """Power, and heat that oil and air carry off, at a rise above the coldest surrounding [K], each [W].
+
+        Differences are taken before the rise is added: a small one would drown in the rounding of T.
+        """
+        coldest = self.coldest()
+        power, flow = self.power_and_flow(coldest + rise)
+        by_oil = self.heat_capacity * flow * 2 * ((coldest - self.T_supply) + rise)
+        by_air = self.kA * ((coldest - self.T_ambient) + rise)
+        return power, np.nan_to_num(by_oil, nan=0.0), np.nan_to_num(by_air, nan=0.0)
+
+    def excess(self, rise: Array) -> Array:
         """Power less what is carried off, over the power [-]."""
-        power, flow = self.power_and_flow(T)
-        return 1 - self.carried(T, flow) / power
+        power, by_oil, by_air = self.heat(rise)
+        return 1 - (by_oil + by_air) / power
+
+    def residual(self, rise: Array) -> Array:
+        """Power less what is carried off, over the largest of power and what oil or air carry off [-]."""
+        power, by_oil, by_air = self.heat(rise)
+        largest = np.maximum(power, np.maximum(np.abs(by_oil), np.abs(by_air)))
+        return (power - by_oil - by_air) / largest
 
 
 @dataclass(frozen=True)
@@ -112,7 +127,7 @@ class HeatBalance:
     T_out: Array
     """Temperature of the oil that leaves; NaN too without a supply [K]."""
     residual: Array
-    """What of the power is not accounted for [-]."""
+    """What is not accounted for, over the largest of power and what oil or air carry off [-]."""
 
 
 def heat_balance(running: Running) -> HeatBalance:
@@ -134,8 +149,8 @@ def asked_for(T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
 
 def _found(point: Running) -> tuple[Array, Array]:
     """Temperature and residual of points in a row; infinite and NaN where there is none, NaN unknown."""
-    air = np.where(np.isfinite(point.kA), point.T_ambient, np.nan)
-    coldest = np.fmin(point.T_supply, air)
-    T = bracketed_root(point.excess, coldest, np.full_like(coldest, HOTTEST), _ACCURACY)
-    hot = point.excess(np.full_like(coldest, HOTTEST))
-    return np.where(np.isnan(T) & ~np.isnan(hot), np.inf, T), point.excess(T)
+    coldest = point.coldest()
+    most = HOTTEST - coldest
+    rise = bracketed_root(point.excess, np.zeros_like(coldest), most, _ACCURACY)
+    none = np.isnan(rise) & ~np.isnan(point.excess(most))
+    return np.where(none, np.inf, coldest + rise), point.residual(rise)
