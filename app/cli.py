@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import click
+import numpy as np
 import uvicorn
 
 from app.calculations import rendering
 from app.catalogue.finding import find_templates
+from app.curves.arguments import argument
 from app.demo import demonstrate
 from app.main import create_app
 from app.settings import Settings
@@ -20,6 +22,7 @@ from app.storage.folder import DataFolder
 from cad.catalogue import models as find_models
 from templates.core.catalogue import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
+from templates.core.evaluate import Answer
 from templates.core.evaluate import evaluate as evaluate_template
 from templates.core.golden import freeze as freeze_template
 from templates.core.mathml import unit_symbol
@@ -97,10 +100,14 @@ def demo(data: Path) -> None:
 def evaluate(
     template: str, inputs: tuple[str, ...], version: int | None, outputs: tuple[str, ...], as_json: bool
 ) -> None:
-    """Evaluate TEMPLATE, for example: crankwright evaluate oil_film radial_load="25 kN" …"""
+    """Evaluate TEMPLATE, for example: crankwright evaluate oil_film radial_load="25 kN" …
+
+    A curve may come from a CSV file, pressure=@diagram.csv, from the column of that name or from another:
+    pressure_angle=@diagram.csv:crank_angle.
+    """
     cls = _find(template, version)
-    raw = dict(_pair(text) for text in inputs)
     try:
+        raw = dict(_pair(text) for text in inputs)
         made = evaluate_template(cls, raw, outputs=outputs or None)
     except InvalidInputs as error:
         lines = "\n".join(f"  {fault.name}: {fault.detail}" for fault in error.faults)
@@ -109,16 +116,29 @@ def evaluate(
         click.echo(json.dumps(rendering.evaluation(made), indent=2, ensure_ascii=False))
         return
     for name, answer in made.outputs.items():
-        click.echo(f"{name:32} {answer.value:>14.6g} {unit_symbol(answer.unit or '1')}")
+        click.echo(f"{name:32} {_result(answer)}")
     for warning in made.warnings:
         click.secho(f"warning: {warning.name}: {warning.detail}", fg="yellow", err=True)
+
+
+def _result(answer: Answer) -> str:
+    """An answer on a line; of an array its length and its range."""
+    printed = unit_symbol(answer.unit or "1")
+    if answer.value is None:
+        return f"{'none':>14} ({answer.reason})"
+    if isinstance(answer.value, str):
+        return f"{answer.value:>14}"
+    if isinstance(answer.value, float):
+        return f"{answer.value:>14.6g} {printed}"
+    low, high = np.nanmin(answer.value), np.nanmax(answer.value)
+    return f"{low:>14.6g} … {high:.6g} {printed} ({answer.value.size} values)"
 
 
 def _pair(text: str) -> tuple[str, Any]:
     name, sign, value = text.partition("=")
     if not sign:
         raise click.BadParameter(f"{text!r} is no NAME=QUANTITY, such as radial_load='25 kN'")
-    return name, value
+    return name, argument(name, value)
 
 
 @main.group()

@@ -42,6 +42,10 @@ class NotJson(HttpError):
     """The content type is not one that the path takes."""
 
 
+class NotCsv(HttpError):
+    """The content type is not that of a table."""
+
+
 class PreconditionRequired(HttpError):
     """A change without If-Match."""
 

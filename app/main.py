@@ -18,6 +18,7 @@ from app.calculations.routes import router as calculations
 from app.calculations.routes import worksheets
 from app.catalogue.finding import find_templates
 from app.catalogue.routes import router as catalogue
+from app.curves.routes import router as curves
 from app.designs.events import router as design_events
 from app.designs.files import router as design_files
 from app.designs.graph import Catalogues
@@ -79,6 +80,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         calculations,
         worksheets,
         film_pressure,
+        curves,
         catalogue,
         designs,
         design_files,

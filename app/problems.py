@@ -16,7 +16,7 @@ from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
 
 from app.designs import errors as designs
-from app.http import BodyTooLarge, NotJson, PreconditionRequired, TooIntricate, TooManyValues
+from app.http import BodyTooLarge, NotCsv, NotJson, PreconditionRequired, TooIntricate, TooManyValues
 from app.jobs import errors as jobs
 from app.storage import errors as storage
 from app.workers import errors as workers
@@ -53,6 +53,7 @@ TABLE: dict[type[Exception], Kind] = {
     designs.NotConverged: Kind("not-converged", 422, "The iteration did not settle", "see `rounds`"),
     PreconditionRequired: Kind("precondition-required", 428, "If-Match is needed", "send the design's ETag"),
     NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),
+    NotCsv: Kind("not-csv", 415, "The body is not CSV", "send text/csv in UTF-8"),
     BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
     TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),

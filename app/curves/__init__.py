@@ -1,0 +1,1 @@
+"""Curves from files: indicator diagrams and the like, as quantities that inputs take."""
