@@ -46,6 +46,7 @@ def pages(*more: Path) -> Environment:
         "plain": numbers.plain,
         "unit": numbers.unit,
         "percent": numbers.percent,
+        "rough": numbers.rough,
         "told": numbers.told,
     }
     made.filters.update(filters)

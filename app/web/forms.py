@@ -41,6 +41,8 @@ def text_of(value: Any) -> str:
     if isinstance(value, Mapping) and set(value) == {"value", "unit"}:
         inside = value["value"] if isinstance(value["value"], str) else json.dumps(value["value"])
         return f"{inside} {value['unit']}" if value["unit"] != "1" else inside
+    if isinstance(value, float):
+        return f"{value:.17g}" if value.is_integer() else repr(value)
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
 
 

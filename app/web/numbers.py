@@ -44,7 +44,12 @@ def unit(text: str | None) -> str:
 
 def percent(relative: float) -> str:
     """A relative error in two digits: `0.24` → `24 %`, `4.5e-5` → `0.0045 %`."""
-    return f"{float(f'{relative * 100:.2g}'):g} %"
+    return f"{rough(relative * 100)} %"
+
+
+def rough(value: float) -> str:
+    """A number with two significant digits."""
+    return plain(float(f"{value:.2g}"))
 
 
 def told(quantity: Any) -> str:

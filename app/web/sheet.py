@@ -25,6 +25,7 @@ class Field:
     value: Any  # what a relation comes to, or a default is, as a quantity; None where the text says it
     error: str | None
     needed: bool
+    own: bool = False  # a design's own parameter: its name is all its words
 
     @property
     def id(self) -> str:
@@ -74,7 +75,8 @@ def of_parameters(
             options=(),
             value=values.get(name) if is_relation(cell) else None,
             error=faults.get(name),
-            needed=False,
+            needed=True,
+            own=True,
         )
         for name, cell in cells.items()
     ]

@@ -14,13 +14,13 @@ export async function drawAccuracy(place) {
     return {
       name: name.replaceAll("_", " "), x: points.map((point) => point.cost), y: middle, mode: "markers+lines",
       line: { width: 1, dash: "dot", color: COLOURS[n] }, marker: { size: 9, color: COLOURS[n] },
-      text: points.map(({ level, errors }) => `${level}: largest ${(errors.at(-1) * 100).toPrecision(2)} %`), hovertemplate: "%{text}<br>median %{y:.1%}<extra>%{fullData.name}</extra>",
+      text: points.map(({ level, errors }) => `${level}: largest ${(errors.at(-1) * 100).toPrecision(2)} %`), hovertemplate: "%{text}<br>median %{y:.2g}<extra>%{fullData.name}</extra>",
     };
   });
   const names = levels.map(([level, { cost }]) => ({ x: Math.log10(cost.single * 1000), y: 0, yref: "paper", yanchor: "bottom", text: level.replaceAll("_", " "), showarrow: false, textangle: -90, font: { size: 11 } }));
   await draw(place.querySelector(".drawing"), lines, {
     height: 340, annotations: names, xaxis: { type: "log", title: { text: "time of one point [ms]" } },
-    yaxis: { type: "log", title: { text: "median error over the plane" }, tickformat: ".1~%" },
+    yaxis: { type: "log", title: { text: "median relative error" }, exponentformat: "power", dtick: 1 },
   });
 }
 

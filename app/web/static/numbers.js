@@ -20,7 +20,7 @@ export function unit(text) {
   return powers.replace(/[A-Za-z_]+/g, (word) => WORDS[word] ?? word).replaceAll("*", "·");
 }
 
-export const percent = (relative) => `${Number((relative * 100).toPrecision(2))} %`;
+export const percent = (relative) => `${plain(Number((relative * 100).toPrecision(2)))} %`;
 
 export function told(quantity) {
   if (quantity === null || quantity === undefined) return "";

@@ -1,21 +1,21 @@
 // The pressure of a journal's film: asked for once for equal inputs, drawn unrolled or as a surface.
-import { call } from "./api.js";
+import { call, units } from "./api.js";
 import { unit } from "./numbers.js";
 import { draw, scale } from "./plots.js";
 
 const known = new Map();
 
-export function pressureOf(picture, values) {
+export function pressureOf(picture, values, system = "si") {
   const asked = Object.fromEntries(Object.entries(picture.inputs).map(([name, from]) => [name, typedOf(values[from])]));
-  const key = JSON.stringify(asked);
-  if (!known.has(key)) known.set(key, call("POST", "/api/v1/film-pressure", { inputs: asked }).then(({ told }) => told));
+  const key = `${system} ${JSON.stringify(asked)}`;
+  if (!known.has(key)) known.set(key, call("POST", `/api/v1/film-pressure?units=${system}`, { inputs: asked }).then(({ told }) => told));
   return known.get(key);
 }
 
 const typedOf = ({ value, unit }) => ({ value, unit });
 
 export async function drawPressure(place, picture, values) {
-  const field = await pressureOf(picture, values);
+  const field = await pressureOf(picture, values, units());
   const x = field.angle.value, y = field.place.value, z = field.pressure.value, shown = unit(field.pressure.unit);
   if (place.children.length !== 3) place.replaceChildren(pane(), pane(), pane());
   const [map, legend, surface] = place.children;

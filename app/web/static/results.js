@@ -37,7 +37,7 @@ function cells(quantity) {
   if (typeof quantity.value !== "number") {
     value.classList.add("text");
     value.colSpan = 2;
-    value.textContent = told(quantity);
+    value.textContent = told(quantity).replaceAll("_", " ");
     return [value];
   }
   value.append(numberOf(quantity.value));
