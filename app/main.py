@@ -34,6 +34,9 @@ from app.jobs.shutdown import streams_end_on_signal
 from app.models.builds import Builds
 from app.models.routes import router as models
 from app.models.service import BUILD, ModelBuild, Models
+from app.reports.paper import Press
+from app.reports.routes import router as reports
+from app.reports.service import Reports
 from app.settings import Settings
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
@@ -84,6 +87,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         catalogue,
         designs,
         design_files,
+        reports,
         design_events,
         models,
         jobs,
@@ -134,6 +138,8 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     app.state.catalogues, app.state.settings = catalogues, settings
     app.state.designs = Designs(database, queue, catalogues)
     app.state.models = Models(database, store, queue, catalogues.models)
+    app.state.reports = Reports(database, store, app.state.models, catalogues)
+    app.state.press = Press(worker)
 
 
 def _too_large(told: str) -> Response:

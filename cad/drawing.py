@@ -21,6 +21,7 @@ from cad.view import RIGHT, TOWARDS
 
 _TURN = 0.1  # [rad] between two pieces of a curve
 _SMOOTH = 1e-3  # of the drawing's size: the greatest distance of a piece from its curve
+_POINT = 1e-6  # [mm]
 _MARGIN = 0.04
 _LINE = 0.002  # of the drawing's size
 
@@ -34,7 +35,7 @@ def write_svg(bodies: Sequence[Body]) -> bytes:
     visible = (hidden_line.VCompound(), hidden_line.OutLineVCompound())
     hidden = (hidden_line.HCompound(), hidden_line.OutLineHCompound())
     smooth = (hidden_line.Rg1LineVCompound(),)
-    return _document(*(list(_lines(some)) for some in (visible, hidden, smooth))).encode()
+    return _document(*(list(lines_of(some)) for some in (visible, hidden, smooth))).encode()
 
 
 def _projected(shape: Shape) -> HLRBRep_HLRToShape:
@@ -47,18 +48,20 @@ def _projected(shape: Shape) -> HLRBRep_HLRToShape:
     return HLRBRep_HLRToShape(algorithm)
 
 
-def _lines(compounds: Sequence[Any]) -> Iterator[Line]:
+def lines_of(compounds: Sequence[Any]) -> Iterator[Line]:
+    """The edges of projections as lines of points; y points downwards, as in SVG."""
     for compound in compounds:
         if compound is None or compound.IsNull():
             continue
         BRepLib.BuildCurves3d_s(compound)  # the projection leaves curves on a plane only
         for edge in Shape.cast(compound).Edges():
-            yield _line(edge)
+            if (size := edge.BoundingBox().DiagonalLength) > _POINT:  # what is seen end on is a point
+                yield _line(edge, size)
 
 
-def _line(edge: Edge) -> Line:
+def _line(edge: Edge, size: float) -> Line:
     curve = edge._geomAdaptor()
-    points = GCPnts_TangentialDeflection(curve, _TURN, _SMOOTH * edge.BoundingBox().DiagonalLength)
+    points = GCPnts_TangentialDeflection(curve, _TURN, max(_SMOOTH * size, _POINT))
     values = (points.Value(i) for i in range(1, points.NbPoints() + 1))
     return [(value.X(), -value.Y()) for value in values]
 

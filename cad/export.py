@@ -1,11 +1,14 @@
-"""What is made from a finished STEP file, and only when somebody asks for it: GLB, STL, SVG, PNG."""
+"""What is made from a finished STEP file, and only when somebody asks for it: meshes, pictures, drawings."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from cad.drafting.sheet import write_dxf
+from cad.drafting.svg import write_drawing
 from cad.drawing import write_svg
 from cad.gltf import write_glb
+from cad.header import Header, read_header
 from cad.mesh import Mesh, mesh
 from cad.picture import write_png
 from cad.step import Body, read_step
@@ -15,10 +18,12 @@ MEDIA_TYPES = {
     "step": "model/step",
     "glb": "model/gltf-binary",
     "stl": "model/stl",
+    "drawing.svg": "image/svg+xml",
     "svg": "image/svg+xml",
     "png": "image/png",
+    "dxf": "image/vnd.dxf",
 }
-"""Every kind of file in which a build can be had."""
+"""Every kind of file in which a build can be had; the last kind of a media type is its usual one."""
 
 
 def derive(step: bytes, kind: str) -> bytes:
@@ -31,18 +36,23 @@ def derive(step: bytes, kind: str) -> bytes:
     KeyError
         If no such kind can be derived.
     """
-    return _WRITERS[kind](read_step(step))
+    return _WRITERS[kind](read_step(step), read_header(step))
 
 
-def _of_meshes(write: Callable[[Sequence[Mesh]], bytes]) -> Callable[[Sequence[Body]], bytes]:
-    return lambda bodies: write([mesh(body) for body in bodies])
+Writer = Callable[[Sequence[Body], Header | None], bytes]
 
 
-_WRITERS: dict[str, Callable[[Sequence[Body]], bytes]] = {
+def _of_meshes(write: Callable[[Sequence[Mesh]], bytes]) -> Writer:
+    return lambda bodies, _header: write([mesh(body) for body in bodies])
+
+
+_WRITERS: dict[str, Writer] = {
     "glb": _of_meshes(write_glb),
     "stl": _of_meshes(write_stl),
-    "svg": write_svg,
+    "drawing.svg": write_drawing,
+    "svg": lambda bodies, _header: write_svg(bodies),
     "png": _of_meshes(write_png),
+    "dxf": write_dxf,
 }
 
 DERIVED = tuple(_WRITERS)

@@ -59,6 +59,13 @@ def head(session: Session, id: str) -> RevisionRow:
     return revision(session, id, design(session, id).head)
 
 
+def newest_number(session: Session, id: str) -> int:
+    """The number of a design's newest revision, whether it is deleted or not."""
+    row = session.get(DesignRow, id)
+    assert row is not None, "a revision has its design"
+    return row.head
+
+
 def designs(session: Session, limit: int, cursor: str | None) -> list[DesignRow]:
     """One page of designs, newest first, and one more if there are more."""
     query = select(DesignRow).where(DesignRow.deleted.is_(None)).order_by(DesignRow.id.desc())

@@ -15,7 +15,6 @@ from app.designs.explain import explain
 from app.designs.preview import preview
 from app.designs.schemas import LONGEST_NOTE, CopyIn, DesignIn, RestoreIn
 from app.designs.service import Designs, Saved
-from app.designs.worksheet import worksheets
 from app.http import StrictRoute
 from app.jobs.service import Jobs
 from app.paging import Cursor, Limit, page
@@ -175,17 +174,6 @@ def show_revision(id: Id, number: Number, database: TheDatabase) -> dict[str, An
     """A revision: its inputs never change, its results are attached once."""
     with database.read() as session:
         return views.revision(session, repository.revision(session, id, number))
-
-
-@router.get("/{id}/revisions/{number}/worksheet")
-def show_worksheet(
-    id: Id, number: Number, database: TheDatabase, catalogues: TheCatalogues, units: Units = "si"
-) -> dict[str, Any]:
-    """A revision with every formula of its steps written out: symbol = expression = numbers = result."""
-    with database.read() as session:
-        told = views.revision(session, repository.revision(session, id, number))
-    models = converted(told["models"], units)
-    return {**told, "models": models, "steps": worksheets(told["steps"], catalogues.templates, units)}
 
 
 @router.get("/{id}/measurements")

@@ -62,7 +62,11 @@ class Models:
 
     def request_file(self, key: str, kind: str) -> str:
         """The job that makes a file of a finished build, whichever recipe it was made by."""
-        return self._enqueued({"build": key, "kinds": [kind]})
+        return self.request_files(key, (kind,))
+
+    def request_files(self, key: str, kinds: tuple[str, ...]) -> str:
+        """The job that makes several files of a finished build."""
+        return self._enqueued({"build": key, "kinds": [*kinds]})
 
     def _enqueued(self, payload: dict[str, Any]) -> str:
         def unit(session: Session) -> str:

@@ -28,6 +28,9 @@ class Cell:
     text: str = ""
 
 
+NOTHING = Cell()
+
+
 def cell(quantity: Any, *, typed: bool = False) -> Cell:
     """A quantity as the interface tells it; as many digits as were typed, else five."""
     value = quantity.get("value") if isinstance(quantity, Mapping) else quantity

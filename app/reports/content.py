@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from app.reports.cells import Cell
+from app.reports.cells import NOTHING, Cell
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Line:
     words: str
     symbol: str  # MathML
     value: Cell
-    si: Cell = Cell()
+    si: Cell = NOTHING
     origin: str = ""  # given, default, or the relation
     error: str = ""
 

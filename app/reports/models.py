@@ -20,7 +20,7 @@ from templates.core.errors import TemplateError
 from templates.core.verdicts import checks
 
 PICTURE, DRAWING = "png", "drawing.svg"
-KEPT = ("step", "dxf", DRAWING, PICTURE)  # files that are told of, whichever others were asked for
+KEPT = ("step", DRAWING, PICTURE)  # files that are told of, whichever others were asked for
 NO_VALUES = "its parameters wait for a solid, or are not set"
 MEASURES = ("mass", "volume", "polar_inertia")
 

@@ -7,9 +7,8 @@ drawing) may come later, and the report says so.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
-from functools import lru_cache
 from importlib.metadata import version
 from typing import Any
 
@@ -21,9 +20,9 @@ from app.designs import repository, views
 from app.designs.graph import Catalogues
 from app.designs.worksheet import worksheets
 from app.models.service import Models
-from app.reports.cells import cell
+from app.reports.cells import Cell, cell
 from app.reports.content import Line, Model, Report, Round, Step, Verdict
-from app.reports.models import DRAWING, KEPT, PICTURE, model_of
+from app.reports.models import DRAWING, PICTURE, model_of
 from app.reports.steps import step_of
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
@@ -59,7 +58,11 @@ class Reports:
         with self.database.read() as session:
             told = views.revision(session, repository.revision(session, id, number))
         models = converted(told["models"], system)
-        return {**told, "models": models, "steps": worksheets(told["steps"], self.catalogues.templates, system)}
+        return {
+            **told,
+            "models": models,
+            "steps": worksheets(told["steps"], self.catalogues.templates, system),
+        }
 
     def request_pictures(self, id: str, number: int) -> list[str]:
         """The jobs that make what a report shows of every built model; none if all is there."""
@@ -96,7 +99,7 @@ class Reports:
             program=f"Crankwright {version('crankwright')}",
             units=system,
             summary=_summary(steps, models),
-            parameters=[Line(n, "", cell(_typed(value))) for n, value in told["parameters"].items()],
+            parameters=[Line(n, "", Cell(text=text_of(value))) for n, value in told["parameters"].items()],
             steps=steps,
             models=models,
             rounds=[_round(one) for one in told["iterations"]],
@@ -124,19 +127,9 @@ def tag(report: Report, kind: str) -> str:
     return f'"{hashlib.sha256(to_json([asdict(report), kind])).hexdigest()[:32]}"'
 
 
-@lru_cache(maxsize=1)
-def kinds_of_pictures() -> tuple[str, ...]:
-    """The derived files that a report tells of."""
-    return tuple(kind for kind in KEPT if kind != views.STEP)
-
-
 def _missing(session: Session, key: str) -> tuple[str, ...]:
     there = repository.artifacts(session, key)
-    return tuple(kind for kind in kinds_of_pictures() if kind not in there)
-
-
-def _typed(value: Any) -> Any:
-    return text_of(value)
+    return tuple(kind for kind in (PICTURE, DRAWING) if kind not in there)
 
 
 def _round(told: Mapping[str, Any]) -> Round:
@@ -145,11 +138,11 @@ def _round(told: Mapping[str, Any]) -> Round:
     return Round(told["round"], told["through"], cell(assumed), cell(measured))
 
 
-def _summary(steps: Iterable[Step], models: Iterable[Model]) -> list[str]:
+def _summary(steps: Sequence[Step], models: Sequence[Model]) -> list[str]:
     """What a checker wants to know first."""
-    blocks = [*steps, *models]
-    checks = [(block.name, check) for block in blocks for check in block.checks]
-    warnings = sum(len(step.warnings) for step in blocks if isinstance(step, Step))
+    checks = [(step.name, check) for step in steps for check in step.checks]
+    checks += [(model.name, check) for model in models for check in model.checks]
+    warnings = sum(len(step.warnings) for step in steps)
     broken = [f"{name}: {check.words}" for name, check in checks if not check.holds]
     said = [
         f"{len(checks)} checks, {len(broken) or 'none'} not met" if checks else "no checks",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from app.calculations.display import System
@@ -41,7 +41,7 @@ def step_of(
         level=_level(told["level"], typed.get("tolerance")),
         inputs=_inputs(told, typed, cls),
         formulas=[_formula(row) for row in told["formulas"]],
-        results=[_result(n, value, told, cls, system) for n, value in told["outputs"].items()],
+        results=[_result(n, told, cls, system) for n in _ordered(told["outputs"], cls and cls.formulas)],
         checks=verdicts(checked(told, catalogue)),
         warnings=[Warned(w["name"].replace("_", " "), w["detail"]) for w in told["warnings"]],
         references=list(documentation(cls).get("References", ())) if cls else [],
@@ -101,8 +101,14 @@ def _flat(value: Any) -> list[Any]:
 
 def _inputs(told: Mapping[str, Any], typed: Mapping[str, Any], cls: Any) -> list[Line]:
     """Inputs in the order of the template; those of a step that waits are as typed."""
-    names: Sequence[str] = [n for n in (cls.inputs if cls else told["inputs"]) if n in told["inputs"]]
+    names = _ordered(told["inputs"], cls and cls.inputs)
     return [_input(name, told["inputs"][name], typed["inputs"].get(name), cls) for name in names]
+
+
+def _ordered(there: Iterable[str], declared: Iterable[str] | None) -> list[str]:
+    """Names in the order of their declarations, where there are any."""
+    order = {name: place for place, name in enumerate(declared or ())}
+    return sorted(there, key=lambda name: order.get(name, len(order)))
 
 
 def _input(name: str, used: Any, raw: Any, cls: Any) -> Line:
@@ -125,10 +131,9 @@ def _formula(row: Mapping[str, Any]) -> Formula:
     return Formula(row["words"], row["source"] or "", parts["lead"], parts["numbers"], parts["result"])
 
 
-def _result(name: str, value: Any, told: Mapping[str, Any], cls: Any, system: System) -> Line:
-    return Line(
-        words_of(name, cls), symbol_of(name, cls), shown(value, system), error=_error(told["error"].get(name))
-    )
+def _result(name: str, told: Mapping[str, Any], cls: Any, system: System) -> Line:
+    value, error = shown(told["outputs"][name], system), _error(told["error"].get(name))
+    return Line(words_of(name, cls), symbol_of(name, cls), value, error=error)
 
 
 def _error(error: Any) -> str:

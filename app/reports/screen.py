@@ -1,0 +1,27 @@
+"""The report as a page: the frame and style of the other pages, all that is quoted escaped."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from markupsafe import Markup
+
+from app.reports.content import Report
+from app.web.environment import pages
+
+
+def display(formula: str) -> Markup:
+    """A formula of the report, which is MathML, set as in a line of its own."""
+    return Markup(formula.replace('display="inline"', 'display="block"', 1))
+
+
+environment = pages(Path(__file__).with_name("pages"))
+environment.filters["display"] = display
+
+
+def page(report: Report) -> str:
+    """A report as HTML."""
+    base = f"/api/v1/designs/{report.design}/revisions/{report.revision}"
+    return environment.get_template("report.html").render(
+        report=report, units=report.units, path=f"{base}/report", base=base
+    )

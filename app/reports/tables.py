@@ -1,0 +1,208 @@
+"""Inputs and outputs of a revision as a table: CSV with a row for each value, XLSX with a sheet for curves.
+
+Numbers are numbers, units have a column of their own. A text that a spreadsheet would take for a formula is
+stored as a text: in XLSX by its type, in CSV by a leading apostrophe.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from itertools import zip_longest
+from typing import Any
+
+from openpyxl import Workbook  # type: ignore[import-untyped]
+from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE, Cell  # type: ignore[import-untyped]
+from openpyxl.styles import Font  # type: ignore[import-untyped]
+from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untyped]
+
+from app.web.forms import text_of
+from templates.core.errors import FaultyText
+from templates.core.quantity import read_any
+from templates.core.relation import is_relation
+
+HEAD = ("block", "kind", "name", "index", "value", "unit", "origin", "remark")
+WIDTHS = (16, 12, 34, 8, 18, 14, 34, 40)
+_DANGEROUS = ("=", "+", "-", "@", "\t", "\r")
+_NO_SHEET_NAME = re.compile(r"[\[\]:*?/\\']")
+_LONGEST_SHEET_NAME, _LONGEST_CELL = 31, 32_000
+
+Value = float | int | str | None
+Column = tuple[str, str, list[Value]]  # name, unit, values
+
+
+@dataclass(frozen=True)
+class Row:
+    """One quantity: a single value, a text, or an array with its indices."""
+
+    block: str
+    kind: str  # parameter, input, output, dimension
+    name: str
+    value: Any
+    unit: str
+    origin: str
+    remark: Any  # a reason, or reasons alongside an array
+
+
+@dataclass(frozen=True)
+class Table:
+    """All quantities of a revision."""
+
+    title: str
+    revision: int
+    created: str
+    rows: Sequence[Row]
+
+
+def of(told: Mapping[str, Any]) -> Table:
+    """The quantities of a revision, as its worksheet tells it."""
+    return Table(told["name"], told["number"], told["created"], [*_rows(told)])
+
+
+def _rows(told: Mapping[str, Any]) -> Iterator[Row]:
+    for name, raw in told["parameters"].items():
+        value, unit = _read(raw)
+        yield Row("design", "parameter", name, value, unit, "given", "")
+    for step, done in told["steps"].items():
+        relations = done.get("relations", {})
+        for name, used in done["inputs"].items():
+            origin = text_of(relations[name]) if name in relations else _origin(used)
+            yield _quantity(step, "input", name, used, origin)
+        for name, result in done["outputs"].items():
+            yield _quantity(step, "output", name, result, "")
+    for model, built in told["models"].items():
+        for name, value in built["parameters"].items():
+            yield _quantity(model, "dimension", name, value, text_of(built["relations"].get(name)))
+
+
+def _origin(used: Any) -> str:
+    return str(used.get("from", "given")) if isinstance(used, Mapping) else "given"
+
+
+def _read(raw: Any) -> tuple[Any, str]:
+    """A parameter as typed: its number and unit, or its text if it is a relation or a list with one."""
+    try:
+        typed = read_any(raw) if not is_relation(raw) else None
+    except FaultyText:
+        typed = None
+    return (typed.value, typed.unit) if typed else (text_of(raw), "")
+
+
+def _quantity(block: str, kind: str, name: str, told: Any, origin: str) -> Row:
+    if not isinstance(told, Mapping):  # an input as typed, of a step that waits for a solid
+        return Row(block, kind, name, *_read(told), origin, "")
+    remark = told.get("reasons") or told.get("reason") or ""
+    return Row(block, kind, name, told["value"], told.get("unit") or "", origin, remark)
+
+
+def write_csv(table: Table) -> bytes:
+    """A row for each single value; arrays have a row for each of their values, with its index."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\r\n")
+    writer.writerow(HEAD)
+    for row in table.rows:
+        for index, value, remark in _each(row.value, row.remark):
+            cells = (row.block, row.kind, row.name, index, value, row.unit, row.origin, remark)
+            writer.writerow([_harmless(cell) for cell in cells])
+    return stream.getvalue().encode()
+
+
+def _each(value: Any, remark: Any, index: str = "") -> Iterator[tuple[str, Value, str]]:
+    """Every single value of an array, with its index: `3` or `3 1`, counted from 1."""
+    if not isinstance(value, list):
+        yield index, value, "" if remark is None else str(remark)
+        return
+    remarks = remark if isinstance(remark, list) else [remark] * len(value)
+    for i, (item, why) in enumerate(zip_longest(value, remarks), 1):
+        yield from _each(item, why, f"{index} {i}".strip())
+
+
+def _harmless(cell: Value) -> Value:
+    """A text that no spreadsheet takes for a formula."""
+    return f"'{cell}" if isinstance(cell, str) and cell.startswith(_DANGEROUS) else cell
+
+
+def write_xlsx(table: Table) -> bytes:
+    """A sheet of all single values, and for each block that has arrays a sheet with a column for each."""
+    book = Workbook()
+    created = datetime.fromisoformat(table.created).replace(tzinfo=None)
+    book.properties.title, book.properties.creator = _clean(table.title), "Crankwright"
+    book.properties.created = book.properties.modified = created
+    values = book.active
+    assert isinstance(values, Worksheet), "a new workbook has a sheet"
+    values.title = "Values"
+    _fill(values, [HEAD, *(_single(row) for row in table.rows)])
+    for letter, width in zip("ABCDEFGH", WIDTHS, strict=True):
+        values.column_dimensions[letter].width = width
+    values.freeze_panes = "A2"
+    for block in dict.fromkeys(row.block for row in table.rows if isinstance(row.value, list)):
+        arrays = [row for row in table.rows if row.block == block and isinstance(row.value, list)]
+        _curves(book.create_sheet(_sheet_name(block, book.sheetnames)), arrays)
+    stream = io.BytesIO()
+    book.save(stream)
+    return stream.getvalue()
+
+
+def _single(row: Row) -> tuple[Value, ...]:
+    """A line of the sheet of values; an array is told in short, and stands in the sheet of its block."""
+    value, remark = row.value, row.remark if isinstance(row.remark, str) else ""
+    if isinstance(value, list):
+        value, remark = None, f"{len(value)} values, in the sheet of {row.block}"
+    return row.block, row.kind, row.name, None, value, row.unit, row.origin, remark
+
+
+def _curves(sheet: Worksheet, arrays: Sequence[Row]) -> None:
+    """Arrays side by side: name, unit, then the values; of several axes, one column for each place."""
+    columns: list[Column] = []
+    for row in arrays:
+        columns += _columns(row.name, row.unit, row.value)
+    lines = list(zip_longest(*(values for _, _, values in columns)))
+    head = [["name", *(name for name, _, _ in columns)], ["unit", *(unit for _, unit, _ in columns)]]
+    _fill(sheet, [*head, *([i, *line] for i, line in enumerate(lines, 1))])
+    sheet.freeze_panes = "B3"
+
+
+def _columns(name: str, unit: str, value: list[Any]) -> Iterator[Column]:
+    if not any(isinstance(item, list) for item in value):
+        yield name, unit, value
+        return
+    width = max(len(item) for item in value if isinstance(item, list))
+    for place in range(width):
+        column = [item[place] if isinstance(item, list) and place < len(item) else None for item in value]
+        yield from _columns(f"{name} {place + 1}", unit, column)
+
+
+def _fill(sheet: Worksheet, lines: Sequence[Sequence[Value]]) -> None:
+    for number, line in enumerate(lines, 1):
+        for place, value in enumerate(line, 1):
+            if value is not None and value != "":
+                _put(sheet.cell(number, place), value)
+    for cell in sheet[1]:
+        cell.font = Font(bold=True)
+
+
+def _put(cell: Any, value: Value) -> None:
+    assert isinstance(cell, Cell), "no cells are merged"
+    if not isinstance(value, str):
+        cell.value = value
+        return
+    cell.value = _clean(value)
+    cell.data_type = "s"  # a text, whatever it begins with
+    if value.startswith(_DANGEROUS):
+        cell.quotePrefix = True
+
+
+def _clean(text: str) -> str:
+    return str(ILLEGAL_CHARACTERS_RE.sub("", text))[:_LONGEST_CELL]
+
+
+def _sheet_name(block: str, taken: Sequence[str]) -> str:
+    """A name that spreadsheets allow, and that no other sheet has; they do not tell capitals apart."""
+    there = {name.lower() for name in taken}
+    plain = _NO_SHEET_NAME.sub("", block)[: _LONGEST_SHEET_NAME - 3]
+    numbered = (plain, *(f"{plain} {i}" for i in range(2, 99)))
+    return next(name for name in numbered if name.lower() not in there)

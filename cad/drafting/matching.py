@@ -1,0 +1,114 @@
+"""Which size in a drawing is which parameter: of its value, and of the sort that its words speak of."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import dist, isclose
+
+from cad.drafting.measures import Measure, Sort
+from templates.core.units import unit
+
+_WORDS: dict[str, tuple[Sort, ...]] = {
+    "diameter": ("diameter",),
+    "bore": ("diameter",),
+    "radius": ("radius",),
+    "fillet": ("radius",),
+    "angle": ("angle",),
+    "inclination": ("angle",),
+    "wall": ("gap",),
+    "depth": ("gap", "length", "width"),
+    "throw": ("offset",),
+}
+_LENGTHS: tuple[Sort, ...] = ("length", "width", "offset", "gap")
+_ANY: tuple[Sort, ...] = (*_LENGTHS, "diameter", "radius")
+_AMOUNT = re.compile(r"(-?[0-9.eE+-]+) (\S+)")
+_WITHIN = ("aligned", "circle", "arc", "angle")  # dimensions that do not stand beside the view
+_PRECISION = 1e-6  # relative and in mm
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A size to be drawn; `name` is the parameter that it is, None for one that is given for reference."""
+
+    measure: Measure
+    name: str | None
+
+
+def matched(parameters: Mapping[str, str], measures: Sequence[Measure]) -> tuple[list[Dimension], list[str]]:
+    """A dimension for every parameter that is seen, and the names of the lengths and angles that are not.
+
+    `parameters` are as in the header of a STEP file: `{"inner_diameter": "50 mm", "shell": "half"}`.
+    """
+    found: list[Dimension] = []
+    unseen: list[str] = []
+    for name, text in parameters.items():
+        size = _size(text)
+        if size is None or size[0] == 0:
+            continue  # a word, a count, or what is not there
+        fitting = _fitting(name, *size, measures)
+        fresh = [m for m in fitting if all(m.points != taken.measure.points for taken in found)]
+        if fitting:
+            found.append(Dimension(_clearest(fresh or fitting, found), name))
+        else:
+            unseen.append(name)
+    return found, unseen
+
+
+def _clearest(fitting: Sequence[Measure], found: Sequence[Dimension]) -> Measure:
+    """The first; of equal ones told within the view, that which is farthest from the others there."""
+    others = [d.measure.points[0] for d in found if d.measure.form in _WITHIN]
+    first = fitting[0]
+    if first.form not in _WITHIN or not others:
+        return first
+    alike = [m for m in fitting if (m.sort, m.place, m.form) == (first.sort, first.place, first.form)]
+    return max(alike, key=lambda m: min(dist(m.points[0], other) for other in others))
+
+
+def _fitting(name: str, value: float, is_angle: bool, measures: Sequence[Measure]) -> list[Measure]:
+    sorts = _sorts(name, is_angle)
+    close = [m for m in measures if m.sort in sorts and _same(m.value, value)]
+    return sorted(close, key=lambda m: (sorts.index(m.sort), m.place != "section", m.form == "circle"))
+
+
+def _same(one: float, other: float) -> bool:
+    return isclose(one, other, rel_tol=_PRECISION, abs_tol=_PRECISION)
+
+
+def _sorts(name: str, is_angle: bool) -> tuple[Sort, ...]:
+    if is_angle:
+        return ("angle",)
+    words = name.split("_")
+    told = next((_WORDS[word] for word in reversed(words) if word in _WORDS), None)
+    return told or (_LENGTHS if {"length", "width", "thickness", "height"} & set(words) else _ANY)
+
+
+def _size(text: str) -> tuple[float, bool] | None:
+    """A length in millimetres or an angle in degrees, and which of them it is."""
+    match = _AMOUNT.fullmatch(text)
+    if match is None:
+        return None
+    scale, value = unit(match[2]), float(match[1])
+    if scale.base == unit("m").base:
+        return float(unit("mm").from_si(scale.to_si(value))), False
+    if scale.base == unit("rad").base:
+        return float(unit("deg").from_si(scale.to_si(value))), True
+    return None
+
+
+def references(taken: Sequence[Dimension], measures: Sequence[Measure]) -> Iterator[Dimension]:
+    """Lengths that complete the drawing: from each plane across the shaft to the next, and the whole."""
+    lengths = [m for m in measures if m.sort == "length" and m.place == "section"]
+    places = sorted({point[0] for m in lengths for point in m.points})
+    spans = [*pairwise(places), *([(places[0], places[-1])] if len(places) > 2 else [])]
+    known = {_span(d.measure) for d in taken}
+    for low, high in spans:
+        fits = (m for m in lengths if _span(m) == (round(low, 6), round(high, 6)))
+        if (round(low, 6), round(high, 6)) not in known and (measure := next(fits, None)):
+            yield Dimension(measure, None)
+
+
+def _span(measure: Measure) -> tuple[float, float]:
+    return round(measure.points[0][0], 6), round(measure.points[-1][0], 6)
