@@ -31,13 +31,18 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
         If the answer would be too large.
     """
     outputs = len(cls.formulas) if body.outputs is None else len(body.outputs)
-    values = points(body.inputs) * max(1, outputs)
+    _limit(points(body.inputs) * max(1, outputs))
+    made = evaluate(
+        cls, body.inputs, outputs=body.outputs, units=body.units, level=body.level, tolerance=body.tolerance
+    )
+    _limit(made.count())  # curves are longer than their inputs tell
+    return made
+
+
+def _limit(values: int) -> None:
     if values > MOST_VALUES:
         told = f"{values} values in one answer are more than {MOST_VALUES}; name fewer outputs or points"
         raise TooManyValues(told)
-    return evaluate(
-        cls, body.inputs, outputs=body.outputs, units=body.units, level=body.level, tolerance=body.tolerance
-    )
 
 
 def run_solve(cls: type[Template], body: SolveIn) -> dict[str, Any]:

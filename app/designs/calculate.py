@@ -208,7 +208,9 @@ def _attempt(result: Calculation, block: Block, raw: dict[str, Any], *, evaluabl
         elif evaluable:
             wanted = _wanted(result.graph, block)
             _limit(points(raw) * len(block.cls.formulas if wanted is None else wanted))
-            result.evaluations[block.name] = memory.evaluation(block, raw, wanted)
+            made = memory.evaluation(block, raw, wanted)
+            _limit(made.count())  # curves are longer than their inputs tell
+            result.evaluations[block.name] = made
         else:
             block.cls.from_quantities(raw)
     except InvalidInputs as error:

@@ -10,6 +10,7 @@ import numpy as np
 
 from templates.core.template import Array, formula, profile, shared
 from templates.groups.cylinder import DYREMI, NO_INERTIA, Cylinder
+from templates.physics.arrays import largest_load, spread
 from templates.physics.crank_loads import (
     axial_force,
     correction_torque,
@@ -21,10 +22,8 @@ from templates.physics.crank_loads import (
     wall_force_Rao_Singh_1993,
     wristpin_load_x,
 )  # fmt: skip
-from templates.physics.cyclic_film import largest_load
 from templates.physics.gas_pressure import peak_pressure, pressure_at
 from templates.physics.slider_crank import Motion, crank_angles, crank_motion
-from templates.physics.slider_film import spread
 
 CYCLE = "crank_angle"
 PEAK = ("p_max",)
@@ -100,7 +99,7 @@ class BearingLoad(Cylinder):
         "exhaust_opens": "492 deg",
         "exhaust_closes": "14 deg",
         "crankcase_pressure": "1 bar",
-        "crank_angle_step": "20 deg",
+        "crank_angle_step": "30 deg",
     }
 
     @profile("deg", "crank angle", along=CYCLE, symbol=r"\theta", latex=r"k\,\Delta\theta")

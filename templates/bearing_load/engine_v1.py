@@ -96,7 +96,7 @@ class Engine(Cylinder):
         "compression_ratio": 17,
         "cutoff": 2,
         "crankcase_pressure": "1 bar",
-        "crank_angle_step": "20 deg",
+        "crank_angle_step": "30 deg",
         "cylinders": 5,
         "firing_order": [1, 2, 4, 5, 3],
         "cylinder_positions": {"value": [0, 0.13, 0.26, 0.39, 0.52], "unit": "m"},

@@ -57,6 +57,10 @@ class Evaluation:
     warnings: list[Notice]
     seconds: float
 
+    def count(self) -> int:
+        """How many values all outputs have together."""
+        return sum(np.size(answer.value) for answer in self.outputs.values())
+
 
 def evaluate(
     cls: type[Template],

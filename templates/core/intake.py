@@ -113,7 +113,8 @@ def _out_of_bounds(declared: Declaration, typed: Typed, inside: Any) -> Fault:
     scale = unit(typed.unit)
     shown = f"{scale.from_si(float(first)):.9g}{'' if typed.unit == '1' else ' ' + typed.unit}"
     where = f" at {int(np.sum(~inside))} of its points" if np.ndim(inside) else ""
-    detail = f"{meaning.words} is {shown}{where}; it must be {meaning.wanted}"
+    remedy = f"; {meaning.remedy}" if meaning.remedy else ""
+    detail = f"{meaning.words} is {shown}{where}; it must be {meaning.wanted}{remedy}"
     return Fault(declared.name, "out_of_range", detail)
 
 

@@ -1,7 +1,9 @@
-"""The array type of the physics functions, and the refusal of values outside a formula's domain."""
+"""The array type of the physics functions, the refusal of values outside a domain, points and curves."""
 
 import numpy as np
 from numpy.typing import NDArray
+
+from templates.core.declare import units
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -29,3 +31,14 @@ def require_film(eps: Array, ratio: Array) -> None:
     eps, ratio = np.asarray(eps), np.asarray(ratio)
     require((eps >= 0) & (eps <= ECCENTRICITY_LIMIT), "eps must lie in [0, 1 - 1e-7]")
     require((ratio > 0) & np.isfinite(ratio), "ratio B/D must be positive and finite")
+
+
+def spread(scale: Array, profile: Array) -> Array:
+    """A profile for every point, (..., places): the scale of each times its profile."""
+    return scale[..., None] * profile
+
+
+@units("N", "N", returns="N", latex=r"\max\sqrt{{{0}^2+{1}^2}}")
+def largest_load(x: Array, y: Array) -> Array:
+    """The largest size of a load over the cycle [N]."""
+    return np.asarray(np.hypot(x, y).max(axis=-1))[()]

@@ -15,6 +15,7 @@ import numpy as np
 
 from templates.core.declare import units
 from templates.physics.arrays import Array
+from templates.physics.arrays import largest_load as largest_load
 from templates.physics.journal_orbit import CyclicLoad, Orbit, periodic_orbit
 from templates.physics.mobility_law import MapLaw, MobilityLaw, ShortLaw
 from templates.physics.mobility_map import NARROWEST, WIDEST, mapped_film_under_load
@@ -195,12 +196,6 @@ def cycle_of(angle: Array) -> float:
 def cycle_length(angle: Array) -> Array:
     """The same as a number for a formula."""
     return np.asarray(cycle_of(angle))[()]
-
-
-@units("N", "N", returns="N", latex=r"\max\sqrt{{{0}^2+{1}^2}}")
-def largest_load(x: Array, y: Array) -> Array:
-    """The largest size of a load over the cycle [N]."""
-    return np.asarray(np.hypot(x, y).max(axis=-1))[()]
 
 
 @units("rad/s", returns="rad/s", latex=r"\left|\overline{{{0}}}\right|")

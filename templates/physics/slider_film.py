@@ -26,6 +26,7 @@ import numpy as np
 
 from templates.core.declare import units
 from templates.physics.arrays import Array, require
+from templates.physics.arrays import spread as spread
 from templates.physics.pad_equations import solved_pads
 from templates.physics.pad_mesh import Grading, grading
 from templates.physics.slider import (
@@ -128,11 +129,6 @@ def shear_of_wedge(a: Array) -> Array:
         a: film ratio h_i/h_o; below 1 the film is ruptured [-].
     """
     return sum(friction_incline_Rayleigh_1918(_bearing(a))) / 2 + 0 * a
-
-
-def spread(scale: Array, profile: Array) -> Array:
-    """A profile for every point, (..., places): the scale of each times its profile."""
-    return scale[..., None] * profile
 
 
 @units("m", "Pa/m", "Pa*s", "m/s", returns="m/s")

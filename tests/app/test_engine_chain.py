@@ -170,3 +170,27 @@ def test_curves_scale_in_relations(http):
     answer = http.post(f"{API}/designs", json={**document, "steps": {**steps, "film": wrong}})
     assert answer.status_code == 422
     assert {error["name"] for error in answer.json()["errors"]} == {"film.load_x"}
+
+
+def test_curves_that_are_too_many_for_a_design_are_refused(http):
+    fine = {
+        "template": "bearing_load",
+        "version": 1,
+        "inputs": {**BearingLoad.example, "crank_angle_step": "0.1 deg"},
+    }
+    answer = http.post(f"{API}/designs", json={"name": "fine", "parameters": {}, "steps": {"load": fine}})
+    assert answer.status_code == 422
+    assert "more than the 100000" in answer.json()["detail"]
+    named = {**fine, "outputs": ["crankpin_load_max", "main_load_x"]}
+    assert created(http, {"name": "fine", "parameters": {}, "steps": {"load": named}})["state"] == "current"
+
+
+def test_curves_that_are_too_many_for_an_answer_are_refused(http):
+    """A thousand speeds: all curves are too many, the greatest loads are not."""
+    speeds = {"value": [3000.0 + i for i in range(1000)], "unit": "rpm"}
+    body = {"inputs": {**BearingLoad.example, "speed": speeds, "crank_angle_step": "1 deg"}}
+    address = f"{API}/templates/bearing_load/versions/1/evaluate"
+    assert http.post(address, json=body).status_code == 413
+    told = http.post(address, json={**body, "outputs": ["crankpin_load_max", "mean_torque"]})
+    assert told.status_code == 200
+    assert len(told.json()["outputs"]["crankpin_load_max"]["value"]) == 1000
