@@ -26,3 +26,17 @@ class GeometryError(Exception):
 
 class UnreadableStep(ValueError):
     """Bytes that are no STEP file, or one without a shape."""
+
+
+class AnalysisError(Exception):
+    """A solid that cannot be analysed as asked.
+
+    `code` is one of `no_shaft`, `no_end`, `mesh`, `not_converged`. It survives pickling.
+    """
+
+    def __init__(self, code: str, detail: str) -> None:
+        self.code, self.detail = code, detail
+        super().__init__(code, detail)
+
+    def __str__(self) -> str:
+        return self.detail

@@ -69,6 +69,27 @@ class Part:
 
 
 @dataclass(frozen=True)
+class Material:
+    """An isotropic, linearly elastic material."""
+
+    young: float  # [Pa]
+    poisson: float
+    density: float  # [kg/m³]
+
+
+STEEL_MATERIAL = Material(210e9, 0.3, STEEL_DENSITY)  # EN 1993-1-1, 3.2.6
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """How one solid is held and loaded: by its faces at two levels of z, about the z axis."""
+
+    held: float  # [mm]
+    loaded: float  # [mm]
+    material: Material = STEEL_MATERIAL
+
+
+@dataclass(frozen=True)
 class Box:
     """A box along the axes [mm]."""
 
@@ -86,6 +107,10 @@ class CadModel(Template):
     def bounding_box(self) -> Box:
         """The box [mm] that the parts together must fill."""
         raise NotImplementedError
+
+    def shaft(self) -> Shaft | None:
+        """Where the solid is held and loaded when it is analysed; None if it is no shaft."""
+        return None
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
         """Parameters by API name [mm, a count as 1], as far as the parts seen in the file show them."""

@@ -1,0 +1,155 @@
+"""STEP bytes → the asked outputs of an analysis, each with its error; a pure function of its inputs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field
+from typing import Any
+
+from cad.analysis.elastic import Boundary, Load, Response, System, respond
+from cad.analysis.levels import Level, ladder
+from cad.analysis.mesh import make_grid
+from cad.analysis.modes import torsional_mode
+from cad.analysis.solid import Solid, read_solid
+from cad.analysis.stress import CONVERGED, greatest_stress
+from cad.model import Shaft
+
+Report = Callable[[float, str], None]
+
+OUTPUTS: dict[Load, dict[str, str]] = {
+    "torsion": {"stiffness": "N*m/rad", "torsional_frequency": "Hz", "maximum_stress": "MPa"},
+    "bending": {"stiffness": "N*m/rad", "maximum_stress": "MPa"},
+}
+"""What each analysis tells, with its unit; stress is that under a torque or moment of 1 N·m."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of an analysis; a tolerance (relative) chooses the level, else it is named."""
+
+    load: Load = "torsion"
+    boundary: Boundary = "free_end"
+    level: str | None = None
+    tolerance: float | None = None
+
+
+@dataclass
+class Found:
+    """Outputs by name, in the units of `OUTPUTS`, and by which mesh they were found."""
+
+    outputs: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+
+def analyse(step: bytes, shaft: Shaft, asked: Asked, outputs: Collection[str], report: Report) -> Found:
+    """Find the asked outputs, and nothing else.
+
+    Raises
+    ------
+    AnalysisError
+        If the solid is no shaft, or cannot be meshed.
+    """
+    report(0.0, "reading the solid")
+    solid = read_solid(step, shaft)
+    found = Found()
+    elastic = [name for name in outputs if name != "maximum_stress"]
+    if elastic:
+        _climb(solid, shaft, asked, elastic, found, report)
+    if "maximum_stress" in outputs:
+        found.outputs["maximum_stress"] = _stress(solid, shaft, asked, report)
+    report(1.0, "done")
+    return found
+
+
+def _climb(
+    solid: Solid, shaft: Shaft, asked: Asked, outputs: Collection[str], found: Found, report: Report
+) -> None:
+    """Level after level until every output meets the tolerance."""
+    for level in ladder(asked.level, asked.tolerance):
+        report(0.1, f"level {level.name}")
+        found.outputs.update(_at_level(solid, shaft, asked, level, outputs, report))
+        worst = max(found.outputs[name]["error"] for name in outputs)
+        if asked.tolerance is None or worst <= asked.tolerance:
+            return
+
+
+def _at_level(
+    solid: Solid, shaft: Shaft, asked: Asked, level: Level, outputs: Collection[str], report: Report
+) -> dict[str, dict[str, Any]]:
+    started = time.perf_counter()
+    grid = make_grid(solid, level.fineness)
+    values: dict[str, list[float]] = {name: [] for name in outputs}
+    for order in (level.order - 1, level.order):
+        report(0.2 if order < level.order else 0.4, f"solving {grid.mesh.ne} elements of order {order}")
+        response = respond(System(grid, order, shaft.material, asked.load), asked.boundary)
+        for name in outputs:
+            values[name].append(_ELASTIC[name](response))
+    told = {
+        "level": level.name,
+        "mesh": _mesh(solid, grid.mesh.ne, response.system.space.ndof, level.order),
+        "seconds": time.perf_counter() - started,
+    }
+    return {
+        name: {
+            "value": high,
+            "unit": OUTPUTS[asked.load][name],
+            "error": level.factor * abs(low - high) / high,
+            **told,
+        }
+        for name, (low, high) in values.items()
+    }
+
+
+def _stress(solid: Solid, shaft: Shaft, asked: Asked, report: Report) -> dict[str, Any]:
+    started = time.perf_counter()
+    peaks = greatest_stress(
+        solid,
+        shaft.material,
+        asked.load,
+        asked.boundary,
+        lambda n: report(0.6 + 0.1 * n, f"stress, mesh {n + 1}"),
+    )
+    last = peaks.steps[-1]
+    told = {
+        "unit": "MPa",
+        "error": peaks.changes[-1],
+        "convergence": [
+            {"elements": peak.elements, "value": _per_newton_metre(peak.value)} for peak in peaks.steps
+        ],
+        "point": {"value": list(last.point), "unit": "mm"},
+        "level": None,
+        "mesh": _mesh(solid, last.elements, last.degrees_of_freedom, 3),
+        "seconds": time.perf_counter() - started,
+    }
+    if peaks.converged:
+        return {"value": _per_newton_metre(last.value), **told}
+    reason = (
+        f"the greatest stress still changed by {peaks.changes[-1]:.1%} with the last refinement, more than "
+        f"{CONVERGED:.0%}: at a sharp inner corner it has no limit; give every corner there a fillet"
+    )
+    return {"value": None, **told, "reason": reason}
+
+
+def _mesh(solid: Solid, elements: int, degrees_of_freedom: int, order: int) -> dict[str, Any]:
+    return {
+        "elements": elements,
+        "degrees_of_freedom": degrees_of_freedom,
+        "order": order,
+        "mirror_plane": {"": None, "x": "yz", "y": "xz"}[solid.mirror],
+    }
+
+
+def _per_newton_metre(stress: float) -> float:
+    """Stress [MPa] under 1 N·m from that under 1 N·mm."""
+    return stress * 1e3
+
+
+def _stiffness(response: Response) -> float:
+    """Torque or moment for a rotation [N·m/rad]."""
+    return 1e-3 / response.compliance
+
+
+_ELASTIC: dict[str, Callable[[Response], float]] = {
+    "stiffness": _stiffness,
+    "torsional_frequency": lambda response: torsional_mode(response).frequency,
+}

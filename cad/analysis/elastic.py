@@ -1,0 +1,126 @@
+"""Linear elasticity of a shaft that is held at one end and loaded at the other.
+
+Lengths in mm, forces in N, stresses in MPa, masses in t: so no factor stands in any equation.
+
+Rotation is that of energy: under the traction t = (-y, x, 0)/J, of torque 1, the loaded end turns by
+θ = ∫ t·u ds, the mean of its rotation with weight r². So K = 1/θ = 1/(2 U). The finite element space lies in
+that of all displacements, so θ comes out too small, K too large: K falls towards the true one.
+
+Symmetry. Torsion of a solid that mirrors itself in y = 0 is antisymmetric: u(x, -y, z) has the opposite u_x
+and u_z, the same u_y. On the plane the tangential displacements are zero and the normal one is free; half the
+solid bears half the torque. Bending in the plane y = 0 is symmetric: there u_y is zero.
+
+Boundaries. `free_end`: nothing but the load acts at the loaded end. `guided_end`: its mean displacement
+across z is zero, as in a bearing at its middle; the forces of that bearing follow from the compliances
+between them and the load, so no other system is solved.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+
+from cad.analysis.mesh import Grid
+from cad.analysis.solid import HELD, LOADED, MIRROR
+from cad.model import Material
+
+Load = Literal["torsion", "bending"]
+Boundary = Literal["free_end", "guided_end"]
+
+LOADS: tuple[Load, ...] = ("torsion", "bending")
+BOUNDARIES: tuple[Boundary, ...] = ("free_end", "guided_end")
+
+
+def stress(u: Any, material: Material) -> Any:
+    """Hooke's law: the stress [MPa] of a displacement [mm]."""
+    E, nu = material.young * 1e-6, material.poisson
+    strain = ng.Sym(ng.Grad(u))
+    return E / (1 + nu) * (strain + nu / (1 - 2 * nu) * ng.Trace(strain) * ng.Id(3))
+
+
+class System:
+    """Stiffness of a held solid in elements of one order, factorised; for one kind of load."""
+
+    def __init__(self, grid: Grid, order: int, material: Material, load: Load) -> None:
+        self.grid, self.order, self.material, self.load = grid, order, material, load
+        locked = _locked(grid.solid.mirror, load)
+        where = {axis: f"{HELD}|{MIRROR}" if axis in locked else HELD for axis in "xyz"}
+        self.space = ng.VectorH1(
+            grid.mesh, order=order, dirichletx=where["x"], dirichlety=where["y"], dirichletz=where["z"]
+        )
+        u, v = self.space.TnT()
+        self.form = ng.BilinearForm(self.space, symmetric=True, condense=True)
+        self.form += ng.InnerProduct(stress(u, material), ng.Sym(ng.Grad(v))) * ng.dx
+        self.form.Assemble()
+        self.inverse = self.form.mat.Inverse(self.space.FreeDofs(True), inverse="sparsecholesky")
+
+    def solve(self, force: Any) -> Any:
+        """The displacement under a force, both as vectors; the dofs inside elements are eliminated."""
+        form = self.form
+        outer, u = force.CreateVector(), force.CreateVector()
+        outer.data = force + form.harmonic_extension_trans * force
+        u.data = self.inverse * outer
+        u.data += form.harmonic_extension * u
+        u.data += form.inner_solve * force
+        return u
+
+    def traction(self, field: Any) -> Any:
+        """The force of a traction on the loaded end, as a vector."""
+        v = self.space.TestFunction()
+        force = ng.LinearForm(self.space)
+        force += field * v.Trace() * ng.ds(LOADED)
+        force.Assemble()
+        return force.vec
+
+    def loads(self) -> tuple[Any, list[Any]]:
+        """The unit load, and the unit forces of a guide that the symmetry does not already balance."""
+        mesh, parts = self.grid.mesh, self.grid.solid.parts
+        shape = ng.CF((-ng.y, ng.x, 0)) if self.load == "torsion" else ng.CF((0, 0, ng.x))
+        unit = shape / (parts * ng.Integrate(shape * shape * ng.ds(LOADED), mesh))
+        area = parts * ng.Integrate(ng.CF(1) * ng.ds(LOADED), mesh)
+        locked = _locked(self.grid.solid.mirror, self.load)
+        sideways = {"x": ng.CF((1, 0, 0)), "y": ng.CF((0, 1, 0))}
+        guides = [self.traction(way / area) for axis, way in sideways.items() if axis not in locked]
+        return self.traction(unit), guides
+
+
+@dataclass(frozen=True)
+class Response:
+    """What a unit load does: its own work, and the displacement."""
+
+    system: System
+    compliance: float  # [rad/(N·mm)]
+    displacement: Any  # a GridFunction [mm]
+    guides: tuple[Any, ...]  # forces that act on the guided end
+    guided: tuple[Any, ...]  # displacements under them
+    gram: NDArray[np.float64]  # work between them
+
+
+def respond(system: System, boundary: Boundary) -> Response:
+    """The response to a torque or a bending moment of 1 N·mm on the loaded end."""
+    force, sideways = system.loads()
+    guides = tuple(sideways) if boundary == "guided_end" else ()
+    u = system.solve(force)
+    guided = tuple(system.solve(guide) for guide in guides)
+    gram = np.array([[ng.InnerProduct(f, w) for w in guided] for f in guides]).reshape(
+        len(guides), len(guides)
+    )
+    held = np.array([ng.InnerProduct(guide, u) for guide in guides])
+    reactions = np.linalg.solve(gram, held) if guides else held
+    displacement = ng.GridFunction(system.space)
+    displacement.vec.data = u
+    for reaction, w in zip(reactions, guided, strict=True):
+        displacement.vec.data -= float(reaction) * w
+    work = ng.InnerProduct(force, displacement.vec) * system.grid.solid.parts
+    return Response(system, float(work), displacement, guides, guided, gram)
+
+
+def _locked(mirror: str, load: Load) -> str:
+    """The directions in which nothing moves on a mirror plane of this normal."""
+    antisymmetric = load == "torsion" or mirror == "x"  # a moment about y is odd in x
+    tangential = "".join(axis for axis in "xyz" if axis != mirror)
+    return (tangential if antisymmetric else mirror) if mirror else ""

@@ -1,0 +1,52 @@
+"""Levels of fidelity: mesh and order for an accuracy, from a table beside this file.
+
+The error of an answer is estimated on its own mesh, from the same answer at one order less. A factor of that
+change, read off four throws against a finer mesh, is to cover what is still missing. It is small for order 3,
+because elements of order 2 are spoilt by their cubic shape.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from cad.analysis.mesh import Fineness
+
+DEFAULT = "default"
+
+
+@dataclass(frozen=True)
+class Level:
+    """A rung of the ladder."""
+
+    name: str
+    fineness: Fineness
+    order: int
+    factor: float  # of the change from the order below: the error that is told
+    typical: float  # the error that is usually told, relative
+
+
+def _read() -> tuple[Level, ...]:
+    rows = json.loads(Path(__file__).with_name("levels.json").read_text())
+    return tuple(
+        Level(
+            row["name"],
+            Fineness(row["size"], row["curvature"], row["turn"]),
+            row["order"],
+            row["factor"],
+            row["typical"],
+        )
+        for row in rows
+    )
+
+
+LEVELS = _read()
+NAMES = tuple(level.name for level in LEVELS)
+
+
+def ladder(level: str | None, tolerance: float | None) -> tuple[Level, ...]:
+    """The levels to try in turn: the one named, or those from the cheapest that is likely to do."""
+    if tolerance is None:
+        return tuple(rung for rung in LEVELS if rung.name == (level or DEFAULT))
+    return tuple(rung for rung in LEVELS if rung.typical <= tolerance) or LEVELS[-1:]

@@ -1,0 +1,134 @@
+"""The solid in a STEP file as it is to be analysed: its end faces named, and halved where it mirrors itself.
+
+Faces are found by geometry, never by number. A mirror plane is used only if both halves are proven to be
+images of each other: equal volume, centre, inertia, and one face for each face.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+from netgen.occ import HalfSpace, OCCGeometry, Pnt, Vec
+from numpy.typing import NDArray
+
+from cad.errors import AnalysisError
+from cad.model import Shaft
+
+HELD, LOADED, MIRROR, FREE = "held", "loaded", "mirror", "free"
+
+_AXES = "xyz"
+_COLUMNS = ((slice(0, 1), 1), (slice(1, 4), 3), (slice(4, 10), 6))  # area, centre, moments
+_NEAR = 1e-6  # [mm]
+_ALIKE = 1e-7  # of a size, relative: what the kernel's integrals over mirrored faces agree in
+_FLAT = 1e-5  # of a moment of area; the kernel's own are good to 1e-6
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A shape with named faces; half of the solid if `mirror` names the normal of a plane of symmetry."""
+
+    shape: Any
+    mirror: str  # "x", "y" or ""
+    radius: float  # [mm], of the loaded face about z
+
+    @property
+    def parts(self) -> int:
+        """How many of these make the whole."""
+        return 2 if self.mirror else 1
+
+
+def read_solid(step: bytes, shaft: Shaft, mirrors: Iterable[str] = ("y", "x")) -> Solid:
+    """Read the one solid of a STEP file, halved by the first of the planes in which it mirrors itself.
+
+    Raises
+    ------
+    AnalysisError
+        `no_shaft` if it is not one solid, `no_end` if no face lies where it is held or loaded.
+    """
+    whole = _only_solid(step)
+    mirror, shape = next(_halves(whole, mirrors), ("", whole))
+    ends = {HELD: shaft.held, LOADED: shaft.loaded}
+    for face in shape.faces:
+        face.name = _name(face, mirror, ends)
+    for name, level in ends.items():
+        if not any(face.name == name for face in shape.faces):
+            raise AnalysisError("no_end", f"there is no flat face at z = {level:g} mm to be {name}")
+    return Solid(shape, mirror, _radius(shape))
+
+
+def planar(face: Any) -> bool:
+    """Whether a face is flat: of its principal moments of area the largest is the sum of the others."""
+    low, middle, high = np.linalg.eigvalsh(_inertia(face))
+    return bool(abs(high - low - middle) < _FLAT * high)
+
+
+def _only_solid(step: bytes) -> Any:
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "model.step")
+        path.write_bytes(step)
+        solids = list(OCCGeometry(str(path)).shape.solids)
+    if len(solids) != 1:
+        raise AnalysisError("no_shaft", f"a shaft is one solid; this file has {len(solids)}")
+    return solids[0]
+
+
+def _halves(whole: Any, mirrors: Iterable[str]) -> Any:
+    """The planes in which a solid mirrors itself, each with its half on the positive side."""
+    for axis in mirrors:
+        unit = [float(other == axis) for other in _AXES]
+        sides = [whole * HalfSpace(Pnt(0, 0, 0), Vec(*(sign * u for u in unit))) for sign in (-1, 1)]
+        solids = [list(side.solids) for side in sides]
+        if all(len(found) == 1 for found in solids):
+            one, other = solids[0][0], solids[1][0]
+            if _images(one, other, axis, whole.mass):
+                yield axis, max((one, other), key=lambda half: half.center[_AXES.index(axis)])
+
+
+def _images(one: Any, other: Any, axis: str, volume: float) -> bool:
+    """Whether two halves are each other's mirror images, and together the whole."""
+    if abs(one.mass + other.mass - volume) > _ALIKE * volume:
+        return False
+    seen, wanted = _look(one, axis), _look(other, axis, mirrored=True)
+    if seen.shape != wanted.shape:
+        return False
+    scale = np.concatenate([[np.abs(seen[:, kind]).max()] * count for kind, count in _COLUMNS])
+    apart = (np.abs(seen[:, None] - wanted[None]) / scale).max(axis=2)
+    partner = apart.argmin(axis=1)
+    return bool(len(set(partner)) == len(seen) and apart.min(axis=1).max() < 10 * _ALIKE)
+
+
+def _look(half: Any, axis: str, *, mirrored: bool = False) -> NDArray[np.float64]:
+    """The faces of a half, or of its image, as rows of area, centre and moments; the last is the inside."""
+    flip = np.array([-1.0 if mirrored and other == axis else 1.0 for other in _AXES])
+    shapes = (*half.faces, half)
+    return np.array([[s.mass, *(flip * np.array([*s.center])), *_moments(s, flip)] for s in shapes])
+
+
+def _moments(shape: Any, flip: NDArray[np.float64]) -> NDArray[np.float64]:
+    tensor = _inertia(shape) * np.outer(flip, flip)
+    return np.asarray(tensor[np.triu_indices(3)])
+
+
+def _inertia(shape: Any) -> NDArray[np.float64]:
+    found = shape.inertia
+    return np.array([[found[i, j] for j in range(3)] for i in range(3)])
+
+
+def _name(face: Any, mirror: str, ends: dict[str, float]) -> str:
+    low, high = (np.array([*corner]) for corner in face.bounding_box)
+    if mirror and max(abs(low[_AXES.index(mirror)]), abs(high[_AXES.index(mirror)])) < _NEAR:
+        return MIRROR
+    for name, level in ends.items():
+        if max(abs(low[2] - level), abs(high[2] - level)) < _NEAR:
+            return name
+    return FREE
+
+
+def _radius(shape: Any) -> float:
+    corners = [corner for face in shape.faces if face.name == LOADED for corner in face.bounding_box]
+    return max(float(abs(corner[i])) for corner in corners for i in (0, 1))

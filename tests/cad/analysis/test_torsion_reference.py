@@ -1,0 +1,40 @@
+"""Literature: the reference throw of shared/references, whose stiffness was found by converged elements."""
+
+import pytest
+
+from cad.analysis.analyse import Asked, Found, analyse
+from cad.model import Shaft
+from cad.regenerate import regenerate
+
+THROW = {
+    "journal_diameter": 0.055,
+    "journal_length": 0.040,
+    "pin_diameter": 0.048,
+    "pin_length": 0.032,
+    "web_thickness": 0.018,
+    "web_width": 0.080,
+    "throw": 0.042,
+    "fillet": 0.003,
+}
+
+
+@pytest.fixture(scope="session")
+def step() -> bytes:
+    return regenerate("crank_throw", 1, THROW).step
+
+
+def stiffness(step: bytes, asked: Asked) -> Found:
+    return analyse(step, Shaft(-54.0, 54.0), asked, ["stiffness"], lambda done, what: None)
+
+
+@pytest.mark.parametrize(("level", "within"), [("default", 5e-3), ("fine", 1e-3)])
+def test_the_reference_throw_is_as_stiff_as_it_should_be(step: bytes, level: str, within: float) -> None:
+    found = stiffness(step, Asked(level=level)).outputs["stiffness"]
+    assert found["value"] == pytest.approx(456_600, rel=within)
+    assert abs(found["value"] / 456_600 - 1) <= found["error"] <= 2 * within
+    assert found["mesh"]["mirror_plane"] == "xz"
+
+
+def test_a_guided_end_is_stiffer(step: bytes) -> None:
+    found = stiffness(step, Asked(boundary="guided_end")).outputs["stiffness"]
+    assert found["value"] == pytest.approx(511_600, rel=5e-3)
