@@ -174,7 +174,7 @@ def _block(result: Calculation, block: Block) -> None:
     waiting = {n for n, cell in block.cells.items() if cell.name in result.pending}
     spoilt = {n for n, c in block.cells.items() if c.name in result.broken and c.relations}
     raw = {n: _given(result, block, cell) for n, cell in block.cells.items() if n not in waiting}
-    faults = _attempt(result, block, raw, evaluable=not waiting)
+    faults = _attempt(result, block, raw, waiting)
     told = [fault for fault in faults if fault.name not in waiting | spoilt]
     if block.is_model:
         absent = [f.name for f in told if f.code == "missing"]
@@ -196,23 +196,24 @@ def _given(result: Calculation, block: Block, cell: Cell) -> Any:
     return Typed(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {})
 
 
-def _attempt(result: Calculation, block: Block, raw: dict[str, Any], *, evaluable: bool) -> list[Fault]:
+def _attempt(result: Calculation, block: Block, raw: dict[str, Any], waiting: set[str]) -> list[Fault]:
+    """Evaluate a step or make a model's shape; where inputs are waited for, check what can be checked."""
     try:
-        if block.is_model:
+        if waiting:
+            block.cls.from_quantities(raw, pending=waiting)
+        elif block.is_model:
             _refuse_arrays(result, block)
             shape = block.cls.from_quantities(raw)
             assert isinstance(shape, CadModel)
             with np.errstate(all="ignore"):
                 shape.inputs_si()
             result.shapes[block.name] = shape
-        elif evaluable:
+        else:
             wanted = _wanted(result.graph, block)
             _limit(points(raw) * len(block.cls.formulas if wanted is None else wanted))
             made = memory.evaluation(block, raw, wanted)
             _limit(made.count())  # curves are longer than their inputs tell
             result.evaluations[block.name] = made
-        else:
-            block.cls.from_quantities(raw)
     except InvalidInputs as error:
         return list(error.faults)
     except FaultyText as error:

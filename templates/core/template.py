@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any, ClassVar, NoReturn, Self
 
 import numpy as np
@@ -136,8 +136,10 @@ class Template:
         return inspect.cleandoc(cls.__dict__.get("__doc__") or inspect.getmodule(cls).__doc__ or cls.__name__)
 
     @classmethod
-    def from_quantities(cls, raw: Mapping[str, Any]) -> Self:
+    def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
         """A template from what a user typed: read, convert to SI, check; once, before any formula runs.
+
+        `pending` are inputs that come later: they are not missed, and no rule about them is checked.
 
         Raises
         ------
@@ -147,9 +149,10 @@ class Template:
         typed, faults = read_inputs(cls, raw)
         ledger = Ledger(typed=typed)
         values = dict(admitted(cls, typed, ledger, faults))
+        faults = [fault for fault in faults if fault.name not in pending]
         if faults:
             raise InvalidInputs(faults)
-        return cls._checked(values, ledger)
+        return cls._checked(values, ledger, pending)
 
     def at(self, level: str, where: NDArray[np.bool_] | None = None) -> Self:
         """The same inputs at another level; only those points of arrays where `where` holds, if given."""
@@ -195,12 +198,12 @@ class Template:
         return cls.from_quantities({name: as_typed(cls, name, value) for name, value in values.items()})
 
     @classmethod
-    def _checked(cls, values: Mapping[str, Any], ledger: Ledger) -> Self:
+    def _checked(cls, values: Mapping[str, Any], ledger: Ledger, pending: Collection[str] = ()) -> Self:
         self = cls(values, ledger)
         check_shapes(self)
         faults: list[Fault] = []
         with np.errstate(all="ignore"):
-            for rule in cls.requirements:
+            for rule in (rule for rule in cls.requirements if not cls._waits(rule, pending)):
                 try:
                     faults += violations(self, rule)
                 except InvalidInputs as error:  # a default that the rule asks for is refused
@@ -208,6 +211,13 @@ class Template:
         if faults:
             raise InvalidInputs(faults)
         return self
+
+    @classmethod
+    def _waits(cls, rule: Requirement, pending: Collection[str]) -> bool:
+        """Whether a rule is about any of the inputs that are pending, by name or beneath what it uses."""
+        beneath = {name for used in rule.uses for name in cls.ancestors(used)} if pending else set()
+        attributes = {cls.inputs[name].attribute for name in pending}
+        return not (attributes.isdisjoint(beneath) and frozenset(pending).isdisjoint(rule.names))
 
     @classmethod
     def ancestors(cls, attribute: str) -> frozenset[str]:

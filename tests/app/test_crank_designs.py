@@ -95,6 +95,63 @@ class TestInertiaOfTheSolid:
         assert faults(http.post(DESIGNS, json=document)) == {"train.stiffnesses": "out_of_range"}
 
 
+class TestWhatWaitsForTheSolid:
+    """A rule about an input that is not known yet is checked once it is."""
+
+    STEEL = {
+        "mean_stress": "0 MPa",
+        "ultimate_strength": "800 MPa",
+        "fatigue_strength_coefficient": "1150 MPa",
+        "fatigue_strength_exponent": -0.09,
+    }
+
+    def fatigue(self, **inputs):
+        step = {"template": "fatigue_life", "version": 1, "inputs": {**self.STEEL, **inputs}}
+        return {"name": "fatigue", "steps": {"life": step}, "model": throw(web_width="73 mm")}
+
+    def test_property_a_stress_from_the_solid(self, http):
+        design = created(http, self.fatigue(stress_amplitude="= model.mass * 100 MPa/kg"))
+        assert design["state"] == "current", design["problem"]
+        step = revision(http, design)["steps"]["life"]
+        mass = http.get(f"{DESIGNS}/{design['id']}/measurements").json()["model"]["mass"]["value"]
+        assert step["outputs"]["stress_amplitude"]["value"] == pytest.approx(100 * mass)
+        assert step["outputs"]["life"]["value"] == "finite"
+
+    def test_property_a_stress_from_the_solid_that_is_too_high(self, http):
+        document = self.fatigue(stress_amplitude="= model.mass * 1 GPa/kg")
+        document["model"] = throw(web_width="76 mm")  # a solid that no other test has built
+        design = created(http, document)
+        assert design["state"] == "failed"
+        names = {fault["name"] for fault in design["problem"]["errors"]}
+        assert "life.stress_amplitude" in names
+
+    def test_property_what_can_be_checked_is(self, http):
+        wrong = self.fatigue(stress_amplitude="= model.mass * 1 MPa/kg", endurance_limit="2 GPa")
+        assert "life.endurance_limit" in faults(http.post(DESIGNS, json=wrong))
+
+    def test_property_a_stiffness_from_the_solid(self, http):
+        document = vibrating("2 kg*m**2", web_width="74 mm")
+        document["steps"]["train"]["inputs"]["stiffnesses"] = ["= model.mass * 1000 N*m/kg"]
+        design = created(http, document)
+        assert design["state"] == "current", design["problem"]
+        assert frequencies(revision(http, design))[1] > 0
+
+    def test_property_a_model_that_waits_is_not_built_with_a_default(self, http):
+        """The webs wait for the other throw's mass: as thick as by default they could not be inclined so."""
+        document = {
+            "name": "two throws",
+            "models": {
+                "one": throw(web_width="75 mm"),
+                "two": throw(web_thickness="= one.mass * 15 mm/kg", face_inclination="20 deg"),
+            },
+        }
+        design = created(http, document)
+        assert design["state"] == "current", design["problem"]
+        two = revision(http, design)["models"]["two"]["parameters"]["web_thickness"]["value"]
+        mass = http.get(f"{DESIGNS}/{design['id']}/measurements").json()["one"]["mass"]["value"]
+        assert two == pytest.approx(15 * mass, rel=1e-9)
+
+
 class TestIteration:
     """Mass → load → web thickness → mass."""
 
