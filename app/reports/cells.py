@@ -10,11 +10,13 @@ from typing import Any
 
 from app.calculations.display import System, converted
 from app.web import numbers
+from app.web.forms import text_of
 from templates.core.units import compatible, unit
 
 DIGITS_TYPED = 12  # of a number that a user typed: as many as are kept
 _DERIVED = ("1", "m", "kg", "s", "N", "Pa", "J", "W", "K", "rad", "rad/s")
 _COMPOSED = (*_DERIVED, "m**2", "m**3", "m**2/s", "m**3/s", "Pa*s", "N/m", "N*s/m", "kg*m**2", "N*m")
+_UNSEEN = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 _WORD = re.compile(r"[A-Za-zµμ°Ω%_]+")
 
 
@@ -31,13 +33,39 @@ class Cell:
 NOTHING = Cell()
 
 
-def cell(quantity: Any, *, typed: bool = False) -> Cell:
-    """A quantity as the interface tells it; as many digits as were typed, else five."""
+def cell(quantity: Any, *, whole: bool = False) -> Cell:
+    """A quantity as the interface tells it; five digits, or the `whole` number as typed."""
     value = quantity.get("value") if isinstance(quantity, Mapping) else quantity
     if isinstance(value, (int, float)) and not isinstance(value, bool):
-        whole, rest = numbers.aligned(value) if not typed else _as_typed(value)
-        return Cell(whole, rest, numbers.unit(_unit_of(quantity)) + _tolerance(quantity))
-    return Cell(text=numbers.told(quantity))
+        parts = _all_digits(value) if whole else numbers.aligned(value)
+        return Cell(*parts, numbers.unit(_unit_of(quantity)) + _tolerance(quantity))
+    return Cell(text=clean(_in_words(quantity)))
+
+
+def _in_words(quantity: Any) -> str:
+    """A text, an array, or why there is no value; points without one are dashes, with their reasons."""
+    if not isinstance(quantity, Mapping) or not quantity.get("reasons"):
+        return numbers.told(quantity)
+    reasons = dict.fromkeys(reason for reason in _flat(quantity["reasons"]) if reason)
+    return f"{numbers.told({**quantity, 'value': _dashed(quantity['value'])})} (–: {'; '.join(reasons)})"
+
+
+def _flat(value: Any) -> list[Any]:
+    return [item for part in value for item in _flat(part)] if isinstance(value, list) else [value]
+
+
+def _dashed(value: Any) -> Any:
+    return [_dashed(item) for item in value] if isinstance(value, list) else "–" if value is None else value
+
+
+def typed(raw: Any) -> str:
+    """A value as its user typed it."""
+    return clean(text_of(raw))
+
+
+def clean(text: str) -> str:
+    """A user's words without signs that are not seen: control characters, and those that turn the writing."""
+    return _UNSEEN.sub(" ", text)
 
 
 def in_si(quantity: Any) -> Cell:
@@ -76,7 +104,7 @@ def _unit_of(quantity: Any) -> str:
     return str(quantity.get("unit") or "") if isinstance(quantity, Mapping) else ""
 
 
-def _as_typed(value: float) -> tuple[str, str]:
+def _all_digits(value: float) -> tuple[str, str]:
     """A number with all digits that were typed."""
     shown = f"{value:.{DIGITS_TYPED}g}"
     if "e" in shown:

@@ -10,16 +10,15 @@ from sqlalchemy.orm import Session
 
 from app.calculations.display import System
 from app.designs import repository, results
-from app.reports.cells import Cell, shown
+from app.reports.cells import Cell, shown, typed
 from app.reports.content import File, Line, Mapped, Model, Verdict
 from app.reports.steps import known, symbol_of, verdicts, version_of, words_of
-from app.web.forms import text_of
+from app.reports.typesetting import DRAWING, PICTURE
 from cad.model import CadModel
 from templates.core.catalogue import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.verdicts import checks
 
-PICTURE, DRAWING = "png", "drawing.svg"
 KEPT = ("step", DRAWING, PICTURE)  # files that are told of, whichever others were asked for
 NO_VALUES = "its parameters wait for a solid, or are not set"
 MEASURES = ("mass", "volume", "polar_inertia")
@@ -64,7 +63,7 @@ def _parameters(
         yield Mapped(
             words=words_of(name, cls),
             symbol=symbol_of(name, cls),
-            relation=text_of(told["relations"].get(name)),
+            relation=typed(told["relations"].get(name)),
             old=shown(old, system) if old else Cell(),
             new=shown(values[name], system),
             measured=shown(dimensions[name], system) if name in dimensions else Cell(),

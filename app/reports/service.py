@@ -20,14 +20,14 @@ from app.designs import repository, views
 from app.designs.graph import Catalogues
 from app.designs.worksheet import worksheets
 from app.models.service import Models
-from app.reports.cells import Cell, cell
+from app.reports.cells import Cell, cell, clean, typed
 from app.reports.content import Line, Model, Report, Round, Step, Verdict
-from app.reports.models import DRAWING, PICTURE, model_of
+from app.reports.models import model_of
 from app.reports.steps import step_of
+from app.reports.typesetting import DRAWING, PICTURE
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.web import numbers
-from app.web.forms import text_of
 
 PENDING = "its picture and drawing were still being made when this report was written"
 NO_PICTURE = "no picture and drawing could be made of it"
@@ -88,18 +88,18 @@ class Reports:
         ]
         problem = told["problem"]
         return Report(
-            title=told["name"],
+            title=clean(told["name"]),
             design=id,
             revision=number,
             newest=head,
-            note=told["note"] or "",
+            note=clean(told["note"] or ""),
             date=told["created"],
             state=told["state"],
             problem=f"{problem['title']}: {problem['detail']}" if problem else "",
             program=f"Crankwright {version('crankwright')}",
             units=system,
             summary=_summary(steps, models),
-            parameters=[Line(n, "", Cell(text=text_of(value))) for n, value in told["parameters"].items()],
+            parameters=[Line(n, "", Cell(text=typed(value))) for n, value in told["parameters"].items()],
             steps=steps,
             models=models,
             rounds=[_round(one) for one in told["iterations"]],

@@ -9,9 +9,9 @@ from app.calculations.display import System
 from app.calculations.rendering import identity
 from app.designs.worksheet import checked
 from app.reports.cells import Cell, cell, in_si, shown
+from app.reports.cells import typed as as_typed
 from app.reports.content import Formula, Identity, Line, Step, Verdict, Warned
 from app.web import numbers
-from app.web.forms import text_of
 from templates.core.catalogue import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.mathml import mathml, symbol
@@ -40,7 +40,7 @@ def step_of(
         state="done" if done else WAITS,
         level=_level(told["level"], typed.get("tolerance")),
         inputs=_inputs(told, typed, cls),
-        formulas=[_formula(row) for row in told["formulas"]],
+        formulas=[_formula(row) for row in told["formulas"] if _exists(told["outputs"][row["name"]])],
         results=[_result(n, told, cls, system) for n in _ordered(told["outputs"], cls and cls.formulas)],
         checks=verdicts(checked(told, catalogue)),
         warnings=[Warned(w["name"].replace("_", " "), w["detail"]) for w in told["warnings"]],
@@ -112,7 +112,7 @@ def _ordered(there: Iterable[str], declared: Iterable[str] | None) -> list[str]:
 
 
 def _input(name: str, used: Any, raw: Any, cls: Any) -> Line:
-    written = text_of(raw)
+    written = as_typed(raw)
     relation = written if written.lstrip().startswith(("=", "[")) and "=" in written else ""
     if not (isinstance(used, Mapping) and "from" in used):
         return Line(words_of(name, cls), symbol_of(name, cls), Cell(text=written), origin="as typed")
@@ -120,10 +120,15 @@ def _input(name: str, used: Any, raw: Any, cls: Any) -> Line:
     return Line(
         words_of(name, cls),
         symbol_of(name, cls),
-        cell(used, typed=given),
+        cell(used, whole=given),
         in_si(used),
         relation or used["from"],
     )
+
+
+def _exists(answer: Mapping[str, Any]) -> bool:
+    """Whether there is a value; if not, the results say why."""
+    return answer["value"] is not None
 
 
 def _formula(row: Mapping[str, Any]) -> Formula:
@@ -132,8 +137,9 @@ def _formula(row: Mapping[str, Any]) -> Formula:
 
 
 def _result(name: str, told: Mapping[str, Any], cls: Any, system: System) -> Line:
-    value, error = shown(told["outputs"][name], system), _error(told["error"].get(name))
-    return Line(words_of(name, cls), symbol_of(name, cls), value, error=error)
+    answer = told["outputs"][name]
+    error = _error(told["error"].get(name)) if _exists(answer) else ""
+    return Line(words_of(name, cls), symbol_of(name, cls), shown(answer, system), error=error)
 
 
 def _error(error: Any) -> str:

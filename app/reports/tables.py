@@ -149,10 +149,10 @@ def write_xlsx(table: Table) -> bytes:
 
 def _single(row: Row) -> tuple[Value, ...]:
     """A line of the sheet of values; an array is told in short, and stands in the sheet of its block."""
-    value, remark = row.value, row.remark if isinstance(row.remark, str) else ""
-    if isinstance(value, list):
-        value, remark = None, f"{len(value)} values, in the sheet of {row.block}"
-    return row.block, row.kind, row.name, None, value, row.unit, row.origin, remark
+    if isinstance(row.value, list):
+        told = f"{len(row.value)} values, in the sheet of {row.block}"
+        return row.block, row.kind, row.name, None, None, row.unit, row.origin, told
+    return row.block, row.kind, row.name, None, row.value, row.unit, row.origin, str(row.remark or "")
 
 
 def _curves(sheet: Worksheet, arrays: Sequence[Row]) -> None:

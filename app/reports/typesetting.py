@@ -1,0 +1,46 @@
+"""Typst at work: a report, as plain data, becomes PDF. Imported by worker processes, so it imports little.
+
+The typesetter gets a fixed document, `report.typ`, and the report as data. Nothing that a user wrote is ever
+read as markup: texts come from the data as strings, formulas as MathML whose elements the document knows.
+Its letters are those that come with Typst; the system's serve only what these lack, such as other alphabets.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import typst
+
+PICTURE, DRAWING = "png", "drawing.svg"  # kinds of files that a report shows
+
+Pictures = Mapping[str, Mapping[str, bytes]]  # by model and kind
+
+DOCUMENT = Path(__file__).with_name("report.typ")
+
+
+def typeset(report: Mapping[str, Any], pictures: Pictures) -> bytes:
+    """A report as PDF; equal reports give equal bytes."""
+    models = [{**model, "pictures": _as_svg(pictures.get(model["name"], {}))} for model in report["models"]]
+    data = json.dumps({**report, "models": models}, ensure_ascii=True).encode()
+    files: Any = {"main": DOCUMENT.read_bytes(), "data.json": data}
+    date = datetime.fromisoformat(report["date"]).replace(microsecond=0)
+    made = typst.compile(files, format="pdf", timestamp=date)
+    assert isinstance(made, bytes), "one document makes one file"
+    return made
+
+
+def _as_svg(files: Mapping[str, bytes]) -> dict[str, str]:
+    """Pictures as SVG texts, for the typesetter's data is text: a PNG is put into one."""
+    told = {"drawing": files[DRAWING].decode()} if DRAWING in files else {}
+    if PICTURE in files:
+        coded = base64.b64encode(files[PICTURE]).decode()
+        told["picture"] = (
+            '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 480" width="640" height="480">'
+            f'<image width="640" height="480" href="data:image/png;base64,{coded}"/></svg>'
+        )
+    return told
