@@ -3,6 +3,7 @@
 Which mode is torsional is not told by its number: a throw bends first. A mode φ of unit mass has the
 effective inertia (rᵀ M φ)², r being the rigid rotation about z; over all modes they add up to that of the
 solid.
+"""
 
 from __future__ import annotations
 
