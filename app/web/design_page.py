@@ -17,12 +17,6 @@ from app.web.pictures import painted, pictures
 from app.web.rendering import show, units_of
 from cad.export import MEDIA_TYPES
 
-REPORTS = {
-    "html": "text/html",
-    "pdf": "application/pdf",
-    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
-    "csv": "text/csv",
-}
 UNFINISHED = ("queued", "running")
 
 
@@ -62,7 +56,6 @@ async def design_page(
         proposals=(await api.post(f"/designs/{id}/auto-map"))["proposals"],
         job=await _job(api, design),
         kinds=list(MEDIA_TYPES),
-        reports=_reports(request),
         loose=sheet.loose_faults(fields, wrong),
         refused=bool(wrong),
         notice=notice,
@@ -211,13 +204,6 @@ async def _job(api: Api, design: Mapping[str, Any]) -> dict[str, Any] | None:
     jobs: list[dict[str, Any]] = (await api.get("/jobs", limit=200))["items"]
     mine = (job for job in jobs if job["design"] == design["id"] and job["state"] in UNFINISHED)
     return next(mine, None)
-
-
-def _reports(request: Request) -> list[str]:
-    """The kinds of report that the interface says it offers; none before it has any."""
-    paths: Mapping[str, Any] = request.app.openapi()["paths"]
-    told = paths.get("/api/v1/designs/{id}/report", {}).get("get", {}).get("responses", {}).get("200", {})
-    return [kind for kind, media in REPORTS.items() if media in told.get("content", {})]
 
 
 async def _choices(api: Api) -> dict[str, list[dict[str, Any]]]:

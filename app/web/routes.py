@@ -5,11 +5,11 @@ from __future__ import annotations
 import asyncio
 from typing import Annotated, Any
 
-from fastapi import APIRouter, HTTPException, Path, Query, Request, Response
+from fastapi import APIRouter, Path, Query, Request, Response
 
 from app.web import plotly
 from app.web.api import Api, TheApi
-from app.web.design_page import REPORTS, design_page, revision_page
+from app.web.design_page import design_page, revision_page
 from app.web.gallery import offered
 from app.web.model_page import model_page
 from app.web.rendering import go, show, units_of
@@ -19,7 +19,6 @@ router = APIRouter(include_in_schema=False)
 
 Id = Annotated[str, Path(max_length=64, pattern=r"^[A-Za-z0-9_]+$")]
 Number = Annotated[int, Path(ge=1, le=10**9)]
-KEPT = ("Content-Type", "Content-Disposition", "Content-Security-Policy", "ETag")  # of a report's headers
 ON_HOME = 6  # designs, with pictures
 
 
@@ -105,23 +104,9 @@ async def explanation(
 
 
 @router.get("/designs/{id}/report")
-async def report(id: Id, request: Request, api: TheApi) -> Response:
-    """The report, to be read in the browser."""
-    return await report_as(id, "html", request, api)
-
-
-@router.get("/designs/{id}/report.{kind}")
-async def report_as(
-    id: Id, kind: Annotated[str, Path(max_length=8)], request: Request, api: TheApi
-) -> Response:
-    """The report as the interface answers it, in a kind that the address names: a link sends no Accept."""
-    if kind not in REPORTS:
-        raise HTTPException(404, f"there is no report.{kind}; there are {', '.join(REPORTS)}")
-    headers = {"Accept": REPORTS[kind], "Prefer": "wait=60"}
-    query = {"units": units_of(request)}
-    made = await api.send("GET", f"/designs/{id}/report", headers=headers, params=query)
-    kept = {name: made.headers[name] for name in KEPT if name in made.headers}
-    return Response(made.content, made.status_code, headers=kept)
+async def report(id: Id, request: Request) -> Response:
+    """The report, as the interface answers it to be read."""
+    return go(f"/api/v1/designs/{id}/report.html?units={units_of(request)}")
 
 
 @router.get("/static/plotly.min.js")

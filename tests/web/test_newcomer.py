@@ -1,6 +1,8 @@
 """What a newcomer does: from the gallery to a STEP file, in a browser."""
 
 import re
+import shutil
+import subprocess
 from math import hypot
 
 from playwright.sync_api import expect
@@ -11,6 +13,7 @@ from cad.step import read_step
 from cad.surfaces import Z
 
 PART = "document.querySelector('.solid .js-plotly-plot')"
+PDF_TO_TEXT = shutil.which("pdftotext")
 PATIENCE = 60_000  # for a part to be built [ms]
 
 
@@ -78,7 +81,21 @@ def test_the_paper_in_a_browser(watched, tmp_path):
     download.value.save_as(tmp_path / "bearing.step")
     step = (tmp_path / "bearing.step").read_bytes()
     assert step_diameters(step) >= {48.0, 88.0}
+
+    paper = page.request.get(watched.url + page.get_by_role("link", name="PDF").get_attribute("href")).body()
+    for told in ("25 kN", "= scale * 48 mm", "Minimum film thickness", "= 47.945 mm", "= 3.2449 µm"):
+        assert told in words_of(paper)
+    page.get_by_role("link", name="Open the report").click()
+    expect(page.locator("body")).to_contain_text("3.2449")
+    expect(page.locator("math").first).to_be_visible()
     assert [fault for fault in watched.faults() if "422" not in str(fault)] == []
+
+
+def words_of(pdf: bytes) -> str:
+    """The text of a PDF, its blanks made one each."""
+    assert PDF_TO_TEXT, "needs Debian's package poppler-utils: apt-get install poppler-utils"
+    told = subprocess.run([PDF_TO_TEXT, "-layout", "-", "-"], input=pdf, capture_output=True, check=True)
+    return " ".join(told.stdout.decode().split())
 
 
 def step_diameters(step: bytes) -> set[float]:
