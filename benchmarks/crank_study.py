@@ -1,0 +1,259 @@
+"""The paper's study of a crankshaft as a design: four changes, each regenerated, its stiffness compared.
+
+    python -m benchmarks.crank_study
+
+Punewale, Khobragade, Chaudhari and Khandre (2015) change crankpin, journals, throw and the face inclination
+of the webs of a single-cylinder crankshaft. Its dimensions are not printed; this one is the project's own.
+Every number comes from one design on a running service: the solid is regenerated and measured, its STEP file
+is analysed by finite elements, and inertia and stiffness go back into `torsional_vibration`. Writes
+docs/crank_study.md and docs/pictures/crank_study.png.
+"""
+
+from __future__ import annotations
+
+import io
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import pi
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+from PIL import Image
+
+from app.client import Client, Design
+from app.demo import service
+from cad.analysis.elastic import System, respond
+from cad.analysis.mesh import Fineness, make_grid
+from cad.analysis.modes import torsional_mode
+from cad.analysis.solid import read_solid
+from cad.model import Shaft
+
+DOCS = Path(__file__).parents[1] / "docs"
+PAGE, PICTURE = DOCS / "crank_study.md", DOCS / "pictures" / "crank_study.png"
+
+FINENESS, ORDER = Fineness(0.8, 1.0, pi / 3), 3
+WIDTH = 118  # of a line of the page
+SHEAR = 210 / 2.6  # [GPa]
+HEADS = (
+    "change", "K", "paper: K", "mass", "K per mass", "√(K/I)", "torsional mode", "paper: frequency",
+    "closed form: K",
+)  # fmt: skip
+CLOSED = (
+    "journal_length", "journal_diameter", "web_thickness", "web_width", "pin_length", "pin_diameter", "throw",
+)  # fmt: skip
+
+SLENDER = {
+    "journal_diameter": "44 mm",
+    "journal_length": "36 mm",
+    "pin_diameter": "46 mm",
+    "pin_length": "34 mm",
+    "web_thickness": "8 mm",
+    "web_width": "56 mm",
+    "web_shape": "obround",
+    "throw": "80 mm",
+    "fillet": "2 mm",
+    "counterweight_radius": "60 mm",
+    "counterweight_angle": "120 deg",
+    "face_inclination": "4.5 deg",
+    "front_length": "15 mm",
+    "front_diameter": "40 mm",
+    "rear_length": "12 mm",
+    "rear_diameter": "52 mm",
+}
+STOUT = {"web_thickness": "18 mm", "face_inclination": "9 deg"}
+"""The same shaft with webs of a usual thickness."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """One change of the paper, and what it did there [%]."""
+
+    words: str
+    parameters: Mapping[str, str]
+    stiffness: float
+    frequency: float
+
+
+CHANGES = (
+    Change("crankpin diameter +10 %", {"pin_diameter": "50.6 mm"}, 0.495, 4.74),
+    Change("journal diameter +10 %", {"journal_diameter": "48.4 mm"}, 5.633, 4.53),
+    Change("throw +1.5 mm", {"throw": "81.5 mm"}, -0.012, -0.32),
+    Change("material on the face inclination", {"face_inclination": "1.4 deg"}, 15.209, 2.42),
+)
+STOUT_CHANGES = (*(c.parameters for c in CHANGES[:3]), {"face_inclination": "5.95 deg"})
+
+
+@dataclass(frozen=True)
+class State:
+    """A shaft as one revision of the design has it."""
+
+    stiffness: float  # [N m/rad], by finite elements
+    finer: float  # the same by elements of one order more
+    frequency: float  # [Hz], of stiffness and measured inertia, as the paper takes it
+    mode: float  # [Hz], the first torsional mode of the solid by finite elements
+    recommended: float  # [N m/rad], of the throw alone in closed form
+    mass: float  # [kg]
+    inertia: float  # [kg m²], about the shaft's axis
+
+
+def document(parameters: Mapping[str, str]) -> dict[str, Any]:
+    """The design: the shaft, its frequency, and its throw in closed form."""
+    dimensions = [name for name in CLOSED if name in parameters]
+    throw: dict[str, Any] = {name: f"= crank.{name}" for name in dimensions}
+    train = {
+        "inertias": ["= crank.polar_inertia"],
+        "stiffnesses": ["= stiffness"],
+        "ends": "fixed_free",
+    }
+    steps = {
+        "vibration": {"template": "torsional_vibration", "version": 1, "inputs": train},
+        "throw": {
+            "template": "crank_stiffness",
+            "version": 1,
+            "inputs": {**throw, "shear_modulus": {"value": SHEAR, "unit": "GPa"}},
+        },
+    }
+    crank = {"id": "crankshaft", "version": 1, "parameters": dict(parameters)}
+    unknown = {"stiffness": "1 N*m/rad"}  # until the solid is analysed
+    return {"name": "the paper's study", "parameters": unknown, "steps": steps, "models": {"crank": crank}}
+
+
+def states(client: Client, base: Mapping[str, str], changes: Sequence[Mapping[str, str]]) -> list[State]:
+    """The shaft and its changes, each a revision of one design."""
+    design = client.create(document(base))
+    found = []
+    for change in ({}, *changes):
+        parameters = {**base, **change}
+        design = client.change(
+            design, {"models": {"crank": {"parameters": parameters}}, "note": told(change)}
+        )
+        stiffness, finer, mode = analysed(client, design)
+        design = client.change(design, {"parameters": {"stiffness": {"value": stiffness, "unit": "N*m/rad"}}})
+        found.append(state(client, design, finer, mode))
+        print(told(change), found[-1], flush=True)
+    return found
+
+
+def told(change: Mapping[str, str]) -> str:
+    """A change as the note of its revision."""
+    return ", ".join(f"{name} {value}" for name, value in change.items()) or "as drawn"
+
+
+def analysed(client: Client, design: Design) -> tuple[float, float, float]:
+    """Stiffness twice [N m/rad], first torsional mode [Hz]; held at the front end, free at the rear.
+
+    The second stiffness is that by elements of one order more.
+    """
+    box = client.measurements(design.id)["crank"]["bounding_box"]
+    shaft = Shaft(box["low"]["value"][2], box["high"]["value"][2])
+    grid = make_grid(read_solid(client.model(design.id, "step"), shaft), FINENESS)
+    coarse, fine = (
+        respond(System(grid, o, shaft.material, "torsion"), "free_end") for o in (ORDER, ORDER + 1)
+    )
+    return 1e-3 / coarse.compliance, 1e-3 / fine.compliance, torsional_mode(coarse).frequency
+
+
+def state(client: Client, design: Design, finer: float, mode: float) -> State:
+    """What the design's newest revision has calculated and measured."""
+    revision = client.revision(design.id, design.revision)
+    vibration, throw = revision["steps"]["vibration"], revision["steps"]["throw"]
+    measured = client.measurements(design.id)["crank"]
+    return State(
+        stiffness=vibration["inputs"]["stiffnesses"]["value"][0],
+        frequency=vibration["outputs"]["natural_frequencies"]["value"][0],
+        finer=finer,
+        mode=mode,
+        recommended=throw["outputs"]["recommended_stiffness"]["value"],
+        mass=measured["mass"]["value"],
+        inertia=vibration["inputs"]["inertias"]["value"][0],
+    )
+
+
+def main() -> None:
+    """Run the study on a service of its own and write page and picture."""
+    mpl.use("Agg")
+    with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as client:
+        slender = states(client, SLENDER, [change.parameters for change in CHANGES])
+        picture = client.model(client.designs()[0]["id"], "png")
+        stout = states(client, {**SLENDER, **STOUT}, STOUT_CHANGES)
+    draw(slender, stout, picture)
+    PAGE.write_text(page(slender, stout), encoding="utf-8")
+
+
+def gains(found: Sequence[State], name: str) -> list[float]:
+    """By how much [%] each change has changed something."""
+    base, *changed = (getattr(state, name) for state in found)
+    return [100 * (value / base - 1) for value in changed]
+
+
+def draw(slender: Sequence[State], stout: Sequence[State], picture: bytes) -> None:
+    """The stiffness gained by each change, ours beside the paper's, and the shaft."""
+    figure, (shown, axes) = plt.subplots(1, 2, figsize=(10, 4), width_ratios=[0.7, 1], layout="constrained")
+    shown.imshow(Image.open(io.BytesIO(picture)))
+    shown.axis("off")
+    shown.set_title("the shaft, material added on its webs' faces", fontsize=9)
+    rows = {
+        "slender webs": gains(slender, "stiffness"),
+        "stout webs": gains(stout, "stiffness"),
+        "Punewale et al. 2015": [change.stiffness for change in CHANGES],
+    }
+    for i, (label, values) in enumerate(rows.items()):
+        bars = axes.barh([4 * place + i for place in range(len(values))], values, label=label)
+        axes.bar_label(bars, fmt="%+.2f", padding=3, fontsize=8)
+    axes.set_yticks([4 * place + 1 for place in range(len(CHANGES))], [change.words for change in CHANGES])
+    axes.invert_yaxis()
+    axes.margins(x=0.15)
+    axes.axvline(0, color="black", linewidth=0.8)
+    axes.set_xlabel("change of torsional stiffness [%]")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.3, -0.16), ncols=3, frameon=False)
+    figure.savefig(PICTURE, dpi=100)
+    plt.close(figure)
+
+
+def table(found: Sequence[State]) -> str:
+    """One row for each change, ours beside the paper's."""
+    rows = [HEADS, ("---",) + ("---:",) * (len(HEADS) - 1)]
+    columns = [gains(found, name) for name in ("stiffness", "frequency", "mode", "recommended")]
+    for i, change in enumerate(CHANGES):
+        gain, frequency, mode, closed = (column[i] for column in columns)
+        added = found[i + 1].mass - found[0].mass
+        rows.append((
+            change.words, f"{gain:+.2f} %", f"{change.stiffness:+.3f} %", f"{1000 * added:+.0f} g",
+            f"{gain / added:+.0f} %/kg" if gain > 0 else "a loss", f"{frequency:+.2f} %", f"{mode:+.2f} %",
+            f"{change.frequency:+.2f} %", f"{closed:+.2f} %",
+        ))  # fmt: skip
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+
+def line(base: State) -> str:
+    """A shaft in numbers."""
+    return (
+        f"K = {base.stiffness / 1000:.1f} kN m/rad ({100 * (base.finer / base.stiffness - 1):+.2g} % with "
+        f"elements of one order more), I = {1000 * base.inertia:.3f}e-3 kg m², {base.mass:.2f} kg; "
+        f"√(K/I)/2π = {base.frequency:.0f} Hz, first torsional mode {base.mode:.0f} Hz"
+    )
+
+
+def page(slender: Sequence[State], stout: Sequence[State]) -> str:
+    """The page in Markdown, numbers filled in."""
+    text = (Path(__file__).parent / "crank_study.txt").read_text(encoding="utf-8")
+    return text.format(
+        dimensions=fill(f"Dimensions: {listed(SLENDER)}.", WIDTH),
+        slender=fill(f"As drawn: {line(slender[0])}.", WIDTH),
+        slender_table=table(slender),
+        stout=fill(f"As drawn, with {listed(STOUT)}: {line(stout[0])}.", WIDTH),
+        stout_table=table(stout),
+    )
+
+
+def listed(parameters: Mapping[str, str]) -> str:
+    """Parameters in words."""
+    return ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in parameters.items())
+
+
+if __name__ == "__main__":
+    main()
