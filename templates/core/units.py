@@ -56,7 +56,8 @@ class Unit:
 
     def from_si(self, value: Value) -> Value:
         """The value [SI] in this unit."""
-        return ((value - self.offset) if self.offset else value) / self.factor
+        shifted = value - self.offset if self.offset else value
+        return shifted if self.factor == 1 else shifted / self.factor
 
 
 @lru_cache(maxsize=4096)

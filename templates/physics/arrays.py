@@ -41,4 +41,4 @@ def spread(scale: Array, profile: Array) -> Array:
 @units("N", "N", returns="N", latex=r"\max\sqrt{{{0}^2+{1}^2}}")
 def largest_load(x: Array, y: Array) -> Array:
     """The largest size of a load over the cycle [N]."""
-    return np.asarray(np.hypot(x, y).max(axis=-1))[()]
+    return np.asarray(np.sqrt((x * x + y * y).max(axis=-1)))[()]

@@ -53,8 +53,8 @@ def axial_force(m: Array, omega: Array, r: Array, A: Array, motion: Motion, p: A
 @units("N", "kg*m**2", "rad/s", "m", None, returns="N")
 def wall_force_Rao_Singh_1993(K: Array, excess: Array, omega: Array, r: Array, motion: Motion) -> Array:
     """F_41y = −K tan φ + d [N], piston on wall; d = −excess · φ̈/(l cos φ) is the rigid rod's share."""
-    couple = _column(excess * omega**2 / r) * motion.rod_acceleration
-    return -K * motion.tan_phi - couple / motion.q
+    couple = _column(excess * omega**2 / r) * (motion.rod_acceleration / motion.q)
+    return -K * motion.tan_phi - couple
 
 
 @units("kg", "rad/s", "m", "N", None, returns="N")
@@ -92,10 +92,10 @@ def wristpin_load_x(
 @units("kg*m**2", "rad/s", None, returns="N*m")
 def correction_torque(excess: Array, omega: Array, motion: Motion) -> Array:
     """T_c = (m_3 a_g b_g − I_3) φ̈ cos θ/(n cos φ) [N m]: what a rigid rod adds to the torque."""
-    return _column(excess * omega**2) * motion.rod_acceleration * motion.rod_velocity
+    return _column(excess * omega**2) * (motion.rod_acceleration * motion.rod_velocity)
 
 
 @units("N", "m", "kg*m**2", "rad/s", None, returns="N*m")
 def torque_Rao_Singh_1993(K: Array, r: Array, excess: Array, omega: Array, motion: Motion) -> Array:
     """T = K (cos θ + n cos φ) r tan φ + T_c [N m], rod on crank. Erratum: the paper prints n cos θ."""
-    return np.asarray(K * motion.lever * _column(r) + correction_torque(excess, omega, motion))
+    return np.asarray(K * (motion.lever * _column(r)) + correction_torque(excess, omega, motion))
