@@ -1,0 +1,156 @@
+"""Dimensioned drawings of every model: sound DXF, each dimension measures its parameter, and the same as SVG."""
+
+import io
+from math import hypot
+from xml.etree import ElementTree
+
+import ezdxf
+import numpy as np
+import pytest
+from ezdxf.document import Drawing
+
+from cad.drafting.matching import matched
+from cad.drafting.measures import measures
+from cad.drafting.views import hatch, views
+from cad.export import derive
+from cad.header import read_header
+from cad.inspect import bounding_box
+from cad.regenerate import Build, regenerate
+from cad.step import read_step
+from templates.core.units import unit
+
+SHOWN = 0.9  # of the lengths and angles of an example
+
+
+@pytest.fixture(scope="session")
+def dxf(example: Build) -> bytes:
+    return derive(example.step, "dxf")
+
+
+@pytest.fixture
+def drawing(dxf: bytes) -> Drawing:
+    return ezdxf.read(io.StringIO(dxf.decode()))
+
+
+def dimensions(drawing: Drawing) -> dict[str, float]:
+    """What every DIMENSION measures, by the parameter whose name it carries."""
+    return {
+        entity.get_xdata("CRANKWRIGHT")[0].value: float(entity.get_measurement())
+        for entity in drawing.modelspace().query("DIMENSION")
+        if entity.has_xdata("CRANKWRIGHT")
+    }
+
+
+def wanted(text: str) -> float:
+    """A parameter in millimetres or degrees."""
+    value, name = text.split(" ")
+    scale = unit(name)
+    shown = unit("mm" if scale.base == unit("m").base else "deg")
+    return float(shown.from_si(scale.to_si(float(value))))
+
+
+def test_the_file_is_sound(drawing: Drawing) -> None:
+    audit = drawing.audit()
+    assert not audit.errors
+    assert not audit.fixes
+
+
+def test_it_is_in_millimetres_on_layers(drawing: Drawing) -> None:
+    assert drawing.header["$INSUNITS"] == 4
+    used = {entity.dxf.layer for entity in drawing.modelspace()}
+    assert {"OUTLINE", "DIMENSIONS", "FRAME", "TEXT", "CENTRE", "HATCH"} <= used
+    assert used <= {layer.dxf.name for layer in drawing.layers}
+
+
+def test_every_dimension_measures_its_parameter(example: Build, drawing: Drawing) -> None:
+    header = read_header(example.step)
+    assert header is not None
+    sizes = {n: text for n, text in header.parameters.items() if " " in text and wanted(text) != 0}
+    found = dimensions(drawing)
+    assert found.keys() <= sizes.keys()
+    assert len(found) >= SHOWN * len(sizes), sorted(sizes.keys() - found.keys())
+    for name, value in found.items():
+        assert value == pytest.approx(wanted(sizes[name]), rel=1e-6), name
+
+
+def test_dimensions_are_drawn_with_their_numbers(drawing: Drawing) -> None:
+    for entity in drawing.modelspace().query("DIMENSION"):
+        told = "".join(part.plain_text() for part in entity.virtual_entities() if part.dxftype() == "MTEXT")
+        number = told.strip("()°").rpartition("×")[2].lstrip("ØR")
+        assert float(number) == pytest.approx(entity.get_measurement(), abs=5.1e-4), told
+
+
+def test_views_are_true_to_the_part(example: Build) -> None:
+    bodies = read_step(example.step)
+    section, end = views(bodies)
+    box = bounding_box(bodies)
+    (left, _), (right, _) = section.box
+    assert (left, right) == pytest.approx((box.low[2], box.high[2]), abs=1e-3)
+    (left, low), (right, high) = end.box
+    sizes = sorted(high - low for low, high in zip(box.low[:2], box.high[:2], strict=True))
+    assert sorted((right - left, high - low)) == pytest.approx(sizes, rel=2e-3)
+
+
+def test_title_block_names_model_build_and_scale(example: Build, drawing: Drawing) -> None:
+    texts = [entity.dxf.text for entity in drawing.modelspace().query("TEXT")]
+    assert f"{example.model.replace('_', ' ')}, version {example.version}" in texts
+    assert f"build {example.key[:32]}" in texts
+    assert any(text.startswith("scale ") for text in texts)
+
+
+def test_everything_lies_within_the_sheet(drawing: Drawing) -> None:
+    sheet = drawing.modelspace().query('LWPOLYLINE[layer=="FRAME"]').first
+    corners = np.array(sheet.get_points("xy"))
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    for entity in drawing.modelspace().query("LWPOLYLINE"):
+        points = np.array(entity.get_points("xy"))
+        assert (points >= low - 1e-9).all()
+        assert (points <= high + 1e-9).all()
+
+
+def test_equal_files_from_equal_steps(example: Build, dxf: bytes) -> None:
+    assert derive(example.step, "dxf") == dxf
+
+
+def test_svg_shows_the_same(example: Build, drawing: Drawing) -> None:
+    root = ElementTree.fromstring(derive(example.step, "drawing.svg"))
+    assert root.attrib["width"] == "420mm"
+    texts = [node.text for node in root.iter("{http://www.w3.org/2000/svg}text")]
+    words = [entity.dxf.text for entity in drawing.modelspace().query("TEXT")]
+    assert set(words) <= {text or "" for text in texts}
+    count = len(drawing.modelspace().query("DIMENSION"))
+    assert len(texts) >= len(words) + count
+    assert not [name for node in root.iter() for name in node.attrib if name in ("style", "onload", "href")]
+
+
+def test_a_size_is_matched_by_value_and_by_sort() -> None:
+    build = regenerate("plain_bearing", 1, {"inner_diameter": 0.04, "width": 0.04, "shell": "full"})
+    bodies = read_step(build.step)
+    found, unseen = matched(
+        {"width": "40 mm", "inner_diameter": "40 mm", "wall": "7 mm"}, measures(bodies, *views(bodies))
+    )
+    sorts = {one.name: one.measure.sort for one in found}
+    assert sorts == {"width": "length", "inner_diameter": "diameter"}
+    assert unseen == ["wall"]
+
+
+def test_a_part_of_nobody_gets_a_drawing_with_reference_lengths() -> None:
+    build = regenerate("plain_bearing", 1, {"inner_diameter": 0.04})
+    foreign = build.step.replace(b"Crankwright plain_bearing", b"Somebody plain_bearing")
+    assert read_header(foreign) is None
+    drawing = ezdxf.read(io.StringIO(derive(foreign, "dxf").decode()))
+    assert not drawing.audit().errors
+    assert len(drawing.modelspace().query("DIMENSION")) >= 1
+    assert dimensions(drawing) == {}
+
+
+def test_hatch_stays_within_its_outline() -> None:
+    square = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.0)]
+    hole = [(4.0, 4.0), (6.0, 4.0), (6.0, 6.0), (4.0, 6.0), (4.0, 4.0)]
+    lines = [*hatch([square, hole], 0.01)]
+    length = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in lines)
+    assert length * 0.01 == pytest.approx(96.0, rel=1e-3)  # the area
+    for a, b in lines:
+        middle = (a[0] + b[0]) / 2, (a[1] + b[1]) / 2
+        assert 0 <= min(middle) <= max(middle) <= 10
+        assert abs((b[1] - a[1]) - (b[0] - a[0])) < 1e-9  # at 45°
