@@ -26,6 +26,7 @@ RESULTS = Path("benchmarks/results/engine.json")
 PICTURE = Path("docs/pictures/engine_loads.png")
 CASE = json.loads(Path("tests/references/nine_cylinder_set.json").read_text(encoding="utf-8"))
 CASES, REPEATS = 1000, 40
+SHOWN_AT = "6000 rpm"  # of the picture: fast enough for inertia to be seen beside the gas
 GREATEST = ["crankpin_load_max", "main_load_max", "wristpin_load_max", "wall_force_max", "mean_torque"]
 FIRED = {"bore": "0.25 m", "gas_cycle": "four_stroke", "suction_pressure": "1 bar", "compression_ratio": 12,
          "combustion_pressure": "80 bar", "cutoff": 1.3, "crankcase_pressure": "1 bar"}  # fmt: skip
@@ -93,16 +94,18 @@ def nine_cylinders() -> dict[str, dict[str, Any]]:
 def draw() -> None:
     """Polar diagrams of one cylinder, and the torque of one and of four."""
     mpl.use("Agg")
-    raw = {**BearingLoad.example, "crank_angle_step": "1 deg"}
+    raw = {**BearingLoad.example, "speed": SHOWN_AT, "crank_angle_step": "1 deg"}
     out = {name: answer.value for name, answer in evaluate(BearingLoad, raw).outputs.items()}
-    figure, (polar, torque) = plt.subplots(1, 2, figsize=(9, 4.2), layout="constrained")
+    figure, (polar, torque) = plt.subplots(
+        1, 2, figsize=(9, 4.6), layout="constrained", width_ratios=(1, 1.4)
+    )
     for name, colour in (("crankpin", "tab:blue"), ("main", "tab:orange"), ("wristpin", "tab:green")):
         x, y = out[f"{name}_load_x"] / 1e3, out[f"{name}_load_y"] / 1e3
         polar.plot([*y, y[0]], [*x, x[0]], color=colour, lw=1, label=name)
-    polar.set(xlabel="y [kN]", ylabel="x, to the head [kN]", title="loads over the cycle", aspect="equal")
+    polar.set(xlabel="y [kN]", ylabel="x, to the head [kN]", title=f"loads at {SHOWN_AT}", aspect="equal")
     polar.axhline(0, color="0.8", lw=0.6, zorder=0)
     polar.axvline(0, color="0.8", lw=0.6, zorder=0)
-    polar.legend(loc="upper right", frameon=False)
+    polar.legend(loc="center left", bbox_to_anchor=(1, 0.8), frameon=False)
     shared = {name: value for name, value in raw.items() if name in Engine.inputs}
     four = {"cylinders": 4, "firing_order": [1, 3, 4, 2],
             "cylinder_positions": {"value": [0, 0.1, 0.2, 0.3], "unit": "m"}}  # fmt: skip
@@ -111,7 +114,7 @@ def draw() -> None:
     torque.plot(out["crank_angle"], total["torque"].value, lw=1, label="four, 1-3-4-2")
     torque.axhline(total["mean_torque"].value, color="0.5", lw=0.8, ls="--", label="mean of four")
     torque.set(xlabel="crank angle [°]", ylabel="torque [N m]", title="torque", xticks=range(0, 721, 180))
-    torque.legend(frameon=False)
+    torque.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3, frameon=False)
     figure.savefig(PICTURE, dpi=110)
 
 
