@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import tempfile
 import time
@@ -27,10 +28,17 @@ def examples(names: tuple[str, ...]) -> Iterator[tuple[str, list[str], Client]]:
     with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as client:
         with httpx.Client(base_url=client.url, timeout=60, trust_env=False) as http:
             made = [http.post("/designs", data={"example": name}).headers["location"] for name in names]
-        for page in made:
-            while client.design(page.rpartition("/")[2]).state == "regenerating":
-                time.sleep(0.2)
+            for page in made:
+                while client.design(page.rpartition("/")[2]).state == "regenerating":
+                    time.sleep(0.2)
+            _draw_thumbnails(http)
         yield client.url, made, client
+
+
+def _draw_thumbnails(http: httpx.Client) -> None:
+    """Ask for every picture of the first page once, so that a visitor need not wait for its making."""
+    for address in re.findall(r'<img src="([^"]+)"', http.get("/").text):
+        http.get(address, headers={"Prefer": "wait=60"}).raise_for_status()
 
 
 @contextmanager

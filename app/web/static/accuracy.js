@@ -20,7 +20,7 @@ export async function drawAccuracy(place) {
   const names = levels.map(([level, { cost }]) => ({ x: Math.log10(cost.single * 1000), y: 0, yref: "paper", yanchor: "bottom", text: level.replaceAll("_", " "), showarrow: false, textangle: -90, font: { size: 11 } }));
   await draw(place.querySelector(".drawing"), lines, {
     height: 340, annotations: names, xaxis: { type: "log", title: { text: "time of one point [ms]" } },
-    yaxis: { type: "log", title: { text: "median relative error" }, exponentformat: "e", dtick: 1 },
+    yaxis: { type: "log", title: { text: "median relative error" }, minexponent: 2, dtick: 1 },
   });
 }
 

@@ -19,7 +19,7 @@ export const COLOURS = ["#1b4f7f", "#b5651d", "#1d6b3a", "#8e2f6b", "#5a5f66", "
 const FONT = { family: "Liberation Sans, Segoe UI, Arial, sans-serif", size: 12, color: "#1b2733" };
 
 export function layout(more = {}) {
-  const axis = { gridcolor: "#e3e8ed", zerolinecolor: "#9aa7b3", automargin: true, linecolor: "#9aa7b3" };
+  const axis = { gridcolor: "#e3e8ed", zerolinecolor: "#9aa7b3", automargin: true, linecolor: "#9aa7b3", exponentformat: "e", minexponent: 5 };
   return {
     font: FONT, paper_bgcolor: "#fff", plot_bgcolor: "#fff", height: 300, colorway: COLOURS,
     margin: { l: 55, r: 15, t: 10, b: 45 }, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
