@@ -66,7 +66,9 @@ def _pressure(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
     speed = "hydrodynamic_speed" if "hydrodynamic_speed" in values else "speed"
     if _single(values, *FILM, speed):
         yield Picture(
-            "pressure", "Film pressure, unrolled", {"inputs": {**{n: n for n in FILM}, "speed": speed}}
+            "pressure",
+            "Film pressure: unrolled, at mid-width, as a surface",
+            {"inputs": {**{n: n for n in FILM}, "speed": speed}},
         )
 
 

@@ -17,13 +17,17 @@ const typedOf = ({ value, unit }) => ({ value, unit });
 export async function drawPressure(place, picture, values) {
   const field = await pressureOf(picture, values, units());
   const x = field.angle.value, y = field.place.value, z = field.pressure.value, shown = unit(field.pressure.unit);
-  if (place.children.length !== 3) place.replaceChildren(pane(), pane(), pane());
-  const [map, legend, surface] = place.children;
+  if (place.children.length !== 4) place.replaceChildren(pane(), pane(), pane(), pane());
+  const [map, legend, middle, surface] = place.children;
   const colours = { colorscale: "Viridis", showscale: false };
   legend.replaceChildren(scale(0, field.maximum_pressure.value, shown));
   await draw(map, [{ type: "contour", x, y, z, ...colours, contours: { showlines: false }, ncontours: 24 }], {
     height: 230, margin: { l: 55, r: 10, t: 10, b: 45 },
     xaxis: { title: { text: "angle from the narrowest gap, with the rotation [°]" }, dtick: 60 }, yaxis: { title: { text: `along the shaft [${unit(field.place.unit)}]` } },
+  });
+  await draw(middle, [{ x, y: z[(z.length - 1) / 2], mode: "lines", fill: "tozeroy" }], {
+    height: 200, margin: { l: 55, r: 10, t: 10, b: 45 },
+    xaxis: { title: { text: "angle at mid-width [°]" }, dtick: 60 }, yaxis: { title: { text: `p [${shown}]` } },
   });
   await draw(surface, [{ type: "surface", x, y, z, ...colours }], {
     height: 320, margin: { l: 0, r: 0, t: 0, b: 0 },

@@ -64,7 +64,9 @@ export async function paint(place, picture, values, wanted) {
   const start = Math.PI / 2 + (field.attitude_angle.value * Math.PI) / 180;
   const angles = field.angle.value.map((angle) => start + (angle * Math.PI) / 180);
   const rows = field.place.value, least = LEAST * field.maximum_pressure.value;
-  const on = (value) => rows.map((z, row) => angles.map((angle, n) => (field.pressure.value[row][n] < least ? null : value(angle, z))));
+  const lowest = figure.data.reduce((low, { y }) => y.reduce((one, other) => Math.min(one, other), low), Infinity); // of a half shell: 0
+  const isOff = (row, n) => field.pressure.value[row][n] < least || radius * Math.sin(angles[n]) < lowest;
+  const on = (value) => rows.map((z, row) => angles.map((angle, n) => (isOff(row, n) ? null : value(angle, z))));
   const surface = {
     type: "surface", name: "film pressure", surfacecolor: field.pressure.value, colorscale: "Viridis",
     x: on((angle) => radius * Math.cos(angle)), y: on((angle) => radius * Math.sin(angle)), z: on((_, z) => z),
