@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from fastapi import FastAPI
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.gzip import GZipMiddleware
+from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.web import actions, problems, routes
@@ -15,6 +17,17 @@ STATIC = Path(__file__).with_name("static")
 SMALLEST, LEVEL = 1000, 6  # of what is compressed [bytes], and how hard
 PLAIN = ("/events", "/evaluate", ".png", ".step")
 """Ends of paths that are sent as they are: streams, short answers, what is compressed already."""
+
+
+class Files(StaticFiles):
+    """Files that a browser keeps, and asks about before it uses them: after an update it has the new ones."""
+
+    def file_response(self, *given: Any, **named: Any) -> Response:
+        """The file, or that it is still the same."""
+        answer = super().file_response(*given, **named)
+        answer.headers["Cache-Control"] = "no-cache"
+        answer.headers["X-Content-Type-Options"] = "nosniff"
+        return answer
 
 
 class Compression:
@@ -33,6 +46,6 @@ def install(app: FastAPI) -> None:
     """Add the pages; call it after the interface is complete."""
     app.include_router(routes.router)
     app.include_router(actions.router)
-    app.mount("/static", StaticFiles(directory=STATIC), name="static")
+    app.mount("/static", Files(directory=STATIC), name="static")
     problems.install(app)
     app.add_middleware(Compression)

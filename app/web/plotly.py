@@ -3,8 +3,8 @@
 Under the pages' Content-Security-Policy it may add no style element. It looks for two elements by their ids
 first, and adds none where it finds them: `plotly.js-style-global`, whose sheet it fills by calls (a linked
 sheet will do), and one for the maps that it bundles, which no page of ours shows. Pages with plots hold both.
-Colour bars set style attributes when they are drawn again, and so do raised exponents: `static/plots.js` has a
-scale of its own, and axes write 1e-3.
+Colour bars set style attributes when they are drawn again, and so do raised exponents: `static/plots.js` has
+a scale of its own, and axes write 1e-3.
 """
 
 from __future__ import annotations

@@ -159,6 +159,19 @@ def test_display_units_are_kept_and_change_results_only(http):
     assert '<td class="unit">µm</td>' in http.get("/templates/oil_film/1?units=si").text
 
 
+def test_files_of_the_pages_are_asked_about_before_they_are_used_again(http):
+    answer = http.get("/static/design.js")
+    assert answer.headers["cache-control"] == "no-cache"
+    again = http.get("/static/design.js", headers={"If-None-Match": answer.headers["etag"]})
+    assert again.status_code == 304
+    plotly = http.get("/static/plotly.min.js")
+    assert plotly.headers["content-encoding"] == "gzip"
+    assert plotly.text.startswith("/**\n* plotly.js")
+    kept = http.get("/static/plotly.min.js", headers={"If-None-Match": plotly.headers["etag"]})
+    assert kept.status_code == 304
+    assert http.get("/static/%2e%2e/assembly.py").status_code == 404
+
+
 def test_pages_are_compressed_and_streams_are_not(http, paper):
     assert http.get(paper).headers["content-encoding"] == "gzip"
     with http.stream("GET", f"/api/v1{paper}/events") as stream:

@@ -1,6 +1,8 @@
 // How a job goes on: its events in the bar of the page; it can be cancelled there.
 import { call } from "./api.js";
 
+const ENDED = ["done", "failed", "cancelled"];
+
 export function follow(path) {
   const place = document.querySelector("[data-progress]");
   const bar = place.querySelector("progress"), words = place.querySelector("[data-progress-text]");
@@ -22,7 +24,7 @@ export function follow(path) {
       events.close();
       ended();
     };
-    for (const state of ["done", "failed", "cancelled"]) events.addEventListener(state, end);
-    events.onerror = () => call("GET", path).then(({ told }) => ["done", "failed", "cancelled"].includes(told.state) && end());
+    for (const state of ENDED) events.addEventListener(state, end);
+    events.onerror = () => call("GET", path).then(({ told }) => ENDED.includes(told.state) && end(), () => {}); // it tries again
   });
 }
