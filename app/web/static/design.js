@@ -87,11 +87,13 @@ form.querySelector("[data-discard]").addEventListener("click", () => {
 
 form.addEventListener("submit", async (event) => {
   event.preventDefault();
+  const changed = patch();
+  if (Object.keys(changed).length === 0) return (state.textContent = "nothing has changed");
   const note = form.elements.note.value.trim();
   const headers = { "If-Match": `"${revision}"`, Prefer: "respond-async", "Idempotency-Key": onlyOnce() };
   state.textContent = "saving …";
   try {
-    const { status, location: job } = await call("PATCH", api, { ...patch(), ...(note && { note }) }, { headers });
+    const { status, location: job } = await call("PATCH", api, { ...changed, ...(note && { note }) }, { headers });
     draft.forget();
     if (status === 202) await follow(job);
     location.reload();
