@@ -1,4 +1,4 @@
-"""Dimensioned drawings of every model: sound DXF, each dimension measures its parameter, and the same as SVG."""
+"""Drawings of every model: sound DXF, whose dimensions measure the parameters; and the same as SVG."""
 
 import io
 from math import hypot
