@@ -153,9 +153,13 @@ class Client:
         return self._json("GET", f"{BASE}/builds/{key}")
 
     def model(self, id: str, kind: str = "step") -> bytes:
-        """A file of the design's newest good model: step, glb, stl, svg or png."""
+        """A file of the design's newest good model: step, glb, stl, svg, drawing.svg, dxf or png."""
         answer = self._send("GET", f"{BASE}/designs/{id}/model.{kind}", headers={"Prefer": "wait=60"})
         return answer.content
+
+    def report(self, id: str, kind: str = "pdf") -> bytes:
+        """The calculation report of the design's newest revision: pdf or html."""
+        return self._send("GET", f"{BASE}/designs/{id}/report.{kind}").content
 
     def verify(self, step: bytes) -> dict[str, Any]:
         """From which build a STEP file is, and which revisions use it."""

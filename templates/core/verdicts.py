@@ -121,7 +121,7 @@ def _of_rule(template: Template, rule: Requirement) -> Check:
     with np.errstate(all="ignore"):
         truth = np.asarray(rule.function(template))
         inequalities = _applying(_inequalities(_body(rule), _scope(template, rule)))
-        shares = [_share(*_ordered(one)) for one in inequalities]
+        shares = [_share(*_ordered(one)) for one in inequalities if not _of_a_sign(one.node)]
     written = [_written(template, one) for one in inequalities]
     return Check(
         name=", ".join(rule.names),
@@ -243,6 +243,11 @@ def _written(template: Template, side: Side) -> tuple[str, str]:
         return demand, _joined(side, values, r"\cdot ") if all(values.values()) else ""
     except TypeError:  # opaque code: its sentence says what it demands
         return "", ""
+
+
+def _of_a_sign(node: ast.Compare) -> bool:
+    """Whether a side is 0: of such an allowance there is no share."""
+    return any(isinstance(one, ast.Constant) and one.value == 0 for one in (node.left, *node.comparators))
 
 
 def _bare(node: ast.expr) -> bool:

@@ -1,7 +1,7 @@
 """The typed client: what it gives back, and the problems that it raises."""
 
 import pytest
-from serving import free_port, moody
+from serving import free_port, moody, paper
 
 from app.calculations.schemas import OIL_FILM
 from app.client import Client, Problem
@@ -37,6 +37,12 @@ def test_a_design_from_its_creation_to_its_verification(client):
     with pytest.raises(Problem) as refused:
         client.change(design, patch)
     assert refused.value.status == 412
+
+
+def test_a_report(client):
+    design = client.create(paper(name="to be signed"))
+    assert client.report(design.id).startswith(b"%PDF-")
+    assert b"to be signed" in client.report(design.id, "html")
 
 
 def test_a_repeat_under_one_key_is_one_design(client):

@@ -38,6 +38,11 @@ class Beam(Template):
         """A beam of any width is short, or high."""
         return (self.s <= 200e-3) | (self.h >= self.s / 10)
 
+    @require("height", "width", remedy="make it higher")
+    def not_flat(self) -> Truth:
+        """The height exceeds the width, or equals it."""
+        return self.h - self.b >= 0
+
     @formula("mm**2", "area", symbol="A", lt=1e5)
     def A(self) -> Array:
         return self.b * self.h
@@ -60,6 +65,12 @@ def test_a_sign_is_no_check_and_a_temperature_uses_no_share():
     assert ("domain", "width") not in found
     assert found["domain", "temperature"].used is None
     assert found["domain", "temperature"].holds
+
+
+def test_of_a_sign_no_share_is_used():
+    check = told()["rule", "The height exceeds the width, or equals it"]
+    assert check.used is None
+    assert check.demand == r"h-b\ge 0"
 
 
 def test_a_published_range_that_is_left_does_not_hold():
