@@ -43,6 +43,7 @@ from app.storage.database import Database
 from app.storage.folder import DataFolder
 from app.storage.migrations import migrate
 from app.web import assembly as pages
+from app.workers.base import Limits
 from app.workers.local import LocalProcesses
 from cad.catalogue import models as find_models
 
@@ -139,7 +140,8 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     app.state.designs = Designs(database, queue, catalogues)
     app.state.models = Models(database, store, queue, catalogues.models)
     app.state.reports = Reports(database, store, app.state.models, catalogues)
-    app.state.press = Press(worker)
+    limits = Limits(settings.job_deadline, settings.job_memory_mb)
+    app.state.press = Press(worker, limits, settings.workers)
 
 
 def _too_large(told: str) -> Response:

@@ -18,6 +18,7 @@ from starlette.exceptions import HTTPException
 from app.designs import errors as designs
 from app.http import BodyTooLarge, NotCsv, NotJson, PreconditionRequired, TooIntricate, TooManyValues
 from app.jobs import errors as jobs
+from app.reports.errors import Unprintable
 from app.storage import errors as storage
 from app.workers import errors as workers
 from cad.errors import GeometryError, UnreadableStep
@@ -60,6 +61,7 @@ TABLE: dict[type[Exception], Kind] = {
     jobs.JobNotFound: Kind("no-such-job", 404, "No such job", "GET /api/v1/jobs lists them"),
     jobs.JobFinished: Kind("job-finished", 409, "The job has ended", "nothing is left to cancel"),
     jobs.QueueFull: Kind("queue-full", 429, "Too much is waiting", "retry after the time in Retry-After"),
+    Unprintable: Kind("unprintable", 422, "The report is too long for paper", "ask for text/html"),
     storage.ArtifactMissing: Kind(
         "no-such-artifact", 404, "No such artifact", "take the hash from a revision"
     ),

@@ -6,27 +6,31 @@ from collections.abc import Mapping
 from threading import BoundedSemaphore
 from typing import Any
 
+from app.reports.errors import Unprintable
 from app.reports.typesetting import Pictures, typeset
 from app.workers.base import Limits, Worker
-
-AT_ONCE = 2  # reports that are typeset at the same time; others wait
-LIMITS = Limits(deadline=60.0, memory_mb=1024)
+from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 
 
 class Press:
-    """Typesets reports."""
+    """Typesets reports, `at_once` at the same time; others wait."""
 
-    def __init__(self, worker: Worker) -> None:
-        self._worker = worker
-        self._free = BoundedSemaphore(AT_ONCE)
+    def __init__(self, worker: Worker, limits: Limits, at_once: int) -> None:
+        self._worker, self._limits = worker, limits
+        self._free = BoundedSemaphore(at_once)
 
     def print(self, report: Mapping[str, Any], pictures: Pictures) -> bytes:
         """A report as PDF; equal reports give equal bytes. It waits, so call it in a thread.
 
         Raises
         ------
-        DeadlineExceeded, MemoryExceeded, JobCrashed
-            If the typesetter was stopped.
+        Unprintable
+            If the typesetter had to be stopped, or stopped for want of memory.
         """
         with self._free:
-            return self._worker.run(typeset, report, pictures, limits=LIMITS)
+            try:
+                return self._worker.run(typeset, report, pictures, limits=self._limits)
+            except (DeadlineExceeded, MemoryExceeded, JobCrashed) as error:
+                formulas = sum(len(step["formulas"]) for step in report["steps"])
+                told = f"with {formulas} formulas it takes more time or memory than a job may have"
+                raise Unprintable(f"this report is too long for paper: {told} ({error})") from error

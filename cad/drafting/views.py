@@ -24,8 +24,9 @@ from cad.surfaces import X, Y, Z
 Point = tuple[float, float]
 Polyline = list[Point]
 
+_DRAWN = 100.0  # [mm], the size at which edges are hidden: of a part of 5 m the kernel takes 25 times as long
 _TURN = 0.05  # [rad] between two pieces of a curve
-_CLEAR = 1e-6  # [mm]
+_CLEAR = 1e-5  # [mm]; boxes of the kernel are good to some 1e-7
 
 
 @dataclass(frozen=True)
@@ -106,7 +107,24 @@ def _upright(bodies: Sequence[Body]) -> Vector:
         placed = (body.shape.moved(place) for body in bodies for place in body.places)
         return sum(face.Area() for shape in placed for face in _cut(shape, normal))
 
-    return max((Y, X), key=lambda up: (held(up.cross(Z)), round(area(up.cross(Z)), 6)))
+    def parts(normal: Vector) -> bool:
+        """Whether there is material on both sides: a half shell ends in its joint."""
+        sides = [_sides(body.shape.moved(place), normal) for body in bodies for place in body.places]
+        return min(low for low, _ in sides) < -_CLEAR and max(high for _, high in sides) > _CLEAR
+
+    def worth(up: Vector) -> tuple[bool, int, float]:
+        normal = up.cross(Z)
+        return parts(normal), held(normal), round(area(normal), 6)
+
+    return max((Y, X), key=worth)
+
+
+def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
+    """How far a shape reaches against a normal along an axis, and with it."""
+    box = shape.BoundingBox()
+    corners = Vector(box.xmin, box.ymin, box.zmin), Vector(box.xmax, box.ymax, box.zmax)
+    low, high = sorted(corner.dot(normal) for corner in corners)
+    return low, high
 
 
 def _section(shapes: Sequence[Shape], parts: Sequence[int], frame: Frame) -> View:
@@ -116,7 +134,7 @@ def _section(shapes: Sequence[Shape], parts: Sequence[int], frame: Frame) -> Vie
     ]
     faces = [face for _, face in found]
     behind = [half for shape in shapes for half in _behind(shape, frame.towards)]
-    view = _projected(behind, frame)
+    view = _projected(behind or shapes, frame)  # a part beside the plane is seen whole
     outlines = [Cut(part, [_polyline(wire.Edges(), frame) for wire in _wires(face)]) for part, face in found]
     edges = [edge for face in faces for edge in face.Edges()]
     straight = [
@@ -155,14 +173,16 @@ def _projected(shapes: Sequence[Shape], frame: Frame) -> View:
     """The edges of shapes as they are seen, with those that are hidden."""
     toward, right = frame.towards, frame.right
     eye = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*toward.toTuple()), gp_Dir(*right.toTuple()))
+    whole = Compound.makeCompound(shapes)
+    shrunk = _DRAWN / whole.BoundingBox().DiagonalLength
     algorithm = HLRBRep_Algo()
-    algorithm.Add(Compound.makeCompound(shapes).wrapped)
+    algorithm.Add(whole.scale(shrunk).wrapped)
     algorithm.Projector(HLRAlgo_Projector(eye))
     algorithm.Update()
     algorithm.Hide()
     found = HLRBRep_HLRToShape(algorithm)
     visible, smooth, hidden = (
-        [[(x, -y) for x, y in line] for line in lines_of(some)]
+        [[(x / shrunk, -y / shrunk) for x, y in line] for line in lines_of(some)]
         for some in (
             (found.VCompound(), found.OutLineVCompound()),
             (found.Rg1LineVCompound(),),

@@ -11,6 +11,7 @@ from serving import API, created, moody, paper, patched, problem
 
 from app.designs.schemas import PAPER
 from app.web.rendering import POLICY
+from app.workers.errors import DeadlineExceeded
 
 DESIGNS = f"{API}/designs"
 HOSTILE = '#import "@preview/x:1.0.0": * ] $ \\ #read("/etc/passwd") <script>alert(1)</script> 😀 שלום "'
@@ -209,6 +210,18 @@ class TestWhatUsersWrite:
         assert "<script>" in text
         assert "root:" not in text
         assert LONG in text.replace(" ", "")
+
+
+class TestPaper:
+    def test_a_report_that_takes_too_long_is_refused_with_a_remedy(self, http, served, bearing, monkeypatch):
+        class Slow:
+            def run(self, function, *args, limits):
+                raise DeadlineExceeded(limits.deadline)
+
+        monkeypatch.setattr(served.app.state.press, "_worker", Slow())
+        answer = http.get(f"{DESIGNS}/{bearing['id']}/report.pdf")
+        assert "14 formulas" in problem(answer, 422, "unprintable")["detail"]
+        assert http.get(f"{DESIGNS}/{bearing['id']}/report.html").status_code == 200
 
 
 class TestStates:

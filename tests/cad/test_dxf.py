@@ -134,6 +134,26 @@ def test_a_size_is_matched_by_value_and_by_sort() -> None:
     assert unseen == ["wall"]
 
 
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        {"inner_diameter": 0.05, "oil_hole_diameter": 0.0},
+        {"inner_diameter": 0.05, "oil_hole_diameter": 0.0, "oil_groove_width": 0.0, "oil_groove_depth": 0.0},
+        {"inner_diameter": 0.05, "oil_groove_width": 0.0, "shell": "full"},
+        {"inner_diameter": 0.001},
+        {"inner_diameter": 5.0},
+    ],
+)
+def test_shells_of_all_kinds_and_sizes(parameters: dict[str, float | str]) -> None:
+    build = regenerate("plain_bearing", 1, parameters)
+    drawing = ezdxf.read(io.StringIO(derive(build.step, "dxf").decode()))
+    header = read_header(build.step)
+    assert header is not None
+    there = {n: wanted(text) for n, text in header.parameters.items() if " " in text and wanted(text) != 0}
+    assert dimensions(drawing) == pytest.approx(there, rel=1e-6)
+    assert not drawing.audit().errors
+
+
 def test_a_part_of_nobody_gets_a_drawing_with_reference_lengths() -> None:
     build = regenerate("plain_bearing", 1, {"inner_diameter": 0.04})
     foreign = build.step.replace(b"Crankwright plain_bearing", b"Somebody plain_bearing")

@@ -1,0 +1,5 @@
+"""What can go wrong with a report; nothing here knows HTTP."""
+
+
+class Unprintable(Exception):
+    """A report that cannot be set on paper within the time and memory that a job may have."""
