@@ -25,6 +25,9 @@ MEDIA_TYPES = {
 }
 """Every kind of file in which a build can be had; the last kind of a media type is its usual one."""
 
+DRAWINGS = ("drawing.svg", "dxf")
+"""Kinds that show dimensions; they take longer than a picture."""
+
 
 def derive(step: bytes, kind: str) -> bytes:
     """The file of that kind for a STEP file; equal STEP bytes give equal bytes.

@@ -15,7 +15,7 @@ from app.dependencies import TheCatalogues, TheJobs, TheModels, TheStore
 from app.http import NotJson, StrictRoute
 from app.paging import Cursor, Limit, page_of
 from app.waiting import LATER, accepted, finished
-from cad.export import MEDIA_TYPES
+from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
 from templates.core.errors import Fault, InvalidInputs
@@ -39,7 +39,10 @@ class BuildIn(BaseModel):
     )
 
     parameters: dict[str, Any] = Field(description='quantities by name: `"48 mm"`; the others have defaults')
-    artifacts: list[str] = Field(list(MEDIA_TYPES), description="the kinds of files wanted")
+    artifacts: list[str] = Field(
+        [kind for kind in MEDIA_TYPES if kind not in DRAWINGS],
+        description="the kinds of files wanted; without it all but dimensioned drawings",
+    )
 
 
 @router.get("/models")
