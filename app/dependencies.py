@@ -9,6 +9,7 @@ from typing import Annotated
 
 from fastapi import Depends, Header, Request
 
+from app.analyses.service import Analyses
 from app.designs.graph import Catalogues
 from app.designs.service import Designs
 from app.http import fingerprint
@@ -49,6 +50,11 @@ async def get_models(request: Request) -> Models:
     return request.app.state.models  # type: ignore[no-any-return]
 
 
+async def get_analyses(request: Request) -> Analyses:
+    """The analyses of solids."""
+    return request.app.state.analyses  # type: ignore[no-any-return]
+
+
 async def get_once(
     request: Request,
     idempotency_key: Annotated[
@@ -65,5 +71,6 @@ TheStore = Annotated[ArtifactStore, Depends(get_store)]
 TheJobs = Annotated[Jobs, Depends(get_jobs)]
 TheDesigns = Annotated[Designs, Depends(get_designs)]
 TheModels = Annotated[Models, Depends(get_models)]
+TheAnalyses = Annotated[Analyses, Depends(get_analyses)]
 TheOnce = Annotated[Once, Depends(get_once)]
 JobsDependency = TheJobs

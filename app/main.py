@@ -13,6 +13,9 @@ from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
 from app import health, problems
+from app.analyses.finding import Analysing
+from app.analyses.routes import router as analyses
+from app.analyses.service import ANALYSIS, Analyses, ModelAnalysis
 from app.calculations.film_pressure import router as film_pressure
 from app.calculations.routes import router as calculations
 from app.calculations.routes import worksheets
@@ -91,6 +94,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         reports,
         design_events,
         models,
+        analyses,
         jobs,
     ):
         app.include_router(router)
@@ -133,12 +137,15 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     builds = Builds(database, store, settings.template_folders)
     queue.register(REGENERATE, Regeneration(database, builds, catalogues), Regeneration.failed)
     queue.register(BUILD, ModelBuild(builds, catalogues.models))
+    analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
+    queue.register(ANALYSIS, ModelAnalysis(builds, analysing, catalogues.models))
     queue.start()
     stack.callback(queue.stop)
     app.state.database, app.state.store, app.state.jobs = database, store, queue
     app.state.catalogues, app.state.settings = catalogues, settings
     app.state.designs = Designs(database, queue, catalogues)
     app.state.models = Models(database, store, queue, catalogues.models)
+    app.state.analyses = Analyses(database, queue)
     app.state.reports = Reports(database, store, app.state.models, catalogues)
     limits = Limits(settings.job_deadline, settings.job_memory_mb)
     app.state.press = Press(worker, limits, settings.workers)

@@ -21,7 +21,7 @@ from app.jobs import errors as jobs
 from app.reports.errors import Unprintable
 from app.storage import errors as storage
 from app.workers import errors as workers
-from cad.errors import GeometryError, UnreadableStep
+from cad.errors import AnalysisError, GeometryError, UnreadableStep
 from templates.core import errors as templates
 
 logger = logging.getLogger(__name__)
@@ -67,6 +67,9 @@ TABLE: dict[type[Exception], Kind] = {
     ),
     storage.StorageError: Kind("storage", 503, "The storage is not available", "retry; ask the operator"),
     GeometryError: Kind("geometry", 422, "No sound solid came out", "change the parameters in `errors`"),
+    AnalysisError: Kind(
+        "analysis", 422, "The solid could not be analysed", "see `errors`; fillets and less accuracy help"
+    ),
     UnreadableStep: Kind("unreadable-step", 422, "Not a STEP file", "send a STEP file (ISO 10303-21)"),
     workers.DeadlineExceeded: Kind("deadline", 422, "The work took too long", "simplify the model"),
     workers.MemoryExceeded: Kind("memory", 422, "The work took too much memory", "simplify the model"),
@@ -138,6 +141,9 @@ _CARRIED: dict[type[Exception], Callable[[Any], dict[str, Any]]] = {
     RequestValidationError: _validation,
     templates.Unreachable: _unreachable,
     GeometryError: _geometry,
+    AnalysisError: lambda error: {
+        "errors": [{"name": error.name, "code": error.code, "detail": error.detail}]
+    },
     designs.NotConverged: lambda error: {"rounds": error.rounds},
     workers.WorkerError: lambda error: {
         "errors": [{"name": "model", "code": kind_of(error).slug, "detail": str(error)}]

@@ -31,12 +31,13 @@ class UnreadableStep(ValueError):
 class AnalysisError(Exception):
     """A solid that cannot be analysed as asked.
 
-    `code` is one of `no_shaft`, `no_end`, `mesh`, `not_converged`. It survives pickling.
+    `code` is one of `no_shaft`, `no_end`, `mesh`, `not_converged`, `solver`; `name` is what was analysed. It
+    survives pickling.
     """
 
-    def __init__(self, code: str, detail: str) -> None:
-        self.code, self.detail = code, detail
-        super().__init__(code, detail)
+    def __init__(self, code: str, detail: str, name: str = "model") -> None:
+        self.code, self.detail, self.name = code, detail, name
+        super().__init__(code, detail, name)
 
     def __str__(self) -> str:
         return self.detail

@@ -39,8 +39,8 @@ class JobContext:
         self._cancelled = cancelled
         self._stored = time.monotonic()
 
-    def run(self, function: Callable[[*Ts], T], *args: *Ts) -> T:
-        """Run a function in the worker, within the limits of jobs; it tells its progress by `report`.
+    def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
+        """Run a function in the worker, within the limits of jobs or others; it tells progress by `report`.
 
         Raises
         ------
@@ -50,7 +50,11 @@ class JobContext:
             See `Worker.run`.
         """
         return self._worker.run(
-            function, *args, limits=self._limits, on_progress=self.progress, cancelled=self._cancelled
+            function,
+            *args,
+            limits=limits or self._limits,
+            on_progress=self.progress,
+            cancelled=self._cancelled,
         )
 
     def progress(self, fraction: float, text: str) -> None:

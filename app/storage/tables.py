@@ -125,6 +125,19 @@ class ArtifactRow(Base):
     created: Mapped[str]
 
 
+class AnalysisRow(Base):
+    """One output of an analysis of a build, found again by the hash of all that determines it."""
+
+    __tablename__ = "analysis"
+
+    key: Mapped[str] = mapped_column(primary_key=True)
+    output: Mapped[str] = mapped_column(primary_key=True)  # stiffness, …
+    build_key: Mapped[str] = mapped_column(ForeignKey("build.key"), index=True)
+    asked: Mapped[dict[str, Any]] = mapped_column(Json)
+    found: Mapped[dict[str, Any]] = mapped_column(Json)
+    created: Mapped[str]
+
+
 class JobRow(Base):
     """A piece of long work. Identities grow with time, so the queue is the order of the identities."""
 

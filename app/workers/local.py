@@ -13,8 +13,8 @@ T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
 
-# What a geometry job imports: the kernel, every model, and the module of the job function itself.
-GEOMETRY = ("cad.regenerate", "cad.models", "app.models.builds")
+# What jobs import: the kernel, every model, the finite elements, and the modules of the job functions.
+GEOMETRY = ("cad.regenerate", "cad.models", "app.models.builds", "cad.analysis", "app.analyses.finding")
 
 
 class LocalProcesses:

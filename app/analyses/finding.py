@@ -1,0 +1,79 @@
+"""Analyses made in a worker process, and recorded: one output is found once for one solid and question."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from app.analyses import repository
+from app.analyses.questions import Question
+from app.designs import repository as builds
+from app.jobs.service import JobContext
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.workers.base import Limits
+from app.workers.progress import report
+from cad.errors import AnalysisError
+from cad.model import CadModel, Shaft
+from cad.regenerate import build_key
+
+
+class Analysing:
+    """Analyses built solids in a worker process and records what was found."""
+
+    def __init__(self, database: Database, store: ArtifactStore, limits: Limits) -> None:
+        self.database, self.store, self.limits = database, store, limits
+
+    def find(
+        self, shape: CadModel, question: Question, outputs: tuple[str, ...], context: JobContext
+    ) -> None:
+        """Find those outputs of a built model that are not known yet.
+
+        Raises
+        ------
+        AnalysisError
+            If the solid cannot be analysed as asked.
+        DeadlineExceeded, MemoryExceeded, JobCrashed, JobCancelled
+            If the process was stopped, or stopped itself.
+        """
+        build = build_key(shape)
+        with self.database.read() as session:
+            known = repository.found(session, question.key(build))
+            step = builds.artifact(session, build, "step")
+        missing = tuple(name for name in outputs if name not in known)
+        if not missing:
+            return
+        assert step is not None, "a build has its STEP file from its first moment"
+        shaft = shaft_of(shape)
+        bytes_ = self.store.read(step.sha256)
+        found = context.run(analyse_in_worker, bytes_, shaft, question, missing, limits=self.limits)
+        self.database.write(lambda session: repository.add(session, build, question, found))
+
+
+def shaft_of(shape: CadModel) -> Shaft:
+    """How a model is held and loaded.
+
+    Raises
+    ------
+    AnalysisError
+        `no_shaft`.
+    """
+    shaft = shape.shaft()
+    if shaft is None:
+        raise AnalysisError("no_shaft", f"{shape.id} is no shaft with these parameters")
+    return shaft
+
+
+def analyse_in_worker(
+    step: bytes, shaft: Shaft, question: Question, outputs: tuple[str, ...]
+) -> dict[str, dict[str, Any]]:
+    """`cad.analysis.analyse.analyse` with progress told to the job; runs in the worker's process."""
+    from cad.analysis.analyse import Asked, analyse  # the server, which imports this module, needs no solver
+
+    asked = Asked(question.kind, question.boundary, question.level, question.tolerance)  # type: ignore[arg-type]
+    try:
+        return analyse(step, shaft, asked, outputs, report).outputs
+    except (AnalysisError, MemoryError):
+        raise
+    except Exception as error:
+        detail = f"the analysis failed: {type(error).__name__}: {error}"
+        raise AnalysisError("solver", detail) from error

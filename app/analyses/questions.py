@@ -1,0 +1,103 @@
+"""What can be asked of a solid by finite elements, and by what an answer is found again.
+
+For the REST interface and for relations of designs. The server knows here what an analysis tells without
+importing what makes it: `cad.analysis` brings a kernel of its own. A test holds the two together.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from cad.model import CadModel
+from templates.core.errors import Fault
+
+Boundary = Literal["free_end", "guided_end"]
+Level = Literal["coarse", "default", "fine"]
+
+KINDS: dict[str, dict[str, str]] = {
+    "torsion": {"stiffness": "N*m/rad", "torsional_frequency": "Hz", "maximum_stress": "MPa"},
+    "bending": {"stiffness": "N*m/rad", "maximum_stress": "MPa"},
+}
+"""What each kind of analysis tells, with its unit. Stress is that under a torque, or moment, of 1 N·m."""
+
+DEAR = frozenset({"maximum_stress"})
+"""What is found only where it is asked for by name: its mesh is refined until it settles."""
+
+RECIPE = 1
+"""Raised whenever the same question to the same solid gets another answer."""
+
+_MADE_BY = f"recipe {RECIPE}, ngsolve {version('ngsolve')}"
+
+
+class Options(BaseModel):
+    """How a solid is held in an analysis, and how accurate the answer shall be."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+    boundary: Boundary = Field(
+        "free_end", description="the loaded end: `free_end`, or kept on the axis, `guided_end`"
+    )
+    level: Level | None = Field(None, description="how fine the mesh is; `default`, if nothing is said")
+    tolerance: float | None = Field(
+        None, gt=0, le=1, description="the largest relative error wanted, instead of a level"
+    )
+
+
+@dataclass(frozen=True)
+class Question:
+    """An analysis as it was asked for."""
+
+    kind: str
+    boundary: Boundary
+    level: Level | None
+    tolerance: float | None
+
+    def key(self, build: str) -> str:
+        """By what the answers for a build are found: SHA-256 of build, question, solver and recipe."""
+        identity = [build, asdict(self), _MADE_BY]
+        return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()
+
+
+def question(kind: str, options: Options) -> Question:
+    """The question that options of a kind ask; nothing said is the default level."""
+    level = options.level or (None if options.tolerance else "default")
+    return Question(kind, options.boundary, level, options.tolerance)
+
+
+def faults(options: Options) -> list[Fault]:
+    """What is wrong with options that are right each by itself."""
+    both = options.level is not None and options.tolerance is not None
+    detail = "give either a level or a tolerance, which chooses the level"
+    return [Fault("tolerance", "conflict", detail)] if both else []
+
+
+def in_order(kind: str, outputs: Any) -> tuple[str, ...]:
+    """Outputs of a kind, each once and always in the same order."""
+    return tuple(name for name in KINDS[kind] if name in outputs)
+
+
+def no_shaft(cls: type[CadModel]) -> str | None:
+    """Why solids of a model cannot be analysed; None if they can."""
+    if cls.shaft is not CadModel.shaft:
+        return None
+    return f"{cls.id} is no shaft: it does not say by which ends it is held and loaded"
+
+
+def warnings(asked: Question, found: Mapping[str, Mapping[str, Any]]) -> list[dict[str, str]]:
+    """The outputs whose error may be larger than was wanted."""
+    return [
+        {"code": "tolerance_unmet", "name": name, "detail": _unmet(told["error"], asked.tolerance)}
+        for name, told in found.items()
+        if asked.tolerance and told["error"] is not None and told["error"] > asked.tolerance
+    ]
+
+
+def _unmet(error: float, tolerance: float) -> str:
+    return f"the error may be {error:.2g}, more than the {tolerance:g} asked for; there is no finer level"

@@ -1,0 +1,50 @@
+"""All SQL of analyses: one row for each output that was found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.analyses.questions import Question, in_order
+from app.designs.errors import NotFound
+from app.storage.identity import now
+from app.storage.tables import AnalysisRow
+
+Found = dict[str, dict[str, Any]]
+
+
+def found(session: Session, key: str) -> Found:
+    """What is known to a question about a build, by output."""
+    rows = session.scalars(select(AnalysisRow).where(AnalysisRow.key == key))
+    return {row.output: row.found for row in rows}
+
+
+def asked(session: Session, key: str) -> tuple[str, Question, Found]:
+    """The build, the question, and all that is known to it.
+
+    Raises
+    ------
+    NotFound
+        If nothing was found under this key.
+    """
+    rows = list(session.scalars(select(AnalysisRow).where(AnalysisRow.key == key)))
+    if not rows:
+        raise NotFound(f"there is no analysis {key[:80]!r}")
+    question = Question(**rows[0].asked)
+    known = {row.output: row.found for row in rows}
+    return rows[0].build_key, question, {name: known[name] for name in in_order(question.kind, known)}
+
+
+def add(session: Session, build: str, question: Question, known: Mapping[str, dict[str, Any]]) -> None:
+    """Record what was found; the same found twice is one."""
+    key = question.key(build)
+    for output, told in known.items():
+        row = AnalysisRow(
+            key=key, output=output, build_key=build, asked=asdict(question), found=told, created=now()
+        )
+        session.merge(row)
+    session.flush()

@@ -1,0 +1,79 @@
+"""`POST /models/{id}/versions/{n}/analyses/{kind}` and `GET /analyses/{key}`."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Header, Path, Response
+from fastapi.responses import JSONResponse
+from starlette.concurrency import run_in_threadpool
+
+from app import problems
+from app.analyses.questions import DEAR, KINDS, faults, in_order, no_shaft, question
+from app.analyses.schemas import AnalysisIn
+from app.catalogue.routes import Number
+from app.dependencies import TheAnalyses, TheCatalogues, TheJobs
+from app.designs.errors import NotFound
+from app.http import StrictRoute
+from app.waiting import LATER, accepted, finished
+from cad.model import CadModel
+from templates.core.errors import Fault, InvalidInputs
+
+router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
+
+Id = Annotated[str, Path(max_length=64, examples=["crank_throw"])]
+Kind = Annotated[str, Path(max_length=64, examples=["torsion"], description="`torsion` or `bending`")]
+
+
+@router.post("/models/{id}/versions/{number}/analyses/{kind}", responses=LATER)
+async def analyse(
+    id: Id,
+    number: Number,
+    kind: Kind,
+    body: AnalysisIn,
+    catalogues: TheCatalogues,
+    analyses: TheAnalyses,
+    jobs: TheJobs,
+    prefer: Annotated[str | None, Header()] = None,
+) -> Response:
+    """Build a model, then find stiffness, frequency or stress on its solid. An equal question is asked once.
+
+    The shaft is held at one end; at the other acts a torque about z (`torsion`), or a moment about y in the
+    plane of the throw (`bending`). Stress is the greatest von Mises stress under 1 N·m: multiply by the load.
+    """
+    if kind not in KINDS:
+        raise NotFound(f"there is no analysis {kind[:60]!r}; there are {', '.join(KINDS)}")
+    cls = catalogues.models.get(id, number)
+    outputs = _checked(cls, kind, body)
+    shape, asked = cls.from_quantities(body.parameters), question(kind, body)
+    job = await run_in_threadpool(analyses.request, shape, asked, outputs)
+    if not await finished(jobs, job, prefer):
+        return accepted(job, await run_in_threadpool(analyses.show, shape, asked, ()))
+    if failed := await run_in_threadpool(jobs.problem, job):
+        return problems.answer(failed)
+    return JSONResponse(await run_in_threadpool(analyses.show, shape, asked, outputs))
+
+
+@router.get("/analyses/{key}")
+def show_analysis(key: str, analyses: TheAnalyses) -> dict[str, Any]:
+    """All that was found for one question about one solid."""
+    return analyses.show_all(key)
+
+
+def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...]:
+    """The outputs to find, if nothing in the body is wrong beside its parameters."""
+    asked = [name for name in KINDS[kind] if name not in DEAR] if body.outputs is None else body.outputs
+    known = ", ".join(KINDS[kind])
+    wrong = faults(body)
+    wrong += [
+        Fault("outputs", "unknown_name", f"{name[:40]!r} is none of {known}")
+        for name in asked
+        if name not in KINDS[kind]
+    ]
+    if not asked:
+        wrong.append(Fault("outputs", "empty", f"name at least one of {known}"))
+    if reason := no_shaft(cls):
+        wrong.append(Fault("model", "no_shaft", reason))
+    if wrong:
+        raise InvalidInputs(wrong)
+    return in_order(kind, asked)

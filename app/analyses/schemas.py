@@ -1,0 +1,34 @@
+"""What the calls of analyses take."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import ConfigDict, Field
+
+from app.analyses.questions import Options
+
+THROW: dict[str, Any] = {
+    "journal_diameter": "50 mm",
+    "journal_length": "20 mm",
+    "pin_diameter": "45 mm",
+    "pin_length": "24 mm",
+    "web_thickness": "18 mm",
+    "web_width": "70 mm",
+    "web_shape": "rectangular",
+    "throw": "35 mm",
+}
+"""A plain crank throw, small enough to be analysed in a second or two."""
+
+
+class AnalysisIn(Options):
+    """Analyse a model's solid by finite elements."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"parameters": THROW, "level": "coarse", "outputs": ["stiffness"]}]}
+    )
+
+    parameters: dict[str, Any] = Field(description='quantities by name: `"48 mm"`; the others have defaults')
+    outputs: list[str] | None = Field(
+        None, max_length=10, description="what to find; all but the stress, which is dear, if not given"
+    )

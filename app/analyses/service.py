@@ -1,0 +1,107 @@
+"""Analyses of CAD models on their own, outside of any design."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from app.analyses import repository
+from app.analyses.finding import Analysing, shaft_of
+from app.analyses.questions import Question
+from app.analyses.views import shown
+from app.designs import repository as builds
+from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.models.builds import Builds
+from app.models.service import FAILURES
+from app.problems import describe
+from app.storage.database import Database
+from cad.errors import AnalysisError
+from cad.model import CadModel
+from cad.regenerate import as_text, build_key
+from templates.core.catalogue import Catalogue
+
+ANALYSIS = "analysis"
+
+
+class Analyses:
+    """Questions about models, and what was found."""
+
+    def __init__(self, database: Database, jobs: Jobs) -> None:
+        self.database, self.jobs = database, jobs
+
+    def request(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> str | None:
+        """The job that builds and analyses a model, or None if all outputs are known.
+
+        Raises
+        ------
+        AnalysisError
+            If the model is no shaft.
+        """
+        shaft_of(shape)
+        with self.database.read() as session:
+            if set(outputs) <= repository.found(session, question.key(build_key(shape))).keys():
+                return None
+        payload = {
+            "model": shape.id,
+            "version": shape.version,
+            "parameters": as_text(shape),
+            "question": asdict(question),
+            "outputs": [*outputs],
+        }
+
+        def unit(session: Session) -> str:
+            alike = self.jobs.waiting(session, ANALYSIS, payload)
+            return alike or self.jobs.enqueue(session, ANALYSIS, payload)
+
+        job = self.database.write(unit)
+        self.jobs.wake()
+        return job
+
+    def show(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> dict[str, Any]:
+        """The asked outputs, as far as they are known."""
+        build = build_key(shape)
+        with self.database.read() as session:
+            known = repository.found(session, question.key(build))
+        told = {name: known[name] for name in outputs if name in known}
+        return shown({"id": shape.id, "version": shape.version}, build, question, told)
+
+    def show_all(self, key: str) -> dict[str, Any]:
+        """All that is known to a question about a build.
+
+        Raises
+        ------
+        NotFound
+            If there is none of this key.
+        """
+        with self.database.read() as session:
+            build, question, known = repository.asked(session, key)
+            row = builds.build(session, build)
+            assert row is not None, "an analysis is one of a build"
+            return shown({"id": row.model, "version": row.version}, build, question, known)
+
+
+class ModelAnalysis:
+    """The handler of jobs of the kind `analysis`: build the model, then find what was asked."""
+
+    def __init__(self, builds: Builds, analysing: Analysing, catalogue: Catalogue[CadModel]) -> None:
+        self.builds, self.analysing, self.catalogue = builds, analysing, catalogue
+
+    def __call__(self, job: Job, context: JobContext) -> Completion:
+        """Build and analyse.
+
+        Raises
+        ------
+        JobFailed
+            With the problem, for anything that the model itself brings about.
+        """
+        asked = job.payload
+        shape = self.catalogue.get(asked["model"], asked["version"]).from_quantities(asked["parameters"])
+        question = Question(**asked["question"])
+        try:
+            self.builds.make(shape, context)
+            self.analysing.find(shape, question, tuple(asked["outputs"]), context)
+        except (*FAILURES, AnalysisError) as error:
+            raise JobFailed(describe(error)) from error
+        return lambda session: f"/api/v1/analyses/{question.key(build_key(shape))}"
