@@ -22,5 +22,5 @@ class Settings(BaseSettings):
     workers: int = Field(1, gt=0, description="jobs that run at the same time")
     job_deadline: float = Field(60.0, gt=0, description="longest run of one job process [s]")
     job_memory_mb: int = Field(3072, gt=0, description="memory of one job process beside the program [MiB]")
-    analysis_deadline: float = Field(300.0, gt=0, description="longest run of one finite element analysis [s]")
+    analysis_deadline: float = Field(300.0, gt=0, description="longest run of one analysis of a solid [s]")
     analysis_memory_mb: int = Field(6144, gt=0, description="memory of one such analysis [MiB]")

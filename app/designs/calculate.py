@@ -5,21 +5,21 @@ Nothing stops at the first fault, so that a user sees all of them at once.
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from threading import Lock
 from typing import Any
 
 import numpy as np
 
+from app.analyses.questions import Question
 from app.calculations.size import points, spanned
+from app.designs.analyses import measured_unit
 from app.designs.graph import SOLID, Block, Cell, Graph
-from cad.inspect import MEASURES
+from app.designs.memory import memory
 from cad.model import CadModel
 from templates.core.declare import Choice
 from templates.core.errors import Fault, FaultyText, InvalidInputs
-from templates.core.evaluate import Evaluation, evaluate
+from templates.core.evaluate import Evaluation
 from templates.core.quantity import Typed, read, read_any
 from templates.core.relation import is_relation, parse
 from templates.core.template import Template
@@ -27,9 +27,10 @@ from templates.core.units import Value, unit
 
 Measures = Mapping[str, float]  # in the units of MEASURES
 Measured = Callable[[CadModel], Measures | None]
+Found = Mapping[str, Mapping[str, Any]]  # outputs of an analysis
+Analysed = Callable[[CadModel, Question, tuple[str, ...]], Found | None]
 
 MOST_VALUES = 100_000  # of a relation, or of all outputs of a step
-REMEMBERED = 512  # evaluations of steps; a preview changes one of them and finds the others here
 
 
 @dataclass
@@ -41,6 +42,7 @@ class Calculation:
     evaluations: dict[str, Evaluation] = field(default_factory=dict)  # of steps
     shapes: dict[str, CadModel] = field(default_factory=dict)  # models whose parameters are all known
     measures: dict[str, Measures] = field(default_factory=dict)  # of models that are built
+    analyses: dict[str, Found] = field(default_factory=dict)  # by model.kind: what is used and known
     missing: dict[str, list[str]] = field(default_factory=dict)  # unset parameters of models
     pending: set[str] = field(default_factory=set)  # nodes that wait for a solid
     broken: set[str] = field(default_factory=set)  # nodes that follow from a fault
@@ -61,9 +63,23 @@ class Calculation:
             return getattr(self.instance(head), declared.attribute)  # type: ignore[no-any-return]
 
     def measure(self, name: str) -> float:
-        """What a built model measures [SI], by its name in relations: `model.mass`."""
+        """What is measured or found on a solid [SI], by its name in relations: `throw.torsion.stiffness`.
+
+        Raises
+        ------
+        FaultyText
+            With code `no_value`, where an analysis tells a reason instead.
+        """
         head, _, tail = name.partition(".")
-        return float(unit(MEASURES[tail]).to_si(self.measures[head][tail]))
+        measured = self.measures[head][tail] if tail in self.measures[head] else self._found(name)
+        return float(unit(measured_unit(tail)).to_si(measured))
+
+    def _found(self, name: str) -> float:
+        analysis, _, output = name.rpartition(".")
+        told = self.analyses[analysis][output]
+        if told["value"] is None:
+            raise FaultyText("no_value", f"{name} has no value: {told['reason']}")
+        return float(told["value"])
 
     def instance(self, block: str) -> Template:
         """The template of a step, or the model, with its values."""
@@ -73,21 +89,26 @@ class Calculation:
 def calculate(
     graph: Graph,
     measured: Measured,
+    analysed: Analysed,
     assumed: Mapping[str, float] | None = None,
     broken: Iterable[str] = (),
 ) -> Calculation:
     """Calculate all nodes in order.
 
-    `measured` tells what a model measures, or None if it is not built; `assumed` are the SI values of the
-    measures through which iterations run; `broken` names cells that are known to be faulty.
+    `measured` tells what a model measures, or None if it is not built, and `analysed` what finite elements
+    found on it; `assumed` are the SI values of the measures through which iterations run; `broken` names
+    cells that are known to be faulty.
     """
     result = Calculation(graph, broken=set(broken))
     for node in graph.order:
         sources = graph.sources(node)
         if node in result.broken:
             continue
-        if node.endswith(SOLID):
-            _solid(result, node.removesuffix(SOLID), measured)
+        name, mark, kind = node.partition(SOLID)
+        if kind:
+            _analysis(result, name, kind, analysed)
+        elif mark:
+            _solid(result, name, measured)
         elif node in graph.blocks:
             _block(result, graph.blocks[node])
         elif not sources.isdisjoint(result.broken):
@@ -104,7 +125,7 @@ def calculate(
 
 def _unmapped(result: Calculation, node: str, sources: set[str]) -> list[Fault]:
     """Faults of a value that needs a model of which a parameter is not set."""
-    models = sorted({source.removesuffix(SOLID) for source in sources} & result.missing.keys())
+    models = sorted({source.partition(SOLID)[0] for source in sources} & result.missing.keys())
     unset = [f"{model}.{name}" for model in models for name in result.missing[model]]
     return (
         [Fault(node, "missing", f"this needs {', '.join(unset)}: set it, or map it to an output")]
@@ -249,36 +270,18 @@ def _solid(result: Calculation, name: str, measured: Measured) -> None:
         result.measures[name] = measures
 
 
-class Memory:
-    """The latest evaluations of steps, so that a change recomputes only what depends on it."""
-
-    def __init__(self) -> None:
-        self._kept: OrderedDict[Any, Evaluation] = OrderedDict()
-        self._lock = Lock()
-
-    def evaluation(self, block: Block, raw: Mapping[str, Any], wanted: tuple[str, ...] | None) -> Evaluation:
-        """The evaluation of a step, found or made.
-
-        Raises
-        ------
-        InvalidInputs
-            Where the template refuses.
-        """
-        key = (block.cls, block.level, block.tolerance, wanted, _fingerprint(raw))
-        with self._lock:
-            if found := self._kept.get(key):
-                self._kept.move_to_end(key)
-                return found
-        made = evaluate(block.cls, raw, outputs=wanted, level=block.level, tolerance=block.tolerance)
-        with self._lock:
-            self._kept[key] = made
-            while len(self._kept) > REMEMBERED:
-                self._kept.popitem(last=False)
-        return made
-
-
-def _fingerprint(raw: Mapping[str, Any]) -> tuple[Any, ...]:
-    return tuple((name, repr(value)) for name, value in sorted(raw.items()))
-
-
-memory = Memory()
+def _analysis(result: Calculation, name: str, kind: str, analysed: Analysed) -> None:
+    """What is known of an analysis that somebody uses; it waits for its solid, and then for its job."""
+    solid, node = name + SOLID, name + SOLID + kind
+    wanted = result.graph.wanted(name, kind)
+    if not wanted:
+        return
+    if solid in result.broken:
+        result.broken.add(node)
+        return
+    question = result.graph.blocks[name].analyses[kind]
+    found = None if solid in result.pending else analysed(result.shapes[name], question, wanted)
+    if found is None:
+        result.pending.add(node)
+    else:
+        result.analyses[f"{name}.{kind}"] = found

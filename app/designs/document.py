@@ -8,7 +8,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    StringConstraints,
+    model_serializer,
+    model_validator,
+)
+
+from app.analyses.questions import Options
 
 Word = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
 Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f]+$")]
@@ -39,14 +49,23 @@ class Model(BaseModel):
     id: Word
     version: Version = None
     parameters: Values = {}
+    analyses: Annotated[dict[Word, Options], Field(max_length=10)] = Field(
+        {}, description="what relations may use of finite elements on its solid", examples=[{"torsion": {}}]
+    )
+
+    @model_serializer(mode="wrap")
+    def without_nothing(self, plain: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """No analyses are not mentioned: a document of before there were any is the same document."""
+        told: dict[str, Any] = plain(self)
+        return {name: value for name, value in told.items() if name != "analyses" or value}
 
 
 class Iteration(BaseModel):
-    """A loop that its user allows: through a value measured on a solid, from a start, to a tolerance."""
+    """A loop that its user allows: through a measure or analysis of a solid, from a start, to a tolerance."""
 
     model_config = _STRICT
 
-    through: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*\.[a-z_]+$", examples=["model.mass"])
+    through: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*(\.[a-z_]+){1,2}$", examples=["model.mass"])
     start: Any = Field(examples=["3 kg"])
     tolerance: float = Field(1e-4, ge=1e-9, lt=1, description="relative")
     limit: int = Field(20, ge=1, le=100, description="rounds")
@@ -110,10 +129,12 @@ def _merged(old: Any, patch: Any, path: tuple[str, ...]) -> Any:
 
 
 def _is_container(path: tuple[str, ...]) -> bool:
-    """Whether a patch goes on inside: in the document, its groups, its steps and models, and their inputs."""
+    """Whether a patch goes on inside: in the document, its groups, its steps and models, and their parts."""
     match path:
         case () | ("parameters" | "steps" | "models",) | ("steps" | "models", _):
             return True
-        case ("steps", _, "inputs") | ("models", _, "parameters"):
+        case ("steps", _, "inputs") | ("models", _, "parameters" | "analyses"):
+            return True
+        case ("models", _, "analyses", _):
             return True
     return False

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from app.calculations import rendering
+from app.designs.analyses import measured_unit
 from app.designs.calculate import Calculation
 from app.designs.errors import NotFound
 from app.designs.graph import SOLID
-from cad.inspect import MEASURES
 from templates.core.declare import Derived, Formula
+from templates.core.errors import FaultyText
 from templates.core.schema import formula_on_paper
+from templates.core.units import unit
 
 
 def explain(calculation: Calculation, name: str) -> dict[str, Any]:
@@ -59,10 +62,17 @@ class _Telling:
                 return {"kind": "relation", "relation": cell.raw, "because": because}
             return {"kind": "given", "typed": cell.raw, "because": []}
         head, _, tail = name.partition(".")
-        if (node := self.graph.node(name)) and node.endswith(SOLID):
-            parameters = self.graph.blocks[head].cells
-            return {"kind": "measured", "because": [self.of(f"{head}.{used}") for used in parameters]}
+        if (node := self.graph.node(name)) and SOLID in node:
+            because = [self.of(f"{head}.{used}") for used in self.graph.blocks[head].cells]
+            return {**self._looked_at(node), "because": because}
         return self._declared(head, tail)
+
+    def _looked_at(self, node: str) -> dict[str, Any]:
+        """Whether a value is measured on a solid, or found by which analysis."""
+        name, _, kind = node.partition(SOLID)
+        if not kind:
+            return {"kind": "measured"}
+        return {"kind": "analysis", "analysis": asdict(self.graph.blocks[name].analyses[kind])}
 
     def _declared(self, head: str, tail: str) -> dict[str, Any]:
         cls = self.graph.blocks[head].cls
@@ -83,7 +93,7 @@ class _Telling:
             return None if si is None else {"value": np.asarray(si).tolist(), "unit": kind}
         try:
             si = self.calculation.value(name)
-        except (KeyError, AttributeError):
+        except (KeyError, AttributeError, FaultyText):
             return None
         if isinstance(si, str):
             return {"value": si}
@@ -91,6 +101,7 @@ class _Telling:
         cls = self.graph.blocks[head].cls
         declared = cls.inputs.get(tail) or cls.formulas.get(tail)
         if declared is None:
-            return {"value": self.calculation.measures[head][tail], "unit": MEASURES[tail]}
+            shown = unit(measured_unit(tail)).from_si(si)
+            return {"value": float(shown), "unit": measured_unit(tail)}
         shown = declared.meaning.scale.from_si(si)
         return {"value": np.asarray(shown).tolist(), "unit": declared.meaning.unit}

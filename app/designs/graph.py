@@ -2,7 +2,8 @@
 
 Nodes are named as their user names them. A cell is a value of the design: `scale`, `film.radial_load`,
 `model.inner_diameter`. A block is a step or a model: `film`, `model`; it follows from its cells, and its
-outputs follow from it. A solid, `model!`, is a model when built: what is measured follows from it.
+outputs follow from it. A solid, `model!`, is a model when built: what is measured follows from it. So does an
+analysis of it, `model!torsion`.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 from typing import Any
 
+from app.analyses.questions import Question
+from app.designs.analyses import is_measured, measured_names, measured_unit, questions, remedy, used
 from app.designs.document import Document
-from cad.inspect import MEASURES
 from cad.model import CadModel
 from templates.core.catalogue import Catalogue
 from templates.core.declare import Choice
@@ -51,6 +53,7 @@ class Block:
     level: str | None = None
     tolerance: float | None = None
     outputs: tuple[str, ...] | None = None
+    analyses: Mapping[str, Question] = field(default_factory=dict)
 
     @property
     def is_model(self) -> bool:
@@ -103,14 +106,18 @@ class Graph:
             return name
         if tail in block.cls.inputs or tail in block.cls.formulas:
             return head
-        return head + SOLID if block.is_model and tail in MEASURES else None
+        if not (block.is_model and is_measured(tail, block.analyses)):
+            return None
+        kind, _, output = tail.partition(".")
+        return head + SOLID + kind if output else head + SOLID
 
     def sources(self, node: str) -> set[str]:
         """The nodes from which a node follows directly."""
         if node in self.assumed:
             return set()
-        if node.endswith(SOLID):
-            return {node.removesuffix(SOLID)}
+        solid, mark, analysis = node.partition(SOLID)
+        if mark:
+            return {solid + SOLID} if analysis else {solid}
         if node in self.blocks:
             return {cell.name for cell in self.blocks[node].cells.values()}
         cell = self.cell(node)
@@ -119,15 +126,20 @@ class Graph:
     def names(self) -> list[str]:
         """Every name that a relation may use, for a remedy."""
         inside = (f"{b.name}.{n}" for b in self.blocks.values() for n in (*b.cls.inputs, *b.cls.formulas))
-        measured = (f"{b.name}.{n}" for b in self.blocks.values() if b.is_model for n in MEASURES)
+        models = (block for block in self.blocks.values() if block.is_model)
+        measured = (f"{model.name}.{n}" for model in models for n in measured_names(model.analyses))
         return [*self.parameters, *inside, *measured]
+
+    def wanted(self, model: str, kind: str) -> tuple[str, ...]:
+        """The outputs of an analysis that relations or iterations use."""
+        return used(model, kind, self.assumed.union(*(cell.uses for cell in self.cells())))
 
     def unit_of(self, name: str) -> str:
         """The declared unit of a name inside a block."""
         head, _, tail = name.partition(".")
         cls = self.blocks[head].cls
         declared = cls.inputs.get(tail) or cls.formulas.get(tail)
-        return declared.meaning.unit if declared else MEASURES[tail]
+        return declared.meaning.unit if declared else measured_unit(tail)
 
 
 def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list[Fault]]:
@@ -166,7 +178,8 @@ def _blocks(document: Document, catalogues: Catalogues, faults: list[Fault]) -> 
             yield name, Block(name, cls, cells, step.level, step.tolerance, outputs)
     for name, model in document.models.items():
         if shape := _class(catalogues.models, f"models.{name}", model.id, model.version, faults):
-            yield name, Block(name, shape, _cells(name, model.parameters, shape, faults))
+            cells = _cells(name, model.parameters, shape, faults)
+            yield name, Block(name, shape, cells, analyses=questions(name, model, shape, faults))
 
 
 def _class(catalogue: Catalogue[Any], place: str, id: str, version: Any, faults: list[Fault]) -> Any:
@@ -187,21 +200,24 @@ def _cells(
 
 
 def _unknown(graph: Graph) -> Iterator[Fault]:
+    models = {block.name: block.analyses for block in graph.blocks.values() if block.is_model}
     for cell in graph.cells():
         for name in sorted(cell.uses):
             if graph.node(name) is None:
-                detail = unknown_name(name, graph.names(), "name").detail
+                detail = remedy(name, models) or unknown_name(name, graph.names(), "name").detail
                 yield Fault(cell.name, "unknown_name", detail)
     for through in sorted(graph.assumed):
         head, _, measure = through.partition(".")
-        if head not in graph.blocks or not graph.blocks[head].is_model or measure not in MEASURES:
+        if head not in models or not is_measured(measure, models[head]):
             detail = f"an iteration runs through a measure of a model, such as model.mass, not {through}"
-            yield Fault("iterations", "unknown_name", detail)
+            yield Fault("iterations", "unknown_name", remedy(through, models) or detail)
 
 
 def _ordered(graph: Graph) -> Iterator[Fault]:
     nodes = [cell.name for cell in graph.cells()]
-    nodes += [name + end for name, block in graph.blocks.items() for end in ("", SOLID)[: 1 + block.is_model]]
+    for name, block in graph.blocks.items():
+        nodes += [name, name + SOLID] if block.is_model else [name]
+        nodes += [name + SOLID + kind for kind in block.analyses]
     try:
         graph.order = list(TopologicalSorter({node: graph.sources(node) for node in nodes}).static_order())
     except CycleError as error:

@@ -13,7 +13,7 @@ from app.designs import repository, results
 from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
 from app.designs.graph import Catalogues, build_graph, raise_if
-from app.designs.service import built, read_document, resolved, starts
+from app.designs.service import analysed, built, read_document, resolved, starts
 from app.designs.worksheet import previewed
 from templates.core.errors import Fault
 
@@ -45,7 +45,10 @@ def preview(
     steps = results.steps(new)
     told = {
         "revision": head.number,
-        "outputs": _compared(results.outputs(results.steps(old)), results.outputs(steps)),
+        "outputs": {
+            **_compared(results.outputs(results.steps(old)), results.outputs(steps)),
+            **_compared(_found(old), _found(new)),
+        },
         "warnings": _warnings(steps),
         "model_parameters": _model_parameters(old, new, mismatched),
     }
@@ -62,12 +65,24 @@ def _calculated(
         f.name: f for f in faults if f.code == "unit_mismatch" and f.name.partition(".")[0] in models
     }
     raise_if([fault for fault in faults if fault.name not in mismatched])
-    return calculate(graph, built(session), starts(document), broken=mismatched), mismatched
+    known = built(session), analysed(session)
+    return calculate(graph, *known, starts(document), broken=mismatched), mismatched
 
 
 def _compared(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
     names = dict.fromkeys([*old, *new])
     return {name: {"old": old.get(name), "new": new.get(name)} for name in names}
+
+
+def _found(calculation: Calculation) -> dict[str, Any]:
+    """What relations use of analyses, by its name there; null while it is pending."""
+    told: dict[str, Any] = {}
+    for block in calculation.graph.blocks.values():
+        for kind in block.analyses:
+            known = calculation.analyses.get(f"{block.name}.{kind}", {})
+            for output in calculation.graph.wanted(block.name, kind):
+                told[f"{block.name}.{kind}.{output}"] = known.get(output)
+    return told
 
 
 def _warnings(steps: Mapping[str, Any]) -> list[dict[str, Any]]:

@@ -8,28 +8,37 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
+from app.analyses.finding import Analysing
 from app.designs import repository, results
+from app.designs.analyses import measured_unit
 from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, Iteration
 from app.designs.errors import NotConverged
-from app.designs.graph import Catalogues, Graph, build_graph, raise_if
-from app.designs.service import built, starts
+from app.designs.graph import SOLID, Catalogues, Graph, build_graph, raise_if
+from app.designs.service import analysed, built, starts
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.models.builds import Builds
 from app.problems import describe
 from app.storage.database import Database
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
-from cad.errors import GeometryError
-from cad.inspect import MEASURES
+from cad.errors import AnalysisError, GeometryError
 from templates.core.errors import TemplateError
 from templates.core.units import unit
+
+FAILURES = (
+    NotConverged, TemplateError, GeometryError, AnalysisError, DeadlineExceeded, MemoryExceeded,
+)  # fmt: skip
+"""What a design itself brings about."""
 
 
 class Regeneration:
     """The handler of jobs of the kind `regenerate`."""
 
-    def __init__(self, database: Database, builds: Builds, catalogues: Catalogues) -> None:
+    def __init__(
+        self, database: Database, builds: Builds, analysing: Analysing, catalogues: Catalogues
+    ) -> None:
         self.database, self.builds, self.catalogues = database, builds, catalogues
+        self.analysing = analysing
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Regenerate the revision of a job; the completion attaches what was found.
@@ -46,9 +55,9 @@ class Regeneration:
             document = Document.model_validate(repository.revision(session, id, number).document)
         try:
             calculation, rounds = self._settled(document, context)
-        except (NotConverged, TemplateError, GeometryError, DeadlineExceeded, MemoryExceeded) as error:
+        except FAILURES as error:
             raise JobFailed(describe(error)) from error
-        told = {"steps": results.steps(calculation), "iterations": rounds}
+        told = results.told(calculation, rounds)
         models = results.models(calculation)
 
         def completion(session: Session) -> str:
@@ -84,31 +93,49 @@ class Regeneration:
             assumed = measured
 
     def _built(self, graph: Graph, assumed: Mapping[str, float], context: JobContext) -> Calculation:
-        """The calculation once every model in it is built; models may wait for each other's measures."""
+        """The calculation once every model in it is built, and analysed as far as somebody uses it.
+
+        Models may wait for each other's measures, so each round makes what can be made.
+        """
         while True:
             with self.database.read() as session:
-                calculation = calculate(graph, built(session), assumed)
+                calculation = calculate(graph, built(session), analysed(session), assumed)
             raise_if(calculation.faults)
-            waiting = calculation.shapes.keys() - calculation.measures.keys()
-            if not waiting:
-                return calculation
-            for name in sorted(waiting):
+            waiting = sorted(calculation.shapes.keys() - calculation.measures.keys())
+            for name in waiting:
                 with _named(name):
                     self.builds.make(calculation.shapes[name], context)
+            if not self._analysed(calculation, context) and not waiting:
+                return calculation
+
+    def _analysed(self, calculation: Calculation, context: JobContext) -> bool:
+        """Analyse every solid whose analysis is waited for; whether there was any."""
+        marked = (node.partition(SOLID) for node in sorted(calculation.pending))
+        waiting = [(name, kind) for name, _, kind in marked if kind and name in calculation.measures]
+        for name, kind in waiting:
+            question = calculation.graph.blocks[name].analyses[kind]
+            with _named(name, kind):
+                self.analysing.find(
+                    calculation.shapes[name], question, calculation.graph.wanted(name, kind), context
+                )
+        return bool(waiting)
 
 
 @contextmanager
-def _named(model: str) -> Iterator[None]:
-    """Let a failure of geometry name the model of the design."""
+def _named(model: str, analysis: str = "") -> Iterator[None]:
+    """Let a failure of geometry name the model of the design, and one of its analysis that too."""
     try:
         yield
     except GeometryError as error:
         names = (f"{model}.{parameter}" for parameter in error.parameters)
         raise GeometryError(error.code, f"{model}: {error.detail}", names) from error
+    except AnalysisError as error:
+        name = f"{model}.{analysis}"
+        raise AnalysisError(error.code, f"{name}: {error.detail}", name) from error
 
 
 def _round(number: int, name: str, assumed: float, measured: float) -> dict[str, Any]:
-    scale = unit(MEASURES[name.partition(".")[2]])
+    scale = unit(measured_unit(name.partition(".")[2]))
     shown = {"assumed": float(scale.from_si(assumed)), "measured": float(scale.from_si(measured))}
     return {"round": number, "through": name, **shown, "unit": scale.text}
 

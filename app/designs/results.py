@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from app.analyses.views import in_design
 from app.calculations import rendering
 from app.designs.calculate import Calculation
 from app.designs.graph import Block
@@ -27,6 +28,27 @@ class ModelState:
     relations: dict[str, Any]
     missing: tuple[str, ...]
     build: str | None
+
+
+def told(calculation: Calculation, rounds: list[dict[str, Any]]) -> dict[str, Any]:
+    """All that a revision keeps of a calculation beside its models."""
+    return {"steps": steps(calculation), "iterations": rounds, "analyses": analyses(calculation)}
+
+
+def analyses(calculation: Calculation) -> dict[str, Any]:
+    """By model, every analysis that it declares, with those outputs that are used and known."""
+    return {
+        block.name: {
+            kind: in_design(
+                build_key(calculation.shapes[block.name]),
+                question,
+                calculation.analyses.get(f"{block.name}.{kind}", {}),
+            )
+            for kind, question in block.analyses.items()
+        }
+        for block in calculation.graph.blocks.values()
+        if block.analyses and block.name in calculation.shapes
+    }
 
 
 def steps(calculation: Calculation) -> dict[str, Any]:

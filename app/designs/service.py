@@ -9,9 +9,12 @@ from typing import Any
 from pydantic import ValidationError
 from sqlalchemy.orm import Session
 
+from app.analyses import repository as analyses
+from app.analyses.questions import Question
 from app.designs import repository, results
+from app.designs.analyses import measured_unit
 from app.designs.automap import Proposal, proposals
-from app.designs.calculate import Calculation, Measured, Measures, calculate
+from app.designs.calculate import Analysed, Calculation, Found, Measured, Measures, calculate
 from app.designs.document import Document, merge
 from app.designs.errors import StaleRevision
 from app.designs.graph import Catalogues, build_graph, raise_if
@@ -19,7 +22,6 @@ from app.designs.repository import Written
 from app.idempotency import Once
 from app.jobs.service import Jobs
 from app.storage.database import Database
-from cad.inspect import MEASURES
 from cad.model import CadModel
 from cad.regenerate import build_key
 from templates.core.errors import Fault, FaultyText, InvalidInputs
@@ -135,7 +137,7 @@ class Designs:
         graph, faults = build_graph(document, self.catalogues)
         raise_if(faults)
         with self.database.read() as session:
-            return document, calculate(graph, built(session), starts(document))
+            return document, calculate(graph, built(session), analysed(session), starts(document))
 
     def _append(self, id: str, base: int, raw: Mapping[str, Any], note: str | None, once: Once) -> Saved:
         written, pending = self._written(raw, note)
@@ -160,7 +162,7 @@ class Designs:
         document, calculation = self.prepare(raw)
         raise_if(calculation.faults)
         pending = bool(document.iterations) or bool(calculation.pending)
-        told = None if pending else {"steps": results.steps(calculation), "iterations": []}
+        told = None if pending else results.told(calculation, [])
         state = "regenerating" if pending else "current"
         plain = document.model_dump(mode="json")
         return Written(plain, told, results.models(calculation), state, note), pending
@@ -240,6 +242,16 @@ def built(session: Session) -> Measured:
     return measured
 
 
+def analysed(session: Session) -> Analysed:
+    """What finite elements found on models, where all that is wanted has been found."""
+
+    def known(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Found | None:
+        found = analyses.found(session, question.key(build_key(shape)))
+        return {name: found[name] for name in wanted} if set(wanted) <= found.keys() else None
+
+    return known
+
+
 def starts(document: Document) -> dict[str, float]:
     """The SI values with which the iterations of a document begin.
 
@@ -252,7 +264,7 @@ def starts(document: Document) -> dict[str, float]:
     for iteration in document.iterations:
         measure = iteration.through.partition(".")[2]
         try:
-            values[iteration.through] = _single(read(iteration.start, MEASURES[measure]).si)
+            values[iteration.through] = _single(read(iteration.start, measured_unit(measure)).si)
         except FaultyText as error:
             faults.append(error.fault("iterations.start"))
     raise_if(faults)

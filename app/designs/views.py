@@ -54,7 +54,10 @@ def revision(session: Session, row: RevisionRow) -> dict[str, Any]:
         "steps": {
             name: _step(step, found["steps"].get(name)) for name, step in row.document["steps"].items()
         },
-        "models": {model.name: _model(session, model) for model in row.models},
+        "models": {
+            model.name: {**_model(session, model), "analyses": _analyses(row, model.name)}
+            for model in row.models
+        },
         "iterations": found["iterations"],
     }
 
@@ -93,8 +96,15 @@ def measurements(session: Session, id: str) -> dict[str, Any]:
             "revision": good.number,
             "build": row.key,
             **results.measurements(**row.measurements),
+            "analyses": _analyses(repository.revision(session, id, good.number), model.name),
         }
     return told
+
+
+def _analyses(row: RevisionRow, model: str) -> dict[str, Any]:
+    """What a revision holds of the analyses of a model; those of before there were any hold nothing."""
+    found: dict[str, Any] = (row.results or {}).get("analyses", {}).get(model, {})
+    return found
 
 
 def good_model(session: Session, id: str, name: str | None, number: int | None) -> RevisionModelRow:
