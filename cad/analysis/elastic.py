@@ -24,7 +24,7 @@ import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
-from cad.analysis.mesh import Grid
+from cad.analysis.mesh import Grid, curve
 from cad.analysis.solid import HELD, LOADED, MIRROR
 from cad.model import Material
 
@@ -43,10 +43,14 @@ def stress(u: Any, material: Material) -> Any:
 
 
 class System:
-    """Stiffness of a held solid in elements of one order, factorised; for one kind of load."""
+    """Stiffness of a held solid in elements of one order, factorised; for one kind of load.
+
+    Elements are as much curved as their order allows. The mesh stays so until the next system is made on it.
+    """
 
     def __init__(self, grid: Grid, order: int, material: Material, load: Load) -> None:
         self.grid, self.order, self.material, self.load = grid, order, material, load
+        self.deformation = curve(grid.mesh, order)
         locked = _locked(grid.solid.mirror, load)
         where = {axis: f"{HELD}|{MIRROR}" if axis in locked else HELD for axis in "xyz"}
         self.space = ng.VectorH1(

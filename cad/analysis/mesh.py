@@ -1,10 +1,12 @@
 """Curved tetrahedra in a solid: coarse where it is plain, and never coarser than its curved edges allow.
 
-Third-order elements follow a quarter of a circle with one edge, so meshes can be far coarser than pictures of
-them. Two things make that safe. Each curved edge has a least number of segments, else a bore's rim would be
-spanned by one chord through its middle. And the curving of the surface is led into the inside by harmonic
-functions: Netgen curves surface elements only, which folds thin elements under a fillet (of 2 000 elements in
-a throw 46 so, 6 with it). What is left folded only stiffens, and is part of the error that is estimated.
+Elements are as much curved as their order allows (isoparametric): with less the roundness of a shaft is what
+is missing (0.2 % of a cylinder's stiffness), with more the elements no longer contain a rotation. So meshes
+can be far coarser than pictures of them. Two things make that safe. Each curved edge has a least number of
+segments, else a bore's rim would be spanned by one chord through its middle. And the curving of the surface
+is led into the inside by harmonic functions: Netgen curves surface elements only, which folds thin elements
+under a fillet (of 2 000 elements in a throw 46 so, 6 with it). What is left folded only stiffens, and is part
+of the error that is estimated.
 """
 
 from __future__ import annotations
@@ -22,7 +24,6 @@ from netgen.occ import OCCGeometry
 from cad.analysis.solid import FREE, Solid, planar
 from cad.errors import AnalysisError
 
-CURVING = 3  # order of the curved elements
 MOST_ELEMENTS = 60_000
 
 _GRADING = 0.5
@@ -49,11 +50,10 @@ class Near:
 
 @dataclass(frozen=True)
 class Grid:
-    """A curved mesh of a solid; it owns the deformation that curves it."""
+    """A mesh of a solid, its elements still straight."""
 
     mesh: Any
     solid: Solid
-    deformation: Any
 
 
 def make_grid(solid: Solid, fineness: Fineness, near: Iterable[Near] = ()) -> Grid:
@@ -78,11 +78,12 @@ def make_grid(solid: Solid, fineness: Fineness, near: Iterable[Near] = ()) -> Gr
     if mesh.ne > MOST_ELEMENTS:
         detail = f"the mesh would have {mesh.ne} elements, more than {MOST_ELEMENTS}: ask for less accuracy"
         raise AnalysisError("mesh", detail)
-    return Grid(mesh, solid, curve(mesh))
+    return Grid(mesh, solid)
 
 
-def curve(mesh: Any, order: int = CURVING) -> Any:
+def curve(mesh: Any, order: int) -> Any:
     """Curve a mesh as its geometry is, smoothly into the inside; returns the deformation that does it."""
+    mesh.UnsetDeformation()
     straight, curved = _coordinates(mesh, 1, order), _coordinates(mesh, order, order)
     mesh.Curve(1)
     scalar = ng.H1(mesh, order=order, dirichlet=".*")
@@ -119,7 +120,7 @@ def _bound_sizes(solid: Solid, fineness: Fineness) -> None:
         for edge in face.edges:
             turn = _turning(edge) if edge.mass > 0 else 0.0
             if turn > fineness.turn:
-                edge.maxh = min(edge.maxh, edge.mass / ceil(turn / fineness.turn - 1e-6))
+                edge.maxh = edge.mass / ceil(turn / fineness.turn - 1e-6)
                 rims += [edge.maxh] if turn > 0.6 * pi else []
         if rims and face.name == FREE and not planar(face):
             face.maxh = min(face.maxh, 1.3 * min(rims))

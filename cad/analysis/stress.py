@@ -1,10 +1,11 @@
-"""The greatest von Mises stress of a loaded shaft, with its convergence; none where it does not converge.
+"""The greatest stress of a loaded shaft, with its convergence; none where it does not converge.
 
-The mesh is refined about the point of greatest stress until two meshes in succession agree. What is compared
-is the recovered stress: the polynomials of neighbouring elements averaged where they meet (Zienkiewicz and
-Zhu 1992). At a sharp inner corner stress has no limit, each refinement raises it by a quarter, and nothing
-converges: the answer is a refusal with that reason. Close to the ends, where a clamp or a load that no
-real joint makes disturbs the field, nothing is looked at (de Saint-Venant's principle).
+The mesh is refined where the stress is high until three meshes in succession agree: two small changes in a
+row, since one may be small by chance. What is compared is the recovered stress: the polynomials of
+neighbouring elements averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner stress has
+no limit, each refinement raises it by a quarter, and nothing converges: the answer is a refusal with that
+reason. Close to the ends, where a clamp or a load that no real joint makes disturbs the field, nothing is
+looked at (de Saint-Venant's principle).
 """
 
 from __future__ import annotations
@@ -23,9 +24,13 @@ from cad.analysis.mesh import Fineness, Near, make_grid
 from cad.analysis.solid import FREE, HELD, LOADED, Solid
 from cad.model import Material
 
+Components = list[Any]  # xx, yy, zz, xy, yz, xz of a stress, each a function on the mesh
+Measure = Callable[[Components], Any]
+
 START = Fineness(size=0.7, curvature=0.8, turn=np.pi / 4)
 ORDER = 3
-STEPS = 4
+STEPS = 5
+IN_A_ROW = 2  # so many changes must be small
 CONVERGED = 0.02  # relative change from mesh to mesh
 
 _END_ZONE = 0.3  # of the radius of the loaded end
@@ -56,20 +61,45 @@ class Peaks:
 
     @property
     def converged(self) -> bool:
-        """Whether the last step changed little."""
-        return bool(self.changes) and self.changes[-1] <= CONVERGED
+        """Whether each of the last steps changed little."""
+        last = self.changes[-IN_A_ROW:]
+        return len(last) == IN_A_ROW and max(last) <= CONVERGED
+
+
+def von_mises(components: Components) -> Any:
+    """The equivalent stress of von Mises (1913)."""
+    xx, yy, zz, xy, yz, xz = components
+    apart = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return ng.sqrt(apart / 2 + 3 * (xy**2 + yz**2 + xz**2))
+
+
+def first_principal(components: Components) -> Any:
+    """The largest principal stress, by Cardano's formula; factors of bending are of it."""
+    xx, yy, zz, xy, yz, xz = components
+    mean = (xx + yy + zz) / 3
+    a, b, c = xx - mean, yy - mean, zz - mean
+    radius = von_mises(components) * 2 / 3 + 1e-300  # an unloaded point has no direction
+    determinant = a * b * c + 2 * xy * yz * xz - a * yz**2 - b * xz**2 - c * xy**2
+    cosine = 4 * determinant / radius**3
+    inside = ng.IfPos(cosine - 1, 1, ng.IfPos(-1 - cosine, -1, cosine))  # rounding may leave it outside
+    return mean + radius * ng.cos(ng.acos(inside) / 3)
 
 
 def greatest_stress(
-    solid: Solid, material: Material, load: Load, boundary: Boundary, report: Callable[[int], None]
+    solid: Solid,
+    material: Material,
+    load: Load,
+    boundary: Boundary,
+    report: Callable[[int], None],
+    measure: Measure = von_mises,
 ) -> Peaks:
-    """Refine where the stress is high until its greatest value settles, in at most four steps."""
+    """Refine where the stress is high until its greatest value settles, in at most five steps."""
     found: list[Peak] = []
     near: tuple[Near, ...] = ()
     for step in range(STEPS):
         report(step)
         response = respond(System(make_grid(solid, START, near), ORDER, material, load), boundary)
-        highest, high = peak(response)
+        highest, high = peak(response, measure)
         found.append(highest)
         if Peaks(tuple(found)).converged:
             break
@@ -77,11 +107,11 @@ def greatest_stress(
     return Peaks(tuple(found))
 
 
-def peak(response: Response) -> tuple[Peak, tuple[Near, ...]]:
+def peak(response: Response, measure: Measure = von_mises) -> tuple[Peak, tuple[Near, ...]]:
     """The greatest recovered stress away from the ends, and where elements shall be halved."""
     system = response.system
     mesh, solid = system.grid.mesh, system.grid.solid
-    points, values = _on_surface(system, von_mises(recover(response)))
+    points, values = _on_surface(system, measure(recover(response)))
     ends = [face.center.z for face in solid.shape.faces if face.name in (HELD, LOADED)]
     margin = _END_ZONE * solid.radius
     inside = (points[..., 2] > min(ends) + margin) & (points[..., 2] < max(ends) - margin)
@@ -115,7 +145,7 @@ def _halved(corners: NDArray[np.float64]) -> Near:
     return Near((x, y, z), size / 2, size / 2)
 
 
-def recover(response: Response) -> list[Any]:
+def recover(response: Response) -> Components:
     """The six components xx, yy, zz, xy, yz, xz of the stress [MPa], continuous across elements."""
     system = response.system
     raw = stress(response.displacement, system.material)
@@ -126,10 +156,3 @@ def recover(response: Response) -> list[Any]:
         component.Set(raw[i, j])
         found.append(component)
     return found
-
-
-def von_mises(components: list[Any]) -> Any:
-    """The equivalent stress of von Mises (1913)."""
-    xx, yy, zz, xy, yz, xz = components
-    apart = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-    return ng.sqrt(apart / 2 + 3 * (xy**2 + yz**2 + xz**2))

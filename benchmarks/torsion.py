@@ -1,0 +1,101 @@
+"""What the torsional stiffness of the reference throw costs, against CalculiX on second-order tetrahedra.
+
+    python -m benchmarks.torsion
+
+Both start from the same STEP bytes, mesh the same half with Netgen, hold and load it alike (the traction
+(-y, x, 0)/J), and tell the work of the load. CalculiX climbs a list of meshes until its error is no greater
+than 0.5 %, and on until it is no greater than ours. Each run has a process of its own on one thread; loading
+the libraries is not timed. Results in benchmarks/results/torsion.json.
+"""
+
+import json
+import os
+import resource
+import tempfile
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from benchmarks.torsion_calculix import stiffness
+from cad.analysis.analyse import Asked, analyse
+from cad.analysis.levels import NAMES
+from cad.model import Shaft
+from cad.regenerate import regenerate
+
+RESULTS = Path("benchmarks/results/torsion.json")
+TRUE = 456_600.0  # N·m/rad, shared/references: converged third-order elements
+SHAFT = Shaft(-54.0, 54.0)
+THROW = {
+    "journal_diameter": 0.055, "journal_length": 0.040, "pin_diameter": 0.048, "pin_length": 0.032,
+    "web_thickness": 0.018, "web_width": 0.080, "throw": 0.042, "fillet": 0.003,
+}  # fmt: skip
+TOLERANCE = 5e-3
+SIZES = ((0.5, 1.0), (0.4, 1.5), (0.3, 2.0), (0.25, 2.5), (0.2, 3.0))  # in radii, and elements by radius
+
+
+def ours(step: bytes, asked: Asked) -> dict[str, Any]:
+    """Our stiffness [N·m/rad], and what it took."""
+    found = analyse(step, SHAFT, asked, ["stiffness"], lambda done, what: None).outputs["stiffness"]
+    return {
+        "stiffness": found["value"],
+        "told error": found["error"],
+        "level": found["level"],
+        **found["mesh"],
+    }
+
+
+def calculix(step: bytes, size: float, curvature: float) -> dict[str, Any]:
+    """CalculiX's stiffness [N·m/rad] on one mesh."""
+    with tempfile.TemporaryDirectory() as folder:
+        value, elements, nodes = stiffness(step, SHAFT, size, curvature, Path(folder))
+    return {"stiffness": value, "elements": elements, "degrees_of_freedom": 3 * nodes, "size": size}
+
+
+def alone(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]:
+    """Do something in a new process; adds seconds, its largest memory [MB] and its error."""
+    with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+        return pool.submit(timed, action, *inputs).result()
+
+
+def timed(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]:
+    """Do something in this process; adds seconds, its largest memory [MB] and its error."""
+    start = perf_counter()
+    found = action(*inputs)
+    seconds = perf_counter() - start
+    who = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+    memory = max(resource.getrusage(one).ru_maxrss for one in who) / 1024
+    return {**found, "error": found["stiffness"] / TRUE - 1, "seconds": seconds, "megabytes": memory}
+
+
+def climb(step: bytes, error: float) -> list[dict[str, Any]]:
+    """CalculiX on finer and finer meshes until it errs no more than this."""
+    found: list[dict[str, Any]] = []
+    for size in SIZES:
+        found.append(alone(calculix, step, *size))
+        if abs(found[-1]["error"]) <= error:
+            break
+    return found
+
+
+def main() -> None:
+    """Measure, print and keep the results."""
+    os.environ["OMP_NUM_THREADS"] = "1"
+    step = regenerate("crank_throw", 1, THROW).step
+    own = alone(ours, step, Asked(tolerance=TOLERANCE))
+    levels = {level: alone(ours, step, Asked(level=level)) for level in NAMES}
+    others = climb(step, abs(own["error"]))
+    ratios = [
+        {"error": other["error"], "time": other["seconds"] / own["seconds"]}
+        for other in others
+        if abs(other["error"]) <= TOLERANCE
+    ]
+    table = {"ours at 0.5 %": own, "levels": levels, "CalculiX": others, "CalculiX by ours": ratios}
+    RESULTS.write_text(json.dumps(table, indent=1) + "\n")
+    print(json.dumps(table, indent=1))
+
+
+if __name__ == "__main__":
+    main()

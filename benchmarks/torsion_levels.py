@@ -1,0 +1,125 @@
+"""How good the levels of `cad.analysis` are on random throws; what cad/analysis/levels.json is read from.
+
+    python -m benchmarks.torsion_levels [COUNT]
+
+For each throw and level the true error of the stiffness, and the change from one order less, whose multiple
+is told as the error. The truth is a run with elements of order 5 on a mesh of its own. `ratio` is true error
+by change: a level's factor must be above its greatest one. Kept after every throw in
+benchmarks/results/torsion_levels.json.
+"""
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cad.analysis.elastic import System, respond
+from cad.analysis.levels import LEVELS
+from cad.analysis.mesh import Fineness, Grid, make_grid
+from cad.analysis.solid import read_solid
+from cad.model import CadModel, Shaft
+from cad.models.crank_throw_v1 import CrankThrow
+from cad.regenerate import regenerate
+from templates.core.errors import InvalidInputs
+
+RESULTS = Path("benchmarks/results/torsion_levels.json")
+COUNT, SEED = 8, 20261121
+TRUTH = Fineness(size=0.8, curvature=0.4, turn=np.pi / 3)
+ORDER = 5
+
+# Of the journal's diameter: throws of engines and compressors, with overlap of pin and journal and without.
+RANGES = {
+    "journal_length": (0.5, 1.0), "pin_diameter": (0.7, 1.05), "pin_length": (0.4, 0.9),
+    "web_thickness": (0.25, 0.5), "web_width": (1.35, 1.8), "throw": (0.5, 1.1), "fillet": (0.04, 0.08),
+}  # fmt: skip
+OPTIONS = {
+    "journal_bore": (0.15, 0.4), "pin_bore": (0.15, 0.4), "oil_drilling_diameter": (0.06, 0.12),
+    "counterweight_radius": (1.2, 1.6),
+}  # fmt: skip
+
+
+def random_throws(count: int, seed: int) -> Iterator[dict[str, Any]]:
+    """Parameters [SI] of throws that can be drawn; half of them have each bore, drilling or counterweight."""
+    rng = np.random.default_rng(seed)
+    while count > 0:
+        size = rng.uniform(0.04, 0.1)
+        drawn: dict[str, Any] = {
+            "journal_diameter": size,
+            "web_shape": rng.choice(["obround", "rectangular"]).item(),
+        }
+        for name, (low, high) in (RANGES | OPTIONS).items():
+            share = rng.uniform(low, high)
+            drawn[name] = size * share if name in RANGES or rng.random() < 0.5 else 0.0
+        if possible(CrankThrow, drawn):
+            count -= 1
+            yield drawn
+
+
+def possible(model: type[CadModel], parameters: dict[str, Any]) -> bool:
+    """Whether a model accepts its parameters [SI]."""
+    try:
+        model.from_si(parameters)
+    except InvalidInputs:
+        return False
+    return True
+
+
+def shaft_of(parameters: dict[str, Any]) -> tuple[bytes, Shaft]:
+    """A throw's STEP file, and where it is held and loaded."""
+    half = 500 * (parameters["pin_length"] + 2 * parameters["web_thickness"] + parameters["journal_length"])
+    return regenerate("crank_throw", 1, parameters).step, Shaft(-half, half)
+
+
+def stiffness(grid: Grid, order: int, shaft: Shaft) -> float:
+    """Torsional stiffness [N·m/rad] on one mesh."""
+    return 1e-3 / respond(System(grid, order, shaft.material, "torsion"), "free_end").compliance
+
+
+def true_stiffness(step: bytes, shaft: Shaft) -> float:
+    """Torsional stiffness [N·m/rad] from another mesh, in elements of a higher order than any level has."""
+    return stiffness(make_grid(read_solid(step, shaft), TRUTH), ORDER, shaft)
+
+
+def row(parameters: dict[str, Any]) -> dict[str, Any]:
+    """What each level finds of a throw, by itself and against the truth."""
+    step, shaft = shaft_of(parameters)
+    truth = true_stiffness(step, shaft)
+    found: dict[str, Any] = {"parameters": parameters, "stiffness": truth}
+    for level in LEVELS:
+        grid = make_grid(read_solid(step, shaft), level.fineness)
+        low, high = (stiffness(grid, order, shaft) for order in (level.order - 1, level.order))
+        found[level.name] = {
+            "elements": grid.mesh.ne,
+            "true error": high / truth - 1,
+            "change": low / high - 1,
+            "ratio": abs((high - truth) / (low - high)),
+        }
+    return found
+
+
+def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """For each level the greatest true error, change and ratio over all throws."""
+    return {
+        level.name: {
+            kind: max(abs(one[level.name][kind]) for one in rows)
+            for kind in ("true error", "change", "ratio")
+        }
+        for level in LEVELS
+    }
+
+
+def main(count: int) -> None:
+    """Measure, print and keep the table."""
+    rows: list[dict[str, Any]] = []
+    for parameters in random_throws(count, SEED):
+        rows.append(row(parameters))
+        told = {"throws": len(rows), "summary": summary(rows), "rows": rows}
+        RESULTS.write_text(json.dumps(told, indent=1) + "\n")
+        print(json.dumps(told["summary"]), flush=True)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else COUNT)

@@ -1,0 +1,29 @@
+"""Property: the error that is told bounds the true one; two runs tell the same."""
+
+import pytest
+
+from benchmarks.torsion_levels import random_throws, shaft_of, true_stiffness
+from cad.analysis.analyse import Asked, analyse
+
+OTHER_SEED = 7  # not that of the throws from which the factors were read
+
+
+@pytest.mark.slow
+def test_property_the_error_told_bounds_the_true_one_on_ten_throws() -> None:
+    wrong = {}
+    for number, parameters in enumerate(random_throws(10, OTHER_SEED)):
+        step, shaft = shaft_of(parameters)
+        told = analyse(step, shaft, Asked(), ["stiffness"], lambda done, what: None).outputs["stiffness"]
+        off = abs(told["value"] / true_stiffness(step, shaft) - 1)
+        if off > told["error"]:
+            wrong[number] = (off, told["error"])
+    assert wrong == {}
+
+
+def test_two_runs_tell_the_same() -> None:
+    step, shaft = shaft_of(next(random_throws(1, OTHER_SEED)))
+    asked = Asked(level="coarse")
+    one, other = (analyse(step, shaft, asked, ["stiffness"], lambda done, what: None) for _ in range(2))
+    for output in (one.outputs["stiffness"], other.outputs["stiffness"]):
+        del output["seconds"]
+    assert one == other
