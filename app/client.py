@@ -99,6 +99,28 @@ class Client:
         body = {"inputs": inputs, "unknown": unknown, "bounds": bounds, "target": target}
         return self._json("POST", f"{BASE}/templates/{id}/versions/{version}/solve", json=body)
 
+    def analyse(
+        self,
+        id: str,
+        version: int,
+        parameters: Mapping[str, Any],
+        kind: str = "torsion",
+        *,
+        on_progress: Progress | None = None,
+        **options: Any,
+    ) -> dict[str, Any]:
+        """Analyse a model's solid; options are `boundary`, `level` or `tolerance`, `outputs`."""
+        path, body = f"{BASE}/models/{id}/versions/{version}/analyses/{kind}", {"parameters": parameters}
+        answer = self._send("POST", path, json={**body, **options})
+        if answer.status_code == 202:
+            job = answer.headers["Location"].rpartition("/")[2]
+            self.follow(job, on_progress)
+            if problem := self.job(job)["problem"]:
+                raise Problem(problem["status"], problem)
+            answer = self._send("POST", path, json={**body, **options})
+        found: dict[str, Any] = answer.json()
+        return found
+
     def designs(self) -> list[dict[str, Any]]:
         """All designs, newest first."""
         return list(self._pages(f"{BASE}/designs"))

@@ -22,7 +22,7 @@ from app.problems import describe
 from app.storage.database import Database
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
 from cad.errors import AnalysisError, GeometryError
-from templates.core.errors import TemplateError
+from templates.core.errors import FaultyText, InvalidInputs, TemplateError
 from templates.core.units import unit
 
 FAILURES = (
@@ -80,7 +80,7 @@ class Regeneration:
         assumed, rounds = starts(document), list[dict[str, Any]]()
         while True:
             calculation = self._built(graph, assumed, context)
-            measured = {i.through: calculation.measure(i.through) for i in document.iterations}
+            measured = {i.through: _measure(calculation, i) for i in document.iterations}
             number = len(rounds) // max(1, len(measured)) + 1
             rounds += [_round(number, name, assumed[name], value) for name, value in measured.items()]
             unsettled = [i for i in document.iterations if not _settles(i, assumed, measured)]
@@ -132,6 +132,13 @@ def _named(model: str, analysis: str = "") -> Iterator[None]:
     except AnalysisError as error:
         name = f"{model}.{analysis}"
         raise AnalysisError(error.code, f"{name}: {error.detail}", name) from error
+
+
+def _measure(calculation: Calculation, iteration: Iteration) -> float:
+    try:
+        return calculation.measure(iteration.through)
+    except FaultyText as error:
+        raise InvalidInputs([error.fault("iterations")]) from error
 
 
 def _round(number: int, name: str, assumed: float, measured: float) -> dict[str, Any]:

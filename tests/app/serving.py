@@ -98,6 +98,43 @@ class Double(Template):
 '''
 
 
+BAR = '''
+"""A round bar, of which stiffness and frequency are known."""
+
+from math import pi
+
+from cadquery import Solid, Vector
+
+from cad.model import Box, CadModel, Part, Shaft, mm
+from templates.core.template import Array, choice, given
+
+
+class Bar(CadModel):
+    """A round bar along z, held at its foot, as it says; or in a way that cannot be."""
+
+    example = {"diameter": "20 mm", "length": "40 mm"}
+
+    d: Array = given("mm", "diameter", gt=0, le=1000)
+    l: Array = given("mm", "length", gt=0, le=1000)
+    ends: str = choice("flat", "elsewhere", "none", words="ends", default="flat")
+
+    def build(self):
+        d, l = mm(self.d), mm(self.l)
+        return (Part("bar", Solid.makeCylinder(d / 2, l), pi / 4 * d**2 * l),)
+
+    def bounding_box(self):
+        d, l = mm(self.d), mm(self.l)
+        return Box((-d / 2, -d / 2, 0), (d / 2, d / 2, l))
+
+    def dimensions(self, seen):
+        return {"length": seen["bar"].length(Vector(0, 0, 1))}
+
+    def shaft(self):
+        l = mm(self.l)
+        return {"flat": Shaft(0, l), "elsewhere": Shaft(0, l + 1), "none": None}[self.ends]
+'''
+
+
 def paper(**changes):
     """The paper's design as a document of its own."""
     return {**deepcopy(PAPER), **changes}
@@ -113,9 +150,10 @@ def moody(size="10 mm", mood="good", **more):
 
 
 def folder_of_models(path: Path) -> Path:
-    """A team's own folder: the model that misbehaves, and a template."""
+    """A team's own folder: the model that misbehaves, one that can be analysed, and a template."""
     (path / "own").mkdir(parents=True)
     (path / "own" / "double_v1.py").write_text(dedent(DOUBLE).lstrip())
+    (path / "own" / "bar_v1.py").write_text(dedent(BAR).lstrip())
     (path / "own" / "moody_v1.py").write_text(dedent(MOODY).lstrip())
     return path
 

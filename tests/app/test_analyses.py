@@ -1,0 +1,213 @@
+"""Analyses of solids over REST: a bar whose stiffness is known, what is refused, what is found again."""
+
+from math import pi, sqrt
+
+import httpx
+import pytest
+from serving import API, faults, problem
+
+from app.analyses.questions import KINDS, Boundary, Level, Options, question, warnings
+from app.client import Client, Problem
+
+BAR = f"{API}/models/bar/versions/1/analyses"
+YOUNG, POISSON, DENSITY = 210e9, 0.3, 7850.0
+SHEAR = YOUNG / 2 / (1 + POISSON)
+
+
+def bar(diameter=20, length=40, **more):
+    return {"diameter": f"{diameter} mm", "length": f"{length} mm", **more}
+
+
+def ask(http, parameters=None, kind="torsion", prefer="wait=60", **options) -> httpx.Response:
+    body = {"parameters": parameters or bar(), "level": "coarse", **options}
+    return http.post(f"{BAR}/{kind}", json=body, headers={"Prefer": prefer})
+
+
+def asked(http, parameters=None, **options) -> dict:
+    answer = ask(http, parameters, **options)
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def jobs(http) -> list[str]:
+    return [job["id"] for job in http.get(f"{API}/jobs?limit=200").json()["items"]]
+
+
+@pytest.fixture(scope="module")
+def torsion(http):
+    return asked(http)
+
+
+class TestAnswer:
+    def test_analytic_stiffness_is_coulombs(self, torsion):
+        """K = G π d⁴ / (32 l), exact for a round bar."""
+        found = torsion["outputs"]["stiffness"]
+        assert found["unit"] == "N*m/rad"
+        assert found["value"] == pytest.approx(SHEAR * pi / 32 * 0.020**4 / 0.040, rel=found["error"])
+        assert 0 < found["error"] < 0.01
+
+    def test_analytic_frequency_is_that_of_a_wave(self, torsion):
+        """f = sqrt(G / ρ) / (4 l), held at one end."""
+        found = torsion["outputs"]["torsional_frequency"]
+        assert found["unit"] == "Hz"
+        assert found["value"] == pytest.approx(sqrt(SHEAR / DENSITY) / 0.160, rel=found["error"])
+        assert 0 < found["error"] < 0.01
+
+    def test_analytic_bending_is_the_beams(self, http):
+        """M / θ = E I / l; a clamp that forbids the section to contract stiffens a short bar a little."""
+        found = asked(http, kind="bending")["outputs"]["stiffness"]
+        assert found["value"] == pytest.approx(YOUNG * pi / 64 * 0.020**4 / 0.040, rel=0.05)
+
+    def test_it_says_of_what_and_how(self, torsion):
+        assert torsion["model"] == {"id": "bar", "version": 1}
+        assert torsion["kind"] == "torsion"
+        assert torsion["boundary"] == "free_end"
+        assert torsion["level"] == "coarse"
+        assert torsion["mesh"]["elements"] > 0
+        assert torsion["mesh"]["degrees_of_freedom"] > torsion["mesh"]["elements"]
+        assert torsion["mesh"]["order"] > 1
+        assert torsion["seconds"] > 0
+        assert torsion["warnings"] == []
+
+    def test_only_what_is_asked_for(self, http, torsion):
+        assert torsion["outputs"].keys() == {"stiffness", "torsional_frequency"}  # the stress is dear
+        assert asked(http, outputs=["stiffness"])["outputs"].keys() == {"stiffness"}
+
+    def test_boundary(self, http, torsion):
+        """The ends of a bar stay on its axis by themselves."""
+        guided = asked(http, boundary="guided_end", outputs=["stiffness"])
+        assert guided["boundary"] == "guided_end"
+        assert guided["id"] != torsion["id"]
+        free = torsion["outputs"]["stiffness"]["value"]
+        assert guided["outputs"]["stiffness"]["value"] == pytest.approx(free, rel=1e-3)
+
+    def test_default_level_and_tolerance(self, http):
+        thick = bar(40, 40)
+        default = ask(http, thick, outputs=["stiffness"], level=None).json()
+        assert default["level"] == "default"
+        fitting = ask(http, thick, outputs=["stiffness"], level=None, tolerance=0.05).json()
+        assert fitting["tolerance"] == 0.05
+        assert fitting["outputs"]["stiffness"]["error"] <= 0.05
+        assert fitting["level"] in ("coarse", "default", "fine")
+
+    def test_stress(self, http):
+        """Under 1 N·m: τ = 16 / (π d³), von Mises √3 τ; it converges where nothing is sharp."""
+        found = asked(http, bar(20, 12), outputs=["maximum_stress"])["outputs"]["maximum_stress"]
+        assert found["unit"] == "MPa"
+        assert found["value"] == pytest.approx(sqrt(3) * 16 / (pi * 0.020**3) / 1e6, rel=0.03)
+        assert len(found["convergence"]) >= 2
+        assert found["error"] <= 0.02
+
+
+class TestFoundAgain:
+    def test_a_repeat_needs_no_job(self, http, torsion):
+        before = jobs(http)
+        assert asked(http) == torsion
+        assert asked(http, bar("2e1", "40.0")) == torsion
+        assert jobs(http) == before
+
+    def test_what_is_missing_is_added(self, http):
+        new = bar(21)
+        first = asked(http, new, outputs=["stiffness"])
+        more = asked(http, new, outputs=["torsional_frequency", "stiffness"])
+        assert more["id"] == first["id"]
+        assert more["outputs"]["stiffness"] == first["outputs"]["stiffness"]
+        assert more["outputs"].keys() == {"stiffness", "torsional_frequency"}
+        assert http.get(f"{API}/analyses/{first['id']}").json() == more
+
+    def test_respond_async(self, http):
+        new = bar(22)
+        answer = ask(http, new, prefer="respond-async", outputs=["stiffness"])
+        twin = ask(http, new, prefer="respond-async", outputs=["stiffness"])
+        assert (answer.status_code, twin.status_code) == (202, 202)
+        assert twin.headers["location"] == answer.headers["location"]
+        early = answer.json()
+        assert early["outputs"] == {}
+        done = asked(http, new, outputs=["stiffness"])
+        assert done["id"] == early["id"]
+        assert done["build"] == early["build"]
+        job = http.get(answer.headers["location"]).json()
+        assert (job["kind"], job["state"], job["progress"]) == ("analysis", "done", 1)
+        assert http.get(job["result"]).json() == done
+
+    def test_cancelled(self, http):
+        answer = ask(http, bar(400, 900), prefer="respond-async", level="fine", outputs=["maximum_stress"])
+        assert answer.status_code == 202
+        cancelled = http.delete(answer.headers["location"])
+        assert cancelled.json()["state"] == "cancelled"
+        problem(http.get(f"{API}/analyses/{answer.json()['id']}"), 404, "not-found")
+
+    def test_the_client_waits(self, client: Client):
+        told = client.analyse("bar", 1, bar(23), level="coarse", outputs=["stiffness"])
+        assert told["outputs"]["stiffness"]["value"] > 0
+        with pytest.raises(Problem, match="no shaft"):
+            client.analyse("ball_bearing", 1, {"inner_diameter": "40 mm"})
+
+
+class TestRefusals:
+    @pytest.mark.parametrize(
+        ("wrong", "named", "remedy"),
+        [
+            ({"level": "finest"}, "level", "fine"),
+            ({"boundary": "welded"}, "boundary", "guided_end"),
+            ({"outputs": ["mass"]}, "outputs", "torsional_frequency"),
+            ({"outputs": []}, "outputs", "stiffness"),
+            ({"level": None, "tolerance": 0}, "tolerance", "greater than 0"),
+            ({"level": None, "tolerance": 1.5}, "tolerance", "less than or equal to 1"),
+            ({"level": None, "tolerance": "small"}, "tolerance", "number"),
+            ({"tolerance": 0.1}, "tolerance", "either"),
+            ({"parameters": {"diameter": "-1 mm", "length": "1 mm"}}, "diameter", "0"),
+            ({"more": 1}, "more", "not permitted"),
+        ],
+    )
+    def test_by_name(self, http, wrong, named, remedy):
+        told = problem(ask(http, **wrong), 422, "invalid-inputs")
+        assert [fault["name"] for fault in told["errors"]] == [named]
+        assert remedy in told["errors"][0]["detail"]
+
+    def test_all_at_once(self, http):
+        answer = ask(http, tolerance=0.1, outputs=["mass", "length"])
+        assert [fault["name"] for fault in answer.json()["errors"]] == ["tolerance", "outputs", "outputs"]
+
+    def test_no_shaft(self, http):
+        url = f"{API}/models/ball_bearing/versions/1/analyses/torsion"
+        answer = http.post(url, json={"parameters": {"inner_diameter": "40 mm"}})
+        assert faults(answer) == {"model": "no_shaft"}
+
+    def test_no_shaft_with_these_parameters(self, http):
+        told = problem(ask(http, bar(ends="none")), 422, "analysis")
+        assert told["errors"][0]["code"] == "no_shaft"
+
+    def test_no_end(self, http):
+        """A failure of the analysis itself; the next request asks again."""
+        for _ in range(2):
+            told = problem(ask(http, bar(ends="elsewhere")), 422, "analysis")
+            assert told["errors"][0]["code"] == "no_end"
+            assert "41 mm" in told["detail"]
+
+    def test_unknown(self, http):
+        answer = http.post(f"{BAR}/twist", json={"parameters": bar()})
+        assert "torsion, bending" in problem(answer, 404, "not-found")["detail"]
+        problem(http.get(f"{API}/analyses/{'0' * 64}"), 404, "not-found")
+
+
+def test_the_server_knows_what_the_elements_tell() -> None:
+    """It does not import them; so what it says of them is held against what they say."""
+    from typing import get_args
+
+    from cad.analysis.analyse import OUTPUTS
+    from cad.analysis.elastic import BOUNDARIES
+    from cad.analysis.levels import DEFAULT, NAMES
+
+    assert KINDS == OUTPUTS
+    assert get_args(Boundary) == BOUNDARIES
+    assert get_args(Level) == NAMES
+    assert question("torsion", Options()).level == DEFAULT
+
+
+def test_an_error_beyond_the_tolerance_is_told() -> None:
+    asked_for = question("torsion", Options(tolerance=0.001))
+    found = {"stiffness": {"error": 0.002}, "torsional_frequency": {"error": 0.0005}}
+    told = warnings(asked_for, found)
+    assert [(warning["code"], warning["name"]) for warning in told] == [("tolerance_unmet", "stiffness")]
+    assert warnings(question("torsion", Options(level="fine")), found) == []
