@@ -93,7 +93,7 @@ def _at_level(
         name: {
             "value": high,
             "unit": OUTPUTS[asked.load][name],
-            "error": level.factor * abs(low - high) / high,
+            "error": level.error(low, high),
             **told,
         }
         for name, (low, high) in values.items()
