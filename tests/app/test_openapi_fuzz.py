@@ -64,7 +64,8 @@ QUANTITIES = st.one_of(
     st.fixed_dictionaries({"value": st.lists(NUMBERS, max_size=3), "unit": UNITS}),
 )
 PIECES = ["a", "b", "film.speed", "model.mass", "model.size", "1", "48 mm", "2 kN", "+", "-", "*", "/", "**",
-          "(", ")", "sqrt(", "exp(", "max(", ",", "pi", " ", "20 degC", "9", "m", "film.density"]  # fmt: skip
+          "(", ")", "sqrt(", "exp(", "max(", ",", "pi", " ", "20 degC", "9", "m", "film.density",
+          "model.torsion.stiffness", "model.bending.maximum_stress", "model.torsion.mass"]  # fmt: skip
 RELATIONS = st.lists(st.sampled_from(PIECES), max_size=12).map(lambda pieces: "= " + " ".join(pieces))
 JUNK = st.recursive(
     st.none() | st.booleans() | NUMBERS | st.text(max_size=5),
@@ -85,10 +86,26 @@ STEPS = st.fixed_dictionaries(
         "outputs": st.lists(st.sampled_from(["density"])),
     },
 )
-MODELS = st.fixed_dictionaries(
-    {"id": st.sampled_from(["moody", "plain_bearing", "nothing"])},
-    optional={"parameters": st.dictionaries(st.sampled_from(["size", "wall", "inner_diameter"]), VALUES)},
+ANALYSES = st.dictionaries(
+    st.sampled_from(["torsion", "bending", "twist"]),
+    st.one_of(
+        JUNK,
+        st.fixed_dictionaries(
+            {},
+            optional={
+                "level": st.sampled_from(["coarse", "fine", "none", None]),
+                "tolerance": st.one_of(NUMBERS, st.none()),
+                "boundary": st.sampled_from(["free_end", "guided_end", "welded"]),
+            },
+        ),
+    ),
 )
+SIZES = st.sampled_from(["size", "wall", "inner_diameter", "diameter", "length"])
+MODELS = st.fixed_dictionaries(
+    {"id": st.sampled_from(["moody", "plain_bearing", "bar", "nothing"])},
+    optional={"parameters": st.dictionaries(SIZES, VALUES), "analyses": st.one_of(ANALYSES, JUNK)},
+)
+THROUGH = st.sampled_from(["model.mass", "film.speed", "model.torsion.stiffness"])
 DOCUMENTS = st.fixed_dictionaries(
     {},
     optional={
@@ -99,7 +116,10 @@ DOCUMENTS = st.fixed_dictionaries(
         "iterations": st.one_of(
             st.lists(
                 st.fixed_dictionaries(
-                    {"through": st.sampled_from(["model.mass", "film.speed"]), "start": VALUES}
+                    {
+                        "through": st.sampled_from(["model.mass", "film.speed", "model.torsion.stiffness"]),
+                        "start": VALUES,
+                    }
                 ),
                 max_size=2,
             ),
