@@ -13,8 +13,9 @@ T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
 
-# What jobs import: the kernel, every model, the finite elements, and the modules of the job functions.
-GEOMETRY = ("cad.regenerate", "cad.models", "app.models.builds", "cad.analysis", "app.analyses.finding")
+# What jobs import: the kernel, every model, and the modules of the job functions. The finite elements are
+# imported by those that need them (0.3 s): NGSolve starts threads at once, which a fork would not have.
+GEOMETRY = ("cad.regenerate", "cad.models", "app.models.builds", "app.analyses.finding")
 
 
 class LocalProcesses:
