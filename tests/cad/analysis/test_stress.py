@@ -9,7 +9,16 @@ from cadquery import Shape, Workplane
 from cad.analysis.analyse import Asked, analyse
 from cad.analysis.elastic import Load
 from cad.analysis.solid import Solid, read_solid
-from cad.analysis.stress import CONVERGED, Measure, Peak, Peaks, first_principal, greatest_stress, von_mises
+from cad.analysis.stress import (
+    CONVERGED,
+    SMALL,
+    Measure,
+    Peak,
+    Peaks,
+    first_principal,
+    greatest_stress,
+    von_mises,
+)
 from cad.header import Header
 from cad.model import STEEL_MATERIAL, Part, Shaft
 from cad.step import write_step
@@ -71,6 +80,8 @@ def peaks(*values: float) -> Peaks:
         ((1.0, 1.3, 1.3), False),
         ((1.0, 1.3, 1.3, 1.3), True),
         ((1.0, 1.0, 1.0 + 2 * CONVERGED), False),
+        ((1.0, 1.0 + 0.9 * SMALL, 1.0 + 0.9 * SMALL), True),
+        ((1.0, 1.0 + 1.1 * SMALL, 1.0 + 1.1 * SMALL), False),
     ],
 )
 def test_one_small_change_is_no_convergence(values: tuple[float, ...], converged: bool) -> None:
