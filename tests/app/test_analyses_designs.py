@@ -1,7 +1,10 @@
 """Analyses in designs: relations use what finite elements find on the solid, and nothing else is found."""
 
+import csv
+import io
 from math import pi
 
+import pypdf
 import pytest
 from serving import API, created, faults, patched, revision
 
@@ -72,6 +75,22 @@ class TestRelation:
     def test_measurements_tell_it(self, http, design):
         told = http.get(f"{DESIGNS}/{design['id']}/measurements").json()["bar"]
         assert told["analyses"] == revision(http, design)["models"]["bar"]["analyses"]
+
+    def test_reports_and_worksheets_tell_it(self, http, design):
+        found = revision(http, design)["models"]["bar"]["analyses"]["torsion"]["outputs"]["stiffness"]
+        url = f"{DESIGNS}/{design['id']}"
+        screen = http.get(f"{url}/report.html").text
+        pages = pypdf.PdfReader(io.BytesIO(http.get(f"{url}/report.pdf").content)).pages
+        paper = " ".join(" ".join(page.extract_text() for page in pages).split())
+        for text in (screen, paper):
+            assert "Found by finite elements on the STEP file" in text
+            assert "Torsion: stiffness" in text
+            assert f"± {100 * found['error']:.2g} %" in text
+            assert f"{found['mesh']['elements']} elements of order {found['mesh']['order']}" in text
+        rows = csv.DictReader(io.StringIO(http.get(f"{url}/worksheet.csv").content.decode("utf-8-sig")))
+        told = next(row for row in rows if row["name"] == "torsion.stiffness")
+        assert float(told["value"]) == pytest.approx(found["value"], rel=1e-12)
+        assert told["unit"] == "N*m/rad"
 
     def test_nothing_used_nothing_found(self, http):
         made = created(http, {"name": "unused", "models": {"bar": bar("33 mm")}})
