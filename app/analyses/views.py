@@ -27,10 +27,7 @@ def in_design(build: str, question: Question, found: Mapping[str, Mapping[str, A
     """An analysis in a revision, which tells no times: equal revisions are equal."""
     return {
         "id": question.key(build),
-        "kind": question.kind,
-        "boundary": question.boundary,
-        "level": question.level,
-        "tolerance": question.tolerance,
+        **question.told(),
         "outputs": {name: _timeless(told) for name, told in found.items()},
         "warnings": warnings(question, found),
     }

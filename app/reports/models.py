@@ -92,7 +92,7 @@ def _analyses(analyses: Mapping[str, Any], system: System) -> Iterator[Line]:
         for name, found in told["outputs"].items():
             mesh, level = found["mesh"], f"level {found['level']}" if found["level"] else "refined"
             held = told["boundary"].replace("_", " ")
-            load = " under 1 N·m" if name == "maximum_stress" else ""
+            load = f" under {numbers.told(told['load'])}" if name == "maximum_stress" else ""
             yield Line(
                 words=f"{kind}: {name.replace('_', ' ')}{load}",
                 symbol="",

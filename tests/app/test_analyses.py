@@ -98,7 +98,12 @@ class TestAnswer:
         assert found["unit"] == "MPa"
         assert found["value"] == pytest.approx(sqrt(3) * 16 / (pi * 0.020**3) / 1e6, rel=0.03)
         assert len(found["convergence"]) >= 2
-        assert found["error"] <= 0.02
+        assert found["error"] <= 0.01
+        loaded = asked(http, bar(20, 12), outputs=["maximum_stress", "stiffness"], load="0.5 kN*m")
+        assert loaded["load"] == {"value": 500, "unit": "N*m"}
+        assert loaded["outputs"]["maximum_stress"]["value"] == pytest.approx(500 * found["value"], rel=1e-12)
+        unloaded = asked(http, bar(20, 12), outputs=["stiffness"])
+        assert loaded["outputs"]["stiffness"] == unloaded["outputs"]["stiffness"]
 
 
 class TestFoundAgain:
@@ -158,6 +163,9 @@ class TestRefusals:
             ({"level": None, "tolerance": 1.5}, "tolerance", "less than or equal to 1"),
             ({"level": None, "tolerance": "small"}, "tolerance", "number"),
             ({"tolerance": 0.1}, "tolerance", "either"),
+            ({"load": "5 mm"}, "load", "N*m"),
+            ({"load": "-5 N*m"}, "load", "> 0 N*m"),
+            ({"load": {"value": [1, 2], "unit": "N*m"}}, "load", "one torque"),
             ({"parameters": {"diameter": "-1 mm", "length": "1 mm"}}, "diameter", "0"),
             ({"more": 1}, "more", "not permitted"),
         ],

@@ -206,6 +206,45 @@ class TestRefused:
         assert "bar.diameter → bar.torsion.stiffness → bar.diameter" in detail
 
 
+class TestLoad:
+    def test_analytic_a_life_follows_from_the_stress_on_the_solid(self, http):
+        """√3 · 16 T / (π d³) in a short bar, then Basquin's line without a mean stress."""
+        torque, diameter, strength, exponent = 300.0, 0.020, 900e6, -0.1
+        life = {
+            "stress_amplitude": "= bar.torsion.maximum_stress",
+            "mean_stress": "0 MPa",
+            "ultimate_strength": "800 MPa",
+            "fatigue_strength_coefficient": "900 MPa",
+            "fatigue_strength_exponent": exponent,
+        }
+        document = {
+            "name": "life",
+            "models": {"bar": bar(length="12 mm", torsion={"torsion": {"load": "300 N*m"}})},
+            "steps": {"life": {"template": "fatigue_life", "version": 1, "inputs": life}},
+        }
+        made = created(http, document)
+        assert made["state"] == "current", made["problem"]
+        told = revision(http, made)
+        analysis = told["models"]["bar"]["analyses"]["torsion"]
+        found = analysis["outputs"]["maximum_stress"]
+        assert analysis["load"] == {"value": 300.0, "unit": "N*m"}
+        assert found["value"] == pytest.approx(3**0.5 * 16 * torque / pi / diameter**3 / 1e6, rel=0.03)
+        assert found["convergence"][-1]["value"] == found["value"]
+        cycles = told["steps"]["life"]["outputs"]["cycles"]["value"]
+        assert cycles == pytest.approx((found["value"] * 1e6 / strength) ** (1 / exponent) / 2, rel=1e-6)
+
+    def test_property_another_load_is_no_other_analysis(self, http):
+        document = {"name": "loads", "parameters": {"peak": "= bar.torsion.maximum_stress"}}
+        made = []
+        for load in ("1 N*m", "0.2 kN*m"):
+            short = bar(length="12 mm", torsion={"torsion": {"load": load}})
+            made.append(revision(http, created(http, {**document, "models": {"bar": short}})))
+        one, other = (told["models"]["bar"]["analyses"]["torsion"] for told in made)
+        stresses = [told["outputs"]["maximum_stress"]["value"] for told in (one, other)]
+        assert one["id"] == other["id"]
+        assert stresses[1] == pytest.approx(200 * stresses[0], rel=1e-12)
+
+
 class TestRuns:
     def test_an_iteration_through_an_analysis(self, http):
         """A bar as thick as its own stiffness tells."""
@@ -233,6 +272,7 @@ class TestRuns:
         build = revision(http, created(http, {"name": "bar", "models": {"bar": bar("19 mm")}}))
         key = build["models"]["bar"]["build"]
         none = {"value": None, "unit": "MPa", "error": 0.2, "reason": "it has no limit", "level": None}
+        none["convergence"] = [{"elements": 100, "value": 1.0}, {"elements": 200, "value": 1.2}]
         asked = question("torsion", Options(level="coarse"))
         served.app.state.database.write(
             lambda session: repository.add(session, key, asked, {"maximum_stress": none})
