@@ -64,9 +64,12 @@ def calculix(step: bytes, size: float, curvature: float) -> dict[str, Any]:
 
 
 def alone(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]:
-    """Do something in a new process, and measure it."""
-    with ProcessPoolExecutor(1, get_context("spawn")) as pool:
-        return pool.submit(timed, action, *inputs).result()
+    """Do something in a new process, three times, and measure it; the quickest counts."""
+    runs = []
+    for _ in range(3):
+        with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+            runs.append(pool.submit(timed, action, *inputs).result())
+    return min(runs, key=lambda run: float(run["seconds"]))
 
 
 def timed(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]:
