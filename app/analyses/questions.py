@@ -27,8 +27,11 @@ KINDS: dict[str, dict[str, str]] = {
 }
 """What each kind of analysis tells, with its unit. Stress is that under a torque, or moment, of 1 N·m."""
 
-DEAR = frozenset({"maximum_stress"})
-"""What is found only where it is asked for by name: its mesh is refined until it settles."""
+SURFACE = "surface"
+"""An output of every kind, the surface for a picture; it is no quantity, so no relation can use it."""
+
+DEAR = frozenset({"maximum_stress", SURFACE})
+"""What is found only where it is asked for by name."""
 
 RECIPE = 1
 """Raised whenever the same question to the same solid gets another answer."""
@@ -78,9 +81,14 @@ def faults(options: Options) -> list[Fault]:
     return [Fault("tolerance", "conflict", detail)] if both else []
 
 
+def offered(kind: str) -> tuple[str, ...]:
+    """All outputs of a kind that can be asked for."""
+    return (*KINDS[kind], SURFACE)
+
+
 def in_order(kind: str, outputs: Any) -> tuple[str, ...]:
     """Outputs of a kind, each once and always in the same order."""
-    return tuple(name for name in KINDS[kind] if name in outputs)
+    return tuple(name for name in offered(kind) if name in outputs)
 
 
 def no_shaft(cls: type[CadModel]) -> str | None:
