@@ -11,7 +11,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -20,6 +20,7 @@ from templates.core.errors import Fault
 
 Boundary = Literal["free_end", "guided_end"]
 Level = Literal["coarse", "default", "fine"]
+DEFAULT: Level = "default"
 
 KINDS: dict[str, dict[str, str]] = {
     "torsion": {"stiffness": "N*m/rad", "torsional_frequency": "Hz", "maximum_stress": "MPa"},
@@ -70,7 +71,7 @@ class Question:
 
 def question(kind: str, options: Options) -> Question:
     """The question that options of a kind ask; nothing said is the default level."""
-    level = options.level or (None if options.tolerance else "default")
+    level = options.level or (None if options.tolerance else DEFAULT)
     return Question(kind, options.boundary, level, options.tolerance)
 
 
@@ -96,6 +97,17 @@ def no_shaft(cls: type[CadModel]) -> str | None:
     if cls.shaft is not CadModel.shaft:
         return None
     return f"{cls.id} is no shaft: it does not say by which ends it is held and loaded"
+
+
+def what_can_be_asked(cls: type[CadModel]) -> dict[str, Any]:
+    """The kinds of analyses of a model, each with its outputs and their units; none of what is no shaft."""
+    if no_shaft(cls):
+        return {}
+    options = {"boundaries": list(get_args(Boundary)), "levels": list(get_args(Level))}
+    return {
+        kind: {"outputs": {**units, SURFACE: None}, **options, "default_level": DEFAULT}
+        for kind, units in KINDS.items()
+    }
 
 
 def warnings(asked: Question, found: Mapping[str, Mapping[str, Any]]) -> list[dict[str, str]]:
