@@ -102,7 +102,7 @@ class CadModel(Template):
     """Base of all models."""
 
     film_bore: ClassVar[str | None] = None
-    """The parameter, by API name, that is the bore in which an oil film carries the shaft; of plain bearings."""
+    """The parameter, by API name, that is the bore in which an oil film carries; of plain bearings."""
 
     def build(self) -> tuple[Part, ...]:
         """The parts, drawn from the parameters alone."""

@@ -24,7 +24,7 @@ from cad.analysis.elastic import Response, is_antisymmetric
 from cad.analysis.solid import FREE, HELD, LOADED
 from cad.analysis.stress import recover, von_mises
 
-MOST_TRIANGLES = 18_000
+MOST_TRIANGLES = 16_000
 """Elements are divided as finely as keeps the whole within this number, but for the coarsest division."""
 
 LOADS = {"torsion": "a torque of 1 N*m about z", "bending": "a moment of 1 N*m about y"}

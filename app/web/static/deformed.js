@@ -27,9 +27,9 @@ export async function drawDeformed(place, surface, name) {
   const lines = edges.flatMap((ends) => [...ends.map((point) => surface.points.value[point]), [null, null, null]]);
   const before = { type: "scatter3d", mode: "lines", ...axes(lines), line: LINE, hoverinfo: "skip" };
   if (!place.querySelector(".figure")) place.replaceChildren(made("div", "figure"), made("p", "size muted"));
-  await drawScene(place.querySelector(".figure"), [solid, before]);
   showColours(place, { low, high, unit: shown });
   place.querySelector(".size").textContent = `under ${surface.load.replace("*", "·")}; deformation × ${plain(factor)}; lines: undeformed; drag to turn`;
+  await drawScene(place.querySelector(".figure"), [solid, before]);
 }
 
 // By how much displacements are drawn too large, in two digits.
