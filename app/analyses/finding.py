@@ -96,5 +96,5 @@ def _packed(told: dict[str, Any]) -> dict[str, Any]:
     """A surface as the bytes of its JSON; how many triangles it has is told beside it."""
     surface = told["value"]
     rest = {name: part for name, part in told.items() if name != "value"}
-    written = json.dumps(surface.told(), separators=(",", ":"))
+    written = json.dumps(surface.told(), separators=(",", ":"), allow_nan=False)
     return {FILE: written.encode(), "triangles": len(surface.triangles), **rest}
