@@ -108,7 +108,6 @@ def test_the_table_of_the_script_is_that_of_the_server(watched, http):
 def test_a_job_that_is_cancelled_says_so(watched):
     page = watched.page
     watched.open("/models/crank_throw/1")
-    expect(page.locator(".solid .js-plotly-plot")).to_be_visible(timeout=PATIENCE)
     page.locator('[data-ask="level"]').select_option("fine")
     page.get_by_label("greatest stress").check()
     page.get_by_role("button", name="Analyse").click()

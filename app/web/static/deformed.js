@@ -1,7 +1,7 @@
 // A solid under its load: deformed visibly, coloured by stress, twist or deflection; the edges of what it was.
 import { facets } from "./facets.js";
 import { plain, unit } from "./numbers.js";
-import { FIELD, drawScene, showColours } from "./scene.js";
+import { FIELD, drawScene, rangeOf, showColours } from "./scene.js";
 
 const SHOWN = 0.05; // of the part's size: what the largest displacement is drawn as
 const NOTHING = 0.01; // of the largest value
@@ -43,10 +43,6 @@ function exaggeration({ points, displacement }) {
 function coloured(values) {
   const { low, high } = rangeOf(values);
   return { low: Math.abs(low) < NOTHING * high ? 0 : low, high };
-}
-
-function rangeOf(values) {
-  return values.reduce(({ low, high }, value) => ({ low: Math.min(low, value), high: Math.max(high, value) }), { low: Infinity, high: -Infinity });
 }
 
 function width(values) {

@@ -1,18 +1,30 @@
 // What all views in three dimensions have in common: no axes, equal scales, one camera; colours of a field.
 import { CONFIG, plotly, scale } from "./plots.js";
 
-const HIDDEN = { visible: false, showbackground: false };
-const LAYOUT = {
-  height: 380, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "#fff", uirevision: "kept", showlegend: false,
-  scene: { aspectmode: "data", xaxis: HIDDEN, yaxis: HIDDEN, zaxis: HIDDEN, camera: { eye: { x: 1.1, y: -1.3, z: 0.95 }, projection: { type: "orthographic" } } },
-};
+const AXES = ["x", "y", "z"];
+const DIAGONAL = 2.5; // of the box about a part, in units of which the view shows 2.8: it fits, however it is turned
+const CAMERA = { eye: { x: 1.1, y: -1.3, z: 0.95 }, projection: { type: "orthographic" } };
 
 export const FIELD = { colorscale: "Viridis", showscale: false, lighting: { ambient: 0.9, diffuse: 0.2 } };
 
 // Draw traces; drawn again in the same place, the view stays as it was turned.
 export async function drawScene(figure, traces) {
   const Plotly = await plotly();
-  await Plotly.react(figure, traces, structuredClone(LAYOUT), CONFIG);
+  const scene = { ...box(traces), camera: CAMERA };
+  await Plotly.react(figure, traces, { height: 380, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "#fff", uirevision: "kept", showlegend: false, scene }, CONFIG);
+}
+
+// The box about all traces, as large as fits.
+function box(traces) {
+  const ranges = AXES.map((axis) => rangeOf(traces.flatMap((trace) => Array.from(trace[axis])).filter((value) => value !== null)));
+  const lengths = ranges.map(({ low, high }) => high - low), unit = DIAGONAL / Math.hypot(...lengths);
+  const hidden = ({ low, high }) => ({ visible: false, showbackground: false, range: [low, high] });
+  const [xaxis, yaxis, zaxis] = ranges.map(hidden), [x, y, z] = lengths.map((length) => length * unit);
+  return { aspectmode: "manual", aspectratio: { x, y, z }, xaxis, yaxis, zaxis };
+}
+
+export function rangeOf(values) {
+  return values.reduce(({ low, high }, value) => ({ low: Math.min(low, value), high: Math.max(high, value) }), { low: Infinity, high: -Infinity });
 }
 
 // The colours of a field below its view, in the place of those of the field before; none, if there is no field.
