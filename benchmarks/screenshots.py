@@ -2,7 +2,8 @@
 
     python -m benchmarks.screenshots
 
-Needs Debian's package chromium. Nothing is retouched: the pages are shown as a visitor sees them first.
+Needs Debian's package chromium. Nothing is retouched: the pages are shown as a visitor sees them first, two of
+them painted by their own controls.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def _with_stress(page: Page) -> None:
     panel.wait_for(timeout=LONGEST)
     panel.get_by_role("button", name="Analyse").click()
     panel.locator(".js-plotly-plot").wait_for(timeout=LONGEST)
-    page.get_by_role("heading", name="Finite elements").evaluate("(place) => place.scrollIntoView()")
+    panel.locator("[data-deformed]").evaluate("(place) => place.scrollIntoView({ block: 'end' })")
     page.wait_for_timeout(1500)
 
 
