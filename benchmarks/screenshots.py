@@ -2,8 +2,8 @@
 
     python -m benchmarks.screenshots
 
-Needs Debian's package chromium. Nothing is retouched: the pages are shown as a visitor sees them first, two of
-them painted by their own controls.
+Needs Debian's package chromium. Nothing is retouched: the pages are shown as a visitor sees them first; some
+are painted by a click.
 """
 
 from __future__ import annotations

@@ -40,6 +40,12 @@ def drawn(page):
     return page.evaluate(script)
 
 
+def serious(page):
+    """What a check of accessibility finds that shuts somebody out."""
+    found = Axe().run(page).response["violations"]
+    return [(fault["id"], fault["nodes"][0]["target"]) for fault in found if fault["impact"] in SERIOUS]
+
+
 def asked(http, kind="torsion", **more):
     body = {"parameters": THROW, "level": "coarse", **more}
     answer = http.post(f"{ANALYSES}/{kind}", json=body, headers={"Prefer": "wait=60", "Accept": "*/*"})
@@ -72,8 +78,7 @@ def test_a_throw_is_analysed_and_painted_in_its_page(watched, http):
     expect(panel.locator(".colours")).to_contain_text("°")
     largest = max(drawn(page)["colours"])
     assert largest == pytest.approx(57.3 / torsion["stiffness"]["value"], rel=0.1)  # deg: the loaded end's
-    found = Axe().run(page).response["violations"]
-    assert [fault["id"] for fault in found if fault["impact"] in SERIOUS] == []
+    assert serious(page) == []
 
     panel = analysed(page, kind="bending")
     expect(panel.locator("[data-analysis]")).to_have_count(2)
@@ -141,6 +146,9 @@ def test_a_design_is_analysed_as_it_declares(watched, http):
     assert panel.locator('[data-found="stiffness"] .number').inner_text() == stiffness
     expect(panel.locator("[data-analysis]")).to_have_count(1)
     expect(page.locator("[data-draft]")).to_be_hidden()  # its fields are none of the worksheet
+    ids = page.evaluate("Array.from(document.querySelectorAll('[id]'), (place) => place.id)")
+    assert len(ids) == len(set(ids))
+    assert serious(page) == []
     assert watched.faults() == []
     watched.open(f"{place}/revisions/1")
     expect(page.locator('[data-found="stiffness"] .number')).to_have_text(stiffness)
