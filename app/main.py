@@ -139,7 +139,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     regeneration = Regeneration(database, builds, analysing, catalogues)
     queue.register(REGENERATE, regeneration, Regeneration.failed)
     queue.register(BUILD, ModelBuild(builds, catalogues.models))
-    queue.register(ANALYSIS, ModelAnalysis(builds, analysing, catalogues.models))
+    queue.register(ANALYSIS, ModelAnalysis(builds, analysing, catalogues.models), is_slow=True)
     queue.start()
     stack.callback(queue.stop)
     app.state.database, app.state.store, app.state.jobs = database, store, queue

@@ -19,7 +19,7 @@ class Settings(BaseSettings):
     template_folders: tuple[Path, ...] = Field((), description="folders of a team's own templates")
     wait_seconds: float = Field(2.0, ge=0, description="how long an answer waits for its job [s]")
     queue_limit: int = Field(200, gt=0, description="jobs that may be queued before new ones are refused")
-    workers: int = Field(1, gt=0, description="jobs that run at the same time")
+    workers: int = Field(1, gt=0, description="jobs that run at the same time, beside one analysis")
     job_deadline: float = Field(60.0, gt=0, description="longest run of one job process [s]")
     job_memory_mb: int = Field(3072, gt=0, description="memory of one job process beside the program [MiB]")
     analysis_deadline: float = Field(300.0, gt=0, description="longest run of one analysis of a solid [s]")

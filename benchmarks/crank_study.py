@@ -4,8 +4,8 @@
 
 Punewale, Khobragade, Chaudhari and Khandre (2015) change crankpin, journals, throw and the face inclination
 of the webs of a single-cylinder crankshaft. Its dimensions are not printed; this one is the project's own.
-Every number comes from one design on a running service: the solid is regenerated and measured, its STEP file
-is analysed by finite elements, and inertia and stiffness go back into `torsional_vibration`. Writes
+Every number comes from one design on a running service: the solid is regenerated, measured and analysed by
+finite elements, and inertia and stiffness go back into `torsional_vibration` by relations. Writes
 docs/crank_study.md and docs/pictures/crank_study.png.
 """
 
@@ -15,7 +15,6 @@ import io
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import pi
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -26,16 +25,11 @@ from PIL import Image
 
 from app.client import Client, Design
 from app.demo import service
-from cad.analysis.elastic import System, respond
-from cad.analysis.mesh import Fineness, make_grid
-from cad.analysis.modes import torsional_mode
-from cad.analysis.solid import read_solid
-from cad.model import Shaft
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE, PICTURE = DOCS / "crank_study.md", DOCS / "pictures" / "crank_study.png"
 
-FINENESS, ORDER = Fineness(0.8, 1.0, pi / 3), 3
+LEVEL = "fine"
 WIDTH = 118  # of a line of the page
 SHEAR = 210 / 2.6  # [GPa]
 HEADS = (
@@ -92,7 +86,7 @@ class State:
     """A shaft as one revision of the design has it."""
 
     stiffness: float  # [N m/rad], by finite elements
-    finer: float  # the same by elements of one order more
+    error: float  # of that, relative, as told
     frequency: float  # [Hz], of stiffness and measured inertia, as the paper takes it
     mode: float  # [Hz], the first torsional mode of the solid by finite elements
     recommended: float  # [N m/rad], of the throw alone in closed form
@@ -106,7 +100,7 @@ def document(parameters: Mapping[str, str]) -> dict[str, Any]:
     throw: dict[str, Any] = {name: f"= crank.{name}" for name in dimensions}
     train = {
         "inertias": ["= crank.polar_inertia"],
-        "stiffnesses": ["= stiffness"],
+        "stiffnesses": ["= crank.torsion.stiffness"],
         "ends": "fixed_free",
     }
     steps = {
@@ -117,23 +111,25 @@ def document(parameters: Mapping[str, str]) -> dict[str, Any]:
             "inputs": {**throw, "shear_modulus": {"value": SHEAR, "unit": "GPa"}},
         },
     }
-    crank = {"id": "crankshaft", "version": 1, "parameters": dict(parameters)}
-    unknown = {"stiffness": "1 N*m/rad"}  # until the solid is analysed
-    return {"name": "the paper's study", "parameters": unknown, "steps": steps, "models": {"crank": crank}}
+    crank = {
+        "id": "crankshaft",
+        "version": 1,
+        "parameters": dict(parameters),
+        "analyses": {"torsion": {"level": LEVEL}},
+    }
+    return {"name": "the paper's study", "steps": steps, "models": {"crank": crank}}
 
 
 def states(client: Client, base: Mapping[str, str], changes: Sequence[Mapping[str, str]]) -> list[State]:
     """The shaft and its changes, each a revision of one design."""
     design = client.create(document(base))
-    found = []
-    for change in ({}, *changes):
+    found = [state(client, design)]
+    for change in changes:
         parameters = {**base, **change}
         design = client.change(
             design, {"models": {"crank": {"parameters": parameters}}, "note": told(change)}
         )
-        stiffness, finer, mode = analysed(client, design)
-        design = client.change(design, {"parameters": {"stiffness": {"value": stiffness, "unit": "N*m/rad"}}})
-        found.append(state(client, design, finer, mode))
+        found.append(state(client, design))
         print(told(change), found[-1], flush=True)
     return found
 
@@ -143,30 +139,19 @@ def told(change: Mapping[str, str]) -> str:
     return ", ".join(f"{name} {value}" for name, value in change.items()) or "as drawn"
 
 
-def analysed(client: Client, design: Design) -> tuple[float, float, float]:
-    """Stiffness twice [N m/rad], first torsional mode [Hz]; held at the front end, free at the rear.
-
-    The second stiffness is that by elements of one order more.
-    """
-    box = client.measurements(design.id)["crank"]["bounding_box"]
-    shaft = Shaft(box["low"]["value"][2], box["high"]["value"][2])
-    grid = make_grid(read_solid(client.model(design.id, "step"), shaft), FINENESS)
-    coarse, fine = (
-        respond(System(grid, o, shaft.material, "torsion"), "free_end") for o in (ORDER, ORDER + 1)
-    )
-    return 1e-3 / coarse.compliance, 1e-3 / fine.compliance, torsional_mode(coarse).frequency
-
-
-def state(client: Client, design: Design, finer: float, mode: float) -> State:
-    """What the design's newest revision has calculated and measured."""
+def state(client: Client, design: Design) -> State:
+    """What the design's newest revision has calculated and measured, and the mode of its solid."""
     revision = client.revision(design.id, design.revision)
     vibration, throw = revision["steps"]["vibration"], revision["steps"]["throw"]
-    measured = client.measurements(design.id)["crank"]
+    measured, crank = client.measurements(design.id)["crank"], revision["models"]["crank"]
+    stiffness = crank["analyses"]["torsion"]["outputs"]["stiffness"]
+    parameters, outputs = crank["parameters"], ["torsional_frequency"]
+    mode = client.analyse("crankshaft", 1, parameters, "torsion", level=LEVEL, outputs=outputs)
     return State(
-        stiffness=vibration["inputs"]["stiffnesses"]["value"][0],
+        stiffness=stiffness["value"],
+        error=stiffness["error"],
         frequency=vibration["outputs"]["natural_frequencies"]["value"][0],
-        finer=finer,
-        mode=mode,
+        mode=mode["outputs"]["torsional_frequency"]["value"],
         recommended=throw["outputs"]["recommended_stiffness"]["value"],
         mass=measured["mass"]["value"],
         inertia=vibration["inputs"]["inertias"]["value"][0],
@@ -232,8 +217,8 @@ def table(found: Sequence[State]) -> str:
 def line(base: State) -> str:
     """A shaft in numbers."""
     return (
-        f"K = {base.stiffness / 1000:.1f} kN m/rad ({100 * (base.finer / base.stiffness - 1):+.2g} % with "
-        f"elements of one order more), I = {1000 * base.inertia:.3f}e-3 kg m², {base.mass:.2f} kg; "
+        f"K = {base.stiffness / 1000:.1f} kN m/rad ± {100 * base.error:.1g} %, "
+        f"I = {1000 * base.inertia:.3f}e-3 kg m², {base.mass:.2f} kg; "
         f"√(K/I)/2π = {base.frequency:.0f} Hz, first torsional mode {base.mode:.0f} Hz"
     )
 

@@ -33,7 +33,16 @@ THROW = {
     "web_thickness": 0.018, "web_width": 0.080, "throw": 0.042, "fillet": 0.003,
 }  # fmt: skip
 TOLERANCE = 5e-3
-SIZES = ((0.5, 1.0), (0.4, 1.5), (0.38, 1.6), (0.36, 1.7), (0.34, 1.8), (0.3, 2.0), (0.25, 2.5), (0.2, 3.0))  # in radii, and elements by radius
+SIZES = (
+    (0.5, 1.0),
+    (0.4, 1.5),
+    (0.38, 1.6),
+    (0.36, 1.7),
+    (0.34, 1.8),
+    (0.3, 2.0),
+    (0.25, 2.5),
+    (0.2, 3.0),
+)  # in radii, and elements by radius
 
 
 def ours(step: bytes, asked: Asked) -> dict[str, Any]:
@@ -61,7 +70,7 @@ def alone(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]
 
 
 def timed(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]:
-    """Do something in this process; adds seconds, its error, and memory [MB]: all, and above the libraries'."""
+    """Do something here; adds seconds, error, and memory [MB]: all, and above the libraries'."""
     loaded = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     start = perf_counter()
     found = action(*inputs)

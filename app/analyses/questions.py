@@ -11,12 +11,14 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
+from math import inf
 from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from cad.model import CadModel
-from templates.core.errors import Fault
+from templates.core.errors import Fault, FaultyText
+from templates.core.quantity import read
 
 Boundary = Literal["free_end", "guided_end"]
 Level = Literal["coarse", "default", "fine"]
@@ -26,12 +28,15 @@ KINDS: dict[str, dict[str, str]] = {
     "torsion": {"stiffness": "N*m/rad", "torsional_frequency": "Hz", "maximum_stress": "MPa"},
     "bending": {"stiffness": "N*m/rad", "maximum_stress": "MPa"},
 }
-"""What each kind of analysis tells, with its unit. Stress is that under a torque, or moment, of 1 N·m."""
+"""What each kind of analysis tells, with its unit."""
 
 SURFACE = "surface"
 """An output of every kind, the surface for a picture; it is no quantity, so no relation can use it."""
 
-DEAR = frozenset({"maximum_stress", SURFACE})
+STRESSES = frozenset({"maximum_stress"})
+"""What is proportional to the load."""
+
+DEAR = STRESSES | {SURFACE}
 """What is found only where it is asked for by name."""
 
 RECIPE = 1
@@ -52,6 +57,11 @@ class Options(BaseModel):
     tolerance: float | None = Field(
         None, gt=0, le=1, description="the largest relative error wanted, instead of a level"
     )
+    load: str | dict[str, Any] | None = Field(
+        None,
+        description="the torque or bending moment under which stress is told; 1 N*m, if nothing is said",
+        examples=["500 N*m"],
+    )
 
 
 @dataclass(frozen=True)
@@ -62,24 +72,59 @@ class Question:
     boundary: Boundary
     level: Level | None
     tolerance: float | None
+    load: float = 1.0  # [N m]
 
     def key(self, build: str) -> str:
-        """By what the answers for a build are found: SHA-256 of build, question, solver and recipe."""
-        identity = [build, asdict(self), _MADE_BY]
+        """By what the answers for a build are found: SHA-256 of build, question, solver and recipe.
+
+        Not by the load: everything is linear in it, so what is kept is found under 1 N·m.
+        """
+        identity = [build, self.kept(), _MADE_BY]
         return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()
+
+    def kept(self) -> dict[str, Any]:
+        """The question as it is kept with its answers, without the load."""
+        return {name: value for name, value in asdict(self).items() if name != "load"}
+
+    def told(self) -> dict[str, Any]:
+        """The question as it is shown."""
+        return {**asdict(self), "load": {"value": self.load, "unit": "N*m"}}
 
 
 def question(kind: str, options: Options) -> Question:
-    """The question that options of a kind ask; nothing said is the default level."""
+    """The question that options of a kind ask; nothing said is the default level, and a load of 1 N·m."""
     level = options.level or (None if options.tolerance else DEFAULT)
-    return Question(kind, options.boundary, level, options.tolerance)
+    load = 1.0 if options.load is None or _load_faults(options.load) else read(options.load, "N*m").si
+    return Question(kind, options.boundary, level, options.tolerance, float(load))
 
 
 def faults(options: Options) -> list[Fault]:
-    """What is wrong with options that are right each by itself."""
+    """What is wrong with options beside their types."""
     both = options.level is not None and options.tolerance is not None
     detail = "give either a level or a tolerance, which chooses the level"
-    return [Fault("tolerance", "conflict", detail)] if both else []
+    found = [Fault("tolerance", "conflict", detail)] if both else []
+    return found + ([] if options.load is None else _load_faults(options.load))
+
+
+def _load_faults(raw: Any) -> list[Fault]:
+    try:
+        load = read(raw, "N*m").si
+    except FaultyText as error:
+        return [error.fault("load")]
+    if isinstance(load, float) and 0 < load < inf:
+        return []
+    return [Fault("load", "out_of_range", 'load is one torque or moment > 0 N*m, such as "500 N*m"')]
+
+
+def under_load(asked: Question, found: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
+    """What was found under 1 N·m as it is under the load of the question: stress is proportional to it."""
+    return {name: _times(asked.load, told) if name in STRESSES else {**told} for name, told in found.items()}
+
+
+def _times(load: float, told: Mapping[str, Any]) -> dict[str, Any]:
+    value = None if told["value"] is None else told["value"] * load
+    steps = [{**step, "value": step["value"] * load} for step in told["convergence"]]
+    return {**told, "value": value, "convergence": steps}
 
 
 def offered(kind: str) -> tuple[str, ...]:

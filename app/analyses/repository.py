@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
 from typing import Any
 
 from sqlalchemy import select
@@ -58,7 +57,7 @@ def add(session: Session, build: str, question: Question, known: Mapping[str, di
     key = question.key(build)
     for output, told in known.items():
         row = AnalysisRow(
-            key=key, output=output, build_key=build, asked=asdict(question), found=told, created=now()
+            key=key, output=output, build_key=build, asked=question.kept(), found=told, created=now()
         )
         session.merge(row)
     session.flush()

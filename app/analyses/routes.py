@@ -41,7 +41,8 @@ async def analyse(
     """Build a model, then find stiffness, frequency or stress on its solid. An equal question is asked once.
 
     The shaft is held at one end; at the other acts a torque about z (`torsion`), or a moment about y in the
-    plane of the throw (`bending`). Stress is the greatest von Mises stress under 1 N·m: multiply by the load.
+    plane of the throw (`bending`). Stress is the greatest von Mises stress under `load`, of 1 N·m if
+    none is given.
     """
     if kind not in KINDS:
         raise NotFound(f"there is no analysis {kind[:60]!r}; there are {', '.join(KINDS)}")

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Any
 
 from sqlalchemy.orm import Session
 
 from app.analyses import repository
 from app.analyses.finding import Analysing, shaft_of
-from app.analyses.questions import SURFACE, Question
+from app.analyses.questions import SURFACE, Question, under_load
 from app.analyses.views import shown
 from app.designs import repository as builds
 from app.designs.errors import NotFound
@@ -49,7 +48,7 @@ class Analyses:
             "model": shape.id,
             "version": shape.version,
             "parameters": as_text(shape),
-            "question": asdict(question),
+            "question": question.kept(),
             "outputs": [*outputs],
         }
 
@@ -66,11 +65,11 @@ class Analyses:
         build = build_key(shape)
         with self.database.read() as session:
             known = repository.found(session, question.key(build))
-        told = {name: known[name] for name in outputs if name in known}
+        told = under_load(question, {name: known[name] for name in outputs if name in known})
         return shown({"id": shape.id, "version": shape.version}, build, question, told)
 
     def show_all(self, key: str) -> dict[str, Any]:
-        """All that is known to a question about a build.
+        """All that is known to a question about a build; stress under 1 N·m.
 
         Raises
         ------

@@ -28,10 +28,7 @@ def in_design(build: str, question: Question, found: Mapping[str, Mapping[str, A
     key = question.key(build)
     return {
         "id": key,
-        "kind": question.kind,
-        "boundary": question.boundary,
-        "level": question.level,
-        "tolerance": question.tolerance,
+        **question.told(),
         "outputs": {name: _linked(key, name, _timeless(told)) for name, told in found.items()},
         "warnings": warnings(question, found),
     }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -72,7 +71,7 @@ class _Telling:
         name, _, kind = node.partition(SOLID)
         if not kind:
             return {"kind": "measured"}
-        return {"kind": "analysis", "analysis": asdict(self.graph.blocks[name].analyses[kind])}
+        return {"kind": "analysis", "analysis": self.graph.blocks[name].analyses[kind].told()}
 
     def _declared(self, head: str, tail: str) -> dict[str, Any]:
         cls = self.graph.blocks[head].cls

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from sqlalchemy.orm import Session
 
 from app.analyses import repository as analyses
-from app.analyses.questions import Question
+from app.analyses.questions import Question, under_load
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
 from app.designs.automap import Proposal, proposals
@@ -247,7 +247,9 @@ def analysed(session: Session) -> Analysed:
 
     def known(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Found | None:
         found = analyses.found(session, question.key(build_key(shape)))
-        return {name: found[name] for name in wanted} if set(wanted) <= found.keys() else None
+        if not set(wanted) <= found.keys():
+            return None
+        return under_load(question, {name: found[name] for name in wanted})
 
     return known
 

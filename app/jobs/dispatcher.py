@@ -4,6 +4,7 @@ import logging
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from sqlalchemy.orm import Session
@@ -30,14 +31,18 @@ _PAUSE = 1.0  # before the queue is looked at again after the database has faile
 
 @dataclass(frozen=True)
 class Kind:
-    """What to do with jobs of a kind."""
+    """What to do with jobs of a kind, and whether they take minutes."""
 
     handler: Handler
     on_failure: FailureHook
+    is_slow: bool = False
 
 
 class Dispatcher:
-    """Runs the queued jobs, as many at a time as there are threads."""
+    """Runs the queued jobs, as many at a time as there are threads; slow ones in a thread of their own.
+
+    So whoever changes a bearing does not wait until somebody's analysis is done.
+    """
 
     def __init__(
         self,
@@ -53,22 +58,24 @@ class Dispatcher:
         self._limits = limits
         self._events = events
         self._describe = describe
-        self._awake = threading.Semaphore(0)
+        self._awake = {False: threading.Semaphore(0), True: threading.Semaphore(0)}  # by whether slow
         self._stopping = threading.Event()
         self._running: dict[str, threading.Event] = {}  # job id -> set to stop it
         self._threads: list[threading.Thread] = []
 
     def start(self, threads: int) -> None:
         """Begin to take jobs from the queue."""
-        for number in range(threads):
-            thread = threading.Thread(target=self._work, name=f"jobs-{number}", daemon=True)
+        lanes = [*(False for _ in range(threads)), True]
+        for number, slow in enumerate(lanes):
+            thread = threading.Thread(target=self._work, args=[slow], name=f"jobs-{number}", daemon=True)
             self._threads.append(thread)
             thread.start()
             self.wake()
 
     def wake(self) -> None:
-        """Have a thread look at the queue."""
-        self._awake.release()
+        """Have a thread of each lane look at the queue."""
+        for lane in self._awake.values():
+            lane.release()
 
     def interrupt(self, id: str) -> None:
         """Kill the process of a job, if it runs."""
@@ -85,26 +92,27 @@ class Dispatcher:
         for thread in self._threads:
             thread.join()
 
-    def _work(self) -> None:
+    def _work(self, slow: bool) -> None:
         while not self._stopping.is_set():
-            self._awake.acquire()
+            self._awake[slow].acquire()
             try:
-                self._empty_queue()
+                self._empty_queue(slow)
             except Exception:
                 logger.exception("The queue of jobs could not be read or written; trying again")
                 self._stopping.wait(_PAUSE)
                 self.wake()
 
-    def _empty_queue(self) -> None:
-        while not self._stopping.is_set() and (job := self._database.write(self._claim)):
+    def _empty_queue(self, slow: bool) -> None:
+        while not self._stopping.is_set() and (job := self._database.write(partial(self._claim, slow=slow))):
             try:
                 self._execute(job)
             finally:
                 del self._running[job.id]
 
-    def _claim(self, session: Session) -> Job | None:
+    def _claim(self, session: Session, *, slow: bool) -> Job | None:
         """Claim a job and register it still in the writer thread: who sees it running can interrupt it."""
-        job = repository.claim(session)
+        kinds = [name for name, kind in self.kinds.items() if kind.is_slow]
+        job = repository.claim(session, kinds, take_slow=slow)
         if job is not None:
             self._running[job.id] = threading.Event()
         return job

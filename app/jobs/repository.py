@@ -4,6 +4,7 @@ What a claimed job writes is fenced: it takes effect only while the row is runni
 claimed, so a job which was cancelled or claimed again cannot write any more.
 """
 
+from collections.abc import Collection
 from typing import Any, cast
 
 from sqlalchemy import ColumnElement, and_, func, select, update
@@ -59,9 +60,10 @@ def find_waiting(session: Session, kind: str, payload: dict[str, Any]) -> str | 
     return session.scalar(same.where(JobRow.state.in_(["queued", "running"])).limit(1))
 
 
-def claim(session: Session) -> Job | None:
-    """Make the oldest queued job a running one and return it."""
-    oldest = select(JobRow.id).where(JobRow.state == "queued").order_by(JobRow.id).limit(1)
+def claim(session: Session, slow: Collection[str] = (), *, take_slow: bool = False) -> Job | None:
+    """Make the oldest queued job, of the slow kinds or of the others, a running one and return it."""
+    lane = JobRow.kind.in_(slow) if take_slow else JobRow.kind.not_in(slow)
+    oldest = select(JobRow.id).where(JobRow.state == "queued", lane).order_by(JobRow.id).limit(1)
     claimed = update(JobRow).where(JobRow.id == oldest.scalar_subquery())
     values = {"state": "running", "attempt": JobRow.attempt + 1, "progress": 0.0, "log": [], "updated": now()}
     row = session.scalar(claimed.values(values).returning(JobRow))

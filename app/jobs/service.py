@@ -47,14 +47,16 @@ class Jobs:
         limits = Limits(settings.job_deadline, settings.job_memory_mb)
         self._dispatcher = Dispatcher(database, worker, limits, self.events, describe)
 
-    def register(self, kind: str, handler: Handler, on_failure: FailureHook = _ignore) -> None:
-        """Say what runs jobs of a kind.
+    def register(
+        self, kind: str, handler: Handler, on_failure: FailureHook = _ignore, *, is_slow: bool = False
+    ) -> None:
+        """Say what runs jobs of a kind; slow ones run beside the others, one at a time.
 
         The handler runs in a thread of the queue and returns a completion. That stores what the job has made
         and returns a link to it, in the transaction that marks the job as done. `on_failure` runs in the one
         that marks it as failed or cancelled.
         """
-        self._dispatcher.kinds[kind] = Kind(handler, on_failure)
+        self._dispatcher.kinds[kind] = Kind(handler, on_failure, is_slow)
 
     def start(self) -> None:
         """Queue again what a killed server left running, and begin to work. Register the kinds first."""

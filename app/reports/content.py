@@ -114,6 +114,7 @@ class Model:
     compared: str  # with which revision
     parameters: list[Mapped]
     measures: list[Line]
+    analyses: list[Line]  # what finite elements found; origin is how
     checks: list[Verdict]
     files: list[File]
     remark: str  # on pictures that could not be had

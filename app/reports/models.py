@@ -14,6 +14,7 @@ from app.reports.cells import Cell, shown, typed
 from app.reports.content import File, Line, Mapped, Model, Verdict
 from app.reports.steps import known, symbol_of, verdicts, version_of, words_of
 from app.reports.typesetting import DRAWING, PICTURE
+from app.web import numbers
 from cad.model import CadModel
 from templates.core.catalogue import Catalogue
 from templates.core.errors import TemplateError
@@ -48,6 +49,7 @@ def model_of(
         compared=f"revision {before.number}" if before else "",
         parameters=[*_parameters(told, before.parameters if before else {}, measured, cls, system)],
         measures=[*_measures(measured, system)],
+        analyses=[*_analyses(told["analyses"], system)],
         checks=_checks(told, cls),
         files=[File(kind, files[kind]) for kind in KEPT if kind in files],
         remark=remark,
@@ -83,6 +85,21 @@ def _measures(measured: Mapping[str, Any], system: System) -> Iterator[Line]:
         for axis, value in zip("xyz", measured["centre"]["value"], strict=True):
             centre = {"value": round(value, 9) + 0.0, "unit": measured["centre"]["unit"]}
             yield Line(f"centre of mass, {axis}", "", shown(centre, system))
+
+
+def _analyses(analyses: Mapping[str, Any], system: System) -> Iterator[Line]:
+    for kind, told in analyses.items():
+        for name, found in told["outputs"].items():
+            mesh, level = found["mesh"], f"level {found['level']}" if found["level"] else "refined"
+            held = told["boundary"].replace("_", " ")
+            load = f" under {numbers.told(told['load'])}" if name == "maximum_stress" else ""
+            yield Line(
+                words=f"{kind}: {name.replace('_', ' ')}{load}",
+                symbol="",
+                value=shown(found, system),
+                error=f"± {numbers.percent(found['error'])}",
+                origin=f"{held}, {level}: {mesh['elements']} elements of order {mesh['order']}",
+            )
 
 
 def _checks(told: Mapping[str, Any], cls: Any) -> list[Verdict]:

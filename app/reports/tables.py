@@ -40,7 +40,7 @@ class Row:
     """One quantity: a single value, a text, or an array with its indices."""
 
     block: str
-    kind: str  # parameter, input, output, dimension
+    kind: str  # parameter, input, output, dimension, analysis
     name: str
     value: Any
     unit: str
@@ -77,6 +77,9 @@ def _rows(told: Mapping[str, Any]) -> Iterator[Row]:
     for model, built in told["models"].items():
         for name, value in built["parameters"].items():
             yield _quantity(model, "dimension", name, value, text_of(built["relations"].get(name)))
+        for kind, asked in built["analyses"].items():
+            for name, found in asked["outputs"].items():
+                yield _quantity(model, "analysis", f"{kind}.{name}", found, "finite elements")
 
 
 def _origin(used: Any) -> str:

@@ -37,8 +37,9 @@ def read_inputs(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, 
 
 def _read_one(declared: Input, raw: Any) -> Typed | str:
     if isinstance(declared, Choice):
-        if isinstance(raw, str) and raw in declared.options:
-            return raw
+        option = raw["value"] if isinstance(raw, dict) and raw.keys() == {"value"} else raw  # as it is told
+        if isinstance(option, str) and option in declared.options:
+            return option
         raise FaultyText("not_an_option", f"{excerpt(raw)} is none of {', '.join(declared.options)}")
     return raw if isinstance(raw, Typed) else read(raw, declared.meaning.unit)
 

@@ -406,6 +406,23 @@ def test_two_jobs_run_at_the_same_time(make, database):
     assert [ended(jobs, id).state for id in ids] == ["done", "done"]
 
 
+def test_a_slow_job_holds_up_its_like_only(make, database):
+    jobs, gate = make(workers=1), threading.Event()
+
+    def slow(job, context):
+        assert gate.wait(10)
+        return lambda session: None
+
+    jobs.register("slow", slow, is_slow=True)
+    jobs.register(KIND, lambda job, context: lambda session: None)
+    jobs.start()
+    first, second = (put(jobs, database, key, "slow") for key in "ab")
+    assert ended(jobs, put(jobs, database)).state == "done"
+    assert [jobs.get(id).state for id in (first, second)] == ["running", "queued"]
+    gate.set()
+    assert [ended(jobs, id).state for id in (first, second)] == ["done", "done"]
+
+
 def test_waiting_ends_with_the_time_or_the_job(jobs, database):
     id = put(jobs, database)
     start = time.monotonic()
@@ -424,10 +441,10 @@ def test_work_goes_on_after_the_database_has_failed(jobs, database, monkeypatch,
     claim = repository.claim
     failing = iter([True, True])
 
-    def flaky(session):
+    def flaky(session, *kinds, **lane):
         if next(failing, False):
             raise OSError("disk is full")
-        return claim(session)
+        return claim(session, *kinds, **lane)
 
     monkeypatch.setattr("app.jobs.repository.claim", flaky)
     jobs.start()

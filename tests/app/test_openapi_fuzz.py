@@ -3,6 +3,7 @@
 import json
 import math
 
+import httpx
 import pytest
 import schemathesis
 from hypothesis import HealthCheck, Phase, given, settings
@@ -38,6 +39,8 @@ def ask(case, url):
     assert answer.status_code < 500, answer.text
     if answer.status_code >= 400 and case.method != "HEAD":
         assert answer.headers["content-type"][0] == "application/problem+json", answer.text
+    if answer.status_code == 202:  # work that may take minutes: seen, and taken away
+        httpx.delete(f"{url}{answer.headers['location'][0]}", timeout=HANG, trust_env=False)
 
 
 @INTERFACE.parametrize()

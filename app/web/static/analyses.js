@@ -1,5 +1,5 @@
 // One analysis as a table, as app/web/pages/elements.html writes it.
-import { percent } from "./numbers.js";
+import { percent, told } from "./numbers.js";
 import { cells, warning } from "./results.js";
 
 const HEADS = ["Quantity", "Value", "Unit", "Error at most", "Elements / degrees of freedom"];
@@ -16,7 +16,7 @@ function table(analysis) {
   const place = element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: kind });
   place.dataset.analysis = analysis.id;
   const asked = analysis.tolerance === null ? `level ${analysis.level}` : `within ${percent(analysis.tolerance)}`;
-  const caption = element("caption", {}, `${kind} `, element("span", { className: "muted" }, `${words(analysis.boundary)}, ${asked}`));
+  const caption = element("caption", {}, `${kind} `, element("span", { className: "muted" }, `${words(analysis.boundary)}, ${asked}; under ${told(analysis.load)}`));
   const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
   const rows = Object.entries(analysis.outputs).filter(([name]) => name !== "surface").map(row);
   place.append(element("table", { className: "results elements-results" }, caption, head, element("tbody", {}, ...rows)));
@@ -24,10 +24,10 @@ function table(analysis) {
   return place;
 }
 
-function row([name, told]) {
-  const mesh = element("td", { className: "count" }, `${told.mesh.elements} / ${told.mesh.degrees_of_freedom}`);
-  const band = typeof told.error === "number" ? `± ${percent(told.error)}` : "";
-  const made = element("tr", {}, element("th", { scope: "row" }, capital(words(name))), ...cells(told), element("td", { className: "band" }, band), mesh);
+function row([name, found]) {
+  const mesh = element("td", { className: "count" }, `${found.mesh.elements} / ${found.mesh.degrees_of_freedom}`);
+  const band = typeof found.error === "number" ? `± ${percent(found.error)}` : "";
+  const made = element("tr", {}, element("th", { scope: "row" }, capital(words(name))), ...cells(found), element("td", { className: "band" }, band), mesh);
   made.dataset.found = name;
   return made;
 }

@@ -133,6 +133,8 @@ class TestInputs:
             ({"balls": 2}, "balls", "out_of_range", "balls is 2"),
             ({"web_shape": "oval"}, "web_shape", "not_an_option", "'oval' is none of round, square_cut"),
             ({"web_shape": 5}, "web_shape", "not_an_option", "5 is none of"),
+            ({"web_shape": {"value": "oval"}}, "web_shape", "not_an_option", "is none of"),
+            ({"web_shape": {"value": "round", "unit": "mm"}}, "web_shape", "not_an_option", "is none of"),
             ({"load": "5 kN"}, "load", "not_a_curve", "give an array over the cycle"),
             ({"bor": "5 mm"}, "bor", "unknown_name", "did you mean bore"),
             ({"\ud800": 1}, "\\ud800", "unknown_name", "known are bore"),
@@ -150,6 +152,10 @@ class TestInputs:
         detail = next(f.detail for f in refusal.value.faults if (f.name, f.code) == (name, code))
         assert words in detail
         detail.encode("utf-8")
+
+    def test_property_an_option_is_taken_as_it_is_told(self):
+        told = {**Shaft.example, "web_shape": {"value": "square_cut"}}
+        assert evaluate(Shaft, told, outputs=[]).inputs["web_shape"].value == "square_cut"
 
     def test_property_missing_inputs_are_named_with_their_unit(self):
         with pytest.raises(InvalidInputs, match="bore is needed; give it in mm") as refusal:
