@@ -7,11 +7,14 @@ const CAMERA = { eye: { x: 1.1, y: -1.3, z: 0.95 }, projection: { type: "orthogr
 
 export const FIELD = { colorscale: "Viridis", showscale: false, lighting: { ambient: 0.9, diffuse: 0.2 } };
 
+let scenes = 1; // Plotly makes their names ids of the page: no two may be alike
+
 // Draw traces; drawn again in the same place, the view stays as it was turned.
 export async function drawScene(figure, traces) {
   const Plotly = await plotly();
-  const scene = { ...box(traces), camera: CAMERA };
-  await Plotly.react(figure, traces, { height: 380, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "#fff", uirevision: "kept", showlegend: false, scene }, CONFIG);
+  const scene = (figure.dataset.scene ??= `scene${++scenes}`);
+  const all = traces.map((trace) => ({ ...trace, scene }));
+  await Plotly.react(figure, all, { height: 380, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "#fff", uirevision: "kept", showlegend: false, [scene]: { ...box(traces), camera: CAMERA } }, CONFIG);
 }
 
 // The box about all traces, as large as fits.

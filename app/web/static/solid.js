@@ -63,7 +63,7 @@ export async function paint(place, picture, values, wanted) {
   const isOff = (row, n) => field.pressure.value[row][n] < least || radius * Math.sin(angles[n]) < lowest;
   const on = (value) => rows.map((z, row) => angles.map((angle, n) => (isOff(row, n) ? null : value(angle, z))));
   const surface = {
-    type: "surface", name: "film pressure", surfacecolor: field.pressure.value, ...FIELD,
+    type: "surface", name: "film pressure", scene: figure.dataset.scene, surfacecolor: field.pressure.value, ...FIELD,
     x: on((angle) => radius * Math.cos(angle)), y: on((angle) => radius * Math.sin(angle)), z: on((_, z) => z),
     hovertemplate: "%{surfacecolor:.3g} " + field.pressure.unit + "<extra></extra>",
   };
