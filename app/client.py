@@ -121,6 +121,10 @@ class Client:
         found: dict[str, Any] = answer.json()
         return found
 
+    def surface(self, analysis: str) -> dict[str, Any]:
+        """The surface that an analysis found; its `outputs` must have named it."""
+        return self._json("GET", f"{BASE}/analyses/{analysis}/surface")
+
     def designs(self) -> list[dict[str, Any]]:
         """All designs, newest first."""
         return list(self._pages(f"{BASE}/designs"))

@@ -146,7 +146,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     app.state.catalogues, app.state.settings = catalogues, settings
     app.state.designs = Designs(database, queue, catalogues)
     app.state.models = Models(database, store, queue, catalogues.models)
-    app.state.analyses = Analyses(database, queue)
+    app.state.analyses = Analyses(database, store, queue)
     app.state.reports = Reports(database, store, app.state.models, catalogues)
     limits = Limits(settings.job_deadline, settings.job_memory_mb)
     app.state.press = Press(worker, limits, settings.workers)

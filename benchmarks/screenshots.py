@@ -1,13 +1,15 @@
-"""Draws docs/pictures/{home,template,design,report}-{wide,narrow}.png from a running service.
+"""Draws docs/pictures/{home,template,design,shell,throw,report}-{wide,narrow}.png from a running service.
 
     python -m benchmarks.screenshots
 
-Needs Debian's package chromium. Nothing is retouched: the pages are shown as a visitor sees them first.
+Needs Debian's package chromium. Nothing is retouched: the pages are shown as a visitor sees them first; some
+are painted by a click.
 """
 
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from pathlib import Path
 
 from PIL import Image
@@ -17,8 +19,9 @@ from benchmarks.browser import chromium, examples
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 SCREENS = {"wide": (1440, 900), "narrow": (390, 844)}
-COLOURS = 160  # of a picture: enough for the eye, and small
+COLOURS = 256  # of a picture: enough for the eye, and small
 MOST_BYTES = 300_000
+LONGEST = 120_000  # ms, for a part to be built and analysed
 
 
 def main() -> None:
@@ -31,32 +34,56 @@ def main() -> None:
             "template": "/templates/oil_film/1",
             "design": paper,
             "shell": shell,
+            "throw": "/models/crank_throw/1",
             "report": f"{paper}/report",
         }
         for screen, (width, height) in SCREENS.items():
             page = browser.new_page(viewport={"width": width, "height": height})
             for name, path in pages.items():
                 picture = PICTURES / f"{name}-{screen}.png"
-                _write(picture, _seen(page, url + path, painted=name == "shell"))
+                _write(picture, _seen(page, url + path, PAINTED.get(name)))
                 print(f"{picture.name:22} {picture.stat().st_size / 1000:6.0f} kB")
 
 
-def _seen(page: Page, address: str, *, painted: bool) -> bytes:
+def _with_pressure(page: Page) -> None:
+    """A shell with the pressure of its film."""
+    page.get_by_label("show the film pressure").check()
+    page.locator(".solid .colours").wait_for()
+    page.evaluate("scrollTo(0, 0)")
+
+
+def _with_stress(page: Page) -> None:
+    """A throw under a torque."""
+    panel = page.locator("[data-elements]")
+    panel.wait_for(timeout=LONGEST)
+    panel.get_by_role("button", name="Analyse").click()
+    panel.locator(".js-plotly-plot").wait_for(timeout=LONGEST)
+    panel.locator("[data-deformed]").evaluate("(place) => place.scrollIntoView({ block: 'end' })")
+    page.wait_for_timeout(1500)
+
+
+PAINTED: dict[str, Callable[[Page], None]] = {"shell": _with_pressure, "throw": _with_stress}
+"""What is done on a page before it is looked at."""
+
+
+def _seen(page: Page, address: str, painted: Callable[[Page], None] | None) -> bytes:
     """The first screen of a page, once all that it shows is drawn."""
     answer = page.goto(address, wait_until="networkidle")
     assert answer is not None
     assert answer.ok, f"{address} answers {answer.status}"
     page.wait_for_timeout(1500)  # pictures that appear are drawn after the network is silent
     if painted:
-        page.get_by_label("show the film pressure").check()
-        page.locator(".solid .colours").wait_for()
-        page.evaluate("scrollTo(0, 0)")
+        painted(page)
     return page.screenshot()
 
 
 def _write(path: Path, png: bytes) -> None:
     """Write a picture with few colours."""
-    picture = Image.open(io.BytesIO(png)).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+    picture = (
+        Image.open(io.BytesIO(png))
+        .convert("RGB")
+        .quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    )
     picture.save(path, optimize=True)
     assert path.stat().st_size < MOST_BYTES, f"{path} is too large"
 

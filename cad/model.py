@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 from cadquery import Location, Shape
 
@@ -99,6 +100,9 @@ class Box:
 
 class CadModel(Template):
     """Base of all models."""
+
+    film_bore: ClassVar[str | None] = None
+    """The parameter, by API name, that is the bore in which an oil film carries; of plain bearings."""
 
     def build(self) -> tuple[Part, ...]:
         """The parts, drawn from the parameters alone."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 from app.analyses import repository
-from app.analyses.questions import Question
+from app.analyses.questions import SURFACE, Question
 from app.designs import repository as builds
 from app.jobs.service import JobContext
 from app.storage.artifacts import ArtifactStore
@@ -15,6 +16,9 @@ from app.workers.progress import report
 from cad.errors import AnalysisError
 from cad.model import CadModel, Shaft
 from cad.regenerate import build_key
+
+FILE = "file"
+"""In an output on its way from the worker: the bytes of what is stored as a file."""
 
 
 class Analysing:
@@ -45,8 +49,16 @@ class Analysing:
         assert step is not None, "a build has its STEP file from its first moment"
         shaft = shaft_of(shape)
         bytes_ = self.store.read(step.sha256)
-        found = context.run(analyse_in_worker, bytes_, shaft, question, missing, limits=self.limits)
+        told = context.run(analyse_in_worker, bytes_, shaft, question, missing, limits=self.limits)
+        found = {name: self._stored(output) for name, output in told.items()}
         self.database.write(lambda session: repository.add(session, build, question, found))
+
+    def _stored(self, output: dict[str, Any]) -> dict[str, Any]:
+        """An output as its row holds it: of one that is a file, what the store calls it."""
+        if FILE not in output:
+            return output
+        rest = {name: part for name, part in output.items() if name != FILE}
+        return {"sha256": self.store.put(output[FILE]), "size": len(output[FILE]), **rest}
 
 
 def shaft_of(shape: CadModel) -> Shaft:
@@ -71,9 +83,18 @@ def analyse_in_worker(
 
     asked = Asked(question.kind, question.boundary, question.level, question.tolerance)  # type: ignore[arg-type]
     try:
-        return analyse(step, shaft, asked, outputs, report).outputs
+        found = analyse(step, shaft, asked, outputs, report).outputs
+        return {name: _packed(told) if name == SURFACE else told for name, told in found.items()}
     except (AnalysisError, MemoryError):
         raise
     except Exception as error:
         detail = f"the analysis failed: {type(error).__name__}: {error}"
         raise AnalysisError("solver", detail) from error
+
+
+def _packed(told: dict[str, Any]) -> dict[str, Any]:
+    """A surface as the bytes of its JSON; how many triangles it has is told beside it."""
+    surface = told["value"]
+    rest = {name: part for name, part in told.items() if name != "value"}
+    written = json.dumps(surface.told(), separators=(",", ":"), allow_nan=False)
+    return {FILE: written.encode(), "triangles": len(surface.triangles), **rest}

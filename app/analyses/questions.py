@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from math import inf
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -22,6 +22,7 @@ from templates.core.quantity import read
 
 Boundary = Literal["free_end", "guided_end"]
 Level = Literal["coarse", "default", "fine"]
+DEFAULT: Level = "default"
 
 KINDS: dict[str, dict[str, str]] = {
     "torsion": {"stiffness": "N*m/rad", "torsional_frequency": "Hz", "maximum_stress": "MPa"},
@@ -29,8 +30,14 @@ KINDS: dict[str, dict[str, str]] = {
 }
 """What each kind of analysis tells, with its unit."""
 
-DEAR = frozenset({"maximum_stress"})
-"""What is found only where it is asked for by name: its mesh is refined until it settles."""
+SURFACE = "surface"
+"""An output of every kind, the surface for a picture; it is no quantity, so no relation can use it."""
+
+STRESSES = frozenset({"maximum_stress"})
+"""What is proportional to the load."""
+
+DEAR = STRESSES | {SURFACE}
+"""What is found only where it is asked for by name."""
 
 RECIPE = 1
 """Raised whenever the same question to the same solid gets another answer."""
@@ -86,7 +93,7 @@ class Question:
 
 def question(kind: str, options: Options) -> Question:
     """The question that options of a kind ask; nothing said is the default level, and a load of 1 N·m."""
-    level = options.level or (None if options.tolerance else "default")
+    level = options.level or (None if options.tolerance else DEFAULT)
     load = 1.0 if options.load is None or _load_faults(options.load) else read(options.load, "N*m").si
     return Question(kind, options.boundary, level, options.tolerance, float(load))
 
@@ -111,7 +118,7 @@ def _load_faults(raw: Any) -> list[Fault]:
 
 def under_load(asked: Question, found: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
     """What was found under 1 N·m as it is under the load of the question: stress is proportional to it."""
-    return {name: _times(asked.load, told) if name in DEAR else {**told} for name, told in found.items()}
+    return {name: _times(asked.load, told) if name in STRESSES else {**told} for name, told in found.items()}
 
 
 def _times(load: float, told: Mapping[str, Any]) -> dict[str, Any]:
@@ -120,9 +127,14 @@ def _times(load: float, told: Mapping[str, Any]) -> dict[str, Any]:
     return {**told, "value": value, "convergence": steps}
 
 
+def offered(kind: str) -> tuple[str, ...]:
+    """All outputs of a kind that can be asked for."""
+    return (*KINDS[kind], SURFACE)
+
+
 def in_order(kind: str, outputs: Any) -> tuple[str, ...]:
     """Outputs of a kind, each once and always in the same order."""
-    return tuple(name for name in KINDS[kind] if name in outputs)
+    return tuple(name for name in offered(kind) if name in outputs)
 
 
 def no_shaft(cls: type[CadModel]) -> str | None:
@@ -130,6 +142,17 @@ def no_shaft(cls: type[CadModel]) -> str | None:
     if cls.shaft is not CadModel.shaft:
         return None
     return f"{cls.id} is no shaft: it does not say by which ends it is held and loaded"
+
+
+def what_can_be_asked(cls: type[CadModel]) -> dict[str, Any]:
+    """The kinds of analyses of a model, each with its outputs and their units; none of what is no shaft."""
+    if no_shaft(cls):
+        return {}
+    options = {"boundaries": list(get_args(Boundary)), "levels": list(get_args(Level))}
+    return {
+        kind: {"outputs": {**units, SURFACE: None}, **options, "default_level": DEFAULT}
+        for kind, units in KINDS.items()
+    }
 
 
 def warnings(asked: Question, found: Mapping[str, Mapping[str, Any]]) -> list[dict[str, str]]:

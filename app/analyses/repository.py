@@ -33,9 +33,23 @@ def asked(session: Session, key: str) -> tuple[str, Question, Found]:
     rows = list(session.scalars(select(AnalysisRow).where(AnalysisRow.key == key)))
     if not rows:
         raise NotFound(f"there is no analysis {key[:80]!r}")
+    return (rows[0].build_key, *_together(rows))
+
+
+def of_build(session: Session, build: str) -> list[tuple[Question, Found]]:
+    """Every question that was asked about a build, by kind, with all that is known to it."""
+    rows = list(session.scalars(select(AnalysisRow).where(AnalysisRow.build_key == build)))
+    told: dict[str, list[AnalysisRow]] = {}
+    for row in sorted(rows, key=lambda row: (row.asked["kind"], row.key)):
+        told.setdefault(row.key, []).append(row)
+    return [_together(rows) for rows in told.values()]
+
+
+def _together(rows: list[AnalysisRow]) -> tuple[Question, Found]:
+    """A question from the rows of its answers."""
     question = Question(**rows[0].asked)
     known = {row.output: row.found for row in rows}
-    return rows[0].build_key, question, {name: known[name] for name in in_order(question.kind, known)}
+    return question, {name: known[name] for name in in_order(question.kind, known)}
 
 
 def add(session: Session, build: str, question: Question, known: Mapping[str, dict[str, Any]]) -> None:

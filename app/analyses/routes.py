@@ -1,20 +1,22 @@
-"""`POST /models/{id}/versions/{n}/analyses/{kind}` and `GET /analyses/{key}`."""
+"""`POST /models/{id}/versions/{n}/analyses/{kind}`, what was found by it, and its picture's data."""
 
 from __future__ import annotations
 
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Response
-from fastapi.responses import JSONResponse
+from fastapi.responses import FileResponse, JSONResponse
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
-from app.analyses.questions import DEAR, KINDS, faults, in_order, no_shaft, question
-from app.analyses.schemas import AnalysisIn
+from app.analyses.questions import DEAR, KINDS, faults, in_order, no_shaft, offered, question
+from app.analyses.schemas import AnalysisIn, SurfaceOut
+from app.calculations.display import Units, converted
 from app.catalogue.routes import Number
 from app.dependencies import TheAnalyses, TheCatalogues, TheJobs
 from app.designs.errors import NotFound
 from app.http import StrictRoute
+from app.models.routes import FOR_EVER
 from app.waiting import LATER, accepted, finished
 from cad.model import CadModel
 from templates.core.errors import Fault, InvalidInputs
@@ -61,15 +63,44 @@ def show_analysis(key: str, analyses: TheAnalyses) -> dict[str, Any]:
     return analyses.show_all(key)
 
 
+@router.get("/builds/{key}/analyses")
+def analyses_of_build(key: str, analyses: TheAnalyses, units: Units = "si") -> dict[str, Any]:
+    """All that was found of one solid: every question that was asked about it, with its answers."""
+    told: dict[str, Any] = converted({"items": analyses.of_build(key)}, units)
+    return told
+
+
+@router.get(
+    "/analyses/{key}/surface",
+    response_model=SurfaceOut,
+    responses={304: {"description": "as it was when the ETag of If-None-Match was sent"}},
+)
+def show_surface(
+    key: str,
+    analyses: TheAnalyses,
+    if_none_match: Annotated[str | None, Header(description="the ETag of a surface that is at hand")] = None,
+) -> Response:
+    """The solid's surface under a load of 1 N·m: how far every point moves, how it turns, how it is stressed.
+
+    For a picture: the corners of plane triangles, with a value at each. It never changes. It is there once an
+    analysis was asked for `"outputs": ["surface"]`, whose answer links to it.
+    """
+    file = analyses.surface(key)
+    headers = {"ETag": f'"{file.sha256}"', "Cache-Control": FOR_EVER}
+    if if_none_match and headers["ETag"] in if_none_match:
+        return Response(status_code=304, headers=headers)
+    return FileResponse(file.path, media_type="application/json", headers=headers)
+
+
 def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...]:
     """The outputs to find, if nothing in the body is wrong beside its parameters."""
     asked = [name for name in KINDS[kind] if name not in DEAR] if body.outputs is None else body.outputs
-    known = ", ".join(KINDS[kind])
+    known = ", ".join(offered(kind))
     wrong = faults(body)
     wrong += [
         Fault("outputs", "unknown_name", f"{name[:40]!r} is none of {known}")
         for name in asked
-        if name not in KINDS[kind]
+        if name not in offered(kind)
     ]
     if not asked:
         wrong.append(Fault("outputs", "empty", f"name at least one of {known}"))

@@ -8,13 +8,15 @@ from sqlalchemy.orm import Session
 
 from app.analyses import repository
 from app.analyses.finding import Analysing, shaft_of
-from app.analyses.questions import Question, under_load
+from app.analyses.questions import SURFACE, Question, under_load
 from app.analyses.views import shown
 from app.designs import repository as builds
+from app.designs.errors import NotFound
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.models.builds import Builds
-from app.models.service import FAILURES
+from app.models.service import FAILURES, File
 from app.problems import describe
+from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from cad.errors import AnalysisError
 from cad.model import CadModel
@@ -27,8 +29,8 @@ ANALYSIS = "analysis"
 class Analyses:
     """Questions about models, and what was found."""
 
-    def __init__(self, database: Database, jobs: Jobs) -> None:
-        self.database, self.jobs = database, jobs
+    def __init__(self, database: Database, store: ArtifactStore, jobs: Jobs) -> None:
+        self.database, self.store, self.jobs = database, store, jobs
 
     def request(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> str | None:
         """The job that builds and analyses a model, or None if all outputs are known.
@@ -76,9 +78,42 @@ class Analyses:
         """
         with self.database.read() as session:
             build, question, known = repository.asked(session, key)
-            row = builds.build(session, build)
-            assert row is not None, "an analysis is one of a build"
-            return shown({"id": row.model, "version": row.version}, build, question, known)
+            return shown(_model_of(session, build), build, question, known)
+
+    def of_build(self, build: str) -> list[dict[str, Any]]:
+        """All that is known of a build.
+
+        Raises
+        ------
+        NotFound
+            If it was not made.
+        """
+        with self.database.read() as session:
+            model = _model_of(session, build)
+            return [shown(model, build, *told) for told in repository.of_build(session, build)]
+
+    def surface(self, key: str) -> File:
+        """The surface that an analysis found.
+
+        Raises
+        ------
+        NotFound
+            If it was not asked for.
+        """
+        with self.database.read() as session:
+            _, question, known = repository.asked(session, key)
+        if SURFACE not in known:
+            detail = f"this analysis has no {SURFACE} yet: ask for it by name in `outputs` of {question.kind}"
+            raise NotFound(detail)
+        sha = known[SURFACE]["sha256"]
+        return File(self.store.path(sha), "json", sha)
+
+
+def _model_of(session: Session, build: str) -> dict[str, Any]:
+    row = builds.build(session, build)
+    if row is None:
+        raise NotFound(f"there is no build {build[:80]!r}")
+    return {"id": row.model, "version": row.version}
 
 
 class ModelAnalysis:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from app.analyses.questions import Question, warnings
+from app.analyses.questions import SURFACE, Question, warnings
 
 
 def shown(
@@ -25,13 +25,19 @@ def shown(
 
 def in_design(build: str, question: Question, found: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     """An analysis in a revision, which tells no times: equal revisions are equal."""
+    key = question.key(build)
     return {
-        "id": question.key(build),
+        "id": key,
         **question.told(),
-        "outputs": {name: _timeless(told) for name, told in found.items()},
+        "outputs": {name: _linked(key, name, _timeless(told)) for name, told in found.items()},
         "warnings": warnings(question, found),
     }
 
 
 def _timeless(told: Mapping[str, Any]) -> dict[str, Any]:
     return {name: part for name, part in told.items() if name != "seconds"}
+
+
+def _linked(key: str, name: str, told: Mapping[str, Any]) -> dict[str, Any]:
+    """An output; one that is a file says where it is."""
+    return {"url": f"/api/v1/analyses/{key}/{name}", **told} if name == SURFACE else {**told}

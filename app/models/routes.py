@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
+from app.analyses.questions import what_can_be_asked
 from app.catalogue.routes import Number, summary
 from app.dependencies import TheCatalogues, TheJobs, TheModels, TheStore
 from app.http import NotJson, StrictRoute
@@ -60,10 +61,20 @@ def list_model_versions(id: Id, catalogues: TheCatalogues) -> dict[str, Any]:
 
 @router.get("/models/{id}/versions/{number}")
 def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, Any]:
-    """One model: its parameters as JSON Schema, and what is measured on its solid."""
-    told = describe(catalogues.models.get(id, number))
-    picture = f"/api/v1/models/{id}/versions/{number}/picture"
-    return {**told, "parameters": told.pop("inputs"), "measures": MEASURES, "picture": picture}
+    """One model: its parameters as JSON Schema, what is measured on its solid, how that can be analysed.
+
+    `film_bore` names the parameter of a plain bearing that is the bore with the oil film.
+    """
+    cls = catalogues.models.get(id, number)
+    told = describe(cls)
+    return {
+        **told,
+        "parameters": told.pop("inputs"),
+        "measures": MEASURES,
+        "analyses": what_can_be_asked(cls),
+        "film_bore": cls.film_bore,
+        "picture": f"/api/v1/models/{id}/versions/{number}/picture",
+    }
 
 
 @router.get(

@@ -13,6 +13,7 @@ from app.web import sheet
 from app.web.api import Api
 from app.web.differences import differences
 from app.web.forms import texts
+from app.web.model_page import known_analyses
 from app.web.pictures import painted, pictures
 from app.web.rendering import show, units_of
 from cad.export import MEDIA_TYPES
@@ -41,6 +42,7 @@ async def design_page(
     parameters = sheet.of_parameters(design["parameters"], previewed["parameters"], words, wrong)
     blocks = _steps(design, told, steps, words, wrong)
     parts = _models(design, told, models, words, wrong, before, previewed["model_parameters"])
+    measured = await api.get(f"/designs/{id}/measurements", units=units_of(request))
     fields = [*parameters, *(field for block in (*blocks, *parts) for field in block["fields"])]
     return show(
         request,
@@ -51,7 +53,11 @@ async def design_page(
         parameters=parameters,
         steps=blocks,
         models=parts,
-        measured=await api.get(f"/designs/{id}/measurements", units=units_of(request)),
+        measured=measured,
+        analyses={
+            name: await known_analyses(request, api, part["build"], models[name])
+            for name, part in measured.items()
+        },
         revisions=await api.get(f"/designs/{id}/revisions", limit=20),
         proposals=(await api.post(f"/designs/{id}/auto-map"))["proposals"],
         job=await _job(api, design),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from fastapi import Request, Response
@@ -9,7 +10,7 @@ from fastapi import Request, Response
 from app.web import sheet
 from app.web.api import Api, Refused
 from app.web.forms import value_of
-from app.web.rendering import show
+from app.web.rendering import show, units_of
 from cad.export import MEDIA_TYPES
 
 SHOWN = ["step", "glb"]  # made at once; other kinds when they are asked for
@@ -32,10 +33,21 @@ async def model_page(request: Request, api: Api, id: str, version: int) -> Respo
             told["parameters"], "", cells, (built or {}).get("parameters", {}), typed, faults
         ),
         built=built,
+        analyses=await known_analyses(request, api, (built or {}).get("build"), told),
         faults=faults,
         kinds=list(MEDIA_TYPES),
         path_of_api=f"/api/v1{path}",
     )
+
+
+async def known_analyses(
+    request: Request, api: Api, build: str | None, model: Mapping[str, Any]
+) -> list[dict[str, Any]]:
+    """What finite elements have found of a build by now."""
+    if not model["analyses"] or build is None:
+        return []
+    told = await api.find(f"/builds/{build}/analyses", units=units_of(request))
+    return told["items"] if told else []
 
 
 async def _built(api: Api, path: str, cells: dict[str, Any]) -> tuple[dict[str, Any] | None, dict[str, str]]:
@@ -46,4 +58,5 @@ async def _built(api: Api, path: str, cells: dict[str, Any]) -> tuple[dict[str, 
         if refused.status != 422:
             raise
         return None, refused.faults or {"model": refused.problem["detail"]}
-    return (await api.find(f"/builds/{made['build']}")) or made, {}
+    known = await api.find(f"/builds/{made['build']}")
+    return (known if known and known["artifacts"].keys() >= {*SHOWN} else {**made, "artifacts": {}}), {}

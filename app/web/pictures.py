@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -138,12 +138,13 @@ def _is_curve(values: Values, name: str) -> bool:
 TABLE: tuple[Rule, ...] = (_clearance, _pressure, _polar, _orbit, _campbell, _modes, _curves)
 
 
-def painted(steps: Iterable[Mapping[str, Any]], models: Iterable[Mapping[str, Any]]) -> dict[str, Any] | None:
-    """The film pressure to paint on a model: that of the step to whose bearing diameter its bore is tied."""
+def painted(steps: Iterable[Mapping[str, Any]], models: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:
+    """The film pressure to paint on a plain bearing: that of the step to whose diameter its bore is tied."""
+    bores = {model["name"]: model["model"]["film_bore"] for model in models if model["model"]["film_bore"]}
+    texts = {field.name: field.text for model in models for field in model["fields"]}
     for step in steps:
         pressure = next((picture for picture in step["pictures"] if picture.kind == "pressure"), None)
-        for model in models:
-            relation = next((f.text for f in model["fields"] if f.name.endswith(".inner_diameter")), "")
-            if pressure and f"{step['name']}.bearing_diameter" in relation:
-                return {**pressure.told(step["name"]), "model": model["name"]}
+        for model, bore in bores.items():
+            if pressure and f"{step['name']}.bearing_diameter" in texts.get(f"{model}.{bore}", ""):
+                return {**pressure.told(step["name"]), "model": model}
     return None

@@ -13,6 +13,7 @@ from cad.analysis.mesh import make_grid
 from cad.analysis.modes import torsional_mode
 from cad.analysis.solid import Solid, read_solid
 from cad.analysis.stress import CONVERGED, greatest_stress
+from cad.analysis.surface import surface
 from cad.model import Shaft
 
 Report = Callable[[float, str], None]
@@ -22,6 +23,9 @@ OUTPUTS: dict[Load, dict[str, str]] = {
     "bending": {"stiffness": "N*m/rad", "maximum_stress": "MPa"},
 }
 """What each analysis tells, with its unit; stress is that under a torque or moment of 1 N·m."""
+
+SURFACE = "surface"
+"""An output of every analysis that is no quantity: `cad.analysis.surface.Surface`, for a picture."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,7 @@ class Asked:
 
 @dataclass
 class Found:
-    """Outputs by name, in the units of `OUTPUTS`, and by which mesh they were found."""
+    """Outputs by name, in the units of `OUTPUTS`, or the surface; and by which mesh they were found."""
 
     outputs: dict[str, dict[str, Any]] = field(default_factory=dict)
 
@@ -64,11 +68,15 @@ def analyse(step: bytes, shaft: Shaft, asked: Asked, outputs: Collection[str], r
 def _climb(
     solid: Solid, shaft: Shaft, asked: Asked, outputs: Collection[str], found: Found, report: Report
 ) -> None:
-    """Level after level until every output meets the tolerance."""
+    """Level after level until every output meets the tolerance; of a surface, its stiffness."""
+    measured = [name for name in outputs if name in _ELASTIC]
+    if not measured and asked.tolerance is not None:
+        measured = ["stiffness"]
     for level in ladder(asked.level, asked.tolerance):
         report(0.1, f"level {level.name}")
-        found.outputs.update(_at_level(solid, shaft, asked, level, outputs, report))
-        worst = max(found.outputs[name]["error"] for name in outputs)
+        told = _at_level(solid, shaft, asked, level, {*measured, *outputs}, report)
+        found.outputs.update({name: told[name] for name in outputs})
+        worst = max((told[name]["error"] for name in measured), default=0.0)
         if asked.tolerance is None or worst <= asked.tolerance:
             return
 
@@ -78,18 +86,19 @@ def _at_level(
 ) -> dict[str, dict[str, Any]]:
     started = time.perf_counter()
     grid = make_grid(solid, level.fineness)
-    values: dict[str, list[float]] = {name: [] for name in outputs}
-    for order in (level.order - 1, level.order):
+    values: dict[str, list[float]] = {name: [] for name in _ELASTIC if name in outputs}
+    for order in (level.order - 1, level.order) if values else (level.order,):
         report(0.2 if order < level.order else 0.4, f"solving {grid.mesh.ne} elements of order {order}")
         response = respond(System(grid, order, shaft.material, asked.load), asked.boundary)
-        for name in outputs:
-            values[name].append(_ELASTIC[name](response))
+        for name, found in values.items():
+            found.append(_ELASTIC[name](response))
+    shown = surface(response) if SURFACE in outputs else None
     told = {
         "level": level.name,
         "mesh": _mesh(solid, grid.mesh.ne, response.system.space.ndof, level.order),
         "seconds": time.perf_counter() - started,
     }
-    return {
+    found_with_error = {
         name: {
             "value": high,
             "unit": OUTPUTS[asked.load][name],
@@ -98,6 +107,7 @@ def _at_level(
         }
         for name, (low, high) in values.items()
     }
+    return {**found_with_error, **({SURFACE: {"value": shown, "error": None, **told}} if shown else {})}
 
 
 def _stress(solid: Solid, shaft: Shaft, asked: Asked, report: Report) -> dict[str, Any]:

@@ -146,8 +146,12 @@ def respond(system: System, boundary: Boundary) -> Response:
     return Response(system, float(work), displacement, guides, guided, gram)
 
 
+def is_antisymmetric(mirror: str, load: Load) -> bool:
+    """Whether the displacement at the image of a point, in the plane of this normal, is minus the image."""
+    return load == "torsion" or mirror == "x"  # a moment about y is odd in x
+
+
 def _locked(mirror: str, load: Load) -> str:
     """The directions in which nothing moves on a mirror plane of this normal."""
-    antisymmetric = load == "torsion" or mirror == "x"  # a moment about y is odd in x
     tangential = "".join(axis for axis in "xyz" if axis != mirror)
-    return (tangential if antisymmetric else mirror) if mirror else ""
+    return (tangential if is_antisymmetric(mirror, load) else mirror) if mirror else ""

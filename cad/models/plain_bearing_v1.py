@@ -88,6 +88,7 @@ class PlainBearing(CadModel):
     """Plain bearing shell, half or full, with an oil groove and an oil hole."""
 
     example = {"inner_diameter": "48 mm"}
+    film_bore = "inner_diameter"
 
     d: Array = given("mm", "inner diameter", symbol="d", ge=1, le=5000, also=("bearing diameter", "bore"))
 

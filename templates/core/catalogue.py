@@ -1,7 +1,7 @@
 """Finds every `<id>_v<version>.py` in a list of folders: one file adds a template, nothing is registered.
 
 A released version is a file that nobody edits. Its digest is that of its source without docstrings and
-without the `withdrawn` mark, so a better explanation, or a warning, is no change of the calculation.
+without its marks, so a better explanation, or a warning, is no change of the calculation.
 """
 
 from __future__ import annotations
@@ -151,8 +151,12 @@ def _declared_in(module: ModuleType, path: Path) -> type[Template]:
     return found[0]
 
 
+MARKS = frozenset({"withdrawn", "film_bore"})
+"""What a class says of itself for its readers: it may be said later, for nothing is calculated by it."""
+
+
 def digest(cls: type[Template]) -> str:
-    """SHA-256 of the template's file, without docstrings, comments, layout and the mark `withdrawn`.
+    """SHA-256 of the template's file, without docstrings, comments, layout and `MARKS`.
 
     The files of groups, which hand it givens, formulas or rules, are part of it.
     """
@@ -180,7 +184,7 @@ class _Bare(ast.NodeTransformer):
         return None if is_text else node
 
     def visit_Assign(self, node: ast.Assign) -> ast.AST | None:
-        return None if [ast.unparse(target) for target in node.targets] == ["withdrawn"] else node
+        return None if {ast.unparse(target) for target in node.targets} <= MARKS else node
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.AST | None:
-        return None if ast.unparse(node.target) == "withdrawn" else node
+        return None if ast.unparse(node.target) in MARKS else node

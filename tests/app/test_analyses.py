@@ -1,12 +1,13 @@
 """Analyses of solids over REST: a bar whose stiffness is known, what is refused, what is found again."""
 
-from math import pi, sqrt
+import hashlib
+from math import degrees, hypot, pi, sqrt
 
 import httpx
 import pytest
 from serving import API, faults, problem
 
-from app.analyses.questions import KINDS, Boundary, Level, Options, question, warnings
+from app.analyses.questions import KINDS, SURFACE, Boundary, Level, Options, question, warnings
 from app.client import Client, Problem
 from cad.analysis.levels import LEVELS
 
@@ -38,6 +39,11 @@ def jobs(http) -> list[str]:
 @pytest.fixture(scope="module")
 def torsion(http):
     return asked(http)
+
+
+@pytest.fixture(scope="module")
+def painted(http):
+    return asked(http, bar(24), outputs=["surface"])
 
 
 class TestAnswer:
@@ -104,6 +110,77 @@ class TestAnswer:
         assert loaded["outputs"]["maximum_stress"]["value"] == pytest.approx(500 * found["value"], rel=1e-12)
         unloaded = asked(http, bar(20, 12), outputs=["stiffness"])
         assert loaded["outputs"]["stiffness"] == unloaded["outputs"]["stiffness"]
+
+
+class TestSurface:
+    def test_an_analysis_links_to_it(self, http, painted):
+        told = painted["outputs"]["surface"]
+        assert painted["outputs"].keys() == {"surface"}
+        assert told["url"] == f"{API}/analyses/{painted['id']}/surface"
+        assert "value" not in told
+        answer = http.get(told["url"])
+        assert answer.headers["content-type"] == "application/json"
+        assert len(answer.content) == told["size"] < 1_000_000
+        assert answer.headers["etag"] == f'"{told["sha256"]}"'
+        assert hashlib.sha256(answer.content).hexdigest() == told["sha256"]
+        assert len(answer.json()["triangles"]) == told["triangles"]
+        again = http.get(told["url"], headers={"If-None-Match": answer.headers["etag"]})
+        assert (again.status_code, again.content) == (304, b"")
+        assert http.get(f"{API}/artifacts/{told['sha256']}").content == answer.content
+
+    def test_analytic_it_is_twisted_and_stressed_as_coulomb_says(self, http, painted):
+        """At z: φ = T z / (G J); at the rim √3 16 T / (π d³), as near as the coarse level is."""
+        told = http.get(painted["outputs"]["surface"]["url"]).json()
+        units = {name: part["unit"] for name, part in told.items() if isinstance(part, dict)}
+        assert units == {"points": "mm", "displacement": "mm", "twist": "deg", "stress": "MPa"}
+        assert told["load"] == "a torque of 1 N*m about z"
+        largest = degrees(0.040 / (SHEAR * pi / 32 * 0.024**4))
+        for (x, y, z), twist, stress in zip(
+            told["points"]["value"], told["twist"]["value"], told["stress"]["value"], strict=True
+        ):
+            assert twist == pytest.approx(largest * z / 40, abs=0.02 * largest)
+            rim = sqrt(3) * 16 / (pi * 0.024**3) / 1e6
+            assert stress == pytest.approx(rim * hypot(x, y) / 12, abs=0.1 * rim)
+
+    def test_it_is_found_once(self, http, painted):
+        before = jobs(http)
+        assert asked(http, bar(24), outputs=["surface"]) == painted
+        assert jobs(http) == before
+        more = asked(http, bar(24), outputs=["surface", "stiffness"])
+        assert more["outputs"]["surface"] == painted["outputs"]["surface"]
+        assert len(jobs(http)) == len(before) + 1
+
+    def test_bending_has_no_twist(self, http):
+        told = asked(http, kind="bending", outputs=["surface"])["outputs"]["surface"]
+        found = http.get(told["url"]).json()
+        assert "twist" not in found
+        assert found["load"] == "a moment of 1 N*m about y"
+
+    def test_not_asked_for(self, http, torsion):
+        answer = http.get(f"{API}/analyses/{torsion['id']}/surface")
+        assert "outputs" in problem(answer, 404, "not-found")["detail"]
+        problem(http.get(f"{API}/analyses/nothing/surface"), 404, "not-found")
+
+    def test_the_client_has_it(self, client: Client, painted):
+        found = client.surface(painted["id"])
+        assert len(found["triangles"]) == painted["outputs"]["surface"]["triangles"]
+        with pytest.raises(Problem, match="no analysis"):
+            client.surface("nothing")
+
+
+class TestOfABuild:
+    def test_all_questions_with_their_answers(self, http):
+        torsion = asked(http, bar(25), outputs=["stiffness"])
+        bending = asked(http, bar(25), kind="bending", outputs=["stiffness"])
+        path = f"{API}/builds/{torsion['build']}/analyses"
+        assert http.get(path).json() == {"items": [bending, torsion]}
+        assert http.get(path, params={"units": "us"}).json()["items"][0]["outputs"]["stiffness"]["value"] > 0
+
+    def test_none(self, http):
+        body = {"parameters": bar(26), "artifacts": ["step"]}
+        built = http.post(f"{API}/models/bar/versions/1/build", json=body, headers={"Prefer": "wait=60"})
+        assert http.get(f"{API}/builds/{built.json()['build']}/analyses").json() == {"items": []}
+        problem(http.get(f"{API}/builds/{'0' * 64}/analyses"), 404, "not-found")
 
 
 class TestFoundAgain:
@@ -205,11 +282,12 @@ def test_the_server_knows_what_the_elements_tell() -> None:
     """It does not import them; so what it says of them is held against what they say."""
     from typing import get_args
 
-    from cad.analysis.analyse import OUTPUTS
+    from cad.analysis import analyse
     from cad.analysis.elastic import BOUNDARIES
     from cad.analysis.levels import DEFAULT, NAMES
 
-    assert KINDS == OUTPUTS
+    assert KINDS == analyse.OUTPUTS
+    assert SURFACE == analyse.SURFACE
     assert get_args(Boundary) == BOUNDARIES
     assert get_args(Level) == NAMES
     assert question("torsion", Options()).level == DEFAULT

@@ -175,6 +175,20 @@ class TestRefused:
         assert named == {"train.stiffnesses": "unknown_name"}
         assert "torsional_frequency" in detail
 
+    def test_a_surface_is_no_quantity(self, http, design):
+        http.post(
+            f"{API}/models/bar/versions/1/analyses/torsion",
+            json={"parameters": bar()["parameters"], "level": "coarse", "outputs": ["surface"]},
+            headers={"Prefer": "wait=60"},
+        ).raise_for_status()
+        named, detail = self.refused(http, train(stiffness="= bar.torsion.surface"))
+        assert named == {"train.stiffnesses": "unknown_name"}
+        assert "no surface" in detail
+        iterated = {**train(), "iterations": [{"through": "bar.torsion.surface", "start": "1 MPa"}]}
+        assert self.refused(http, iterated)[0] == {"iterations": "unknown_name"}
+        told = http.get(f"{DESIGNS}/{design['id']}/measurements").json()["bar"]["analyses"]["torsion"]
+        assert told["outputs"].keys() == {"stiffness"}
+
     def test_unit(self, http):
         named, _ = self.refused(http, train(stiffness="= bar.torsion.torsional_frequency"))
         assert named == {"train.stiffnesses": "unit_mismatch"}

@@ -282,3 +282,17 @@ def test_a_revision_made_by_an_older_recipe_gives_its_other_files(http, served, 
 
 def test_the_gallery_offers_only_what_can_be_made(http):
     assert created(http, "shell")
+
+
+def test_a_model_of_which_only_the_step_file_is_there_is_still_being_built(http):
+    """As an analysis leaves it: its page asks for what else it shows."""
+    parameters = {"size": "17 mm"}
+    body = {"parameters": parameters, "artifacts": ["step"]}
+    path = "/api/v1/models/moody/versions/1/build"
+    headers = {"Prefer": "wait=60", "Accept": "*/*"}
+    key = http.post(path, json=body, headers=headers).json()["build"]
+    assert http.get(f"/api/v1/builds/{key}").json()["artifacts"].keys() == {"step"}
+    while "It is being built" in (page := http.get("/models/moody/1", params=parameters)).text:
+        assert page.status_code == 200
+    assert page.status_code == 200
+    assert "data-solid" in page.text

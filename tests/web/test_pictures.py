@@ -1,8 +1,10 @@
 """Property: a calculation gets its pictures by what its outputs are called, and whether they are curves."""
 
+from types import SimpleNamespace
+
 import pytest
 
-from app.web.pictures import painted, pictures
+from app.web.pictures import Picture, painted, pictures
 
 CYCLE = [0.0, 90.0, 180.0, 270.0]
 
@@ -106,3 +108,18 @@ def test_nothing_is_drawn_of_what_waits_or_does_not_exist():
     assert pictures("", template(outputs=outputs), told) == []
     assert pictures("", template(outputs=outputs), {"inputs": {}, "outputs": {}}) == []
     assert painted([], []) is None
+
+
+@pytest.mark.parametrize(
+    ("bore", "relation", "expected"),
+    [
+        ("inner_diameter", "= film.bearing_diameter", "shell"),
+        (None, "= film.bearing_diameter", None),
+        ("inner_diameter", "= other.bearing_diameter", None),
+    ],
+)
+def test_the_film_pressure_is_painted_on_a_bore_with_a_film_only(bore, relation, expected):
+    film = {"name": "film", "pictures": [Picture("pressure", "Film pressure", {"inputs": {}})]}
+    field = SimpleNamespace(name="shell.inner_diameter", text=relation)
+    shown = painted([film], [{"name": "shell", "model": {"film_bore": bore}, "fields": [field]}])
+    assert (shown or {}).get("model") == expected

@@ -123,6 +123,7 @@ async function start() {
   const running = document.querySelector("[data-progress]").dataset.job;
   if (running) follow(`/api/v1/jobs/${running}`).then(() => location.reload());
   startSolids(() => steps);
+  if (form.querySelector("[data-elements]")) import("./elements.js").then(({ startElements }) => startElements());
   try {
     show((await call("POST", `${api}/preview?worksheet=true&units=${units()}`, patch())).told);
   } catch (error) {

@@ -1,7 +1,9 @@
-// A model's page: its part in three dimensions; asked for again while it is being built.
+// A model's page: its part in three dimensions, analysed by finite elements; asked for again while it is being built.
+import { startElements } from "./elements.js";
 import { startSolids } from "./solids.js";
 
 const AGAIN = 1500; // ms
 
 startSolids(() => ({}));
+startElements();
 if (document.querySelector("[data-again]")) setTimeout(() => location.reload(), AGAIN);

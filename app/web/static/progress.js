@@ -1,15 +1,15 @@
-// How a job goes on: its events in the bar of the page; it can be cancelled there.
+// How a job goes on: its events in a bar of the page; it can be cancelled there.
 import { call } from "./api.js";
 
 const ENDED = ["done", "failed", "cancelled"];
 
-export function follow(path) {
-  const place = document.querySelector("[data-progress]");
+export function follow(path, place = document.querySelector("[data-progress]"), begins = "The part is being built …") {
   const bar = place.querySelector("progress"), words = place.querySelector("[data-progress-text]");
   place.hidden = false;
-  words.textContent = "The part is being built …";
-  place.querySelector("form").onsubmit = (event) => {
-    event.preventDefault();
+  bar.value = 0;
+  words.textContent = begins;
+  place.querySelector("[data-cancel]").onclick = (event) => {
+    event.preventDefault(); // without this script it is the button of a form
     call("DELETE", path).catch(() => {}); // it has ended meanwhile
   };
   place.scrollIntoView({ block: "nearest" });

@@ -32,7 +32,7 @@ function showOutput(name, quantity, error) {
   line.querySelector(".band").textContent = typeof error !== "number" ? "" : error === 0 ? "same at all levels" : `± ${percent(error)}`;
 }
 
-function cells(quantity) {
+export function cells(quantity) {
   const value = Object.assign(document.createElement("td"), { className: "value" });
   if (typeof quantity.value !== "number") {
     value.classList.add("text");
@@ -58,7 +58,7 @@ export function showWarnings(scope, warnings) {
   list?.replaceChildren(...warnings.map(warning));
 }
 
-function warning({ name, detail }) {
+export function warning({ name, detail }) {
   const item = Object.assign(document.createElement("li"), { className: "warning" });
   item.append(Object.assign(document.createElement("strong"), { textContent: name.replaceAll("_", " ") }), ` ${detail}`);
   return item;

@@ -1,7 +1,8 @@
 // The part in three dimensions: a GLB file read and drawn by Plotly, with its size told below.
 import { readGlb } from "./glb.js";
-import { CONFIG, plotly, scale } from "./plots.js";
+import { plotly } from "./plots.js";
 import { pressureOf } from "./pressure.js";
+import { FIELD, drawScene, showColours } from "./scene.js";
 
 const PLAIN = { ambient: 1, diffuse: 0, specular: 0, fresnel: 0 }; // the light is in the colours of the corners
 const shade = (colour, power) => `rgb(${colour.map((part) => Math.min(255, Math.round(part * power * 1.25))).join(",")})`;
@@ -33,16 +34,10 @@ async function fetched(path) {
 }
 
 async function drawSolid(place, bodies) {
-  const Plotly = await plotly();
   const figure = document.createElement("div");
   place.replaceChildren(figure);
-  const hidden = { visible: false, showbackground: false };
-  const layout = {
-    height: 380, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "#fff", uirevision: "kept", showlegend: false,
-    scene: { aspectmode: "data", xaxis: hidden, yaxis: hidden, zaxis: hidden, camera: { eye: { x: 1.1, y: -1.3, z: 0.95 }, projection: { type: "orthographic" } } },
-  };
   const traces = bodies.map(({ mesh, light, colour }) => ({ type: "mesh3d", ...mesh, vertexcolor: light.map((power) => shade(colour, power)), hoverinfo: "skip", lighting: PLAIN }));
-  await Plotly.newPlot(figure, traces, layout, CONFIG);
+  await drawScene(figure, traces);
 }
 
 function tellSize(place) {
@@ -57,7 +52,7 @@ export async function paint(place, picture, values, wanted) {
   const figure = place.querySelector(".js-plotly-plot");
   const painted = figure.data.findIndex((trace) => trace.name === "film pressure");
   if (painted >= 0) await Plotly.deleteTraces(figure, painted);
-  place.querySelector(".colours")?.remove();
+  showColours(place);
   if (!wanted) return;
   const field = await pressureOf(picture, values);
   const radius = 0.497 * millimetres(values.bearing_diameter);
@@ -68,12 +63,12 @@ export async function paint(place, picture, values, wanted) {
   const isOff = (row, n) => field.pressure.value[row][n] < least || radius * Math.sin(angles[n]) < lowest;
   const on = (value) => rows.map((z, row) => angles.map((angle, n) => (isOff(row, n) ? null : value(angle, z))));
   const surface = {
-    type: "surface", name: "film pressure", surfacecolor: field.pressure.value, colorscale: "Viridis",
+    type: "surface", name: "film pressure", scene: figure.dataset.scene, surfacecolor: field.pressure.value, ...FIELD,
     x: on((angle) => radius * Math.cos(angle)), y: on((angle) => radius * Math.sin(angle)), z: on((_, z) => z),
-    showscale: false, lighting: { ambient: 0.9, diffuse: 0.2 }, hovertemplate: "%{surfacecolor:.3g} " + field.pressure.unit + "<extra></extra>",
+    hovertemplate: "%{surfacecolor:.3g} " + field.pressure.unit + "<extra></extra>",
   };
   await Plotly.addTraces(figure, surface);
-  place.append(scale(0, field.maximum_pressure.value, field.pressure.unit));
+  showColours(place, { low: 0, high: field.maximum_pressure.value, unit: field.pressure.unit });
 }
 
 const millimetres = ({ value, unit }) => value * ({ mm: 1, cm: 10, m: 1000, inch: 25.4, in: 25.4, um: 1e-3 }[unit] ?? 1);

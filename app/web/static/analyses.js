@@ -1,0 +1,42 @@
+// One analysis as a table, as app/web/pages/elements.html writes it.
+import { percent, told } from "./numbers.js";
+import { cells, warning } from "./results.js";
+
+const HEADS = ["Quantity", "Value", "Unit", "Error at most", "Elements / degrees of freedom"];
+
+// Put an analysis into a list of them: in the place of its own table, else first. A surface alone has none.
+export function showAnalysis(list, analysis) {
+  const made = table(analysis), old = list.querySelector(`[data-analysis="${analysis.id}"]`);
+  if (old) old.replaceWith(made);
+  else if (made.querySelector("tbody tr")) list.prepend(made);
+}
+
+function table(analysis) {
+  const kind = capital(analysis.kind);
+  const place = element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: kind });
+  place.dataset.analysis = analysis.id;
+  const asked = analysis.tolerance === null ? `level ${analysis.level}` : `within ${percent(analysis.tolerance)}`;
+  const caption = element("caption", {}, `${kind} `, element("span", { className: "muted" }, `${words(analysis.boundary)}, ${asked}; under ${told(analysis.load)}`));
+  const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
+  const rows = Object.entries(analysis.outputs).filter(([name]) => name !== "surface").map(row);
+  place.append(element("table", { className: "results elements-results" }, caption, head, element("tbody", {}, ...rows)));
+  if (analysis.warnings.length) place.append(element("ul", { className: "warnings" }, ...analysis.warnings.map(warning)));
+  return place;
+}
+
+function row([name, found]) {
+  const mesh = element("td", { className: "count" }, `${found.mesh.elements} / ${found.mesh.degrees_of_freedom}`);
+  const band = typeof found.error === "number" ? `± ${percent(found.error)}` : "";
+  const made = element("tr", {}, element("th", { scope: "row" }, capital(words(name))), ...cells(found), element("td", { className: "band" }, band), mesh);
+  made.dataset.found = name;
+  return made;
+}
+
+function element(tag, properties, ...inside) {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...inside);
+  return made;
+}
+
+const words = (name) => name.replaceAll("_", " ");
+const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);

@@ -1,0 +1,88 @@
+// The panel "Finite elements": asks for an analysis, follows its job, shows its answers, paints the solid.
+import { showAnalysis } from "./analyses.js";
+import { Refused, call, units } from "./api.js";
+import { follow } from "./progress.js";
+
+const EXTRA = "maximum_stress"; // found only if its box is ticked
+
+export function startElements(root = document) {
+  for (const place of root.querySelectorAll("[data-elements]")) start(place);
+}
+
+function start(place) {
+  const asks = place.querySelector("[data-asks]"), kind = ask(place, "kind");
+  const button = place.querySelector("[data-analyse]");
+  asks.hidden = false;
+  // On a design's page the panel stands in the form of the worksheet: its fields are none of that.
+  for (const event of ["input", "change"]) place.addEventListener(event, (told) => told.stopPropagation());
+  kind.addEventListener("change", () => asDeclared(place));
+  asDeclared(place);
+  button.addEventListener("click", async () => {
+    button.disabled = true;
+    tell(place, "");
+    try {
+      await show(place, await found(place));
+    } catch (error) {
+      tell(place, error.message);
+    } finally {
+      button.disabled = false;
+    }
+  });
+}
+
+const ask = (place, name) => place.querySelector(`[data-ask="${name}"]`);
+
+// The choices with which the design itself analyses this kind, so that nothing is found twice.
+function asDeclared(place) {
+  const { boundary, level } = ask(place, "kind").selectedOptions[0].dataset;
+  if (boundary) ask(place, "boundary").value = boundary;
+  if (level) ask(place, "level").value = level;
+}
+
+function tell(place, words) {
+  const notice = place.querySelector("[data-refused]");
+  notice.textContent = words;
+  notice.hidden = !words;
+}
+
+// Ask, and wait for the job if there is one; the answer in the units of the page.
+async function found(place) {
+  const { told: built } = await call("GET", `/api/v1/builds/${place.dataset.build}`);
+  const path = `${place.dataset.elements}/${ask(place, "kind").value}`;
+  const { told, status, location } = await call("POST", path, asked(place, built.parameters), { headers: { Prefer: "respond-async" } });
+  if (status === 202) await finished(place, location);
+  const { told: known } = await call("GET", `/api/v1/builds/${place.dataset.build}/analyses?units=${units()}`);
+  return known.items.find(({ id }) => id === told.id);
+}
+
+function asked(place, parameters) {
+  const level = ask(place, "level").value, outputs = ask(place, "kind").selectedOptions[0].dataset.outputs.split(" ");
+  return {
+    parameters: Object.fromEntries(Object.entries(parameters).map(([name, { value, unit }]) => [name, unit ? { value, unit } : value])),
+    boundary: ask(place, "boundary").value,
+    ...(Number(level) ? { tolerance: Number(level) } : { level }),
+    outputs: outputs.filter((name) => name !== EXTRA || ask(place, EXTRA).checked),
+  };
+}
+
+async function finished(place, job) {
+  const progress = place.querySelector("[data-elements-progress]");
+  await follow(job, progress, "The solid is being analysed …");
+  progress.hidden = true;
+  const { told } = await call("GET", job);
+  if (told.problem) throw new Refused(told.problem.status, told.problem);
+  if (told.state !== "done") throw new Error(`The analysis was ${told.state}.`);
+}
+
+async function show(place, analysis) {
+  showAnalysis(place.querySelector("[data-analyses]"), analysis);
+  const { told: surface } = await call("GET", analysis.outputs.surface.url);
+  const { drawDeformed, fieldsOf } = await import("./deformed.js");
+  const view = place.querySelector("[data-deformed]"), colour = place.querySelector("[data-colour]");
+  const names = Object.keys(fieldsOf(surface)), before = colour.value;
+  colour.replaceChildren(...names.map((name) => new Option(name, name, false, name === before)));
+  view.hidden = false;
+  const drawing = view.querySelector(".drawing");
+  colour.onchange = () => drawDeformed(drawing, surface, colour.value);
+  await colour.onchange();
+}

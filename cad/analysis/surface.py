@@ -1,0 +1,172 @@
+"""The surface of an analysed solid as data for a picture: where it is, how far it moves, how it is stressed.
+
+From the response of one mesh, of one order, under a load of 1 N·m. Every curved surface element is divided
+into plane triangles, so that a shaft looks round; points are shared between triangles, so the surface is
+closed. Of a solid that was halved by its symmetry the other half is added, with the signs that the load asks
+for (see `cad.analysis.elastic`); faces within the mirror plane are no part of the surface. It is a picture:
+what is told with an error is found by `cad.analysis.analyse`, and greatest stresses by `cad.analysis.stress`.
+
+Twist is the local rotation about z, (∂u_y/∂x − ∂u_x/∂y)/2: it needs no axis, so it is as well known on the
+axis of the shaft as on a pin far from it, and for a circular shaft it is Coulomb's angle of the section.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+
+from cad.analysis.elastic import Response, is_antisymmetric
+from cad.analysis.solid import FREE, HELD, LOADED
+from cad.analysis.stress import recover, von_mises
+
+MOST_TRIANGLES = 16_000
+"""Elements are divided as finely as keeps the whole within this number, but for the coarsest division."""
+
+LOADS = {"torsion": "a torque of 1 N*m about z", "bending": "a moment of 1 N*m about y"}
+
+_FINEST = 3  # divisions of the side of an element
+_NEAR = 1e-6  # [mm], to the mirror plane
+_DIGITS = 6
+_NOISE = 1e-9  # of the largest value: what is smaller is nothing
+
+Reals = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Triangles, counterclockwise as seen from outside, between points; a field has a value at each."""
+
+    points: Reals  # (n, 3) [mm]
+    triangles: NDArray[np.int64]  # (m, 3)
+    displacement: Reals  # (n, 3) [mm/(N·m)]
+    twist: Reals | None  # (n,) [deg/(N·m)]; torsion only
+    stress: Reals  # (n,) [MPa/(N·m)], von Mises, recovered
+    load: str
+
+    def told(self) -> dict[str, Any]:
+        """As it is written in JSON: six significant digits, a unit beside every field."""
+        fields = {"points": (self.points, "mm"), "displacement": (self.displacement, "mm")}
+        if self.twist is not None:
+            fields["twist"] = (self.twist, "deg")
+        fields["stress"] = (self.stress, "MPa")
+        quantities = {name: {"value": _written(v), "unit": unit} for name, (v, unit) in fields.items()}
+        return {"load": self.load, "triangles": self.triangles.tolist(), **quantities}
+
+
+def surface(response: Response) -> Surface:
+    """The surface of the whole solid, the ends by which it is held and loaded included."""
+    system = response.system
+    mesh, mirror = system.grid.mesh, system.grid.solid.mirror
+    region = mesh.Boundaries(f"{FREE}|{HELD}|{LOADED}")
+    corners = np.array([[vertex.nr for vertex in element.vertices] for element in region.Elements()])
+    division = _division(len(corners) * system.grid.solid.parts)
+    lattice = _lattice(division)
+    where = mesh.MapToAllElements(_rule(lattice, division), region)
+    found = _fields(response, where)
+    number, first = _shared(corners, lattice)
+    triangles = number.reshape(len(corners), -1)[:, _pieces(lattice)].reshape(-1, 3)
+    half = Surface(
+        found["points"][first],
+        triangles,
+        found["displacement"][first],
+        found["twist"][first] if system.load == "torsion" else None,
+        found["stress"][first],
+        LOADS[system.load],
+    )
+    return _whole(half, "xyz".index(mirror), is_antisymmetric(mirror, system.load)) if mirror else half
+
+
+def _fields(response: Response, where: Any) -> dict[str, Reals]:
+    """Everything at mapped points (n), under 1 N·m."""
+    u = response.displacement
+    gradient = ng.Grad(u)
+    turned = ng.GridFunction(ng.H1(response.system.grid.mesh, order=response.system.order - 1))
+    turned.Set((gradient[1, 0] - gradient[0, 1]) / 2)
+    stress = von_mises(recover(response))
+    return {
+        "points": _at(where, ng.x, ng.y, ng.z),
+        "displacement": 1e3 * _at(where, *(u[i] for i in range(3))),
+        "twist": np.degrees(1e3 * _at(where, turned)[:, 0]),
+        "stress": 1e3 * _at(where, stress)[:, 0],
+    }
+
+
+def _at(where: Any, *functions: Any) -> Reals:
+    return np.column_stack([np.ravel(function(where)) for function in functions])
+
+
+def _division(elements: int) -> int:
+    """Into how many parts the side of an element is divided."""
+    return max(n for n in range(1, _FINEST + 1) if n == 1 or elements * n**2 <= MOST_TRIANGLES)
+
+
+def _lattice(division: int) -> NDArray[np.int64]:
+    """The points of a divided triangle, as whole weights of its three corners."""
+    steps = range(division + 1)
+    return np.array([(i, j, division - i - j) for i, j in product(steps, steps) if i + j <= division])
+
+
+def _rule(lattice: NDArray[np.int64], division: int) -> Any:
+    """The points of a lattice where NGSolve wants them: the weights of the first two corners."""
+    points = [(i / division, j / division) for i, j, _ in lattice.tolist()]
+    return ng.IntegrationRule(points, [0.0] * len(points))
+
+
+def _pieces(lattice: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The triangles (m, 3) between the points of a lattice, turned as the element is, outward."""
+    place = {(i, j): n for n, (i, j, _) in enumerate(lattice.tolist())}
+    up = [[(i, j), (i + 1, j), (i, j + 1)] for i, j in place]
+    down = [[(i + 1, j), (i + 1, j + 1), (i, j + 1)] for i, j in place]
+    return np.array([[place[at] for at in piece] for piece in up + down if place.keys() >= {*piece}])
+
+
+def _shared(
+    corners: NDArray[np.int64], lattice: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Of every point of every element: its number among those that differ; and where each number is first."""
+    known: dict[tuple[tuple[int, int], ...], int] = {}
+    number: list[int] = []
+    first: list[int] = []
+    for vertices in corners.tolist():
+        for weights in lattice.tolist():
+            pairs = zip(vertices, weights, strict=True)
+            key = tuple(sorted((vertex, weight) for vertex, weight in pairs if weight))
+            # Points within an element have all its vertices; elements with equal vertices do not exist.
+            if known.setdefault(key, len(known)) == len(first):
+                first.append(len(number))
+            number.append(known[key])
+    return np.array(number), np.array(first)
+
+
+def _whole(half: Surface, normal: int, antisymmetric: bool) -> Surface:
+    """Both halves: the image of the one is the other; points within the mirror plane are shared."""
+    image = np.where(np.arange(3) == normal, -1.0, 1.0)
+    moved = -image if antisymmetric else image
+    apart = np.abs(half.points[:, normal]) > _NEAR
+    count = len(half.points)
+    number = np.arange(count)
+    number[apart] = count + np.arange(apart.sum())
+    return Surface(
+        np.concatenate([half.points, half.points[apart] * image]),
+        np.concatenate([half.triangles, number[half.triangles][:, ::-1]]),
+        np.concatenate([half.displacement, half.displacement[apart] * moved]),
+        None if half.twist is None else np.concatenate([half.twist, half.twist[apart]]),
+        np.concatenate([half.stress, half.stress[apart]]),
+        half.load,
+    )
+
+
+def _written(values: Reals) -> Any:
+    noise = _NOISE * np.abs(values).max(initial=0.0)
+    return [_row(row, noise) for row in values.tolist()]
+
+
+def _row(value: Any, noise: float) -> Any:
+    if isinstance(value, list):
+        return [_row(part, noise) for part in value]
+    return float(f"{value:.{_DIGITS}g}") if abs(value) > noise else 0.0
