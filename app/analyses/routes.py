@@ -37,6 +37,7 @@ async def analyse(
     analyses: TheAnalyses,
     jobs: TheJobs,
     prefer: Annotated[str | None, Header()] = None,
+    units: Units = "si",
 ) -> Response:
     """Build a model, then find stiffness, frequency or stress on its solid. An equal question is asked once.
 
@@ -54,7 +55,7 @@ async def analyse(
         return accepted(job, await run_in_threadpool(analyses.show, shape, asked, ()))
     if failed := await run_in_threadpool(jobs.problem, job):
         return problems.answer(failed)
-    return JSONResponse(await run_in_threadpool(analyses.show, shape, asked, outputs))
+    return JSONResponse(converted(await run_in_threadpool(analyses.show, shape, asked, outputs), units))
 
 
 @router.get("/analyses/{key}")

@@ -100,6 +100,24 @@ def test_nothing_is_found_twice_and_what_is_known_is_shown_without_a_script(watc
     assert plain.page.locator('[data-found="surface"]').count() == 0
 
 
+def test_another_load_changes_the_stress_and_starts_no_job(watched, http):
+    asked(http, outputs=["stiffness", "torsional_frequency", "surface"])
+    watched.open(PAGE)
+    analysed(watched.page)
+    before = max(drawn(watched.page)["colours"])
+    jobs = len(http.get(f"{API}/jobs", params={"limit": 200}).json()["items"])
+    watched.page.locator('[data-ask="load"]').fill("0.5 kN·m")
+    panel = analysed(watched.page)
+    expect(panel.locator(".size")).to_contain_text("a torque of 500 N·m about z; deformation × ")
+    caption = panel.locator("caption", has_text="Torsion").first
+    expect(caption).to_contain_text("under 500 N·m")
+    assert max(drawn(watched.page)["colours"]) == pytest.approx(500 * before, rel=1e-9)
+    assert len(http.get(f"{API}/jobs", params={"limit": 200}).json()["items"]) == jobs
+    watched.page.locator('[data-ask="load"]').fill("5 mm")
+    panel.get_by_role("button", name="Analyse").click()
+    expect(panel.locator("[data-refused]")).to_contain_text("N*m")
+
+
 def test_the_table_of_the_script_is_that_of_the_server(watched, http):
     asked(http, outputs=["stiffness", "torsional_frequency", "surface"])
     watched.open(PAGE)

@@ -7,6 +7,13 @@ const SHOWN = 0.05; // of the part's size: what the largest displacement is draw
 const NOTHING = 0.01; // of the largest value
 const LINE = { color: "#51606f", width: 2 };
 
+// A surface under another load than the 1 N·m for which it is kept: everything is proportional to it.
+export function under(surface, load, words) {
+  const times = ({ value, unit }) => ({ unit, value: value.map((one) => (Array.isArray(one) ? one.map((part) => part * load) : one * load)) });
+  const { displacement, stress, twist } = surface;
+  return { ...surface, load: surface.load.replace("1 N*m", words), displacement: times(displacement), stress: times(stress), ...(twist && { twist: times(twist) }) };
+}
+
 // The fields that a surface can be coloured by.
 export function fieldsOf(surface) {
   const { displacement, stress, twist } = surface;
@@ -28,7 +35,7 @@ export async function drawDeformed(place, surface, name) {
   const before = { type: "scatter3d", mode: "lines", ...axes(lines), line: LINE, hoverinfo: "skip" };
   if (!place.querySelector(".figure")) place.replaceChildren(made("div", "figure"), made("p", "size muted"));
   showColours(place, { low, high, unit: shown });
-  place.querySelector(".size").textContent = `under ${surface.load.replace("*", "·")}; deformation × ${plain(factor)}; lines: undeformed; drag to turn`;
+  place.querySelector(".size").textContent = `under ${surface.load}; deformation × ${plain(factor)}; lines: undeformed; drag to turn`;
   await drawScene(place.querySelector(".figure"), [solid, before]);
 }
 

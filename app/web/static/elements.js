@@ -1,6 +1,7 @@
 // The panel "Finite elements": asks for an analysis, follows its job, shows its answers, paints the solid.
 import { showAnalysis } from "./analyses.js";
 import { Refused, call, units } from "./api.js";
+import { told as written } from "./numbers.js";
 import { follow } from "./progress.js";
 
 const EXTRA = "maximum_stress"; // found only if its box is ticked
@@ -34,9 +35,10 @@ const ask = (place, name) => place.querySelector(`[data-ask="${name}"]`);
 
 // The choices with which the design itself analyses this kind, so that nothing is found twice.
 function asDeclared(place) {
-  const { boundary, level } = ask(place, "kind").selectedOptions[0].dataset;
+  const { boundary, level, load } = ask(place, "kind").selectedOptions[0].dataset;
   if (boundary) ask(place, "boundary").value = boundary;
   if (level) ask(place, "level").value = level;
+  if (load) ask(place, "load").value = load;
 }
 
 function tell(place, words) {
@@ -45,14 +47,14 @@ function tell(place, words) {
   notice.hidden = !words;
 }
 
-// Ask, and wait for the job if there is one; the answer in the units of the page.
+// Ask, and wait for the job if there is one; the answer in the units of the page, and its load in N·m.
 async function found(place) {
   const { told: built } = await call("GET", `/api/v1/builds/${place.dataset.build}`);
-  const path = `${place.dataset.elements}/${ask(place, "kind").value}`;
-  const { told, status, location } = await call("POST", path, asked(place, built.parameters), { headers: { Prefer: "respond-async" } });
+  const path = `${place.dataset.elements}/${ask(place, "kind").value}`, body = asked(place, built.parameters);
+  const { told, status, location } = await call("POST", path, body, { headers: { Prefer: "respond-async" } });
   if (status === 202) await finished(place, location);
-  const { told: known } = await call("GET", `/api/v1/builds/${place.dataset.build}/analyses?units=${units()}`);
-  return known.items.find(({ id }) => id === told.id);
+  const { told: shown } = await call("POST", `${path}?units=${units()}`, body);
+  return { ...shown, newtonMetres: told.load.value };
 }
 
 function asked(place, parameters) {
@@ -60,6 +62,7 @@ function asked(place, parameters) {
   return {
     parameters: Object.fromEntries(Object.entries(parameters).map(([name, { value, unit }]) => [name, unit ? { value, unit } : value])),
     boundary: ask(place, "boundary").value,
+    load: ask(place, "load").value.replaceAll("·", "*"),
     ...(Number(level) ? { tolerance: Number(level) } : { level }),
     outputs: outputs.filter((name) => name !== EXTRA || ask(place, EXTRA).checked),
   };
@@ -76,8 +79,9 @@ async function finished(place, job) {
 
 async function show(place, analysis) {
   showAnalysis(place.querySelector("[data-analyses]"), analysis);
-  const { told: surface } = await call("GET", analysis.outputs.surface.url);
-  const { drawDeformed, fieldsOf } = await import("./deformed.js");
+  const { told: kept } = await call("GET", analysis.outputs.surface.url);
+  const { drawDeformed, fieldsOf, under } = await import("./deformed.js");
+  const surface = under(kept, analysis.newtonMetres, written(analysis.load));
   const view = place.querySelector("[data-deformed]"), colour = place.querySelector("[data-colour]");
   const names = Object.keys(fieldsOf(surface)), before = colour.value;
   colour.replaceChildren(...names.map((name) => new Option(name, name, false, name === before)));
