@@ -186,8 +186,20 @@ class Writer:
         function = self.scope.get(name)
         latex = getattr(function, "latex", None)
         if latex:
-            return latex.format(*(text for text, _ in arguments)), PRODUCT
+            return self._filled_in(latex, arguments), PRODUCT
         return (callable(function) and self._written_out(function, arguments)) or _named(name, arguments)
+
+    def _filled_in(self, latex: str, arguments: list[Written]) -> str:
+        """The LaTeX of a physics function with its arguments, in brackets where their places need them."""
+        shown = latex.replace(r"\,", self.times)
+        for place, (_, tightness) in enumerate(arguments):
+            mark, bracketed = f"{{{place}}}", rf"\left({{{place}}}\right)"
+            if tightness < ATOM:
+                shown = shown.replace(f"{mark}^", f"{bracketed}^")
+            if tightness < PRODUCT:
+                for before in {"-", "+", self.times}:
+                    shown = shown.replace(before + mark, before + bracketed)
+        return shown.format(*(text for text, _ in arguments))
 
     def _written_out(self, function: Callable[..., Any], arguments: list[Written]) -> Written | None:
         """What a function returns, if returning it is all it does and it is a formula."""

@@ -32,6 +32,11 @@ def rounded_up(x):
     return np.ceil(x / 1e-3) * 1e-3
 
 
+@units("m", "1", returns="m**2", latex=r"2\,{0}^2\,{1}-{1}")
+def swept(a, x):
+    return 2 * np.square(a) * np.asarray(x)
+
+
 def doubled(x):
     return 2 * x
 
@@ -404,6 +409,22 @@ class TestPaper:
 
         (row,) = rows(evaluate(Difference, {"first": "5 degC", "second": -3}).template)
         assert row.latex == r"r=2-x^{2}=2-\left(-3\right)^{2}=-7"
+
+    def test_property_formulas_written_by_hand_hold_numbers_as_well(self):
+        class Momentum(Template):
+            """A product whose LaTeX is written by hand."""
+
+            a = given("mm", "first")
+            x = given("1", "second")
+
+            @formula("m**2", "result", symbol="P")
+            def r(self):
+                return swept(self.a, self.x)
+
+        (row,) = rows(evaluate(Momentum, {"first": "5 mm", "second": -3}).template)
+        assert row.expression == r"2\,a^2\,x-x"
+        five, three = r"\left(5\,\text{mm}\right)^2", r"\left(-3\right)"
+        assert row.numbers == rf"2\cdot {five}\cdot {three}-{three}"
 
     def test_property_page(self):
         page = json.loads(json.dumps(describe(Shaft)))
