@@ -2,9 +2,10 @@
 
     python -m benchmarks.torsion_levels [COUNT]
 
-For each throw and level the true error of the stiffness, and the change from one order less, whose multiple
-is told as the error, above a floor. The truth is a run with elements of order 5 on a mesh of its own. `told`
-is the true error by the one told, which must be below 1. Kept after every throw in
+For each throw and level the true error of every output but stress, and the change from one order less, whose
+multiple is told as the error, above a floor. Every second throw has no fillets: its corners are sharp. The
+truth is a run with elements of a higher order on a mesh of its own, far finer along sharp corners. `told` is
+the true error by the one told, which must be below 1. Kept after every throw in
 benchmarks/results/torsion_levels.json; with COUNT 0 what is kept there is judged by the present table.
 """
 
@@ -16,9 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from cad.analysis.elastic import System, respond
+from cad.analysis.elastic import Boundary, Load, System, respond
 from cad.analysis.levels import LEVELS, Level
 from cad.analysis.mesh import Fineness, Grid, make_grid
+from cad.analysis.modes import torsional_mode
 from cad.analysis.solid import read_solid
 from cad.model import CadModel, Shaft
 from cad.models.crank_throw_v1 import CrankThrow
@@ -27,13 +29,19 @@ from templates.core.errors import InvalidInputs
 
 RESULTS = Path("benchmarks/results/torsion_levels.json")
 COUNT, SEED = 12, 20261121
-TRUTH = Fineness(size=0.8, curvature=0.4, turn=np.pi / 3)
-ORDER = 5
+TRUTH = Fineness(size=0.8, curvature=0.4, turn=np.pi / 3, sharp=0.06)
+ORDER, SHARP_ORDER = 5, 4
+ASKED: dict[str, tuple[Load, Boundary]] = {
+    "stiffness": ("torsion", "free_end"),
+    "guided stiffness": ("torsion", "guided_end"),
+    "bending stiffness": ("bending", "free_end"),
+}
+FREQUENCY = "torsional frequency"
 
 # Of the journal's diameter: throws of engines and compressors, with overlap of pin and journal and without.
 RANGES = {
     "journal_length": (0.5, 1.0), "pin_diameter": (0.7, 1.05), "pin_length": (0.4, 0.9),
-    "web_thickness": (0.25, 0.5), "web_width": (1.35, 1.8), "throw": (0.5, 1.1), "fillet": (0.04, 0.08),
+    "web_thickness": (0.25, 0.5), "web_width": (1.35, 1.8), "throw": (0.5, 1.1), "fillet": (0.02, 0.08),
 }  # fmt: skip
 OPTIONS = {
     "journal_bore": (0.15, 0.4), "pin_bore": (0.15, 0.4), "oil_drilling_diameter": (0.06, 0.12),
@@ -42,7 +50,10 @@ OPTIONS = {
 
 
 def random_throws(count: int, seed: int) -> Iterator[dict[str, Any]]:
-    """Parameters [SI] of throws that can be drawn; half of them have each bore, drilling or counterweight."""
+    """Parameters [SI] of throws that can be drawn.
+
+    Half of them have no fillets; half of them have each bore, drilling or counterweight.
+    """
     rng = np.random.default_rng(seed)
     while count > 0:
         size = rng.uniform(0.04, 0.1)
@@ -53,6 +64,7 @@ def random_throws(count: int, seed: int) -> Iterator[dict[str, Any]]:
         for name, (low, high) in (RANGES | OPTIONS).items():
             share = rng.uniform(low, high)
             drawn[name] = size * share if name in RANGES or rng.random() < 0.5 else 0.0
+        drawn["fillet"] *= count % 2
         if possible(CrankThrow, drawn):
             count -= 1
             yield drawn
@@ -73,43 +85,66 @@ def shaft_of(parameters: dict[str, Any]) -> tuple[bytes, Shaft]:
     return regenerate("crank_throw", 1, parameters).step, Shaft(-half, half)
 
 
-def stiffness(grid: Grid, order: int, shaft: Shaft) -> float:
-    """Torsional stiffness [N·m/rad] on one mesh."""
-    return 1e-3 / respond(System(grid, order, shaft.material, "torsion"), "free_end").compliance
+Found = dict[str, float]
 
 
-def true_stiffness(step: bytes, shaft: Shaft) -> float:
-    """Torsional stiffness [N·m/rad] from another mesh, in elements of a higher order than any level has."""
-    return stiffness(make_grid(read_solid(step, shaft), TRUTH), ORDER, shaft)
+def found_by(grid: Grid, order: int, shaft: Shaft) -> Found:
+    """All outputs but stress on one mesh: stiffnesses [N·m/rad], frequency [Hz]."""
+    told: Found = {}
+    for name, (load, boundary) in ASKED.items():
+        response = respond(System(grid, order, shaft.material, load), boundary)
+        told[name] = 1e-3 / response.compliance
+        if name == "stiffness":
+            told[FREQUENCY] = torsional_mode(response).frequency
+    return told
+
+
+def truth(step: bytes, shaft: Shaft) -> Found:
+    """The same from another mesh, in elements of a higher order than any level has."""
+    grid = make_grid(read_solid(step, shaft), TRUTH)
+    return found_by(grid, SHARP_ORDER if grid.is_sharp else ORDER, shaft)
 
 
 def row(parameters: dict[str, Any]) -> dict[str, Any]:
     """What each level finds of a throw, by itself and against the truth."""
     step, shaft = shaft_of(parameters)
-    truth = true_stiffness(step, shaft)
-    found: dict[str, Any] = {"parameters": parameters, "stiffness": truth}
+    true = truth(step, shaft)
+    kept: dict[str, Any] = {"parameters": parameters, **true}
     for level in LEVELS:
         grid = make_grid(read_solid(step, shaft), level.fineness)
-        low, high = (stiffness(grid, order, shaft) for order in (level.order - 1, level.order))
-        found[level.name] = {
-            "elements": grid.mesh.ne,
-            "true error": high / truth - 1,
-            "change": low / high - 1,
+        low, high = (found_by(grid, order, shaft) for order in (level.order - 1, level.order))
+        outputs = {
+            name: {"true error": high[name] / true[name] - 1, "change": low[name] / high[name] - 1}
+            for name in true
         }
-    return found
+        kept[level.name] = {"elements": grid.mesh.ne, "is sharp": grid.is_sharp, "outputs": outputs}
+    return kept
 
 
 def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """For each level the greatest true error, change and share of the error told, over all throws."""
-    return {level.name: worst(level, [one[level.name] for one in rows]) for level in LEVELS}
-
-
-def worst(level: Level, found: list[dict[str, float]]) -> dict[str, float]:
-    """The greatest of each, in magnitude."""
-    told = [abs(one["true error"]) / level.error(1 + one["change"], 1) for one in found]
-    return {kind: max(abs(one[kind]) for one in found) for kind in ("true error", "change")} | {
-        "told": max(told)
+    """For each level and sort of corners the greatest true error, change and share of the error told."""
+    return {
+        f"{level.name}, {'sharp' if sharp else 'filleted'}": worst(
+            level, [one[level.name] for one in rows if one[level.name]["is sharp"] == sharp], is_sharp=sharp
+        )
+        for level in LEVELS
+        for sharp in (False, True)
     }
+
+
+def worst(level: Level, found: list[dict[str, Any]], *, is_sharp: bool) -> dict[str, Any]:
+    """By output, the greatest of each, in magnitude."""
+    told: dict[str, Any] = {}
+    for name in (*ASKED, FREQUENCY):
+        errors = [(abs(one["outputs"][name]["true error"]), one["outputs"][name]["change"]) for one in found]
+        told[name] = {
+            "true error": max((true for true, _ in errors), default=0),
+            "change": max((abs(change) for _, change in errors), default=0),
+            "told": max(
+                (true / level.error(1 + change, 1, is_sharp=is_sharp) for true, change in errors), default=0
+            ),
+        }
+    return told
 
 
 def main(count: int) -> None:

@@ -39,7 +39,7 @@ STRESSES = frozenset({"maximum_stress"})
 DEAR = STRESSES | {SURFACE}
 """What is found only where it is asked for by name."""
 
-RECIPE = 1
+RECIPE = 2
 """Raised whenever the same question to the same solid gets another answer."""
 
 _MADE_BY = f"recipe {RECIPE}, ngsolve {version('ngsolve')}"

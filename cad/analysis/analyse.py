@@ -12,7 +12,7 @@ from cad.analysis.levels import Level, ladder
 from cad.analysis.mesh import make_grid
 from cad.analysis.modes import torsional_mode
 from cad.analysis.solid import Solid, read_solid
-from cad.analysis.stress import CONVERGED, greatest_stress
+from cad.analysis.stress import CONVERGED, greatest_stress, searched
 from cad.analysis.surface import surface
 from cad.model import Shaft
 
@@ -102,7 +102,7 @@ def _at_level(
         name: {
             "value": high,
             "unit": OUTPUTS[asked.load][name],
-            "error": level.error(low, high),
+            "error": level.error(low, high, is_sharp=grid.is_sharp),
             **told,
         }
         for name, (low, high) in values.items()
@@ -127,6 +127,7 @@ def _stress(solid: Solid, shaft: Shaft, asked: Asked, report: Report) -> dict[st
             {"elements": peak.elements, "value": _per_newton_metre(peak.value)} for peak in peaks.steps
         ],
         "point": {"value": list(last.point), "unit": "mm"},
+        "searched": {"value": list(searched(solid)), "unit": "mm"},
         "level": None,
         "mesh": _mesh(solid, last.elements, last.degrees_of_freedom, 3),
         "seconds": time.perf_counter() - started,

@@ -106,7 +106,7 @@ class System:
     def loads(self) -> tuple[Any, list[Any]]:
         """The unit load, and the unit forces of a guide that the symmetry does not already balance."""
         mesh, parts = self.grid.mesh, self.grid.solid.parts
-        shape = ng.CF((-ng.y, ng.x, 0)) if self.load == "torsion" else ng.CF((0, 0, ng.x))
+        shape = ng.CF((-ng.y, ng.x, 0)) if self.load == "torsion" else ng.CF((0, 0, -ng.x))
         unit = shape / (parts * ng.Integrate(shape * shape * ng.ds(LOADED), mesh))
         area = parts * ng.Integrate(ng.CF(1) * ng.ds(LOADED), mesh)
         locked = _locked(self.grid.solid.mirror, self.load)

@@ -25,12 +25,14 @@ class Level:
     fineness: Fineness
     order: int
     factor: float  # of the change from the order below: the error that is told
+    sharp_factor: float  # the same where there are sharp inner edges
     floor: float  # what no order of elements mends, relative: it is added to that
     typical: float  # the error that is usually told, relative
 
-    def error(self, low: float, high: float) -> float:
+    def error(self, low: float, high: float, *, is_sharp: bool = False) -> float:
         """The relative error to tell of a value, from that of one order less."""
-        return self.factor * abs(low - high) / high + self.floor
+        factor = self.sharp_factor if is_sharp else self.factor
+        return factor * abs(low - high) / high + self.floor
 
 
 def _read() -> tuple[Level, ...]:
@@ -38,9 +40,10 @@ def _read() -> tuple[Level, ...]:
     return tuple(
         Level(
             row["name"],
-            Fineness(row["size"], row["curvature"], row["turn"]),
+            Fineness(row["size"], row["curvature"], row["turn"], row["sharp"]),
             row["order"],
             row["factor"],
+            row["sharp_factor"],
             row["floor"],
             row["typical"],
         )

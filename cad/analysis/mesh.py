@@ -2,11 +2,12 @@
 
 Elements are as much curved as their order allows (isoparametric): with less the roundness of a shaft is what
 is missing (0.2 % of a cylinder's stiffness), with more the elements no longer contain a rotation. So meshes
-can be far coarser than pictures of them. Two things make that safe. Each curved edge has a least number of
-segments, else a bore's rim would be spanned by one chord through its middle. And the curving of the surface
-is led into the inside by harmonic functions: Netgen curves surface elements only, which folds thin elements
-under a fillet (of 2 000 elements in a throw 46 so, 6 with it). What is left folded only stiffens, and is part
-of the error that is estimated.
+can be far coarser than pictures of them. Three things make that safe. Each curved edge has a least number of
+segments, else a bore's rim would be spanned by one chord through its middle. Along sharp inner edges, where
+stress has no limit and a higher order gains little, elements are small (`cad.analysis.corners`). And the
+curving of the surface is led into the inside by harmonic functions: Netgen curves surface elements only,
+which folds thin elements under a fillet (of 2 000 elements in a throw 46 so, 6 with it). What is left folded
+only stiffens, and is part of the error that is estimated.
 """
 
 from __future__ import annotations
@@ -21,12 +22,13 @@ import numpy as np
 from netgen.meshing import MeshingParameters
 from netgen.occ import OCCGeometry
 
+from cad.analysis.corners import along, sharp_inner_edges
 from cad.analysis.solid import FREE, Solid, planar
 from cad.errors import AnalysisError
 
 MOST_ELEMENTS = 60_000
 
-_GRADING = 0.5
+GRADING = 0.5
 _SAMPLES = 16  # of an edge, to see how far it turns
 
 
@@ -37,6 +39,7 @@ class Fineness:
     size: float  # of the largest elements, in radii of the loaded end
     curvature: float  # elements for each radius of curvature
     turn: float  # [rad], the most that one segment of an edge turns
+    sharp: float = 0.15  # of elements at sharp inner edges, in radii of the loaded end
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,7 @@ class Grid:
 
     mesh: Any
     solid: Solid
+    is_sharp: bool = False  # whether it has sharp inner edges
 
 
 def make_grid(solid: Solid, fineness: Fineness, near: Iterable[Near] = ()) -> Grid:
@@ -64,21 +68,24 @@ def make_grid(solid: Solid, fineness: Fineness, near: Iterable[Near] = ()) -> Gr
     AnalysisError
         `mesh` if Netgen fails, or the mesh becomes larger than a job can bear.
     """
-    _bound_sizes(solid, fineness)
+    bound_sizes(solid, fineness)
     parameters = MeshingParameters(
-        maxh=fineness.size * solid.radius, grading=_GRADING, curvaturesafety=fineness.curvature
+        maxh=fineness.size * solid.radius, grading=GRADING, curvaturesafety=fineness.curvature
     )
     for place in near:
         for point in _ball(place):
             parameters.RestrictH(*point, place.size)
     try:
+        edges = sharp_inner_edges(solid.shape, solid.radius)
+        for point in along(edges, fineness.sharp * solid.radius):
+            parameters.RestrictH(*point, fineness.sharp * solid.radius)
         mesh = ng.Mesh(OCCGeometry(solid.shape).GenerateMesh(parameters))
     except Exception as error:  # Netgen has one kind of exception
         raise AnalysisError("mesh", f"Netgen could not mesh the solid: {error}") from error
     if mesh.ne > MOST_ELEMENTS:
         detail = f"the mesh would have {mesh.ne} elements, more than {MOST_ELEMENTS}: ask for less accuracy"
         raise AnalysisError("mesh", detail)
-    return Grid(mesh, solid)
+    return Grid(mesh, solid, len(edges) > 0)
 
 
 def curve(mesh: Any, order: int) -> Any:
@@ -113,7 +120,7 @@ def _coordinates(mesh: Any, curving: int, order: int) -> list[Any]:
     return found
 
 
-def _bound_sizes(solid: Solid, fineness: Fineness) -> None:
+def bound_sizes(solid: Solid, fineness: Fineness) -> None:
     """Limit the size of elements along curved edges, and on the curved faces that full turns bound."""
     for face in solid.shape.faces:
         rims = []

@@ -5,7 +5,7 @@ smaller one, since one may be small by chance. What is compared is the recovered
 neighbouring elements averaged where they meet (Zienkiewicz and Zhu 1992). At a sharp inner corner stress has
 no limit, each refinement raises it by a quarter, and nothing converges: the answer is a refusal with that
 reason. Close to the ends, where a clamp or a load that no real joint makes disturbs the field, nothing is
-looked at (de Saint-Venant's principle).
+looked at (de Saint-Venant's principle); but where a fillet or a web begins nearer, it is looked at.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from cad.analysis.elastic import Boundary, Load, Response, System, respond, stress
 from cad.analysis.mesh import Fineness, Near, make_grid
 from cad.analysis.solid import FREE, HELD, LOADED, Solid
+from cad.errors import AnalysisError
 from cad.model import Material
 
 Components = list[Any]  # xx, yy, zz, xy, yz, xz of a stress, each a function on the mesh
@@ -32,7 +33,9 @@ ORDER = 3
 STEPS = 5
 SMALL, CONVERGED = 0.05, 0.01  # relative changes from mesh to mesh, of the last step but one and of the last
 
-_END_ZONE = 0.3  # of the radius of the loaded end
+_END_ZONE = 0.3  # of the radius of the loaded end: nothing is looked at there
+_PLAIN = 0.9  # of the distance from an end to where the next faces begin: nor there, if that is less
+_TOUCHES = 1e-3  # [mm]: a face that begins so near to an end begins there
 _HIGH = 0.85  # of the greatest stress: elements above it are halved
 
 
@@ -108,20 +111,42 @@ def greatest_stress(
 
 
 def peak(response: Response, measure: Measure = von_mises) -> tuple[Peak, tuple[Near, ...]]:
-    """The greatest recovered stress away from the ends, and where elements shall be halved."""
+    """The greatest recovered stress away from the ends, and where elements shall be halved.
+
+    Raises
+    ------
+    AnalysisError
+        `no_free_length` if all of the solid is close to its ends.
+    """
     system = response.system
     mesh, solid = system.grid.mesh, system.grid.solid
     points, values = _on_surface(system, measure(recover(response)))
-    ends = [face.center.z for face in solid.shape.faces if face.name in (HELD, LOADED)]
-    margin = _END_ZONE * solid.radius
-    inside = (points[..., 2] > min(ends) + margin) & (points[..., 2] < max(ends) - margin)
-    values = np.where(inside, values, -1.0)
+    low, high = searched(solid)
+    inside = (points[..., 2] > low) & (points[..., 2] < high)
+    if not inside.any():
+        detail = "the shaft is so short that all of it is close to its ends; lengthen its ends"
+        raise AnalysisError("no_free_length", detail)
+    values = np.where(inside, values, -np.inf)
     element, place = np.unravel_index(int(np.argmax(values)), values.shape)
     highest = float(values[element, place])
     x, y, z = (float(c) for c in points[element, place])
     told = Peak(highest, (x, y, z), mesh.ne, system.space.ndof)
     corners = _corners(mesh)[values.max(axis=1) > _HIGH * highest]
     return told, tuple(_halved(one) for one in corners)
+
+
+def searched(solid: Solid) -> tuple[float, float]:
+    """Between which levels of z [mm] the greatest stress is looked for."""
+    ends = [face.center.z for face in solid.shape.faces if face.name in (HELD, LOADED)]
+    low, high = min(ends), max(ends)
+    extents = [face.bounding_box for face in solid.shape.faces if face.name == FREE]
+    begins = [first.z for first, _ in extents if first.z > low + _TOUCHES]
+    stops = [last.z for _, last in extents if last.z < high - _TOUCHES]
+    zone = _END_ZONE * solid.radius
+    return (
+        low + min(zone, _PLAIN * (min(begins, default=high) - low)),
+        high - min(zone, _PLAIN * (high - max(stops, default=low))),
+    )
 
 
 def _on_surface(system: System, field: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
