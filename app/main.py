@@ -27,7 +27,7 @@ from app.designs.files import router as design_files
 from app.designs.graph import Catalogues
 from app.designs.regeneration import Regeneration
 from app.designs.routes import router as designs
-from app.designs.service import REGENERATE, Designs
+from app.designs.service import REGENERATE, REGENERATE_SLOWLY, Designs
 from app.health import Metrics
 from app.http import BodyLimit, BodyTooLarge
 from app.idempotency import forget_old_keys
@@ -138,6 +138,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
     regeneration = Regeneration(database, builds, analysing, catalogues)
     queue.register(REGENERATE, regeneration, Regeneration.failed)
+    queue.register(REGENERATE_SLOWLY, regeneration, Regeneration.failed, is_slow=True)
     queue.register(BUILD, ModelBuild(builds, catalogues.models))
     queue.register(ANALYSIS, ModelAnalysis(builds, analysing, catalogues.models), is_slow=True)
     queue.start()

@@ -11,7 +11,6 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
-from math import inf
 from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -32,6 +31,8 @@ KINDS: dict[str, dict[str, str]] = {
 
 SURFACE = "surface"
 """An output of every kind, the surface for a picture; it is no quantity, so no relation can use it."""
+
+LARGEST_LOAD = 1e12  # [N m]
 
 STRESSES = frozenset({"maximum_stress"})
 """What is proportional to the load."""
@@ -94,8 +95,13 @@ class Question:
 def question(kind: str, options: Options) -> Question:
     """The question that options of a kind ask; nothing said is the default level, and a load of 1 N·m."""
     level = options.level or (None if options.tolerance else DEFAULT)
-    load = 1.0 if options.load is None or _load_faults(options.load) else read(options.load, "N*m").si
-    return Question(kind, options.boundary, level, options.tolerance, float(load))
+    load = 1.0 if options.load is None or load_faults(options.load) else load_of(options.load)
+    return Question(kind, options.boundary, level, options.tolerance, load)
+
+
+def load_of(raw: Any) -> float:
+    """A load [N·m] without faults."""
+    return float(read(raw, "N*m").si)
 
 
 def faults(options: Options) -> list[Fault]:
@@ -103,17 +109,19 @@ def faults(options: Options) -> list[Fault]:
     both = options.level is not None and options.tolerance is not None
     detail = "give either a level or a tolerance, which chooses the level"
     found = [Fault("tolerance", "conflict", detail)] if both else []
-    return found + ([] if options.load is None else _load_faults(options.load))
+    return found + ([] if options.load is None else load_faults(options.load))
 
 
-def _load_faults(raw: Any) -> list[Fault]:
+def load_faults(raw: Any) -> list[Fault]:
+    """What is wrong with a load."""
     try:
         load = read(raw, "N*m").si
     except FaultyText as error:
         return [error.fault("load")]
-    if isinstance(load, float) and 0 < load < inf:
+    if isinstance(load, float) and 0 < load <= LARGEST_LOAD:
         return []
-    return [Fault("load", "out_of_range", 'load is one torque or moment > 0 N*m, such as "500 N*m"')]
+    told = f'load is one torque or moment > 0 N*m and ≤ {LARGEST_LOAD:g} N*m, such as "500 N*m"'
+    return [Fault("load", "out_of_range", told)]
 
 
 def under_load(asked: Question, found: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
@@ -165,4 +173,4 @@ def warnings(asked: Question, found: Mapping[str, Mapping[str, Any]]) -> list[di
 
 
 def _unmet(error: float, tolerance: float) -> str:
-    return f"the error may be {error:.2g}, more than the {tolerance:g} asked for; there is no finer level"
+    return f"the error may be {error:.2g}, more than the {tolerance:g} asked for, and no finer mesh is tried"

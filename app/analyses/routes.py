@@ -4,12 +4,22 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Header, Path, Response
+from fastapi import APIRouter, Header, Path, Query, Response
 from fastapi.responses import FileResponse, JSONResponse
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
-from app.analyses.questions import DEAR, KINDS, faults, in_order, no_shaft, offered, question
+from app.analyses.questions import (
+    DEAR,
+    KINDS,
+    faults,
+    in_order,
+    load_faults,
+    load_of,
+    no_shaft,
+    offered,
+    question,
+)
 from app.analyses.schemas import AnalysisIn, SurfaceOut
 from app.calculations.display import Units, converted
 from app.catalogue.routes import Number
@@ -59,14 +69,22 @@ async def analyse(
 
 
 @router.get("/analyses/{key}")
-def show_analysis(key: str, analyses: TheAnalyses) -> dict[str, Any]:
-    """All that was found for one question about one solid."""
-    return analyses.show_all(key)
+def show_analysis(
+    key: str,
+    analyses: TheAnalyses,
+    load: Annotated[str, Query(max_length=60, description="under which stress is told")] = "1 N*m",
+    units: Units = "si",
+) -> dict[str, Any]:
+    """All that was found for one question about one solid. It was found once for all loads."""
+    if wrong := load_faults(load):
+        raise InvalidInputs(wrong)
+    told: dict[str, Any] = converted(analyses.show_all(key, load_of(load)), units)
+    return told
 
 
 @router.get("/builds/{key}/analyses")
 def analyses_of_build(key: str, analyses: TheAnalyses, units: Units = "si") -> dict[str, Any]:
-    """All that was found of one solid: every question that was asked about it, with its answers."""
+    """All that was found of one solid: every question that was asked about it, its answers under 1 N·m."""
     told: dict[str, Any] = converted({"items": analyses.of_build(key)}, units)
     return told
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from sqlalchemy.orm import Session
@@ -68,8 +69,8 @@ class Analyses:
         told = under_load(question, {name: known[name] for name in outputs if name in known})
         return shown({"id": shape.id, "version": shape.version}, build, question, told)
 
-    def show_all(self, key: str) -> dict[str, Any]:
-        """All that is known to a question about a build; stress under 1 N·m.
+    def show_all(self, key: str, load: float) -> dict[str, Any]:
+        """All that is known to a question about a build, under a load [N·m].
 
         Raises
         ------
@@ -78,10 +79,11 @@ class Analyses:
         """
         with self.database.read() as session:
             build, question, known = repository.asked(session, key)
-            return shown(_model_of(session, build), build, question, known)
+            question = replace(question, load=load)
+            return shown(_model_of(session, build), build, question, under_load(question, known))
 
     def of_build(self, build: str) -> list[dict[str, Any]]:
-        """All that is known of a build.
+        """All that is known of a build, under 1 N·m.
 
         Raises
         ------

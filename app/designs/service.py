@@ -17,7 +17,7 @@ from app.designs.automap import Proposal, proposals
 from app.designs.calculate import Analysed, Calculation, Found, Measured, Measures, calculate
 from app.designs.document import Document, merge
 from app.designs.errors import StaleRevision
-from app.designs.graph import Catalogues, build_graph, raise_if
+from app.designs.graph import Catalogues, Graph, build_graph, raise_if
 from app.designs.repository import Written
 from app.idempotency import Once
 from app.jobs.service import Jobs
@@ -27,7 +27,8 @@ from cad.regenerate import build_key
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.quantity import Value, read
 
-REGENERATE = "regenerate"
+REGENERATE, REGENERATE_SLOWLY = "regenerate", "regenerate_and_analyse"
+"""Kinds of jobs: the second is that of designs whose relations use finite elements."""
 
 
 @dataclass(frozen=True)
@@ -57,13 +58,13 @@ class Designs:
         """
         if found := self._repeated(once):
             return found
-        written, pending = self._written(raw, note)
+        written, work = self._written(raw, note)
 
         def unit(session: Session) -> Saved:
             if found := _found(session, once):
                 return found
             design, revision = repository.create(session, written.document["name"], written)
-            return self._enqueued(session, design, revision, pending, once, created=True)
+            return self._enqueued(session, design, revision, work, once, created=True)
 
         return self._saved(unit)
 
@@ -140,7 +141,7 @@ class Designs:
             return document, calculate(graph, built(session), analysed(session), starts(document))
 
     def _append(self, id: str, base: int, raw: Mapping[str, Any], note: str | None, once: Once) -> Saved:
-        written, pending = self._written(raw, note)
+        written, work = self._written(raw, note)
 
         def unit(session: Session) -> Saved:
             if found := _found(session, once):
@@ -153,27 +154,26 @@ class Designs:
                 once.keep(session, 200, vars(unchanged))
                 return unchanged
             revision = repository.append(session, row, written)
-            return self._enqueued(session, id, revision, pending, once, created=False)
+            return self._enqueued(session, id, revision, work, once, created=False)
 
         return self._saved(unit)
 
-    def _written(self, raw: Mapping[str, Any], note: str | None) -> tuple[Written, bool]:
-        """What to write for a document, and whether geometry has to run first."""
+    def _written(self, raw: Mapping[str, Any], note: str | None) -> tuple[Written, str | None]:
+        """What to write for a document, and the kind of job that has to run first, if one has."""
         document, calculation = self.prepare(raw)
         raise_if(calculation.faults)
         pending = bool(document.iterations) or bool(calculation.pending)
         told = None if pending else results.told(calculation, [])
         state = "regenerating" if pending else "current"
         plain = document.model_dump(mode="json")
-        return Written(plain, told, results.models(calculation), state, note), pending
+        work = (REGENERATE_SLOWLY if analyses_wanted(calculation.graph) else REGENERATE) if pending else None
+        return Written(plain, told, results.models(calculation), state, note), work
 
     def _enqueued(
-        self, session: Session, design: str, revision: int, pending: bool, once: Once, *, created: bool
+        self, session: Session, design: str, revision: int, work: str | None, once: Once, *, created: bool
     ) -> Saved:
         """The job of a revision, if it needs one, and the record of the request; in one transaction."""
-        job = (
-            self.jobs.enqueue(session, REGENERATE, {}, design=design, revision=revision) if pending else None
-        )
+        job = self.jobs.enqueue(session, work, {}, design=design, revision=revision) if work else None
         saved = Saved(design, revision, job, created)
         once.keep(session, 201 if created else 200, vars(saved))
         return saved
@@ -240,6 +240,11 @@ def built(session: Session) -> Measured:
         return row.measurements["measures"] if row else None
 
     return measured
+
+
+def analyses_wanted(graph: Graph) -> bool:
+    """Whether anything in a design uses finite elements."""
+    return any(graph.wanted(block.name, kind) for block in graph.blocks.values() for kind in block.analyses)
 
 
 def analysed(session: Session) -> Analysed:

@@ -104,10 +104,12 @@ class Dispatcher:
 
     def _empty_queue(self, slow: bool) -> None:
         while not self._stopping.is_set() and (job := self._database.write(partial(self._claim, slow=slow))):
+            mine = self._running[job.id]
             try:
                 self._execute(job)
             finally:
-                del self._running[job.id]
+                if self._running.get(job.id) is mine:  # given back, it may run again in another thread by now
+                    del self._running[job.id]
 
     def _claim(self, session: Session, *, slow: bool) -> Job | None:
         """Claim a job and register it still in the writer thread: who sees it running can interrupt it."""

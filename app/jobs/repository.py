@@ -40,13 +40,6 @@ def get(session: Session, id: str) -> Job | None:
     return _job(row) if row else None
 
 
-def find_unfinished(session: Session, kind: str, payload: dict[str, Any]) -> str | None:
-    """Return the id of a job that will do, or does, just this."""
-    alike = and_(JobRow.kind == kind, JobRow.payload == payload)
-    unfinished = JobRow.state.in_(("queued", "running"))
-    return session.scalar(select(JobRow.id).where(alike, unfinished).limit(1))
-
-
 def page(session: Session, limit: int, before: str | None) -> list[Job]:
     """Return the newest jobs, or the newest of those older than `before`."""
     newest = select(JobRow).order_by(JobRow.id.desc()).limit(limit)

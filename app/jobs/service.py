@@ -88,10 +88,6 @@ class Jobs:
             raise QueueFull(RETRY_AFTER)
         return repository.add(session, kind, payload, design, revision)
 
-    def find(self, session: Session, kind: str, payload: dict[str, Any]) -> str | None:
-        """Return the id of an unfinished job of this kind with this payload, if there is one."""
-        return repository.find_unfinished(session, kind, payload)
-
     def waiting(self, session: Session, kind: str, payload: dict[str, Any]) -> str | None:
         """Return the id of a job that is to do just this and has not ended."""
         return repository.find_waiting(session, kind, payload)

@@ -115,6 +115,7 @@ class Model:
     parameters: list[Mapped]
     measures: list[Line]
     analyses: list[Line]  # what finite elements found; origin is how
+    warnings: list[Warned]
     checks: list[Verdict]
     files: list[File]
     remark: str  # on pictures that could not be had

@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 from app.calculations.display import System
 from app.designs import repository, results
 from app.reports.cells import Cell, shown, typed
-from app.reports.content import File, Line, Mapped, Model, Verdict
+from app.reports.content import File, Line, Mapped, Model, Verdict, Warned
 from app.reports.steps import known, symbol_of, verdicts, version_of, words_of
 from app.reports.typesetting import DRAWING, PICTURE
 from app.web import numbers
@@ -50,6 +50,11 @@ def model_of(
         parameters=[*_parameters(told, before.parameters if before else {}, measured, cls, system)],
         measures=[*_measures(measured, system)],
         analyses=[*_analyses(told["analyses"], system)],
+        warnings=[
+            Warned(f"{kind}: {warning['name'].replace('_', ' ')}", warning["detail"])
+            for kind, analysis in told["analyses"].items()
+            for warning in analysis["warnings"]
+        ],
         checks=_checks(told, cls),
         files=[File(kind, files[kind]) for kind in KEPT if kind in files],
         remark=remark,
@@ -92,13 +97,14 @@ def _analyses(analyses: Mapping[str, Any], system: System) -> Iterator[Line]:
         for name, found in told["outputs"].items():
             mesh, level = found["mesh"], f"level {found['level']}" if found["level"] else "refined"
             held = told["boundary"].replace("_", " ")
+            within = f", within {numbers.percent(told['tolerance'])} asked" if told["tolerance"] else ""
             load = f" under {numbers.told(told['load'])}" if name == "maximum_stress" else ""
             yield Line(
                 words=f"{kind}: {name.replace('_', ' ')}{load}",
                 symbol="",
                 value=shown(found, system),
                 error=f"± {numbers.percent(found['error'])}",
-                origin=f"{held}, {level}: {mesh['elements']} elements of order {mesh['order']}",
+                origin=f"{held}, {level}{within}: {mesh['elements']} elements of order {mesh['order']}",
             )
 
 

@@ -142,7 +142,7 @@ def _summary(steps: Sequence[Step], models: Sequence[Model]) -> list[str]:
     """What a checker wants to know first."""
     checks = [(step.name, check) for step in steps for check in step.checks]
     checks += [(model.name, check) for model in models for check in model.checks]
-    warnings = sum(len(step.warnings) for step in steps)
+    warnings = sum(len(step.warnings) for step in steps) + sum(len(model.warnings) for model in models)
     broken = [f"{name}: {check.words}" for name, check in checks if not check.holds]
     said = [
         f"{len(checks)} checks, {len(broken) or 'none'} not met" if checks else "no checks",

@@ -55,7 +55,7 @@ async def design_page(
         models=parts,
         measured=measured,
         analyses={
-            name: await known_analyses(request, api, part["build"], models[name])
+            name: await known_analyses(request, api, part["build"], models[name], part["analyses"])
             for name, part in measured.items()
         },
         revisions=await api.get(f"/designs/{id}/revisions", limit=20),

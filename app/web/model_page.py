@@ -9,7 +9,7 @@ from fastapi import Request, Response
 
 from app.web import sheet
 from app.web.api import Api, Refused
-from app.web.forms import value_of
+from app.web.forms import text_of, value_of
 from app.web.rendering import show, units_of
 from cad.export import MEDIA_TYPES
 
@@ -41,13 +41,24 @@ async def model_page(request: Request, api: Api, id: str, version: int) -> Respo
 
 
 async def known_analyses(
-    request: Request, api: Api, build: str | None, model: Mapping[str, Any]
+    request: Request,
+    api: Api,
+    build: str | None,
+    model: Mapping[str, Any],
+    declared: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> list[dict[str, Any]]:
-    """What finite elements have found of a build by now."""
+    """What finite elements have found of a build by now; what a design declares, under its load there."""
     if not model["analyses"] or build is None:
         return []
-    told = await api.find(f"/builds/{build}/analyses", units=units_of(request))
-    return told["items"] if told else []
+    units = units_of(request)
+    found = await api.find(f"/builds/{build}/analyses", units=units)
+    loads = {told["id"]: text_of(told["load"]) for told in (declared or {}).values()}
+    return [
+        await api.get(f"/analyses/{known['id']}", units=units, load=loads[known["id"]])
+        if known["id"] in loads
+        else known
+        for known in (found["items"] if found else [])
+    ]
 
 
 async def _built(api: Api, path: str, cells: dict[str, Any]) -> tuple[dict[str, Any] | None, dict[str, str]]:

@@ -139,14 +139,24 @@ def searched(solid: Solid) -> tuple[float, float]:
     """Between which levels of z [mm] the greatest stress is looked for."""
     ends = [face.center.z for face in solid.shape.faces if face.name in (HELD, LOADED)]
     low, high = min(ends), max(ends)
-    extents = [face.bounding_box for face in solid.shape.faces if face.name == FREE]
-    begins = [first.z for first, _ in extents if first.z > low + _TOUCHES]
-    stops = [last.z for _, last in extents if last.z < high - _TOUCHES]
+    extents = [_extent(face) for face in solid.shape.faces if face.name == FREE]
+    begins = [first for first, _ in extents if first > low + _TOUCHES]
+    stops = [last for _, last in extents if last < high - _TOUCHES]
     zone = _END_ZONE * solid.radius
     return (
         low + min(zone, _PLAIN * (min(begins, default=high) - low)),
         high - min(zone, _PLAIN * (high - max(stops, default=low))),
     )
+
+
+def _extent(face: Any) -> tuple[float, float]:
+    """From which to which z [mm] the edges of a face reach; the kernel's boxes of curved faces are larger."""
+    levels = []
+    for edge in face.edges:
+        if edge.mass > 0:
+            start, end = edge.parameter_interval
+            levels += [edge.Value(t).z for t in np.linspace(start, end, 5)]
+    return min(levels), max(levels)
 
 
 def _on_surface(system: System, field: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

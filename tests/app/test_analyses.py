@@ -96,7 +96,7 @@ class TestAnswer:
         fitting = ask(http, thick, outputs=["stiffness"], level=None, tolerance=0.05).json()
         assert fitting["tolerance"] == 0.05
         assert fitting["outputs"]["stiffness"]["error"] <= 0.05
-        assert fitting["level"] in ("coarse", "default", "fine")
+        assert fitting["level"] == "coarse"
 
     def test_stress(self, http):
         """Under 1 N·m: τ = 16 / (π d³), von Mises √3 τ; it converges where nothing is sharp."""
@@ -108,6 +108,8 @@ class TestAnswer:
         loaded = asked(http, bar(20, 12), outputs=["maximum_stress", "stiffness"], load="0.5 kN*m")
         assert loaded["load"] == {"value": 500, "unit": "N*m"}
         assert loaded["outputs"]["maximum_stress"]["value"] == pytest.approx(500 * found["value"], rel=1e-12)
+        again = http.get(f"{API}/analyses/{loaded['id']}", params={"load": "0.5 kN*m"}).json()
+        assert again["outputs"]["maximum_stress"] == loaded["outputs"]["maximum_stress"]
         unloaded = asked(http, bar(20, 12), outputs=["stiffness"])
         assert loaded["outputs"]["stiffness"] == unloaded["outputs"]["stiffness"]
 
@@ -242,6 +244,7 @@ class TestRefusals:
             ({"tolerance": 0.1}, "tolerance", "either"),
             ({"load": "5 mm"}, "load", "N*m"),
             ({"load": "-5 N*m"}, "load", "> 0 N*m"),
+            ({"load": "1e308 N*m"}, "load", "≤ 1e+12 N*m"),
             ({"load": {"value": [1, 2], "unit": "N*m"}}, "load", "one torque"),
             ({"parameters": {"diameter": "-1 mm", "length": "1 mm"}}, "diameter", "0"),
             ({"more": 1}, "more", "not permitted"),
@@ -251,6 +254,10 @@ class TestRefusals:
         told = problem(ask(http, **wrong), 422, "invalid-inputs")
         assert [fault["name"] for fault in told["errors"]] == [named]
         assert remedy in told["errors"][0]["detail"]
+
+    def test_a_wrong_load_of_what_is_known(self, http, torsion):
+        answer = http.get(f"{API}/analyses/{torsion['id']}", params={"load": "5 mm"})
+        assert faults(answer) == {"load": "wrong_unit"}
 
     def test_all_at_once(self, http):
         answer = ask(http, tolerance=0.1, outputs=["mass", "length"])

@@ -92,6 +92,22 @@ class TestRelation:
         assert float(told["value"]) == pytest.approx(found["value"], rel=1e-12)
         assert told["unit"] == "N*m/rad"
 
+    def test_it_is_found_beside_other_jobs(self, http):
+        design = created(http, train("17 mm"))
+        items = http.get(f"{API}/jobs?limit=200").json()["items"]
+        assert {job["kind"] for job in items if job["design"] == design["id"]} == {"regenerate_and_analyse"}
+
+    def test_a_tolerance_that_is_not_met_is_a_warning_in_the_report(self, http):
+        wanted = {"torsion": {"tolerance": 1e-7}}
+        document = train("26 mm")
+        document["models"]["bar"]["analyses"] = wanted
+        made = created(http, document)
+        told = revision(http, made)["models"]["bar"]["analyses"]["torsion"]["warnings"]
+        assert [(warning["code"], warning["name"]) for warning in told] == [("tolerance_unmet", "stiffness")]
+        report = http.get(f"{DESIGNS}/{made['id']}/report.html").text
+        assert told[0]["detail"] in report
+        assert "1 warning" in report
+
     def test_nothing_used_nothing_found(self, http):
         made = created(http, {"name": "unused", "models": {"bar": bar("33 mm")}})
         assert made["state"] == "current"

@@ -195,12 +195,12 @@ def test_the_queue_has_a_limit(make, database):
 def test_an_unfinished_job_is_found_by_what_it_does(jobs, database):
     id = put(jobs, database)
     with database.read() as session:
-        assert jobs.find(session, KIND, {"key": "a"}) == id
-        assert jobs.find(session, KIND, {"key": "b"}) is None
+        assert jobs.waiting(session, KIND, {"key": "a"}) == id
+        assert jobs.waiting(session, KIND, {"key": "b"}) is None
     jobs.start()
     ended(jobs, id)
     with database.read() as session:
-        assert jobs.find(session, KIND, {"key": "a"}) is None
+        assert jobs.waiting(session, KIND, {"key": "a"}) is None
 
 
 def test_pages_are_complete_and_newest_first(jobs, database):

@@ -141,7 +141,7 @@ def test_a_job_that_is_cancelled_says_so(watched):
 
 
 def test_a_design_is_analysed_as_it_declares(watched, http):
-    analyses = {"torsion": {"tolerance": 0.05, "boundary": "guided_end"}}
+    analyses = {"torsion": {"tolerance": 0.05, "boundary": "guided_end", "load": "500 N*m"}}
     wider = {**THROW, "web_width": "72 mm"}  # no other test asks about it
     document = {
         "name": "throw",
@@ -158,6 +158,8 @@ def test_a_design_is_analysed_as_it_declares(watched, http):
     expect(panel.locator('[data-found="torsional_frequency"]')).to_have_count(0)
     expect(panel.locator('[data-ask="boundary"]')).to_have_value("guided_end")
     expect(panel.locator('[data-ask="level"]')).to_have_value("0.05")
+    expect(panel.locator('[data-ask="load"]')).to_have_value(re.compile(r"^500(\.0)? N\*m$"))
+    expect(panel.locator("caption").first).to_contain_text("under 500 N·m")
     stiffness = panel.locator('[data-found="stiffness"] .number').inner_text()
     panel = analysed(page, level="0.05")
     expect(panel.locator('[data-found="torsional_frequency"]')).to_contain_text("Hz")

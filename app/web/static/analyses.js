@@ -2,7 +2,7 @@
 import { percent, told } from "./numbers.js";
 import { cells, warning } from "./results.js";
 
-const HEADS = ["Quantity", "Value", "Unit", "Error at most", "Elements / degrees of freedom"];
+const HEADS = ["Quantity", "Value", "Unit", "Error, estimated", "Elements / degrees of freedom"];
 
 // Put an analysis into a list of them: in the place of its own table, else first. A surface alone has none.
 export function showAnalysis(list, analysis) {

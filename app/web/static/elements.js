@@ -53,8 +53,8 @@ async function found(place) {
   const path = `${place.dataset.elements}/${ask(place, "kind").value}`, body = asked(place, built.parameters);
   const { told, status, location } = await call("POST", path, body, { headers: { Prefer: "respond-async" } });
   if (status === 202) await finished(place, location);
-  const { told: shown } = await call("POST", `${path}?units=${units()}`, body);
-  return { ...shown, newtonMetres: told.load.value };
+  const { told: known } = await call("GET", `/api/v1/analyses/${told.id}?units=${units()}&load=${encodeURIComponent(body.load)}`);
+  return { ...known, newtonMetres: told.load.value };
 }
 
 function asked(place, parameters) {

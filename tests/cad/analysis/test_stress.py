@@ -1,12 +1,27 @@
 """Literature: a shoulder fillet's stress concentration; what counts as converged."""
 
 import pytest
+from cadquery import Shape, Workplane
 
-from benchmarks.shoulder_fillet import END, LOADS, factors, peaks, peterson, shoulder
+from benchmarks.shoulder_fillet import (
+    END,
+    FILLET,
+    LOADS,
+    NARROW,
+    SHOULDER,
+    factors,
+    peaks,
+    peterson,
+    shoulder,
+)
 from cad.analysis.analyse import Asked, analyse
 from cad.analysis.elastic import Load
-from cad.analysis.stress import CONVERGED, SMALL, Peak, Peaks
-from cad.model import Shaft
+from cad.analysis.solid import read_solid
+from cad.analysis.stress import CONVERGED, SMALL, Peak, Peaks, searched
+from cad.errors import AnalysisError
+from cad.header import Header
+from cad.model import Part, Shaft
+from cad.step import write_step
 
 
 @pytest.mark.slow
@@ -23,6 +38,27 @@ def test_a_sharp_corner_has_no_greatest_stress() -> None:
     stress = found.outputs["maximum_stress"]
     assert stress["value"] is None
     assert "sharp inner corner" in stress["reason"]
+
+
+def test_a_shaft_without_a_free_length_is_refused() -> None:
+    disc = disc_of(2.0)
+    with pytest.raises(AnalysisError, match="so short"):
+        analyse(disc, Shaft(0.0, 2.0), Asked(), ["maximum_stress"], lambda done, what: None)
+
+
+def test_a_fillet_close_to_an_end_is_looked_at() -> None:
+    """A shaft's plain ends are left out by 0.3 radii, but not beyond where something begins."""
+    low, high = searched(read_solid(shoulder(FILLET), Shaft(0.0, END)))
+    assert low == pytest.approx(0.3 * NARROW / 2)
+    assert high == pytest.approx(END - 0.3 * NARROW / 2)
+    near = read_solid(shoulder(FILLET, SHOULDER + FILLET + 2.0), Shaft(0.0, SHOULDER + FILLET + 2.0))
+    assert SHOULDER + FILLET < searched(near)[1] < SHOULDER + FILLET + 2.0
+
+
+def disc_of(thickness: float) -> bytes:
+    shape = Workplane().circle(30).extrude(thickness).val()
+    assert isinstance(shape, Shape)
+    return write_step((Part("disc", shape, 1.0),), Header("disc", 1, {}, "0" * 64))
 
 
 def meshes(*values: float) -> Peaks:

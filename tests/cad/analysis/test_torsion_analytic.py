@@ -5,14 +5,17 @@ from typing import Any
 
 import netgen.meshing
 import ngsolve as ng
+import numpy as np
 import pytest
 from cadquery import Shape, Workplane
 
+from benchmarks.shoulder_fillet import END, FILLET, NARROW, SHOULDER, shoulder
+from cad.analysis.corners import sharp_inner_edges
 from cad.analysis.elastic import BOUNDARIES, Boundary, System, respond
 from cad.analysis.levels import DEFAULT, LEVELS, Level
 from cad.analysis.mesh import Grid, make_grid
 from cad.analysis.modes import torsional_mode
-from cad.analysis.solid import MIRROR, Solid, read_solid
+from cad.analysis.solid import LOADED, MIRROR, Solid, read_solid
 from cad.header import Header
 from cad.model import STEEL_MATERIAL, Part, Shaft
 from cad.step import write_step
@@ -38,6 +41,24 @@ def test_a_circular_shaft_twists_and_vibrates_as_coulomb_says(level: Level) -> N
     assert 1e-3 / response.compliance == pytest.approx(stiffness, rel=5e-4)
     frequency = sqrt(SHEAR / STEEL_MATERIAL.density) / 0.8
     assert torsional_mode(response).frequency == pytest.approx(frequency, rel=5e-4)
+
+
+def test_a_moment_bends_as_its_sign_says() -> None:
+    """A positive moment about y turns z towards x: the free end moves to +x, by M l² / (2 E I)."""
+    solid = shaft_of(Workplane().circle(10).extrude(100), 100)
+    response = respond(System(make_grid(solid, FINE.fineness), 3, STEEL_MATERIAL, "bending"), "free_end")
+    mesh = response.system.grid.mesh
+    area = ng.Integrate(ng.CF(1) * ng.ds(LOADED), mesh)
+    moved = ng.Integrate(response.displacement[0] * ng.ds(LOADED), mesh) / area
+    assert moved == pytest.approx(100**2 / (2 * STEEL_MATERIAL.young * 1e-6 * pi / 4 * 10**4), rel=0.01)
+
+
+def test_sharp_inner_edges_are_found_and_no_others() -> None:
+    plain, stepped = (read_solid(shoulder(fillet), Shaft(0.0, END)) for fillet in (FILLET, 0.0))
+    assert len(sharp_inner_edges(plain.shape, plain.radius)) == 0
+    found = sharp_inner_edges(stepped.shape, stepped.radius)
+    assert np.hypot(found[..., 0], found[..., 1]) == pytest.approx(NARROW / 2, rel=1e-6)
+    assert found[..., 2] == pytest.approx(SHOULDER)
 
 
 def test_a_square_bar_has_saint_venants_torsion_constant() -> None:
