@@ -12,8 +12,9 @@ from cad.analysis.levels import Level, ladder
 from cad.analysis.mesh import make_grid
 from cad.analysis.modes import torsional_mode
 from cad.analysis.solid import Solid, read_solid
-from cad.analysis.stress import CONVERGED, greatest_stress, searched
+from cad.analysis.stress import CONVERGED, SMALL, greatest_stress, searched
 from cad.analysis.surface import surface
+from cad.errors import AnalysisError
 from cad.model import Shaft
 
 Report = Callable[[float, str], None]
@@ -72,11 +73,15 @@ def _climb(
     measured = [name for name in outputs if name in _ELASTIC]
     if not measured and asked.tolerance is not None:
         measured = ["stiffness"]
-    for level in ladder(asked.level, asked.tolerance):
-        report(0.1, f"level {level.name}")
-        told = _at_level(solid, shaft, asked, level, {*measured, *outputs}, report)
+    rungs = ladder(asked.level, asked.tolerance)
+    for number, level in enumerate(rungs):
+
+        def on_this_rung(done: float, what: str, number: int = number) -> None:
+            report(_ELASTIC_SHARE * (number + done) / len(rungs), what)
+
+        told = _at_level(solid, shaft, asked, level, {*measured, *outputs}, on_this_rung)
         found.outputs.update({name: told[name] for name in outputs})
-        worst = max((told[name]["error"] for name in measured), default=0.0)
+        worst = max((told[name]["error"] or 0.0 for name in measured), default=0.0)
         if asked.tolerance is None or worst <= asked.tolerance:
             return
 
@@ -85,29 +90,37 @@ def _at_level(
     solid: Solid, shaft: Shaft, asked: Asked, level: Level, outputs: Collection[str], report: Report
 ) -> dict[str, dict[str, Any]]:
     started = time.perf_counter()
+    report(0.1, f"level {level.name}: meshing")
     grid = make_grid(solid, level.fineness)
-    values: dict[str, list[float]] = {name: [] for name in _ELASTIC if name in outputs}
-    for order in (level.order - 1, level.order) if values else (level.order,):
-        report(0.2 if order < level.order else 0.4, f"solving {grid.mesh.ne} elements of order {order}")
+    wanted = {name: find for name, find in _ELASTIC.items() if name in outputs}
+    values: dict[str, list[float]] = {name: [] for name in wanted}
+    reasons: dict[str, str] = {}
+    for order in (level.order - 1, level.order) if wanted else (level.order,):
+        report(0.2 if order < level.order else 0.5, f"solving {grid.mesh.ne} elements of order {order}")
         response = respond(System(grid, order, shaft.material, asked.load), asked.boundary)
-        for name, found in values.items():
-            found.append(_ELASTIC[name](response))
+        for name, find in wanted.items():
+            try:
+                values[name].append(find(response))
+            except AnalysisError as error:  # one output is refused, the others are not
+                reasons[name] = error.detail
     shown = surface(response) if SURFACE in outputs else None
     told = {
         "level": level.name,
         "mesh": _mesh(solid, grid.mesh.ne, response.system.space.ndof, level.order),
         "seconds": time.perf_counter() - started,
     }
-    found_with_error = {
-        name: {
-            "value": high,
-            "unit": OUTPUTS[asked.load][name],
-            "error": level.error(low, high, is_sharp=grid.is_sharp),
-            **told,
-        }
-        for name, (low, high) in values.items()
-    }
-    return {**found_with_error, **({SURFACE: {"value": shown, "error": None, **told}} if shown else {})}
+    found: dict[str, dict[str, Any]] = {}
+    for name in wanted:
+        about = {"unit": OUTPUTS[asked.load][name], **told}
+        if name in reasons:
+            found[name] = {"value": None, "error": None, **about, "reason": reasons[name]}
+        else:
+            low, high = values[name]
+            likely = level.error(low, high, is_sharp=grid.is_sharp)
+            found[name] = {"value": high, "error": likely, **about}
+    if shown:
+        found[SURFACE] = {"value": shown, "error": None, **told}
+    return found
 
 
 def _stress(solid: Solid, shaft: Shaft, asked: Asked, report: Report) -> dict[str, Any]:
@@ -117,7 +130,7 @@ def _stress(solid: Solid, shaft: Shaft, asked: Asked, report: Report) -> dict[st
         shaft.material,
         asked.load,
         asked.boundary,
-        lambda n: report(0.6 + 0.1 * n, f"stress, mesh {n + 1}"),
+        lambda n: report(_ELASTIC_SHARE + 0.08 * n, f"stress, mesh {n + 1}"),
     )
     last = peaks.steps[-1]
     told = {
@@ -134,9 +147,10 @@ def _stress(solid: Solid, shaft: Shaft, asked: Asked, report: Report) -> dict[st
     }
     if peaks.converged:
         return {"value": _per_newton_metre(last.value), **told}
+    changes = " and ".join(f"{change:.1%}" for change in peaks.changes[-2:])
     reason = (
-        f"the greatest stress still changed by {peaks.changes[-1]:.1%} with the last refinement, more than "
-        f"{CONVERGED:.0%}: at a sharp inner corner it has no limit; give every corner there a fillet"
+        f"the greatest stress did not settle: the last refinements changed it by {changes}, not by less than "
+        f"{SMALL:.0%} and {CONVERGED:.0%}; at a sharp inner corner it has no limit, give it a fillet"
     )
     return {"value": None, **told, "reason": reason}
 
@@ -160,6 +174,7 @@ def _stiffness(response: Response) -> float:
     return 1e-3 / response.compliance
 
 
+_ELASTIC_SHARE = 0.6  # of the progress of an analysis that looks for the greatest stress as well
 _ELASTIC: dict[str, Callable[[Response], float]] = {
     "stiffness": _stiffness,
     "torsional_frequency": lambda response: torsional_mode(response).frequency,

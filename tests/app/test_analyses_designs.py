@@ -99,7 +99,7 @@ class TestRelation:
 
     def test_a_tolerance_that_is_not_met_is_a_warning_in_the_report(self, http):
         wanted = {"torsion": {"tolerance": 1e-7}}
-        document = train("26 mm")
+        document = train("15 mm")
         document["models"]["bar"]["analyses"] = wanted
         made = created(http, document)
         told = revision(http, made)["models"]["bar"]["analyses"]["torsion"]["warnings"]

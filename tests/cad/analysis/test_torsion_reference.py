@@ -3,6 +3,8 @@
 import pytest
 
 from cad.analysis.analyse import Asked, Found, analyse
+from cad.analysis.elastic import Response
+from cad.errors import AnalysisError
 from cad.model import Shaft
 from cad.regenerate import regenerate
 
@@ -38,3 +40,19 @@ def test_the_reference_throw_is_as_stiff_as_it_should_be(step: bytes, level: str
 def test_a_guided_end_is_stiffer(step: bytes) -> None:
     found = stiffness(step, Asked(boundary="guided_end")).outputs["stiffness"]
     assert found["value"] == pytest.approx(511_600, rel=5e-3)
+
+
+def test_one_output_that_is_refused_leaves_the_others(step: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(response: Response) -> None:
+        raise AnalysisError("not_converged", "no mode stands out")
+
+    monkeypatch.setattr("cad.analysis.analyse.torsional_mode", refuse)
+    wanted, seen = ["stiffness", "torsional_frequency"], []
+    found = analyse(
+        step, Shaft(-54.0, 54.0), Asked(tolerance=0.01), wanted, lambda done, what: seen.append(done)
+    )
+    assert found.outputs["torsional_frequency"]["value"] is None
+    assert found.outputs["torsional_frequency"]["reason"] == "no mode stands out"
+    assert found.outputs["stiffness"]["error"] <= 0.01
+    assert seen == sorted(seen)
+    assert seen[-1] == 1
