@@ -56,6 +56,13 @@ def ours(step: bytes, asked: Asked) -> dict[str, Any]:
     }
 
 
+def greatest_stress(step: bytes) -> dict[str, Any]:
+    """The greatest stress [MPa] under 1 N·m, and what it took."""
+    outputs = ["maximum_stress"]
+    found = analyse(step, SHAFT, Asked(), outputs, lambda done, what: None).outputs["maximum_stress"]
+    return {"stress": found["value"], "told error": found["error"], **found["mesh"]}
+
+
 def calculix(step: bytes, size: float, curvature: float) -> dict[str, Any]:
     """CalculiX's stiffness [N·m/rad] on one mesh."""
     with tempfile.TemporaryDirectory() as folder:
@@ -63,10 +70,10 @@ def calculix(step: bytes, size: float, curvature: float) -> dict[str, Any]:
     return {"stiffness": value, "elements": elements, "degrees_of_freedom": 3 * nodes, "size": size}
 
 
-def alone(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]:
-    """Do something in a new process, three times, and measure it; the quickest counts."""
+def alone(action: Callable[..., dict[str, Any]], *inputs: Any, times: int = 3) -> dict[str, Any]:
+    """Do something in a new process, some times, and measure it; the quickest counts."""
     runs = []
-    for _ in range(3):
+    for _ in range(times):
         with ProcessPoolExecutor(1, get_context("spawn")) as pool:
             runs.append(pool.submit(timed, action, *inputs).result())
     return min(runs, key=lambda run: float(run["seconds"]))
@@ -80,9 +87,10 @@ def timed(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]
     seconds = perf_counter() - start
     who = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
     memory = max(resource.getrusage(one).ru_maxrss for one in who) / 1024
+    error = {"error": found["stiffness"] / TRUE - 1} if "stiffness" in found else {}
     return {
         **found,
-        "error": found["stiffness"] / TRUE - 1,
+        **error,
         "seconds": seconds,
         "megabytes": memory,
         "megabytes above the libraries": memory - loaded,
@@ -105,13 +113,20 @@ def main() -> None:
     step = regenerate("crank_throw", 1, THROW).step
     own = alone(ours, step, Asked(tolerance=TOLERANCE))
     levels = {level: alone(ours, step, Asked(level=level)) for level in NAMES}
+    dear = alone(greatest_stress, step, times=1)
     others = climb(step, abs(own["error"]))
     ratios = [
         {"error": other["error"], "time": other["seconds"] / own["seconds"]}
         for other in others
         if abs(other["error"]) <= TOLERANCE
     ]
-    table = {"ours at 0.5 %": own, "levels": levels, "CalculiX": others, "CalculiX by ours": ratios}
+    table = {
+        "ours at 0.5 %": own,
+        "levels": levels,
+        "greatest stress": dear,
+        "CalculiX": others,
+        "CalculiX by ours": ratios,
+    }
     RESULTS.write_text(json.dumps(table, indent=1) + "\n")
     print(json.dumps(table, indent=1))
 

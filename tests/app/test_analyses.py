@@ -5,10 +5,11 @@ from math import degrees, hypot, pi, sqrt
 
 import httpx
 import pytest
-from serving import API, faults, problem
+from serving import API, faults, folder_of_models, problem, serving
 
 from app.analyses.questions import KINDS, SURFACE, Boundary, Level, Options, question, warnings
 from app.client import Client, Problem
+from app.settings import Settings
 from cad.analysis.levels import LEVELS
 
 BAR = f"{API}/models/bar/versions/1/analyses"
@@ -228,6 +229,19 @@ class TestFoundAgain:
         assert told["outputs"]["stiffness"]["value"] > 0
         with pytest.raises(Problem, match="no shaft"):
             client.analyse("ball_bearing", 1, {"inner_diameter": "40 mm"})
+
+
+def test_the_deadline_of_analyses_is_their_own(tmp_path):
+    folders = (folder_of_models(tmp_path / "templates"),)
+    settings = Settings(
+        data=tmp_path / "data", template_folders=folders, analysis_deadline=1, wait_seconds=60
+    )
+    with serving(settings) as server, httpx.Client(base_url=server.url, timeout=90, trust_env=False) as http:
+        dear = {"level": "fine", "outputs": ["maximum_stress"]}
+        answer = ask(http, bar(400, 900), **dear)
+        told = problem(answer, 422, "deadline")
+        assert "1 s" in told["detail"]
+        assert http.get(f"{API}/models").status_code == 200
 
 
 class TestRefusals:

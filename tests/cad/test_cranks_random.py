@@ -49,6 +49,15 @@ HOSTILE: list[dict[str, Any]] = [
     {"face_inclination": 0.2, "throw": 0.51 * D, "fillet": 0.0},
     {"web_shape": "heart-shaped"},
 ]  # fmt: skip
+HOSTILE_ENDS: list[dict[str, Any]] = [
+    {name: value}
+    for name in ("front_length", "front_diameter", "rear_length", "rear_diameter")
+    for value in (math.nan, -1e-3, 0.0, 1e-9, D, 10.0, 1e300)
+] + [
+    {"front_diameter": D, "journal_bore": 0.9 * D},
+    {"rear_diameter": 0.3 * D, "journal_bore": 0.3 * D},
+    {"front_diameter": 3 * D, "front_length": 1e-4},
+]  # fmt: skip
 
 
 def sample(cls: type[CadModel], rng: np.random.Generator) -> dict[str, Any]:
@@ -112,3 +121,9 @@ def test_property_many_random_cranks(cls: type[CadModel]) -> None:
 def test_property_hostile_cranks(cls: type[CadModel], given: dict[str, Any]) -> None:
     bad = any(isinstance(v, float) and not (0 <= v < 1e9) for v in given.values())
     assert not (drawn(cls, {"journal_diameter": D, **given}) and bad)
+
+
+@pytest.mark.parametrize("given", HOSTILE_ENDS, ids=str)
+def test_property_hostile_ends_of_a_crankshaft(given: dict[str, Any]) -> None:
+    bad = any(not (0 <= value < 1e9) for value in given.values())
+    assert not (drawn(Crankshaft, {"journal_diameter": D, **given}) and bad)
