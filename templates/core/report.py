@@ -36,6 +36,9 @@ class Row:
         return mathml(self.latex)
 
 
+NONE = r"\text{none}"
+
+
 def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator[Row]:
     """The report lines of every formula that the template has evaluated so far.
 
@@ -47,7 +50,7 @@ def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator
     result = {a: shown(template, a, shown_in, absolute=True) for a in cls.declarations}
     for formula in cls.formulas.values():
         if formula.attribute in vars(template):
-            complete = all(values.get(used) for used in formula.uses)
+            complete = all(values.get(used) not in (None, "", NONE) for used in formula.uses)
             yield Row(
                 name=formula.name,
                 words=formula.meaning.words,
@@ -73,7 +76,7 @@ def shown(template: Template, attribute: str, units: Mapping[str, str], *, absol
     if isinstance(value, str):
         return rf"\text{{{value.replace('_', ' ')}}}"
     if np.isnan(value):
-        return r"\text{none}"
+        return NONE
     scale = unit(units.get(attribute, declared.meaning.unit))
     if scale.absolute and not absolute:
         return amount(float(value), "K")
