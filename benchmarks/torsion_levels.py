@@ -29,7 +29,7 @@ from templates.core.errors import InvalidInputs
 
 RESULTS = Path("benchmarks/results/torsion_levels.json")
 COUNT, SEED = 12, 20261121
-TRUTH = Fineness(size=0.8, curvature=0.4, turn=np.pi / 3, sharp=0.08)
+TRUTH = Fineness(size=0.8, curvature=0.4, turn=np.pi / 3, sharp=0.06)
 ORDER, SHARP_ORDER = 5, 4
 ASKED: dict[str, tuple[Load, Boundary]] = {
     "stiffness": ("torsion", "free_end"),
