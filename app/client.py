@@ -109,7 +109,7 @@ class Client:
         on_progress: Progress | None = None,
         **options: Any,
     ) -> dict[str, Any]:
-        """Analyse a model's solid; options are `boundary`, `level` or `tolerance`, `outputs`."""
+        """Analyse a model's solid; options are `boundary`, `level` or `tolerance`, `load`, `outputs`."""
         path, body = f"{BASE}/models/{id}/versions/{version}/analyses/{kind}", {"parameters": parameters}
         answer = self._send("POST", path, json={**body, **options})
         if answer.status_code == 202:

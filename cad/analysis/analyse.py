@@ -41,7 +41,7 @@ class Asked:
 
 @dataclass
 class Found:
-    """Outputs by name, in the units of `OUTPUTS`, or the surface; and by which mesh they were found."""
+    """Outputs by name: value in the unit of `OUTPUTS`, or the surface, with its error and its mesh."""
 
     outputs: dict[str, dict[str, Any]] = field(default_factory=dict)
 
