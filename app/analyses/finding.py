@@ -42,15 +42,17 @@ class Analysing:
         build = build_key(shape)
         with self.database.read() as session:
             known = repository.found(session, question.key(build))
+            elsewhere = repository.stresses(session, build, question)
             step = builds.artifact(session, build, "step")
-        missing = tuple(name for name in outputs if name not in known)
-        if not missing:
-            return
-        assert step is not None, "a build has its STEP file from its first moment"
-        shaft = shaft_of(shape)
-        bytes_ = self.store.read(step.sha256)
-        told = context.run(analyse_in_worker, bytes_, shaft, question, missing, limits=self.limits)
-        found = {name: self._stored(output) for name, output in told.items()}
+        missing = [name for name in outputs if name not in known]
+        found = {name: elsewhere[name] for name in missing if name in elsewhere}
+        if unknown := tuple(name for name in missing if name not in found):
+            assert step is not None, "a build has its STEP file from its first moment"
+            bytes_ = self.store.read(step.sha256)
+            told = context.run(
+                analyse_in_worker, bytes_, shaft_of(shape), question, unknown, limits=self.limits
+            )
+            found |= {name: self._stored(output) for name, output in told.items()}
         self.database.write(lambda session: repository.add(session, build, question, found))
 
     def _stored(self, output: dict[str, Any]) -> dict[str, Any]:

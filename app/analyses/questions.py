@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from typing import Any, Literal, get_args
 
@@ -35,7 +35,7 @@ SURFACE = "surface"
 LARGEST_LOAD = 1e12  # [N m]
 
 STRESSES = frozenset({"maximum_stress"})
-"""What is proportional to the load."""
+"""What is proportional to the load, and found on meshes of its own, whatever the level."""
 
 DEAR = STRESSES | {SURFACE}
 """What is found only where it is asked for by name."""
@@ -82,6 +82,10 @@ class Question:
         """
         identity = [build, self.kept(), _MADE_BY]
         return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()
+
+    def whatever_level(self) -> Question:
+        """The same of stress, whose mesh is refined until it settles; under 1 N·m."""
+        return replace(self, level=None, tolerance=None, load=1.0)
 
     def kept(self) -> dict[str, Any]:
         """The question as it is kept with its answers, without the load."""

@@ -8,7 +8,7 @@ from typing import Any
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.analyses.questions import Question, in_order
+from app.analyses.questions import STRESSES, Question, in_order
 from app.designs.errors import NotFound
 from app.storage.identity import now
 from app.storage.tables import AnalysisRow
@@ -20,6 +20,20 @@ def found(session: Session, key: str) -> Found:
     """What is known to a question about a build, by output."""
     rows = session.scalars(select(AnalysisRow).where(AnalysisRow.key == key))
     return {row.output: row.found for row in rows}
+
+
+def stresses(session: Session, build: str, question: Question) -> Found:
+    """What is known of stress in a build, whatever level was asked for: its meshes follow from the stress."""
+    rows = session.scalars(
+        select(AnalysisRow).where(AnalysisRow.build_key == build, AnalysisRow.output.in_(STRESSES))
+    )
+    alike = question.whatever_level()
+    earlier = [(Question(**row.asked), row) for row in rows]
+    return {
+        row.output: row.found
+        for other, row in earlier
+        if other.whatever_level() == alike and other.key(build) == row.key  # found by this program's recipe
+    }
 
 
 def asked(session: Session, key: str) -> tuple[str, Question, Found]:

@@ -114,6 +114,16 @@ class TestAnswer:
         unloaded = asked(http, bar(20, 12), outputs=["stiffness"])
         assert loaded["outputs"]["stiffness"] == unloaded["outputs"]["stiffness"]
 
+    def test_a_stress_is_found_once_for_all_levels(self, http):
+        """Its mesh is refined until it settles, whatever the level. A second search takes other seconds."""
+        stress = {"outputs": ["maximum_stress"]}
+        coarse = asked(http, bar(20, 13), **stress)
+        fine = asked(http, bar(20, 13), level="fine", **stress)
+        assert fine["level"] == "fine"
+        assert (fine["outputs"], fine["seconds"]) == (coarse["outputs"], coarse["seconds"])
+        guided = asked(http, bar(20, 13), boundary="guided_end", **stress)
+        assert guided["seconds"] != coarse["seconds"]
+
 
 class TestSurface:
     def test_an_analysis_links_to_it(self, http, painted):
