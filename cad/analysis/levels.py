@@ -3,7 +3,7 @@
 The error of an answer is estimated on its own mesh, from the same answer at one order less. A factor of that
 change is to cover what a higher order would mend, a floor what only a finer mesh would: a coarse mesh about
 a drilling was 1.4 % too stiff in any order. Both are read from benchmarks/results/torsion_levels.json, the
-factor once more for solids with sharp inner edges: there no true error exceeds 0.75 of the one told, in
+factor once more for solids with sharp inner edges: there no true error exceeds 0.76 of the one told, in
 torsion or in bending (`python -m benchmarks.torsion_levels`).
 """
 
