@@ -19,7 +19,8 @@ from cad.analysis.elastic import Load
 from cad.analysis.solid import Solid, read_solid
 from cad.analysis.stress import Measure, Peaks, first_principal, greatest_stress, von_mises
 from cad.header import Header
-from cad.model import STEEL_MATERIAL, Part, Shaft
+from cad.model import Part
+from cad.shaft import STEEL_MATERIAL, Shaft
 from cad.step import write_step
 from templates.physics.stress_concentration import shoulder_fillet_Pilkey_2008
 

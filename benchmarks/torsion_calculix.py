@@ -15,7 +15,7 @@ from netgen.occ import OCCGeometry
 from numpy.typing import NDArray
 
 from cad.analysis.solid import HELD, LOADED, MIRROR, read_solid
-from cad.model import Shaft
+from cad.shaft import Shaft
 
 _TETRAHEDRON = (0, 1, 2, 3, 4, 7, 5, 6, 8, 9)  # C3D10 in the order of Netgen
 _FLIPPED = (0, 2, 1, 3, 5, 7, 4, 6, 9, 8)  # the same with corners 2 and 3 changed

@@ -22,9 +22,10 @@ from cad.analysis.levels import LEVELS, Level
 from cad.analysis.mesh import Fineness, Grid, make_grid
 from cad.analysis.modes import torsional_mode
 from cad.analysis.solid import read_solid
-from cad.model import CadModel, Shaft
+from cad.model import CadModel
 from cad.models.crank_throw_v1 import CrankThrow
 from cad.regenerate import regenerate
+from cad.shaft import Shaft
 from templates.core.errors import InvalidInputs
 
 RESULTS = Path("benchmarks/results/torsion_levels.json")

@@ -22,12 +22,12 @@ from typing import ClassVar
 from cadquery import Location, Shape
 
 from cad.errors import GeometryError
+from cad.shaft import STEEL_DENSITY, Shaft
 from cad.surfaces import Seen
 from templates.core.template import Array, Template
 
 Colour = tuple[float, float, float]
 
-STEEL_DENSITY = 7850.0  # kg/m³, carbon and low-alloy steel (EN 1991-1-1, table A.4: 77.0–78.5 kN/m³)
 STEEL: Colour = (0.62, 0.65, 0.70)
 BRIGHT_STEEL: Colour = (0.86, 0.88, 0.91)
 BRONZE: Colour = (0.80, 0.62, 0.36)
@@ -67,27 +67,6 @@ class Part:
         if len(self.places) == 1:
             return (self.name,)
         return tuple(f"{self.name}_{i}" for i in range(1, len(self.places) + 1))
-
-
-@dataclass(frozen=True)
-class Material:
-    """An isotropic, linearly elastic material."""
-
-    young: float  # [Pa]
-    poisson: float
-    density: float  # [kg/m³]
-
-
-STEEL_MATERIAL = Material(210e9, 0.3, STEEL_DENSITY)  # EN 1993-1-1, 3.2.6
-
-
-@dataclass(frozen=True)
-class Shaft:
-    """How one solid is held and loaded: by its faces at two levels of z, about the z axis."""
-
-    held: float  # [mm]
-    loaded: float  # [mm]
-    material: Material = STEEL_MATERIAL
 
 
 @dataclass(frozen=True)

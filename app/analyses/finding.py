@@ -14,8 +14,9 @@ from app.storage.database import Database
 from app.workers.base import Limits
 from app.workers.progress import report
 from cad.errors import AnalysisError
-from cad.model import CadModel, Shaft
+from cad.model import CadModel
 from cad.regenerate import build_key
+from cad.shaft import Shaft
 
 FILE = "file"
 """In an output on its way from the worker: the bytes of what is stored as a file."""

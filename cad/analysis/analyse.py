@@ -15,7 +15,7 @@ from cad.analysis.solid import Solid, read_solid
 from cad.analysis.stress import CONVERGED, SMALL, greatest_stress, searched
 from cad.analysis.surface import surface
 from cad.errors import AnalysisError
-from cad.model import Shaft
+from cad.shaft import Shaft
 
 Report = Callable[[float, str], None]
 

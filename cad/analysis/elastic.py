@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from cad.analysis.mesh import Grid, curve
 from cad.analysis.solid import HELD, LOADED, MIRROR
 from cad.errors import AnalysisError
-from cad.model import Material
+from cad.shaft import Material
 
 Load = Literal["torsion", "bending"]
 Boundary = Literal["free_end", "guided_end"]

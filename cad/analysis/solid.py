@@ -17,7 +17,7 @@ from netgen.occ import HalfSpace, OCCGeometry, Pnt, Vec
 from numpy.typing import NDArray
 
 from cad.errors import AnalysisError
-from cad.model import Shaft
+from cad.shaft import Shaft
 
 HELD, LOADED, MIRROR, FREE = "held", "loaded", "mirror", "free"
 

@@ -23,7 +23,7 @@ from cad.analysis.elastic import Boundary, Load, Response, System, respond, stre
 from cad.analysis.mesh import Fineness, Near, make_grid
 from cad.analysis.solid import FREE, HELD, LOADED, Solid
 from cad.errors import AnalysisError
-from cad.model import Material
+from cad.shaft import Material
 
 Components = list[Any]  # xx, yy, zz, xy, yz, xz of a stress, each a function on the mesh
 Measure = Callable[[Components], Any]

@@ -10,7 +10,8 @@ from cad.cranks.reading import Webs, counterweight, drilling, fillet, inclinatio
 from cad.cranks.rules import CrankRules
 from cad.cranks.throw import End, Throw
 from cad.cranks.volume import volume
-from cad.model import Box, Part, Shaft, mm
+from cad.model import Box, Part, mm
+from cad.shaft import Shaft
 from cad.surfaces import Seen, Y
 
 

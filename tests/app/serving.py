@@ -105,7 +105,8 @@ from math import pi
 
 from cadquery import Solid, Vector
 
-from cad.model import Box, CadModel, Part, Shaft, mm
+from cad.model import Box, CadModel, Part, mm
+from cad.shaft import Shaft
 from templates.core.template import Array, choice, given
 
 

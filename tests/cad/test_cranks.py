@@ -10,10 +10,10 @@ from scipy.integrate import quad
 from cad.cranks.outline import Outline
 from cad.cranks.volume import drilling, fillet
 from cad.inspect import look_at
-from cad.model import STEEL_DENSITY
 from cad.models.crank_throw_v1 import CrankThrow
 from cad.models.crankshaft_v1 import Crankshaft
 from cad.regenerate import Build, regenerate
+from cad.shaft import STEEL_DENSITY
 from cad.step import read_step
 from templates.core.errors import InvalidInputs
 

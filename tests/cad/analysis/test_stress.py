@@ -20,7 +20,8 @@ from cad.analysis.solid import read_solid
 from cad.analysis.stress import CONVERGED, SMALL, Peak, Peaks, searched
 from cad.errors import AnalysisError
 from cad.header import Header
-from cad.model import Part, Shaft
+from cad.model import Part
+from cad.shaft import Shaft
 from cad.step import write_step
 
 

@@ -13,7 +13,8 @@ from cad.analysis.mesh import Fineness, Grid, make_grid
 from cad.analysis.solid import Solid, read_solid
 from cad.analysis.surface import MOST_TRIANGLES, Surface, surface
 from cad.header import Header
-from cad.model import STEEL_MATERIAL, Part, Shaft
+from cad.model import Part
+from cad.shaft import STEEL_MATERIAL, Shaft
 from cad.step import write_step
 
 DIAMETER, LENGTH = 40.0, 120.0  # mm

@@ -17,7 +17,8 @@ from cad.analysis.mesh import Grid, make_grid
 from cad.analysis.modes import torsional_mode
 from cad.analysis.solid import LOADED, MIRROR, Solid, read_solid
 from cad.header import Header
-from cad.model import STEEL_MATERIAL, Part, Shaft
+from cad.model import Part
+from cad.shaft import STEEL_MATERIAL, Shaft
 from cad.step import write_step
 
 SHEAR = STEEL_MATERIAL.young / 2 / (1 + STEEL_MATERIAL.poisson)

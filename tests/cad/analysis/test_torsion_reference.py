@@ -5,8 +5,8 @@ import pytest
 from cad.analysis.analyse import Asked, Found, analyse
 from cad.analysis.elastic import Response
 from cad.errors import AnalysisError
-from cad.model import Shaft
 from cad.regenerate import regenerate
+from cad.shaft import Shaft
 
 THROW = {
     "journal_diameter": 0.055,

@@ -1,0 +1,31 @@
+"""What an analysis has to know of a solid beside its shape: its material, and how it is held and loaded.
+
+It needs no kernel, so that finite elements, which bring one of their own, are not loaded with two.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+STEEL_DENSITY = 7850.0  # kg/m³, carbon and low-alloy steel (EN 1991-1-1, table A.4: 77.0–78.5 kN/m³)
+
+
+@dataclass(frozen=True)
+class Material:
+    """An isotropic, linearly elastic material."""
+
+    young: float  # [Pa]
+    poisson: float
+    density: float  # [kg/m³]
+
+
+STEEL_MATERIAL = Material(210e9, 0.3, STEEL_DENSITY)  # EN 1993-1-1, 3.2.6
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """How one solid is held and loaded: by its faces at two levels of z, about the z axis."""
+
+    held: float  # [mm]
+    loaded: float  # [mm]
+    material: Material = STEEL_MATERIAL
