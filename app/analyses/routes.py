@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Query, Response
@@ -97,6 +98,7 @@ def analyses_of_build(key: str, analyses: TheAnalyses, units: Units = "si") -> d
 def show_surface(
     key: str,
     analyses: TheAnalyses,
+    units: Units = "si",
     if_none_match: Annotated[str | None, Header(description="the ETag of a surface that is at hand")] = None,
 ) -> Response:
     """The solid's surface under a load of 1 N·m: how far every point moves, how it turns, how it is stressed.
@@ -105,9 +107,12 @@ def show_surface(
     analysis was asked for `"outputs": ["surface"]`, whose answer links to it.
     """
     file = analyses.surface(key)
-    headers = {"ETag": f'"{file.sha256}"', "Cache-Control": FOR_EVER}
+    shown = "" if units == "si" else f"-{units}"
+    headers = {"ETag": f'"{file.sha256}{shown}"', "Cache-Control": FOR_EVER}
     if if_none_match and headers["ETag"] in if_none_match:
         return Response(status_code=304, headers=headers)
+    if shown:
+        return JSONResponse(converted(json.loads(file.path.read_bytes()), units), headers=headers)
     return FileResponse(file.path, media_type="application/json", headers=headers)
 
 

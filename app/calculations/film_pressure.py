@@ -91,6 +91,7 @@ def solved(raw: dict[str, Any]) -> dict[str, Any]:
     around = np.r_[field.mesh.phi, np.pi]  # beyond the mesh the film has ruptured
     half = np.pad(field.rupture.P.T * scale, ((0, 0), (0, 1)))
     return {
+        "bearing_diameter": {"value": float(film.D) * 1e3, "unit": "mm"},
         "angle": {"value": np.degrees(around).tolist(), "unit": "deg"},
         "place": {
             "value": (np.r_[-field.mesh.zeta[:0:-1], field.mesh.zeta] * float(film.W) * 500).tolist(),

@@ -155,6 +155,23 @@ class TestSurface:
             rim = sqrt(3) * 16 / (pi * 0.024**3) / 1e6
             assert stress == pytest.approx(rim * hypot(x, y) / 12, abs=0.1 * rim)
 
+    def test_in_inches_and_pounds(self, http, painted):
+        url = painted["outputs"]["surface"]["url"]
+        si, answer = http.get(url).json(), http.get(url, params={"units": "us"})
+        us = answer.json()
+        assert {name: us[name]["unit"] for name in ("points", "displacement", "twist", "stress")} == {
+            "points": "inch",
+            "displacement": "inch",
+            "twist": "deg",
+            "stress": "psi",
+        }
+        assert us["stress"]["value"] == pytest.approx([145.0377377 * one for one in si["stress"]["value"]])
+        assert us["points"]["value"][5] == pytest.approx([one / 25.4 for one in si["points"]["value"][5]])
+        assert us["triangles"] == si["triangles"]
+        tags = {"If-None-Match": answer.headers["etag"]}
+        assert http.get(url, params={"units": "us"}, headers=tags).status_code == 304
+        assert http.get(url, headers=tags).status_code == 200
+
     def test_it_is_found_once(self, http, painted):
         before = jobs(http)
         assert asked(http, bar(24), outputs=["surface"]) == painted

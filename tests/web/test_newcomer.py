@@ -150,6 +150,16 @@ def test_the_pressure_is_painted_on_the_bore(watched):
     page.get_by_label("show the film pressure").uncheck()
     expect(page.locator(".solid .colours")).to_have_count(0)
     assert "film pressure" not in page.evaluate(f"{PART}.data.map((trace) => trace.name)")
+    most = f"Math.max(...{PART}.data.at(-1).surfacecolor.flat())"
+    page.get_by_label("show the film pressure").check()
+    expect(page.locator(".solid .colours")).to_be_visible()
+    megapascals = page.evaluate(most)
+    page.goto(f"{page.url}?units=us")
+    page.get_by_label("show the film pressure").check()
+    expect(page.locator(".solid .colours")).to_contain_text("psi")
+    assert abs(page.evaluate(most) / megapascals - 145.0377) < 1e-3
+    x, y = (page.evaluate(f"{PART}.data.at(-1).{axis}[8].find((value) => value !== null)") for axis in "xy")
+    assert abs(hypot(x, y) - radius) < 0.1
     assert watched.faults() == []
 
 

@@ -79,7 +79,7 @@ async function finished(place, job) {
 
 async function show(place, analysis) {
   showAnalysis(place.querySelector("[data-analyses]"), analysis);
-  const { told: kept } = await call("GET", analysis.outputs.surface.url);
+  const { told: kept } = await call("GET", `${analysis.outputs.surface.url}?units=${units()}`);
   const { drawDeformed, fieldsOf, under } = await import("./deformed.js");
   const surface = under(kept, analysis.newtonMetres, written(analysis.load));
   const view = place.querySelector("[data-deformed]"), colour = place.querySelector("[data-colour]");

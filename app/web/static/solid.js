@@ -1,5 +1,7 @@
 // The part in three dimensions: a GLB file read and drawn by Plotly, with its size told below.
+import { units } from "./api.js";
 import { readGlb } from "./glb.js";
+import { unit } from "./numbers.js";
 import { plotly } from "./plots.js";
 import { pressureOf } from "./pressure.js";
 import { FIELD, drawScene, showColours } from "./scene.js";
@@ -54,8 +56,8 @@ export async function paint(place, picture, values, wanted) {
   if (painted >= 0) await Plotly.deleteTraces(figure, painted);
   showColours(place);
   if (!wanted) return;
-  const field = await pressureOf(picture, values);
-  const radius = 0.497 * millimetres(values.bearing_diameter);
+  const field = await pressureOf(picture, values), { pressure, maximum_pressure: most } = await pressureOf(picture, values, units());
+  const radius = 0.497 * field.bearing_diameter.value; // mm, as the solid
   const start = Math.PI / 2 + (field.attitude_angle.value * Math.PI) / 180;
   const angles = field.angle.value.map((angle) => start + (angle * Math.PI) / 180);
   const rows = field.place.value, least = LEAST * field.maximum_pressure.value;
@@ -63,12 +65,10 @@ export async function paint(place, picture, values, wanted) {
   const isOff = (row, n) => field.pressure.value[row][n] < least || radius * Math.sin(angles[n]) < lowest;
   const on = (value) => rows.map((z, row) => angles.map((angle, n) => (isOff(row, n) ? null : value(angle, z))));
   const surface = {
-    type: "surface", name: "film pressure", scene: figure.dataset.scene, surfacecolor: field.pressure.value, ...FIELD,
+    type: "surface", name: "film pressure", scene: figure.dataset.scene, surfacecolor: pressure.value, ...FIELD,
     x: on((angle) => radius * Math.cos(angle)), y: on((angle) => radius * Math.sin(angle)), z: on((_, z) => z),
-    hovertemplate: "%{surfacecolor:.3g} " + field.pressure.unit + "<extra></extra>",
+    hovertemplate: "%{surfacecolor:.3g} " + unit(pressure.unit) + "<extra></extra>",
   };
   await Plotly.addTraces(figure, surface);
-  showColours(place, { low: 0, high: field.maximum_pressure.value, unit: field.pressure.unit });
+  showColours(place, { low: 0, high: most.value, unit: unit(most.unit) });
 }
-
-const millimetres = ({ value, unit }) => value * ({ mm: 1, cm: 10, m: 1000, inch: 25.4, in: 25.4, um: 1e-3 }[unit] ?? 1);
