@@ -45,7 +45,7 @@ SIZES = (
 
 
 def throw() -> dict[str, Any]:
-    """The STEP file of the reference throw; drawn in a process of its own, so that no other loads CadQuery."""
+    """The STEP file of the reference throw, drawn in a process of its own: no other loads CadQuery."""
     from cad.regenerate import regenerate
 
     return {"step": regenerate("crank_throw", 1, THROW).step}

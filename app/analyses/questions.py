@@ -40,7 +40,7 @@ STRESSES = frozenset({"maximum_stress"})
 DEAR = STRESSES | {SURFACE}
 """What is found only where it is asked for by name."""
 
-RECIPE = 2
+RECIPE = 3
 """Raised whenever the same question to the same solid gets another answer."""
 
 _MADE_BY = f"recipe {RECIPE}, ngsolve {version('ngsolve')}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -27,6 +27,9 @@ OUTPUTS: dict[Load, dict[str, str]] = {
 
 SURFACE = "surface"
 """An output of every analysis that is no quantity: `cad.analysis.surface.Surface`, for a picture."""
+
+WORST = 0.25
+"""The relative error from which on no value is told."""
 
 
 @dataclass(frozen=True)
@@ -115,12 +118,19 @@ def _at_level(
         if name in reasons:
             found[name] = {"value": None, "error": None, **about, "reason": reasons[name]}
         else:
-            low, high = values[name]
-            likely = level.error(low, high, is_sharp=grid.is_sharp)
-            found[name] = {"value": high, "error": likely, **about}
+            found[name] = {**_judged(values[name], level, is_sharp=grid.is_sharp), **about}
     if shown:
         found[SURFACE] = {"value": shown, "error": None, **told}
     return found
+
+
+def _judged(values: Sequence[float], level: Level, *, is_sharp: bool) -> dict[str, Any]:
+    """The value of the higher order with its error; none where the orders differ as if elements are folded."""
+    low, high = values
+    if min(low, high) > 0 and (likely := level.error(low, high, is_sharp=is_sharp)) < WORST:
+        return {"value": high, "error": likely}
+    reason = f"the elements of level {level.name} are too large for this solid: ask for a finer one"
+    return {"value": None, "error": WORST, "reason": reason}
 
 
 def _stress(solid: Solid, shaft: Shaft, asked: Asked, report: Report) -> dict[str, Any]:

@@ -6,9 +6,11 @@ fillet begins: at a sharp inner edge two triangles of two faces meet at a larger
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import pairwise
-from math import ceil, cos, pi
+from math import acos, ceil, cos, pi
 from typing import Any
 
 import numpy as np
@@ -23,10 +25,18 @@ _SIZE, _CURVATURE, _GRADING = 1.0, 1.0, 0.7  # of triangles: in radii; by radius
 Reals = NDArray[np.float64]
 
 
-def sharp_inner_edges(shape: Any, radius: float) -> Reals:
-    """The ends (n, 2, 3) [mm] of straight pieces of all sharp inner edges of a shaft of some radius [mm]."""
+@dataclass(frozen=True)
+class Edges:
+    """Straight pieces of edges."""
+
+    ends: Reals  # (n, 2, 3) [mm]
+    radius: Reals  # (n,) [mm], of the edge there; of a straight one the scale of the solid
+
+
+def sharp_inner_edges(shape: Any, scale: float) -> Edges:
+    """All sharp inner edges of a shape, seen on triangles of this scale [mm]."""
     parameters = MeshingParameters(
-        maxh=_SIZE * radius,
+        maxh=_SIZE * scale,
         curvaturesafety=_CURVATURE,
         grading=_GRADING,
         perfstepsend=MeshingStep.MESHSURFACE,
@@ -41,19 +51,40 @@ def sharp_inner_edges(shape: Any, radius: float) -> Reals:
     first, second = _neighbours(corners)
     normal, centre = _normals(points[corners]), points[corners].mean(axis=1)
     one, other = first[:, 0], second[:, 0]
-    ends = points[corners[one[:, None], np.stack([first[:, 1], (first[:, 1] + 1) % 3], axis=1)]]
+    vertices = corners[one[:, None], np.stack([first[:, 1], (first[:, 1] + 1) % 3], axis=1)]
+    ends = points[vertices]
     turned = np.sum(normal[one] * normal[other], axis=1) < cos(SHARP)
     outward = np.sum((centre[other] - ends.mean(axis=1)) * normal[one], axis=1) > 0
-    return np.asarray(ends[(face[one] != face[other]) & turned & outward])
+    inner = (face[one] != face[other]) & turned & outward
+    faces = np.sort(np.stack([face[one], face[other]], axis=1), axis=1)[inner]
+    return Edges(ends[inner], np.minimum(_radii(faces, vertices[inner], ends[inner]), scale))
 
 
-def along(edges: Reals, step: float) -> Iterator[tuple[float, float, float]]:
-    """Points along straight pieces, at most a step [mm] apart."""
-    for start, end in edges:
+def along(edges: Edges, share: float) -> Iterator[tuple[tuple[float, float, float], float]]:
+    """Points along edges with the distance [mm] between them there: a share of the radius of the edge."""
+    for (start, end), radius in zip(edges.ends, edges.radius, strict=True):
+        step = share * float(radius)
         count = ceil(float(np.linalg.norm(end - start)) / step)
         for low, high in pairwise(np.linspace(0, 1, count + 1)):
             x, y, z = start + (end - start) * (low + high) / 2
-            yield float(x), float(y), float(z)
+            yield (float(x), float(y), float(z)), step
+
+
+def _radii(faces: NDArray[np.int64], vertices: NDArray[np.int64], ends: Reals) -> Reals:
+    """The radius [mm] of the edge at each piece: length by turning, where two between the same faces meet."""
+    met = defaultdict(list)
+    for piece, (pair, two) in enumerate(zip(faces, vertices, strict=True)):
+        for side in (0, 1):
+            met[(*pair, two[side])].append((piece, side))
+    radius = np.full(len(ends), np.inf)
+    for (one, side), (other, opposite) in (both for both in met.values() if len(both) == 2):
+        before = ends[one, side] - ends[one, 1 - side]
+        after = ends[other, 1 - opposite] - ends[other, opposite]
+        lengths = np.linalg.norm(before), np.linalg.norm(after)
+        turn = acos(np.clip(before @ after / np.prod(lengths), -1, 1))
+        bent = sum(lengths) / 2 / turn if turn > 0 else np.inf
+        radius[[one, other]] = np.minimum(radius[[one, other]], bent)
+    return radius
 
 
 def _neighbours(corners: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -26,14 +26,17 @@ class Level:
     fineness: Fineness
     order: int
     factor: float  # of the change from the order below: the error that is told
-    sharp_factor: float  # the same where there are sharp inner edges
     floor: float  # what no order of elements mends, relative: it is added to that
+    sharp_factor: float  # both where there are sharp inner edges
+    sharp_floor: float
     typical: float  # the error that is usually told, relative
 
     def error(self, low: float, high: float, *, is_sharp: bool = False) -> float:
         """The relative error to tell of a value, from that of one order less."""
-        factor = self.sharp_factor if is_sharp else self.factor
-        return factor * abs(low - high) / high + self.floor
+        change = abs(low - high) / high
+        if is_sharp:
+            return self.sharp_factor * change + self.sharp_floor
+        return self.factor * change + self.floor
 
 
 def _read() -> tuple[Level, ...]:
@@ -43,10 +46,7 @@ def _read() -> tuple[Level, ...]:
             row["name"],
             Fineness(row["size"], row["curvature"], row["turn"], row["sharp"]),
             row["order"],
-            row["factor"],
-            row["sharp_factor"],
-            row["floor"],
-            row["typical"],
+            *(row[name] for name in ("factor", "floor", "sharp_factor", "sharp_floor", "typical")),
         )
         for row in rows
     )

@@ -36,10 +36,10 @@ _SAMPLES = 16  # of an edge, to see how far it turns
 class Fineness:
     """How fine a mesh is."""
 
-    size: float  # of the largest elements, in radii of the loaded end
+    size: float  # of the largest elements, in the solid's scale
     curvature: float  # elements for each radius of curvature
     turn: float  # [rad], the most that one segment of an edge turns
-    sharp: float = 0.15  # of elements at sharp inner edges, in radii of the loaded end
+    sharp: float = 0.15  # of elements at sharp inner edges, in the edge's radius or the scale
 
 
 @dataclass(frozen=True)
@@ -70,22 +70,25 @@ def make_grid(solid: Solid, fineness: Fineness, near: Iterable[Near] = ()) -> Gr
     """
     bound_sizes(solid, fineness)
     parameters = MeshingParameters(
-        maxh=fineness.size * solid.radius, grading=GRADING, curvaturesafety=fineness.curvature
+        maxh=fineness.size * solid.scale, grading=GRADING, curvaturesafety=fineness.curvature
     )
     for place in near:
         for point in _ball(place):
             parameters.RestrictH(*point, place.size)
     try:
-        edges = sharp_inner_edges(solid.shape, solid.radius)
-        for point in along(edges, fineness.sharp * solid.radius):
-            parameters.RestrictH(*point, fineness.sharp * solid.radius)
+        edges = sharp_inner_edges(solid.shape, solid.scale)
+        for point, size in along(edges, fineness.sharp):
+            parameters.RestrictH(*point, size)
         mesh = ng.Mesh(OCCGeometry(solid.shape).GenerateMesh(parameters))
     except Exception as error:  # Netgen has one kind of exception
         raise AnalysisError("mesh", f"Netgen could not mesh the solid: {error}") from error
     if mesh.ne > MOST_ELEMENTS:
-        detail = f"the mesh would have {mesh.ne} elements, more than {MOST_ELEMENTS}: ask for less accuracy"
+        detail = (
+            f"the mesh would have {mesh.ne} elements, more than {MOST_ELEMENTS}: ask for less "
+            "accuracy, or draw what is smallest (a fillet, a drilling) larger or not at all"
+        )
         raise AnalysisError("mesh", detail)
-    return Grid(mesh, solid, len(edges) > 0)
+    return Grid(mesh, solid, len(edges.ends) > 0)
 
 
 def curve(mesh: Any, order: int) -> Any:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import pi, sqrt
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -35,6 +36,12 @@ class Solid:
     shape: Any
     mirror: str  # "x", "y" or ""
     radius: float  # [mm], of the loaded face about z
+
+    @property
+    def scale(self) -> float:
+        """In what elements are measured [mm]: the loaded end's radius, unless that is small for the solid."""
+        low, high = self.shape.bounding_box
+        return max(self.radius, 0.5 * sqrt(self.shape.mass * self.parts / pi / (high[2] - low[2])))
 
     @property
     def parts(self) -> int:

@@ -56,10 +56,11 @@ def test_a_moment_bends_as_its_sign_says() -> None:
 
 def test_sharp_inner_edges_are_found_and_no_others() -> None:
     plain, stepped = (read_solid(shoulder(fillet), Shaft(0.0, END)) for fillet in (FILLET, 0.0))
-    assert len(sharp_inner_edges(plain.shape, plain.radius)) == 0
-    found = sharp_inner_edges(stepped.shape, stepped.radius)
-    assert np.hypot(found[..., 0], found[..., 1]) == pytest.approx(NARROW / 2, rel=1e-6)
-    assert found[..., 2] == pytest.approx(SHOULDER)
+    assert len(sharp_inner_edges(plain.shape, plain.scale).ends) == 0
+    found = sharp_inner_edges(stepped.shape, 1.5 * NARROW)
+    assert np.hypot(found.ends[..., 0], found.ends[..., 1]) == pytest.approx(NARROW / 2, rel=1e-6)
+    assert found.ends[..., 2] == pytest.approx(SHOULDER)
+    assert found.radius == pytest.approx(NARROW / 2, rel=0.1)  # by polygons: its ends lie on the edge
 
 
 def test_a_square_bar_has_saint_venants_torsion_constant() -> None:
