@@ -7,12 +7,12 @@ import { showParameters, showValues } from "./parameters.js";
 import { follow } from "./progress.js";
 import { showFaults, showResults } from "./results.js";
 import { startSolids } from "./solids.js";
-import { patchOf } from "./typed.js";
+import { nameOf, patchOf } from "./typed.js";
 
 const form = document.getElementById("sheet");
 const { design: id, revision } = form.dataset;
 const api = `/api/v1/designs/${id}`;
-const draft = new Draft(form, JSON.parse(form.elements.was.value));
+const draft = new Draft(form, JSON.parse(form.querySelector("[name=was]").value));
 const models = new Set([...document.querySelectorAll("[data-model]")].map((part) => part.dataset.model));
 const state = form.querySelector("[data-state]");
 const trouble = form.querySelector("[data-trouble]");
@@ -61,7 +61,7 @@ function showDraft() {
   const names = Object.keys(draft.changed());
   const notice = form.querySelector("[data-draft]");
   notice.hidden = !draft.keep();
-  notice.querySelector("[data-draft-text]").textContent = names.map((name) => name.replaceAll("_", " ")).join(", ");
+  notice.querySelector("[data-draft-text]").textContent = names.map((name) => nameOf(name).replaceAll("_", " ")).join(", ");
 }
 
 form.addEventListener("input", (event) => {
@@ -89,7 +89,7 @@ form.addEventListener("submit", async (event) => {
   event.preventDefault();
   const changed = patch();
   if (Object.keys(changed).length === 0) return (state.textContent = "nothing has changed");
-  const note = form.elements.note.value.trim();
+  const note = form.querySelector("[name=note]").value.trim();
   const headers = { "If-Match": `"${revision}"`, Prefer: "respond-async", "Idempotency-Key": onlyOnce() };
   state.textContent = "saving …";
   try {

@@ -3,9 +3,8 @@ import { told, unit } from "./numbers.js";
 
 export function showValues(form, block, { inputs }) {
   for (const [tail, quantity] of Object.entries(inputs ?? {})) {
-    const name = block ? `${block}.${tail}` : tail;
-    const place = form.querySelector(`[data-value="${name}"]`);
-    const field = form.elements[name];
+    const place = form.querySelector(`[data-value="${block}.${tail}"]`);
+    const field = form.querySelector(`[name="${block}.${tail}"]`);
     if (!place || !field) continue;
     const isRelation = field.value.trim().startsWith("=");
     if (isRelation) place.textContent = `= ${told(quantity)}`;

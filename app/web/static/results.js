@@ -1,5 +1,6 @@
 // Writes an evaluation into the page: formulas with their numbers, results, errors, warnings.
 import { aligned, percent, told, unit } from "./numbers.js";
+import { isOf } from "./typed.js";
 
 const TEXT = "\\text{"; // how an answer in words begins
 
@@ -70,8 +71,9 @@ export function showFaults(form, faults) {
   for (const field of form.querySelectorAll("input[id], select[id]")) {
     const message = document.getElementById(`${field.id}-error`);
     if (!message) continue;
-    const detail = faults.get(field.name);
-    loose.delete(field.name);
+    const name = [...faults.keys()].find((fault) => isOf(fault, field.name));
+    const detail = faults.get(name);
+    loose.delete(name);
     message.hidden = !detail;
     message.textContent = detail ?? "";
     field.toggleAttribute("aria-invalid", Boolean(detail));

@@ -4,20 +4,23 @@ import { drawAccuracy } from "./accuracy.js";
 import { live } from "./live.js";
 import { drawPictures, whenSeen } from "./pictures.js";
 import { showFaults, showResults } from "./results.js";
-import { valueOf } from "./typed.js";
+import { optionOf, valueOf } from "./typed.js";
 
-const form = document.querySelector("[data-try]");
+const form = document.querySelector("[data-try]"); // its inputs have bare names: one may be called `dataset`
+const path = form.getAttribute("data-try");
 const state = form.querySelector("[data-state]");
 
 function asked() {
   const typed = [...new FormData(form)].filter(([, text]) => text.trim());
-  const inputs = Object.fromEntries(typed.filter(([name]) => name !== "level" && name !== "tolerance").map(([name, text]) => [name, valueOf(text)]));
-  const { level, tolerance } = Object.fromEntries(typed);
-  const number = Number.isNaN(Number(tolerance)) ? tolerance : Number(tolerance);
-  return { inputs, ...(level && { level }), ...(tolerance && { tolerance: number }) };
+  const asked = { inputs: {} };
+  for (const [name, text] of typed) {
+    if (name.startsWith("@")) asked[name.slice(1)] = optionOf(name.slice(1), text.trim());
+    else asked.inputs[name] = valueOf(text);
+  }
+  return asked;
 }
 
-const tried = (signal) => call("POST", `${form.dataset.try}/worksheet?units=${units()}`, asked(), { signal });
+const tried = (signal) => call("POST", `${path}/worksheet?units=${units()}`, asked(), { signal });
 
 function show({ told }) {
   showFaults(form, new Map());
