@@ -109,6 +109,7 @@ const onlyOnce = () => [...crypto.getRandomValues(new Uint32Array(4))].map((part
 // Somebody else saved: the draft is kept, and put onto the newest revision when the page is loaded anew.
 function conflict() {
   conflicted = true;
+  draft.keep();
   state.textContent = "not saved";
   tell("Somebody else saved this design meanwhile. Your changes are kept. ");
   const again = Object.assign(document.createElement("button"), { type: "button", textContent: "Show the newest, with my changes" });

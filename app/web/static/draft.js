@@ -1,4 +1,4 @@
-// What was typed and not saved, kept in the browser: one draft for every design and revision.
+// What was typed and not saved, kept by the tab of the browser: one draft for every design and revision.
 export class Draft {
   constructor(form, was) {
     this.form = form;
@@ -20,25 +20,25 @@ export class Draft {
     const changed = this.changed();
     for (const field of this.fields()) field.classList.toggle("changed", field.name in changed);
     const any = Object.keys(changed).length > 0;
-    if (any) localStorage.setItem(this.key, JSON.stringify(changed));
-    else localStorage.removeItem(this.key);
+    if (any) sessionStorage.setItem(this.key, JSON.stringify(changed));
+    else sessionStorage.removeItem(this.key);
     return any;
   }
 
   // Put back what was kept, for this revision; for an older one if somebody else saved since. Returns its revision.
   restore() {
     const prefix = `draft:${this.form.dataset.design}:`;
-    const keys = Object.keys(localStorage).filter((key) => key.startsWith(prefix)).sort(byRevision);
+    const keys = Object.keys(sessionStorage).filter((key) => key.startsWith(prefix)).sort(byRevision);
     const key = keys.at(-1);
     if (!key) return null;
-    const kept = JSON.parse(localStorage.getItem(key));
+    const kept = JSON.parse(sessionStorage.getItem(key));
     for (const field of this.fields()) if (field.name in kept) field.value = kept[field.name];
-    for (const old of keys) if (old !== this.key) localStorage.removeItem(old);
+    for (const old of keys) if (old !== this.key) sessionStorage.removeItem(old);
     return Number(key.slice(prefix.length));
   }
 
   forget() {
-    localStorage.removeItem(this.key);
+    sessionStorage.removeItem(this.key);
   }
 }
 
