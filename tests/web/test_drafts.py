@@ -35,3 +35,13 @@ def test_two_tabs_keep_their_own_drafts(watched, open_design):
     expect(load(other)).to_have_value("32 kN")
     one.reload()
     expect(load(one)).to_have_value("31 kN")
+
+
+def test_what_is_saved_at_once_after_it_was_typed_is_no_draft_afterwards(open_design):
+    page = open_design
+    page.get_by_label("scale", exact=True).fill("1.01")
+    page.keyboard.press("Control+s")
+    expect(page.locator(".page-head")).to_contain_text("revision 2", timeout=PATIENCE)
+    expect(page.get_by_label("scale", exact=True)).to_have_value("1.01")
+    expect(page.locator("[data-trouble]")).to_be_hidden()
+    assert page.evaluate("Object.keys(sessionStorage)") == []

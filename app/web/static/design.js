@@ -67,7 +67,7 @@ function showDraft() {
 form.addEventListener("input", (event) => {
   if (event.target.name === "note") return;
   showDraft();
-  preview();
+  preview.ask();
 });
 
 // Enter in a field calculates, as on a worksheet; Ctrl+S or Ctrl+Enter saves.
@@ -77,7 +77,7 @@ document.addEventListener("keydown", (event) => {
   if (!saves && !(event.key === "Enter" && isField && event.target.name !== "note")) return;
   event.preventDefault();
   if (saves) form.requestSubmit();
-  else preview();
+  else preview.ask();
 });
 
 form.querySelector("[data-discard]").addEventListener("click", () => {
@@ -91,6 +91,7 @@ form.addEventListener("submit", async (event) => {
   if (Object.keys(changed).length === 0) return (state.textContent = "nothing has changed");
   const note = form.querySelector("[name=note]").value.trim();
   const headers = { "If-Match": `"${revision}"`, Prefer: "respond-async", "Idempotency-Key": onlyOnce() };
+  preview.cancel(); // else it would keep as a draft what is saved by then
   state.textContent = "saving …";
   try {
     const { status, location: job } = await call("PATCH", api, { ...changed, ...(note && { note }) }, { headers });

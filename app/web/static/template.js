@@ -38,7 +38,7 @@ const preview = live(tried, show, refuse);
 form.addEventListener("input", () => {
   const filled = [...new FormData(form)].filter(([, text]) => text.trim());
   history.replaceState(null, "", `?${new URLSearchParams(filled)}`);
-  preview();
+  preview.ask();
 });
 
 if (document.querySelector("[data-output]")) tried().then(show, refuse);
