@@ -100,9 +100,16 @@ form.addEventListener("submit", async (event) => {
     location.reload();
   } catch (error) {
     if (error.status === 412) conflict();
-    else refuse(error);
+    else refuseToSave(error);
   }
 });
+
+function refuseToSave(error) {
+  refuse(error);
+  const wrong = form.querySelector('[aria-invalid="true"]');
+  wrong?.focus();
+  wrong?.scrollIntoView({ block: "center" });
+}
 
 // A key that makes a repeated request harmless; crypto.randomUUID is there on encrypted pages only.
 const onlyOnce = () => [...crypto.getRandomValues(new Uint32Array(4))].map((part) => part.toString(16)).join("-");
