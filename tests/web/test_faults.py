@@ -32,3 +32,38 @@ def test_a_narrow_screen_shows_why_nothing_was_saved_and_goes_to_the_fault(open_
     expect(page.locator("[data-state]")).to_be_visible()
     expect(page.get_by_label("Radial load")).to_be_focused()
     expect(page.get_by_label("Radial load")).to_be_in_viewport()
+
+
+def test_a_fault_or_a_draft_within_closed_details_opens_them(open_design):
+    page = open_design
+    field = page.locator('.step details.more [name="film.reference_density"]')
+    expect(field).to_be_hidden()
+    field.evaluate("(field) => { field.value = '3 mm'; field.dispatchEvent(new Event('input', {bubbles: true})); }")
+    expect(page.locator("#film-reference_density-error")).to_be_visible()
+    field.fill("880 kg/m**3")
+    expect(page.locator("[data-state]")).to_have_text("previewed, not saved")
+    page.reload()
+    expect(field).to_have_value("880 kg/m**3")
+    expect(field).to_be_visible()
+
+
+def test_a_changed_field_that_is_wrong_is_red(open_design):
+    load = open_design.get_by_label("Radial load")
+    load.fill("26 kN")
+    expect(load).to_have_css("background-color", "rgb(253, 243, 223)")
+    load.fill("26 mm")
+    expect(load).to_have_css("background-color", "rgb(253, 236, 235)")
+
+
+def test_the_bar_for_saving_covers_no_field_that_has_the_focus(open_design):
+    page = open_design
+    hidden = "document.activeElement.getBoundingClientRect().bottom - "
+    hidden += "document.querySelector('.save').getBoundingClientRect().top"
+    for size in (NARROW, {"width": 1440, "height": 500}):
+        page.set_viewport_size(size)
+        page.evaluate("scrollTo(0, 0)")
+        page.get_by_label("scale", exact=True).focus()
+        for _ in range(12):
+            page.keyboard.press("Tab")
+            if page.evaluate("document.activeElement.matches('.typed input')"):
+                assert page.evaluate(hidden) <= 0, page.evaluate("document.activeElement.name")

@@ -1,5 +1,6 @@
 // Writes an evaluation into the page: formulas with their numbers, results, errors, warnings.
 import { aligned, percent, told, unit } from "./numbers.js";
+import { reveal } from "./reveal.js";
 import { isOf } from "./typed.js";
 
 const TEXT = "\\text{"; // how an answer in words begins
@@ -80,6 +81,7 @@ export function showFaults(form, faults) {
     if (detail) field.setAttribute("aria-invalid", "true");
     if (detail) field.setAttribute("aria-describedby", message.id);
     else field.removeAttribute("aria-describedby");
+    if (detail) reveal(field);
   }
   return loose;
 }
