@@ -38,7 +38,8 @@ def test_a_fault_or_a_draft_within_closed_details_opens_them(open_design):
     page = open_design
     field = page.locator('.step details.more [name="film.reference_density"]')
     expect(field).to_be_hidden()
-    field.evaluate("(field) => { field.value = '3 mm'; field.dispatchEvent(new Event('input', {bubbles: true})); }")
+    field.evaluate("(field) => { field.value = '3 mm'; }")
+    field.dispatch_event("input")
     expect(page.locator("#film-reference_density-error")).to_be_visible()
     field.fill("880 kg/m**3")
     expect(page.locator("[data-state]")).to_have_text("previewed, not saved")

@@ -34,10 +34,17 @@ function refuse(error) {
   state.textContent = [...loose.values()].join("; ") || (error.faults?.size ? "see the message beside the field" : error.message);
 }
 
+function keepInAddress(filled) {
+  history.replaceState(null, "", `?${new URLSearchParams(filled)}`);
+  for (const link of document.querySelectorAll(".switch a")) {
+    const chosen = new URLSearchParams(link.search).get("units");
+    link.search = new URLSearchParams([...filled, ["units", chosen]]);
+  }
+}
+
 const preview = live(tried, show, refuse);
 form.addEventListener("input", () => {
-  const filled = [...new FormData(form)].filter(([, text]) => text.trim());
-  history.replaceState(null, "", `?${new URLSearchParams(filled)}`);
+  keepInAddress([...new FormData(form)].filter(([, text]) => text.trim()));
   preview.ask();
 });
 
