@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from browsing import created
 from playwright.sync_api import expect
 
@@ -68,3 +69,21 @@ def test_the_bar_for_saving_covers_no_field_that_has_the_focus(open_design):
             page.keyboard.press("Tab")
             if page.evaluate("document.activeElement.matches('.typed input')"):
                 assert page.evaluate(hidden) <= 0, page.evaluate("document.activeElement.name")
+
+
+def test_results_of_before_are_marked_until_the_input_is_possible_again(watched, open_design):
+    page = open_design
+    for path in (None, "/templates/oil_film/1"):
+        if path:
+            watched.open(path)
+        value = page.locator("[data-output] td.value").first
+        page.get_by_label("Radial load").fill("26 mm")
+        expect(page.locator("main")).to_have_class("outdated")
+        expect(page.locator("[data-state]")).to_contain_text("those of before")
+        expect(value).to_have_css("color", "rgb(81, 96, 111)")
+        serious = [v for v in Axe().run(page).response["violations"] if v["id"] == "color-contrast"]
+        assert serious == []
+        page.get_by_label("Radial load").fill("26 kN")
+        expect(page.locator("main")).not_to_have_class("outdated")
+        expect(page.locator("[data-state]")).not_to_contain_text("those of before")
+        expect(value).to_have_css("color", "rgb(27, 39, 51)")

@@ -5,7 +5,7 @@ import { live } from "./live.js";
 import { drawPictures } from "./pictures.js";
 import { showParameters, showValues } from "./parameters.js";
 import { follow } from "./progress.js";
-import { showFaults, showResults } from "./results.js";
+import { OUTDATED, markOutdated, showFaults, showResults } from "./results.js";
 import { startSolids } from "./solids.js";
 import { nameOf, patchOf } from "./typed.js";
 
@@ -26,7 +26,7 @@ const preview = live(
     show(told);
     state.textContent = draft.keep() ? "previewed, not saved" : "";
   },
-  refuse,
+  refusePreview,
 );
 
 function show(told) {
@@ -42,10 +42,18 @@ function show(told) {
 
 function clear() {
   showFaults(form, new Map());
+  markOutdated(false);
   trouble.hidden = !conflicted;
 }
 
+function refusePreview(error) {
+  refuse(error);
+  markOutdated(true);
+  state.textContent = [state.textContent, OUTDATED].filter(Boolean).join("; ");
+}
+
 function refuse(error) {
+  state.textContent = "";
   if (!(error instanceof Refused)) return tell(`The service does not answer: ${error.message}`);
   const loose = showFaults(form, error.faults);
   state.textContent = "not possible so: see the message beside the field";
@@ -105,7 +113,8 @@ form.addEventListener("submit", async (event) => {
 });
 
 function refuseToSave(error) {
-  refuse(error);
+  if (error.faults?.size) refusePreview(error);
+  else refuse(error);
   const wrong = form.querySelector('[aria-invalid="true"]');
   wrong?.focus();
   wrong?.scrollIntoView({ block: "center" });
@@ -136,7 +145,7 @@ async function start() {
   try {
     show((await call("POST", `${api}/preview?worksheet=true&units=${units()}`, patch())).told);
   } catch (error) {
-    refuse(error);
+    refusePreview(error);
   }
 }
 

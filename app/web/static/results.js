@@ -66,6 +66,13 @@ export function warning({ name, detail }) {
   return item;
 }
 
+// Marks the results that are shown as those of the last input that was possible, or takes the mark away.
+export function markOutdated(isOutdated) {
+  document.getElementById("main").classList.toggle("outdated", isOutdated);
+}
+
+export const OUTDATED = "the results shown are those of before";
+
 // Messages beside the fields of a form; those of no field are returned.
 export function showFaults(form, faults) {
   const loose = new Map(faults);

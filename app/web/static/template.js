@@ -3,7 +3,7 @@ import { Refused, call, units } from "./api.js";
 import { drawAccuracy } from "./accuracy.js";
 import { live } from "./live.js";
 import { drawPictures, whenSeen } from "./pictures.js";
-import { showFaults, showResults } from "./results.js";
+import { OUTDATED, markOutdated, showFaults, showResults } from "./results.js";
 import { optionOf, valueOf } from "./typed.js";
 
 const form = document.querySelector("[data-try]"); // its inputs have bare names: one may be called `dataset`
@@ -23,6 +23,7 @@ function asked() {
 const tried = (signal) => call("POST", `${path}/worksheet?units=${units()}`, asked(), { signal });
 
 function show({ told }) {
+  markOutdated(false);
   showFaults(form, new Map());
   showResults("", told);
   drawPictures(document, "", told);
@@ -31,7 +32,10 @@ function show({ told }) {
 
 function refuse(error) {
   const loose = error instanceof Refused ? showFaults(form, error.faults) : new Map();
-  state.textContent = [...loose.values()].join("; ") || (error.faults?.size ? "see the message beside the field" : error.message);
+  const words = [...loose.values()].join("; ") || (error.faults?.size ? "see the message beside the field" : error.message);
+  const hasResults = document.querySelector("[data-output]");
+  markOutdated(true);
+  state.textContent = hasResults ? `${words}; ${OUTDATED}` : words;
 }
 
 function keepInAddress(filled) {
