@@ -87,3 +87,15 @@ def test_results_of_before_are_marked_until_the_input_is_possible_again(watched,
         expect(page.locator("main")).not_to_have_class("outdated")
         expect(page.locator("[data-state]")).not_to_contain_text("those of before")
         expect(value).to_have_css("color", "rgb(27, 39, 51)")
+
+
+def test_what_is_wrong_with_a_cell_of_a_model_is_told_in_words(open_design):
+    cell = open_design.locator('[data-parameter="model.inner_diameter"] .comes-to')
+    field = open_design.locator('[name="model.inner_diameter"]')
+    field.fill("= film.radial_load")
+    expect(cell.locator(".field-error")).to_contain_text("model.inner_diameter is in mm")
+    field.fill("")
+    expect(cell.locator(".tag")).to_have_text("missing")
+    expect(cell.locator(".field-error")).to_have_text("set it, or map it to an output")
+    field.fill("50 mm")
+    expect(cell.locator(".field-error")).to_have_count(0)
