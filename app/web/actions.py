@@ -68,7 +68,9 @@ async def add(id: Id, request: Request, api: TheApi) -> Response:
     """A parameter, a template or a model more, or one less."""
     typed = await fields(request)
     patch = await _block(api, typed)
+    design = await api.get(f"/designs/{id}")
     try:
+        _refuse_taken(design, patch)
         await _change(api, id, typed.get("revision", ""), patch, "")
     except Refused as refused:
         return await _again(request, api, id, {}, refused)
@@ -132,10 +134,25 @@ async def _again(request: Request, api: Api, id: str, typed: Mapping[str, str], 
         if refused.status == STALE
         else None
     )
-    faults = refused.faults or ({} if notice else {"design": refused.problem["detail"]})
+    if not notice and not refused.faults:
+        notice = f"Nothing was saved: {refused.problem['detail']}"
     return await design_page(
-        request, api, id, typed=kept(typed), faults=faults, notice=notice, status=refused.status
+        request, api, id, typed=kept(typed), faults=refused.faults, notice=notice, status=refused.status
     )
+
+
+def _refuse_taken(design: Mapping[str, Any], patch: Mapping[str, Any]) -> None:
+    """Let nobody add what would take the place of a parameter, a step or a model.
+
+    Raises
+    ------
+    Refused
+        If a name that the patch adds is in use.
+    """
+    for added in patch.values():
+        for name, told in added.items():
+            if told is not None and any(name in design[group] for group in ("parameters", "steps", "models")):
+                raise Refused(ILL_NAMED, {"detail": f"{name} is in use: choose another name"})
 
 
 async def _blank(api: Api, typed: Mapping[str, str]) -> dict[str, Any]:

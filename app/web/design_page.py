@@ -43,7 +43,8 @@ async def design_page(
     blocks = _steps(design, told, steps, words, wrong)
     parts = _models(design, told, models, words, wrong, before, previewed["model_parameters"])
     measured = await api.get(f"/designs/{id}/measurements", units=units_of(request))
-    fields = [*parameters, *(field for block in (*blocks, *parts) for field in block["fields"])]
+    fields = [*parameters, *(f for part in parts for f in part["fields"])]
+    fields += [f for block in blocks for f in (*block["fields"], *block["options"])]
     return show(
         request,
         "design.html",
@@ -160,6 +161,7 @@ def _steps(
                 "fields": sheet.of_block(
                     template["inputs"], name, cells["inputs"], _used(result), typed, faults
                 ),
+                "options": sheet.of_options(template, name, cells, typed, faults),
                 "result": result,
                 "outputs": [n for n in template["outputs"]["properties"] if n in result["outputs"]],
                 "pictures": pictures(name, template, result),

@@ -1,5 +1,9 @@
 """Fields of a form and the JSON of the interface: typed text becomes a value, a value becomes text.
 
+A control is called `.scale` for a design's own parameter, `film.radial_load` for an input of a step or a
+parameter of a model, `film@level` for an option of a step: no two are called alike, and none like a field of
+the form itself (`note`) or a property of HTML's forms (`length`).
+
 `static/typed.js` does the same in the browser; `tests/web` compares the two.
 """
 
@@ -7,6 +11,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from math import isfinite
 from typing import Any
 from urllib.parse import parse_qsl
 
@@ -66,31 +71,42 @@ def kept(typed: Mapping[str, str]) -> dict[str, str]:
 
 
 def _is_field(design: Mapping[str, Any], name: str) -> bool:
-    block, _, tail = name.partition(".")
-    return name in design["parameters"] or bool(tail and block in {**design["steps"], **design["models"]})
+    block, kind, tail = _parts(name)
+    if kind == "@":
+        return block in design["steps"] and tail in OPTIONS
+    return tail in design["parameters"] if not block else bool(tail) and block in _blocks(design)
+
+
+def _parts(name: str) -> tuple[str, str, str]:
+    """Block, `.` or `@`, and the rest of a control's name."""
+    return name.partition("@" if "@" in name else ".")
+
+
+def _blocks(design: Mapping[str, Any]) -> set[str]:
+    return {*design["steps"], *design["models"]}
 
 
 def texts(design: Mapping[str, Any]) -> dict[str, str]:
-    """What a design says, field by field: `scale`, `film.radial_load`, `film.level`, `model.width`."""
-    found = {name: text_of(value) for name, value in design["parameters"].items()}
+    """What a design says, field by field: `.scale`, `film.radial_load`, `film@level`, `model.width`."""
+    found = {f".{name}": text_of(value) for name, value in design["parameters"].items()}
     for group, inside in (("steps", "inputs"), ("models", "parameters")):
         for block, told in design[group].items():
             found |= {f"{block}.{name}": text_of(value) for name, value in told[inside].items()}
     for step, told in design["steps"].items():
-        found |= {f"{step}.{option}": text_of(told[option]) for option in OPTIONS}
+        found |= {f"{step}@{option}": text_of(told[option]) for option in OPTIONS}
     return found
 
 
 def _put(patch: dict[str, Any], design: Mapping[str, Any], name: str, value: Any) -> None:
     """One value in its place; what was emptied is removed."""
-    block, _, tail = name.partition(".")
+    block, kind, tail = _parts(name)
     told = None if value == "" else value
-    if not tail:
-        patch.setdefault("parameters", {})[name] = told
+    if kind == "@":
+        patch.setdefault("steps", {}).setdefault(block, {})[tail] = option_of(tail, told)
+    elif not block:
+        patch.setdefault("parameters", {})[tail] = told
     elif block in design["models"]:
         _inside(patch, "models", block, "parameters")[tail] = told
-    elif tail in OPTIONS:
-        patch.setdefault("steps", {}).setdefault(block, {})[tail] = _option(tail, told)
     else:
         _inside(patch, "steps", block, "inputs")[tail] = told
 
@@ -100,11 +116,12 @@ def _inside(patch: dict[str, Any], group: str, block: str, part: str) -> dict[st
     return inside
 
 
-def _option(name: str, value: Any) -> Any:
+def option_of(name: str, value: Any) -> Any:
     """A tolerance is a number; the interface says what is wrong with one that is none."""
-    if name != "tolerance" or value is None:
+    if name != "tolerance" or not isinstance(value, str):
         return value
     try:
-        return float(value)
+        number = float(value)
     except ValueError:
         return value
+    return number if isfinite(number) else value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import Any, get_args
+from urllib.parse import urlencode
 
 from fastapi import Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
@@ -36,11 +37,18 @@ def units_of(request: Request) -> System:
 def show(request: Request, name: str, status: int = 200, **context: Any) -> Response:
     """A page."""
     units = units_of(request)
-    told = environment.get_template(name).render(units=units, path=request.url.path, **context)
+    page = environment.get_template(name)
+    told = page.render(units=units, path=request.url.path, query=_beside_units(request), **context)
     answer = HTMLResponse(told, status, headers=HEADERS)
     if "units" in request.query_params:
         answer.set_cookie("units", units, max_age=YEAR, samesite="lax", httponly=True)
     return answer
+
+
+def _beside_units(request: Request) -> str:
+    """The query without the units, to be followed by them."""
+    rest = [(name, text) for name, text in request.query_params.multi_items() if name != "units"]
+    return f"{urlencode(rest)}&" if rest else ""
 
 
 def go(path: str) -> Response:

@@ -109,6 +109,18 @@ async def report(id: Id, request: Request) -> Response:
     return go(f"/api/v1/designs/{id}/report.html?units={units_of(request)}")
 
 
+@router.get("/designs/{id}/blocks")
+@router.get("/designs/{id}/auto-map")
+@router.get("/designs/{id}/copy")
+@router.get("/designs/{id}/delete")
+@router.get("/designs/{id}/revisions/{_}/restore")
+@router.get("/designs/{id}/jobs/{_}/cancel")
+async def after_a_form(id: Id, request: Request) -> Response:
+    """The design: a form that was refused is shown at the address to which it was sent."""
+    query = f"?{request.url.query}" if request.url.query else ""
+    return go(f"/designs/{id}{query}")
+
+
 @router.get("/static/plotly.min.js")
 async def plotly_script(request: Request) -> Response:
     """Plotly's browser file, compressed; the same until its package changes."""

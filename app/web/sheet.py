@@ -7,30 +7,32 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.web import numbers
-from app.web.forms import text_of
+from app.web.forms import OPTIONS, text_of
 from templates.core.relation import is_relation
 
 
 @dataclass(frozen=True)
 class Field:
-    """One input of a form; `name` is the one that errors of the interface carry."""
+    """One input of a form; errors of the interface carry its `name`, the form that of its `control`."""
 
     name: str
+    control: str
     words: str
-    symbol: str | None
     text: str
-    unit: str | None
-    hint: str
-    options: tuple[str, ...]
-    value: Any  # what a relation comes to, or a default is, as a quantity; None where the text says it
     error: str | None
-    needed: bool
+    symbol: str | None = None
+    unit: str | None = None
+    hint: str = ""
+    options: tuple[str, ...] = ()
+    value: Any = None  # what a relation comes to, or a default, as a quantity; None where the text says it
+    needed: bool = True
     own: bool = False  # a design's own parameter: its name is all its words
 
     @property
     def id(self) -> str:
-        """The name as an id of HTML."""
-        return self.name.replace(".", "-")
+        """The control's name as an id of HTML, unlike those of the page's parts: `-length`, `film-length`."""
+        bare = not {".", "@"} & set(self.control)
+        return "-" * bare + self.control.replace(".", "-")
 
     @property
     def main(self) -> bool:
@@ -67,19 +69,48 @@ def of_parameters(
     return [
         Field(
             name=name,
+            control=f".{name}",
             words=name,
-            symbol=None,
-            text=typed.get(name, text_of(cell)),
-            unit=None,
-            hint="",
-            options=(),
-            value=values.get(name) if is_relation(cell) else None,
+            text=typed.get(f".{name}", text_of(cell)),
             error=faults.get(name),
-            needed=True,
+            value=values.get(name) if is_relation(cell) else None,
             own=True,
         )
         for name, cell in cells.items()
     ]
+
+
+def of_options(
+    template: Mapping[str, Any],
+    block: str,
+    cells: Mapping[str, Any],
+    typed: Mapping[str, str],
+    faults: Mapping[str, str],
+) -> list[Field]:
+    """The fields that choose how exact a step is; none where its template has one level only."""
+    if not template["levels"]:
+        return []
+    level, tolerance = OPTIONS
+    words = {level: "Level", tolerance: "or largest error"}
+    hints = {level: f"{template['default_level'].replace('_', ' ')} (default)", tolerance: "0.01"}
+    return [
+        Field(
+            name=(name := _name_of_fault(f"{block}.{option}" if block else option, faults)),
+            control=(control := f"{block}@{option}"),
+            words=words[option],
+            text=typed.get(control, text_of(cells.get(option))),
+            error=faults.get(name),
+            hint=hints[option],
+            options=tuple(template["levels"]) if option == level else (),
+        )
+        for option in OPTIONS
+    ]
+
+
+def _name_of_fault(option: str, faults: Mapping[str, str]) -> str:
+    """What a fault of an option is called: it may tell its place, `steps.film.tolerance`, or its value."""
+    found = (n for n in faults if n in (option, f"steps.{option}") or n.startswith(f"{option}."))
+    return next(found, option)
 
 
 def _field(
@@ -87,14 +118,15 @@ def _field(
 ) -> Field:
     return Field(
         name=name,
+        control=name,
         words=declared["title"],
-        symbol=declared.get("symbol"),
         text=text,
+        error=error,
+        symbol=declared.get("symbol"),
         unit=declared.get("unit"),
         hint=_hint(declared),
         options=tuple(declared.get("enum", ())),
         value=value,
-        error=error,
         needed=needed,
     )
 

@@ -10,7 +10,7 @@ from fastapi import Request, Response
 from app.web import sheet
 from app.web.accuracy import table
 from app.web.api import Api, Refused
-from app.web.forms import OPTIONS, value_of
+from app.web.forms import OPTIONS, option_of, value_of
 from app.web.pictures import pictures
 from app.web.rendering import show, units_of
 
@@ -26,6 +26,8 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
     measured = await api.find(f"{path}/accuracy")
     answer, faults = await _tried(api, path, asked, units_of(request))
     used = answer["inputs"] if answer else {}
+    fields = sheet.of_block(told["inputs"], "", asked["inputs"], used, typed, faults)
+    options = sheet.of_options(told, "", asked, typed, faults)
     return show(
         request,
         "template.html",
@@ -34,31 +36,22 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
         versions=(await api.get(f"/templates/{id}"))["items"],
         accuracy=measured,
         levels=table(measured) if measured else None,
-        fields=sheet.of_block(told["inputs"], "", asked["inputs"], used, typed, faults),
-        typed=typed,
+        fields=fields,
+        options=options,
+        loose=sheet.loose_faults([*fields, *options], faults),
         answer=answer,
         pictures=pictures("", told, answer or {}),
-        faults=faults,
         path_of_api=f"/api/v1{path}",
     )
 
 
 def _asked(told: Mapping[str, Any], typed: Mapping[str, str]) -> dict[str, Any]:
     """The body of `evaluate` for what was typed."""
-    inputs = {n: value_of(text) for n, text in typed.items() if n not in OPTIONS and text.strip()}
-    asked: dict[str, Any] = {"inputs": inputs if typed else told["example"]}
-    if typed.get("level"):
-        asked["level"] = typed["level"]
-    if tolerance := typed.get("tolerance", "").strip():
-        asked["tolerance"] = _number(tolerance)
-    return asked
-
-
-def _number(text: str) -> Any:
-    try:
-        return float(text)
-    except ValueError:
-        return text  # the interface says what is wrong with it
+    filled = {name: text.strip() for name, text in typed.items() if text.strip()}
+    chosen = {f"@{option}": option for option in OPTIONS}
+    inputs = {name: value_of(text) for name, text in filled.items() if name not in chosen}
+    options = {o: option_of(o, filled[name]) for name, o in chosen.items() if name in filled}
+    return {"inputs": inputs if typed else told["example"], **options}
 
 
 async def _tried(

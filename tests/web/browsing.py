@@ -25,6 +25,27 @@ class Third(Template):
         return self.l / 3
 '''
 
+AWKWARD = '''
+"""A template whose inputs are called like parts of a form of HTML, for tests of the pages."""
+
+from templates.core.template import Array, Template, formula, given
+
+
+class Awkward(Template):
+    """A sum of lengths with awkward names."""
+
+    example = {"length": "1 mm", "dataset": "2 mm", "level": "3 mm", "elements": "4 mm"}
+
+    a: Array = given("mm", "length", gt=0)
+    b: Array = given("mm", "dataset", gt=0)
+    c: Array = given("mm", "level", gt=0)
+    d: Array = given("mm", "elements", gt=0)
+
+    @formula("mm", "awkward sum", symbol="s", source="Euclid, book 2")
+    def s(self) -> Array:
+        return self.a + self.b + self.c + self.d
+'''
+
 
 class Watched:
     """A page and all that went wrong on it: outside addresses, failures, breaches of the policy."""

@@ -4,7 +4,7 @@ import shutil
 
 import httpx
 import pytest
-from browsing import THIRD, Watched, created
+from browsing import AWKWARD, THIRD, Watched, created
 from serving import folder_of_models, serving
 
 from app.settings import Settings
@@ -18,10 +18,11 @@ FLAGS = (
 
 @pytest.fixture(scope="session")
 def served(tmp_path_factory):
-    """The real service, with one template more in a folder of its own."""
+    """The real service, with two templates more in a folder of its own."""
     folder = tmp_path_factory.mktemp("web")
     own = folder_of_models(folder / "templates")
     (own / "own" / "third_v1.py").write_text(THIRD.lstrip())
+    (own / "own" / "awkward_v1.py").write_text(AWKWARD.lstrip())
     settings = Settings(data=folder / "data", template_folders=(own,), wait_seconds=5)
     with serving(settings) as server:
         yield server

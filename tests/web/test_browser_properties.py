@@ -47,9 +47,12 @@ def test_no_page_asks_an_outside_address_fails_or_breaks_the_policy(watched, pat
         assert watched.page.get_by_text("could not be drawn").count() == 0, path
 
 
-def test_no_page_is_wider_than_a_narrow_screen(browser, watched, paths):
+def test_no_page_is_wider_than_a_narrow_screen(browser, watched, http, paths):
     watched.page.set_viewport_size(NARROW)
-    for path in paths:
+    document = {"name": "unbroken" * 20, "parameters": {"k": "1"}}
+    named = http.post("/api/v1/designs", json=document).json()["id"]
+    reports = [f"/api/v1/designs/{id}/report.html" for id in (paths[2].rpartition("/")[2], named)]
+    for path in [*paths, f"/designs/{named}", f"/designs/{named}/revisions/1", *reports]:
         watched.open(path, wait_until="load")
         assert watched.page.evaluate("document.documentElement.scrollWidth") <= NARROW["width"], path
 

@@ -63,7 +63,7 @@ def test_what_a_user_typed_is_shown_as_text_and_never_as_markup(http):
         page = http.get(path).text
         assert HOSTILE not in page
         assert "&lt;script&gt;" in page
-    typed = {"revision": "1", "was": "{}", "scale": HOSTILE, "note": HOSTILE}
+    typed = {"revision": "1", "was": "{}", ".scale": HOSTILE, "note": HOSTILE}
     refused = http.post(f"/designs/{made['id']}", data=typed)
     assert refused.status_code == 422
     assert "<script>alert" not in refused.text
@@ -91,8 +91,8 @@ def test_a_missing_page_is_a_page_for_a_browser_and_a_problem_for_others(http):
 
 
 def test_a_form_is_saved_as_a_revision(http, paper):
-    was = json.dumps({"scale": "= 50 / 48"})
-    answer = http.post(paper, data={"revision": "1", "was": was, "scale": "1", "note": "as drawn"})
+    was = json.dumps({".scale": "= 50 / 48"})
+    answer = http.post(paper, data={"revision": "1", "was": was, ".scale": "1", "note": "as drawn"})
     assert (answer.status_code, answer.headers["location"]) == (303, paper)
     design = settled(http, paper)
     assert (design["revision"], design["parameters"]) == (2, {"scale": "1"})
@@ -249,9 +249,9 @@ def test_a_field_means_what_it_says(typed, value):
 
 def test_a_patch_holds_what_was_changed_and_nothing_else(http, paper):
     design = http.get(f"/api/v1{paper}").json()
-    was = json.dumps({"scale": "= 50 / 48", "film.radial_load": "25 kN", "model.inner_diameter": "= x"})
-    typed = {"was": was, "scale": "= 50 / 48", "film.radial_load": "26 kN", "film.tolerance": "0.01",
-             "model.inner_diameter": "", "note": "n", "nothing.here": "1"}  # fmt: skip
+    was = json.dumps({".scale": "= 50 / 48", "film.radial_load": "25 kN", "model.inner_diameter": "= x"})
+    typed = {"was": was, ".scale": "= 50 / 48", "film.radial_load": "26 kN", "film@tolerance": "0.01"}
+    typed |= {"model.inner_diameter": "", "note": "n", "nothing.here": "1", "scale": "3", "film@here": "1"}
     assert patch_of(design, typed) == {
         "steps": {"film": {"inputs": {"radial_load": "26 kN"}, "tolerance": 0.01}},
         "models": {"model": {"parameters": {"inner_diameter": None}}},

@@ -5,14 +5,14 @@ import { live } from "./live.js";
 import { drawPictures } from "./pictures.js";
 import { showParameters, showValues } from "./parameters.js";
 import { follow } from "./progress.js";
-import { showFaults, showResults } from "./results.js";
+import { OUTDATED, markOutdated, showFaults, showResults } from "./results.js";
 import { startSolids } from "./solids.js";
-import { patchOf } from "./typed.js";
+import { nameOf, patchOf } from "./typed.js";
 
 const form = document.getElementById("sheet");
 const { design: id, revision } = form.dataset;
 const api = `/api/v1/designs/${id}`;
-const draft = new Draft(form, JSON.parse(form.elements.was.value));
+const draft = new Draft(form, JSON.parse(form.querySelector("[name=was]").value));
 const models = new Set([...document.querySelectorAll("[data-model]")].map((part) => part.dataset.model));
 const state = form.querySelector("[data-state]");
 const trouble = form.querySelector("[data-trouble]");
@@ -26,7 +26,7 @@ const preview = live(
     show(told);
     state.textContent = draft.keep() ? "previewed, not saved" : "";
   },
-  refuse,
+  refusePreview,
 );
 
 function show(told) {
@@ -42,10 +42,18 @@ function show(told) {
 
 function clear() {
   showFaults(form, new Map());
+  markOutdated(false);
   trouble.hidden = !conflicted;
 }
 
+function refusePreview(error) {
+  refuse(error);
+  markOutdated(true);
+  state.textContent = [state.textContent, OUTDATED].filter(Boolean).join("; ");
+}
+
 function refuse(error) {
+  state.textContent = "";
   if (!(error instanceof Refused)) return tell(`The service does not answer: ${error.message}`);
   const loose = showFaults(form, error.faults);
   state.textContent = "not possible so: see the message beside the field";
@@ -61,13 +69,13 @@ function showDraft() {
   const names = Object.keys(draft.changed());
   const notice = form.querySelector("[data-draft]");
   notice.hidden = !draft.keep();
-  notice.querySelector("[data-draft-text]").textContent = names.map((name) => name.replaceAll("_", " ")).join(", ");
+  notice.querySelector("[data-draft-text]").textContent = names.map((name) => nameOf(name).replaceAll("_", " ")).join(", ");
 }
 
 form.addEventListener("input", (event) => {
   if (event.target.name === "note") return;
   showDraft();
-  preview();
+  preview.ask();
 });
 
 // Enter in a field calculates, as on a worksheet; Ctrl+S or Ctrl+Enter saves.
@@ -77,7 +85,7 @@ document.addEventListener("keydown", (event) => {
   if (!saves && !(event.key === "Enter" && isField && event.target.name !== "note")) return;
   event.preventDefault();
   if (saves) form.requestSubmit();
-  else preview();
+  else preview.ask();
 });
 
 form.querySelector("[data-discard]").addEventListener("click", () => {
@@ -89,8 +97,9 @@ form.addEventListener("submit", async (event) => {
   event.preventDefault();
   const changed = patch();
   if (Object.keys(changed).length === 0) return (state.textContent = "nothing has changed");
-  const note = form.elements.note.value.trim();
+  const note = form.querySelector("[name=note]").value.trim();
   const headers = { "If-Match": `"${revision}"`, Prefer: "respond-async", "Idempotency-Key": onlyOnce() };
+  preview.cancel(); // else it would keep as a draft what is saved by then
   state.textContent = "saving …";
   try {
     const { status, location: job } = await call("PATCH", api, { ...changed, ...(note && { note }) }, { headers });
@@ -99,9 +108,17 @@ form.addEventListener("submit", async (event) => {
     location.reload();
   } catch (error) {
     if (error.status === 412) conflict();
-    else refuse(error);
+    else refuseToSave(error);
   }
 });
+
+function refuseToSave(error) {
+  if (error.faults?.size) refusePreview(error);
+  else refuse(error);
+  const wrong = form.querySelector('[aria-invalid="true"]');
+  wrong?.focus();
+  wrong?.scrollIntoView({ block: "center" });
+}
 
 // A key that makes a repeated request harmless; crypto.randomUUID is there on encrypted pages only.
 const onlyOnce = () => [...crypto.getRandomValues(new Uint32Array(4))].map((part) => part.toString(16)).join("-");
@@ -109,6 +126,7 @@ const onlyOnce = () => [...crypto.getRandomValues(new Uint32Array(4))].map((part
 // Somebody else saved: the draft is kept, and put onto the newest revision when the page is loaded anew.
 function conflict() {
   conflicted = true;
+  draft.keep();
   state.textContent = "not saved";
   tell("Somebody else saved this design meanwhile. Your changes are kept. ");
   const again = Object.assign(document.createElement("button"), { type: "button", textContent: "Show the newest, with my changes" });
@@ -127,7 +145,7 @@ async function start() {
   try {
     show((await call("POST", `${api}/preview?worksheet=true&units=${units()}`, patch())).told);
   } catch (error) {
-    refuse(error);
+    refusePreview(error);
   }
 }
 

@@ -1,4 +1,6 @@
-// What was typed and not saved, kept in the browser: one draft for every design and revision.
+// What was typed and not saved, kept by the tab of the browser: one draft for every design and revision.
+import { reveal } from "./reveal.js";
+
 export class Draft {
   constructor(form, was) {
     this.form = form;
@@ -18,27 +20,30 @@ export class Draft {
   // Keep what differs; true if anything does.
   keep() {
     const changed = this.changed();
-    for (const field of this.fields()) field.classList.toggle("changed", field.name in changed);
+    for (const field of this.fields()) field.classList.toggle("changed", Object.hasOwn(changed, field.name));
     const any = Object.keys(changed).length > 0;
-    if (any) localStorage.setItem(this.key, JSON.stringify(changed));
-    else localStorage.removeItem(this.key);
+    if (any) sessionStorage.setItem(this.key, JSON.stringify(changed));
+    else sessionStorage.removeItem(this.key);
     return any;
   }
 
   // Put back what was kept, for this revision; for an older one if somebody else saved since. Returns its revision.
   restore() {
     const prefix = `draft:${this.form.dataset.design}:`;
-    const keys = Object.keys(localStorage).filter((key) => key.startsWith(prefix)).sort(byRevision);
+    const keys = Object.keys(sessionStorage).filter((key) => key.startsWith(prefix)).sort(byRevision);
     const key = keys.at(-1);
     if (!key) return null;
-    const kept = JSON.parse(localStorage.getItem(key));
-    for (const field of this.fields()) if (field.name in kept) field.value = kept[field.name];
-    for (const old of keys) if (old !== this.key) localStorage.removeItem(old);
+    const kept = JSON.parse(sessionStorage.getItem(key));
+    for (const field of this.fields().filter(({ name }) => Object.hasOwn(kept, name))) {
+      field.value = kept[field.name];
+      reveal(field);
+    }
+    for (const old of keys) if (old !== this.key) sessionStorage.removeItem(old);
     return Number(key.slice(prefix.length));
   }
 
   forget() {
-    localStorage.removeItem(this.key);
+    sessionStorage.removeItem(this.key);
   }
 }
 

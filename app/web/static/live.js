@@ -1,9 +1,13 @@
-// Asks for a preview while something is typed: at most one call at a time, the newest wins.
+// Asks for a preview while something is typed: at most one call at a time, the newest wins; it can be cancelled.
 const PAUSE = 80; // ms without a key
 
 export function live(ask, show, refuse) {
   let timer, running;
-  return () => {
+  const cancel = () => {
+    clearTimeout(timer);
+    running?.abort();
+  };
+  const soon = () => {
     clearTimeout(timer);
     timer = setTimeout(async () => {
       running?.abort();
@@ -16,4 +20,5 @@ export function live(ask, show, refuse) {
       }
     }, PAUSE);
   };
+  return { ask: soon, cancel };
 }

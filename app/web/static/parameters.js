@@ -1,11 +1,12 @@
 // Values beside the fields: what a relation comes to, and model parameters old → new with their status.
 import { told, unit } from "./numbers.js";
 
+const TO_DO = "set it, or map it to an output"; // as app/web/pages/parts.html says it
+
 export function showValues(form, block, { inputs }) {
   for (const [tail, quantity] of Object.entries(inputs ?? {})) {
-    const name = block ? `${block}.${tail}` : tail;
-    const place = form.querySelector(`[data-value="${name}"]`);
-    const field = form.elements[name];
+    const place = form.querySelector(`[data-value="${block}.${tail}"]`);
+    const field = form.querySelector(`[name="${block}.${tail}"]`);
     if (!place || !field) continue;
     const isRelation = field.value.trim().startsWith("=");
     if (isRelation) place.textContent = `= ${told(quantity)}`;
@@ -38,8 +39,8 @@ function shown(old, now) {
 function tag(status, detail) {
   if (status === "ok" || status === "unchanged") return [];
   const made = span(`tag status ${status === "missing" || status === "unit_mismatch" ? "failed" : "pending"}`, status.replaceAll("_", " "));
-  if (detail) made.title = detail;
-  return [" ", made];
+  const words = status === "missing" ? TO_DO : detail;
+  return words ? [" ", made, " ", span("field-error", words)] : [" ", made];
 }
 
 const span = (className, textContent) => Object.assign(document.createElement("span"), { className, textContent });

@@ -1,5 +1,7 @@
 // Writes an evaluation into the page: formulas with their numbers, results, errors, warnings.
 import { aligned, percent, told, unit } from "./numbers.js";
+import { reveal } from "./reveal.js";
+import { isOf } from "./typed.js";
 
 const TEXT = "\\text{"; // how an answer in words begins
 
@@ -64,20 +66,29 @@ export function warning({ name, detail }) {
   return item;
 }
 
+// Marks the results that are shown as those of the last input that was possible, or takes the mark away.
+export function markOutdated(isOutdated) {
+  document.getElementById("main").classList.toggle("outdated", isOutdated);
+}
+
+export const OUTDATED = "the results shown are those of before";
+
 // Messages beside the fields of a form; those of no field are returned.
 export function showFaults(form, faults) {
   const loose = new Map(faults);
   for (const field of form.querySelectorAll("input[id], select[id]")) {
     const message = document.getElementById(`${field.id}-error`);
     if (!message) continue;
-    const detail = faults.get(field.name);
-    loose.delete(field.name);
+    const name = [...faults.keys()].find((fault) => isOf(fault, field.name));
+    const detail = faults.get(name);
+    loose.delete(name);
     message.hidden = !detail;
     message.textContent = detail ?? "";
     field.toggleAttribute("aria-invalid", Boolean(detail));
     if (detail) field.setAttribute("aria-invalid", "true");
     if (detail) field.setAttribute("aria-describedby", message.id);
     else field.removeAttribute("aria-describedby");
+    if (detail) reveal(field);
   }
   return loose;
 }

@@ -3,23 +3,27 @@ import { Refused, call, units } from "./api.js";
 import { drawAccuracy } from "./accuracy.js";
 import { live } from "./live.js";
 import { drawPictures, whenSeen } from "./pictures.js";
-import { showFaults, showResults } from "./results.js";
-import { valueOf } from "./typed.js";
+import { OUTDATED, markOutdated, showFaults, showResults } from "./results.js";
+import { optionOf, valueOf } from "./typed.js";
 
-const form = document.querySelector("[data-try]");
+const form = document.querySelector("[data-try]"); // its inputs have bare names: one may be called `dataset`
+const path = form.getAttribute("data-try");
 const state = form.querySelector("[data-state]");
 
 function asked() {
   const typed = [...new FormData(form)].filter(([, text]) => text.trim());
-  const inputs = Object.fromEntries(typed.filter(([name]) => name !== "level" && name !== "tolerance").map(([name, text]) => [name, valueOf(text)]));
-  const { level, tolerance } = Object.fromEntries(typed);
-  const number = Number.isNaN(Number(tolerance)) ? tolerance : Number(tolerance);
-  return { inputs, ...(level && { level }), ...(tolerance && { tolerance: number }) };
+  const asked = { inputs: {} };
+  for (const [name, text] of typed) {
+    if (name.startsWith("@")) asked[name.slice(1)] = optionOf(name.slice(1), text.trim());
+    else asked.inputs[name] = valueOf(text);
+  }
+  return asked;
 }
 
-const tried = (signal) => call("POST", `${form.dataset.try}/worksheet?units=${units()}`, asked(), { signal });
+const tried = (signal) => call("POST", `${path}/worksheet?units=${units()}`, asked(), { signal });
 
 function show({ told }) {
+  markOutdated(false);
   showFaults(form, new Map());
   showResults("", told);
   drawPictures(document, "", told);
@@ -28,14 +32,24 @@ function show({ told }) {
 
 function refuse(error) {
   const loose = error instanceof Refused ? showFaults(form, error.faults) : new Map();
-  state.textContent = [...loose.values()].join("; ") || (error.faults?.size ? "see the message beside the field" : error.message);
+  const words = [...loose.values()].join("; ") || (error.faults?.size ? "see the message beside the field" : error.message);
+  const hasResults = document.querySelector("[data-output]");
+  markOutdated(true);
+  state.textContent = hasResults ? `${words}; ${OUTDATED}` : words;
+}
+
+function keepInAddress(filled) {
+  history.replaceState(null, "", `?${new URLSearchParams(filled)}`);
+  for (const link of document.querySelectorAll(".switch a")) {
+    const chosen = new URLSearchParams(link.search).get("units");
+    link.search = new URLSearchParams([...filled, ["units", chosen]]);
+  }
 }
 
 const preview = live(tried, show, refuse);
 form.addEventListener("input", () => {
-  const filled = [...new FormData(form)].filter(([, text]) => text.trim());
-  history.replaceState(null, "", `?${new URLSearchParams(filled)}`);
-  preview();
+  keepInAddress([...new FormData(form)].filter(([, text]) => text.trim()));
+  preview.ask();
 });
 
 if (document.querySelector("[data-output]")) tried().then(show, refuse);

@@ -1,5 +1,7 @@
 // Fields and the JSON of the interface, as app/web/forms.py turns one into the other.
-const OPTIONS = ["level", "tolerance"];
+
+// What the interface calls a control: `.scale` → `scale`, `film@level` → `film.level`.
+export const nameOf = (control) => control.replace("@", ".").replace(/^\./, "");
 
 export function valueOf(text) {
   const stripped = text.trim();
@@ -13,20 +15,29 @@ export function valueOf(text) {
   }
 }
 
+// Whether a fault is that of a control; one of an option may tell where it stands (`steps.film.tolerance`) or its value.
+export function isOf(fault, control) {
+  const name = nameOf(control);
+  const isOption = control.includes("@");
+  return fault === name || (isOption && (fault === `steps.${name}` || fault.startsWith(`${name}.`)));
+}
+
 // The merge patch of a design for the fields that were changed: { "film.radial_load": "25 kN" } → { steps: … }.
 export function patchOf(changed, models) {
   const patch = {};
   for (const [name, text] of Object.entries(changed)) {
-    const [block, tail] = name.split(".");
+    const [block, tail] = name.split(/[.@]/);
     const value = text.trim() === "" ? null : valueOf(text);
-    if (!tail) inside(patch, "parameters")[name] = value;
+    if (name.includes("@")) inside(patch, "steps", block)[tail] = optionOf(tail, value);
+    else if (!block) inside(patch, "parameters")[tail] = value;
     else if (models.has(block)) inside(patch, "models", block, "parameters")[tail] = value;
-    else if (OPTIONS.includes(tail)) inside(patch, "steps", block)[tail] = option(tail, value);
     else inside(patch, "steps", block, "inputs")[tail] = value;
   }
   return patch;
 }
 
 const inside = (patch, ...path) => path.reduce((place, key) => (place[key] ??= {}), patch);
-const option = (name, value) =>
-  name === "tolerance" && value !== null && !Number.isNaN(Number(value)) ? Number(value) : value;
+
+// A tolerance is a number; the interface says what is wrong with one that is none.
+export const optionOf = (name, value) =>
+  name === "tolerance" && typeof value === "string" && Number.isFinite(Number(value)) ? Number(value) : value;
