@@ -96,8 +96,11 @@ def si_unit(text: str) -> str:
 
 
 def _coherent(text: str, candidates: tuple[str, ...]) -> str | None:
+    """The candidate that measures the same: an angle is told in rad, though it counts as a pure number."""
     base = unit(text).base
-    return next((si for si in candidates if compatible(unit(si).base, base)), None)
+    alike = [si for si in candidates if compatible(unit(si).base, base)]
+    exact = (si for si in alike if str(unit(si).base) == str(base))
+    return next(exact, alike[0] if alike else None)
 
 
 def _unit_of(quantity: Any) -> str:

@@ -157,4 +157,4 @@ def _worst(checks: Iterable[tuple[str, Verdict]]) -> str:
     if not shares:
         return ""
     share, name, words = max(shares)
-    return f"largest share of an allowance that is used: {numbers.percent(share)}, {name}: {words}"
+    return f"largest share of an allowance that is used: {numbers.share(share)}, {name}: {words}"

@@ -80,7 +80,7 @@ def _verdict(check: Check) -> Verdict:
         kind=KINDS[check.kind],
         demand=check.demand and mathml(check.demand),
         numbers=check.numbers and mathml(check.numbers),
-        used="" if check.used is None else numbers.percent(check.used),
+        used="" if check.used is None else numbers.share(check.used),
         share=check.used,
         holds=check.holds,
         remark=remark,

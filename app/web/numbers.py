@@ -42,9 +42,17 @@ def unit(text: str | None) -> str:
     return unit_symbol(text) if text else ""
 
 
+ALMOST_ALL = 0.985
+
+
 def percent(relative: float) -> str:
     """A relative error in two digits: `0.24` → `24 %`, `4.5e-5` → `0.0045 %`."""
     return f"{rough(relative * 100)} %"
+
+
+def share(used: float) -> str:
+    """What of an allowance is used: in two digits; about 100 % and above in four, to tell on which side."""
+    return percent(used) if used < ALMOST_ALL else f"{plain(float(f'{used * 100:.4g}'))} %"
 
 
 def rough(value: float) -> str:

@@ -125,7 +125,7 @@ def _at_level(
 
 
 def _judged(values: Sequence[float], level: Level, *, is_sharp: bool) -> dict[str, Any]:
-    """The value of the higher order with its error; none where the orders differ as if elements are folded."""
+    """The value of the higher order with its error; none where orders differ as if elements are folded."""
     low, high = values
     if min(low, high) > 0 and (likely := level.error(low, high, is_sharp=is_sharp)) < WORST:
         return {"value": high, "error": likely}

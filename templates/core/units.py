@@ -114,13 +114,18 @@ def require_same_kind(typed: str, declared: str) -> Unit:
         If it measures something else, is ambiguous as a speed, or mixes a temperature with a difference.
     """
     got, want = unit(typed), unit(declared)
-    if compatible(got.base, want.base) and not _mixes_difference(got, want):
+    if compatible(got.base, want.base) and not _mixes_difference(got, want) and not _counts_angle(got, want):
         return got
     raise FaultyText(*_why_not(got, want))
 
 
 def _mixes_difference(got: Unit, want: Unit) -> bool:
     return (got.difference and not want.difference) or (got.absolute and want.difference)
+
+
+def _counts_angle(got: Unit, want: Unit) -> bool:
+    """Whether a pure number would be wrong by 2π: 1e6 cycles are an angle to Pint."""
+    return want.text == "1" and _radians(got.base) != 0
 
 
 def _why_not(got: Unit, want: Unit) -> tuple[str, str]:

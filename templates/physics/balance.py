@@ -176,7 +176,7 @@ def two_planes(row: Arrangement, reference: Array, x_f: Array, x_d: Array) -> Tw
     return TwoPlanes(flywheel, damper)
 
 
-@units("kg", None, returns="rad", latex=r"\arg {1}")
+@units("kg", None, returns="rad", latex=r"\operatorname{{arg}}\left({1}\right)")
 def balance_angle(m_rot: Array, phasor: Phasor) -> Array:
     """Where a balancing mass stands [rad], from 0 to a turn; nowhere (NaN) if it has no size."""
     angle = np.angle(m_rot * phasor) % (2 * np.pi)

@@ -132,6 +132,25 @@ class TestContents:
         assert f"{eccentricity * 100:.2g} %" in rows  # of the limit 1
 
 
+class TestEveryTemplate:
+    def test_its_example_has_a_report(self, http):
+        """A unit that one of them declares was once not known to the reports."""
+        templates = http.get(f"{API}/templates", params={"limit": 500}).json()["items"]
+        assert len(templates) >= 10
+        for told in templates:
+            path = f"{API}/templates/{told['id']}/versions/{told['version']}"
+            step = {
+                "template": told["id"],
+                "version": told["version"],
+                "inputs": http.get(path).json()["example"],
+            }
+            design = created(http, {"name": "example", "steps": {"one": step}})
+            assert "Inputs" in Page(read(http, design).text).text
+            assert (
+                http.get(f"{DESIGNS}/{design['id']}/report.html", params={"units": "us"}).status_code == 200
+            )
+
+
 class TestConditions:
     def test_accept_chooses(self, http, bearing):
         place = f"{DESIGNS}/{bearing['id']}/report"

@@ -1,9 +1,16 @@
 """Property: the error told bounds the true one, filleted or sharp; two runs tell the same, nearly."""
 
+from dataclasses import replace
+
 import pytest
 
-from benchmarks.torsion_levels import random_throws, shaft_of, truth
+from benchmarks.torsion import THROW
+from benchmarks.torsion_levels import TRUTH, found_by, random_throws, shaft_of, truth
 from cad.analysis.analyse import Asked, analyse
+from cad.analysis.mesh import make_grid
+from cad.analysis.solid import read_solid
+from cad.models.crankshaft_v1 import Crankshaft
+from cad.regenerate import regenerate
 
 OTHER_SEED = 7  # not that of the throws from which the factors were read
 
@@ -18,6 +25,22 @@ def test_property_the_error_told_bounds_the_true_one_on_ten_throws() -> None:
         if off > told["error"]:
             wrong[number] = (off, told["error"])
     assert wrong == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ends", [("front", 20, 20), ("front", 1, 1), ("rear", 20, 20)])
+def test_property_it_does_so_where_an_end_is_slender(ends: tuple[str, float, float]) -> None:
+    """Nearly all of the compliance is then in that end, far smaller than the throw."""
+    end, diameter, length = ends
+    parameters = {**THROW, f"{end}_diameter": diameter / 1e3, f"{end}_length": length / 1e3}
+    step, shaft = regenerate("crankshaft", 1, parameters).step, Crankshaft.from_si(parameters).shaft()
+    assert shaft is not None
+    grid = make_grid(read_solid(step, shaft), replace(TRUTH, sharp=0.04))
+    true = found_by(grid, 4, shaft, ["stiffness"])["stiffness"]
+    for level in ("coarse", "default"):
+        found = analyse(step, shaft, Asked(level=level), ["stiffness"], lambda done, what: None)
+        told = found.outputs["stiffness"]
+        assert abs(told["value"] / true - 1) <= told["error"] <= 0.05
 
 
 def test_two_runs_tell_the_same() -> None:

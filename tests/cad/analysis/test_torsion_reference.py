@@ -2,6 +2,7 @@
 
 import pytest
 
+from cad.analysis.analyse import _ELASTIC as ELASTIC
 from cad.analysis.analyse import Asked, Found, analyse
 from cad.analysis.elastic import Response
 from cad.errors import AnalysisError
@@ -56,3 +57,13 @@ def test_one_output_that_is_refused_leaves_the_others(step: bytes, monkeypatch: 
     assert found.outputs["stiffness"]["error"] <= 0.01
     assert seen == sorted(seen)
     assert seen[-1] == 1
+
+
+def test_no_value_where_elements_are_folded(step: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Orders that differ by a factor of two, or a stiffness below zero, are no answer."""
+    values = iter([2e6, 1e6, 1e5, -1e5])
+    monkeypatch.setitem(ELASTIC, "stiffness", lambda response: next(values))
+    for _ in range(2):
+        found = stiffness(step, Asked(level="coarse")).outputs["stiffness"]
+        assert found["value"] is None
+        assert "finer" in found["reason"]

@@ -199,6 +199,8 @@ class TestRefusals:
         [
             ("40 MPa", "mm", ["MPa", "a pressure", "a length", "mm"]),
             ("50 Hz", "rpm", ["Hz", "rpm or rad/s"]),
+            ("1e6 cycle", "1", ["cycle", "counts angle", "without a unit"]),
+            ("4 turn", "1", ["turn", "counts angle", "without a unit"]),
             ("50 U/min", "rpm", ["U/min", "rpm or rev/min"]),
             ("80 C", "degC", ["no temperature: write degC"]),
             ("80 delta_degC", "degC", ["not a difference", "degC"]),
