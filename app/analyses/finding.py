@@ -46,6 +46,8 @@ class Analysing:
             elsewhere = repository.stresses(session, build, question)
             step = builds.artifact(session, build, "step")
         missing = [name for name in outputs if name not in known]
+        if not missing:
+            return
         found = {name: elsewhere[name] for name in missing if name in elsewhere}
         if unknown := tuple(name for name in missing if name not in found):
             assert step is not None, "a build has its STEP file from its first moment"
