@@ -10,6 +10,7 @@ from typing import Annotated
 from fastapi import Depends, Header, Request
 
 from app.analyses.service import Analyses
+from app.clients import TheClient
 from app.designs.graph import Catalogues
 from app.designs.service import Designs
 from app.http import fingerprint
@@ -57,12 +58,13 @@ async def get_analyses(request: Request) -> Analyses:
 
 async def get_once(
     request: Request,
+    client: TheClient,
     idempotency_key: Annotated[
         str | None, Header(min_length=1, max_length=200, description="the same key, the same change: once")
     ] = None,
 ) -> Once:
     """How to tell a repeated request."""
-    return Once(idempotency_key, f"{request.method} {request.url.path}", await fingerprint(request))
+    return Once(idempotency_key, f"{request.method} {request.url.path}", await fingerprint(request), client)
 
 
 TheCatalogues = Annotated[Catalogues, Depends(get_catalogues)]

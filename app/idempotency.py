@@ -27,6 +27,7 @@ class Once:
     key: str | None
     scope: str  # method and path
     fingerprint: str  # SHA-256 of the body
+    client: str = ""  # two clients may choose the same key
 
     def find(self, session: Session) -> dict[str, Any] | None:
         """What this request led to before, if it did.
@@ -36,7 +37,7 @@ class Once:
         KeyReused
             If the key came with another body.
         """
-        row = session.get(IdempotencyRow, (self.key, self.scope)) if self.key else None
+        row = session.get(IdempotencyRow, (self.key, self.scope, self.client)) if self.key else None
         if row is None:
             return None
         if row.fingerprint != self.fingerprint:
@@ -50,6 +51,7 @@ class Once:
                 IdempotencyRow(
                     key=self.key,
                     scope=self.scope,
+                    client=self.client,
                     fingerprint=self.fingerprint,
                     status=status,
                     location=location,

@@ -84,7 +84,7 @@ def revisions(session: Session, id: str, limit: int, before: int | None) -> list
 
 def create(session: Session, name: str, written: Written) -> tuple[str, int]:
     """A new design with its first revision; its id and the revision's number."""
-    row = DesignRow(id=new_id(), name=name, created=now(), deleted=None, head=0)
+    row = DesignRow(id=new_id(session), name=name, created=now(), deleted=None, head=0)
     session.add(row)
     session.flush()
     return row.id, append(session, row, written)

@@ -16,13 +16,19 @@ from app.storage.tables import JobRow
 
 
 def add(
-    session: Session, kind: str, payload: dict[str, Any], design: str | None, revision: int | None
+    session: Session,
+    kind: str,
+    payload: dict[str, Any],
+    design: str | None,
+    revision: int | None,
+    client: str = "",
 ) -> str:
-    """Queue a job and return its id."""
+    """Queue a job of a client and return its id."""
     session.flush()  # the revision it belongs to comes first
     row = JobRow(
-        id=new_id(), kind=kind, state="queued", design_id=design, revision=revision, payload=payload,
+        id=new_id(session), kind=kind, state="queued", design_id=design, revision=revision, payload=payload,
         attempt=0, crashes=0, progress=0.0, log=[], created=now(), updated=now(),
+        client=client,
     )  # fmt: skip
     session.add(row)
     session.flush()

@@ -3,7 +3,16 @@
 import json
 from typing import Any
 
-from sqlalchemy import Dialect, ForeignKey, ForeignKeyConstraint, Index, MetaData, Text, TypeDecorator
+from sqlalchemy import (
+    BigInteger,
+    Dialect,
+    ForeignKey,
+    ForeignKeyConstraint,
+    Index,
+    MetaData,
+    Text,
+    TypeDecorator,
+)
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship
 
 NAMING = {
@@ -46,6 +55,15 @@ class Base(DeclarativeBase):
 
     metadata = MetaData(naming_convention=NAMING)
     type_annotation_map = {str: Text, dict[str, Any]: Json, list[str]: Json}
+
+
+class CounterRow(Base):
+    """A number that only grows, whatever the wall clock does; see `app.storage.identity`."""
+
+    __tablename__ = "counter"
+
+    name: Mapped[str] = mapped_column(primary_key=True)  # identity, operation
+    value: Mapped[int] = mapped_column(BigInteger)
 
 
 class DesignRow(Base):
@@ -109,6 +127,7 @@ class BuildRow(Base):
     parameters: Mapped[dict[str, Any]] = mapped_column(Json)
     measurements: Mapped[dict[str, Any]] = mapped_column(Json)
     created: Mapped[str]
+    operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when last wanted [s of operation]
 
     artifacts: Mapped[list["ArtifactRow"]] = relationship(order_by="ArtifactRow.kind")
 
@@ -139,12 +158,13 @@ class AnalysisRow(Base):
 
 
 class JobRow(Base):
-    """A piece of long work. Identities grow with time, so the queue is the order of the identities."""
+    """A piece of long work. The queue is the order of turns, which the clients take one after another."""
 
     __tablename__ = "job"
     __table_args__ = (
         ForeignKeyConstraint(["design_id", "revision"], ["revision.design_id", "revision.number"]),
-        Index(None, "state", "id"),
+        Index(None, "state", "turn", "id"),
+        Index(None, "client", "state"),
         Index(None, "design_id", "revision"),
     )
 
@@ -162,6 +182,9 @@ class JobRow(Base):
     result: Mapped[str | None]  # a link
     created: Mapped[str]
     updated: Mapped[str]
+    client: Mapped[str] = mapped_column(default="")  # who asked for it first; see `app.clients`
+    turn: Mapped[int] = mapped_column(BigInteger, default=0)
+    operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when it ended [s of operation]
 
 
 class IdempotencyRow(Base):
@@ -171,7 +194,9 @@ class IdempotencyRow(Base):
 
     key: Mapped[str] = mapped_column(primary_key=True)
     scope: Mapped[str] = mapped_column(primary_key=True)  # method and path
+    client: Mapped[str] = mapped_column(primary_key=True, default="")  # see `app.clients`
     fingerprint: Mapped[str]  # SHA-256 of the body
     status: Mapped[int]
     location: Mapped[dict[str, Any]] = mapped_column(Json)  # what to render again
     created: Mapped[str]
+    operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when it was kept [s of operation]

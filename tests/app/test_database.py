@@ -209,11 +209,15 @@ def test_the_writer_syncs_every_commit_and_keeps_foreign_keys(database):
     assert database.write(pragmas) == ["wal", 2, 1]  # 2 is FULL: a power cut cannot be tried here
 
 
-def test_identities_grow_with_time():
-    identities = [new_id() for _ in range(3)]
-    assert len({len(identity) for identity in identities}) == 1
-    assert len(set(identities)) == 3
-    assert identities[0][:14] <= identities[-1][:14]
+def test_identities_grow_whatever_the_clock_says(database, monkeypatch):
+    identities = [database.write(new_id)]
+    for seconds in (-1e9, 1e9, 0.0):
+        monkeypatch.setattr(time, "time", lambda seconds=seconds: seconds)
+        monkeypatch.setattr(time, "time_ns", lambda seconds=seconds: int(seconds * 1e9))
+        identities.append(database.write(new_id))
+    assert identities == sorted(identities)
+    assert len({identity[:14] for identity in identities}) == 4
+    assert {len(identity) for identity in identities} == {24}
 
 
 WRITE_FOR_EVER = """

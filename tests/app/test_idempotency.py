@@ -12,7 +12,7 @@ def test_keys_older_than_a_week_are_forgotten(database):
         for key, days in (("old", 8), ("young", 6)):
             Once(key, "POST /designs", "body").keep(session, 201, {"id": key})
             session.flush()
-            row = session.get(IdempotencyRow, (key, "POST /designs"))
+            row = session.get(IdempotencyRow, (key, "POST /designs", ""))
             row.created = as_text(datetime.now(UTC) - timedelta(days=days))
 
     database.write(aged)

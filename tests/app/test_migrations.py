@@ -33,7 +33,7 @@ def test_comparison_sees_a_missing_index(url):
     migrate(url)
     engine = writing_engine(url)
     with engine.begin() as connection:
-        connection.execute(text("drop index ix_job_state_id"))
+        connection.execute(text("drop index ix_job_client_state"))
     assert [change[0] for change in differences(engine)] == ["add_index"]
     engine.dispose()
 

@@ -1,0 +1,40 @@
+"""Who sends a request. Limits hold, and turns are taken, by client.
+
+Until there are principals, a client is the header `Crankwright-Client`, else the session of a page, else the
+address that the request came from.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated
+
+from fastapi import Depends, Request
+
+from templates.core.errors import Fault, InvalidInputs
+
+HEADER, COOKIE = "Crankwright-Client", "crankwright_session"
+_NAME = re.compile(r"[!-~][ -~]{0,98}[!-~]|[!-~]")  # up to 100 printable ASCII characters
+_SESSION = re.compile(r"[A-Za-z0-9_-]{16,64}")
+
+
+async def get_client(request: Request) -> str:
+    """The client of a request, with a prefix that says how it is known: `name:`, `session:` or `address:`.
+
+    Raises
+    ------
+    InvalidInputs
+        If the header is no name.
+    """
+    if (named := request.headers.get(HEADER)) is not None:
+        if not _NAME.fullmatch(named):
+            told = "a client's name has 1 to 100 printable ASCII characters, such as design-office-7"
+            raise InvalidInputs([Fault(HEADER, "client_name", told)])
+        return f"name:{named}"
+    session = request.cookies.get(COOKIE, "")
+    if _SESSION.fullmatch(session):
+        return f"session:{session}"
+    return f"address:{request.client.host if request.client else 'unknown'}"
+
+
+TheClient = Annotated[str, Depends(get_client)]
