@@ -16,7 +16,15 @@ from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
 
 from app.designs import errors as designs
-from app.http import BodyTooLarge, NotCsv, NotJson, PreconditionRequired, TooIntricate, TooManyValues
+from app.http import (
+    BodyTooLarge,
+    NotCsv,
+    NotJson,
+    NotStep,
+    PreconditionRequired,
+    TooIntricate,
+    TooManyValues,
+)
 from app.jobs import errors as jobs
 from app.reports.errors import Unprintable
 from app.storage import errors as storage
@@ -55,6 +63,7 @@ TABLE: dict[type[Exception], Kind] = {
     PreconditionRequired: Kind("precondition-required", 428, "If-Match is needed", "send the design's ETag"),
     NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),
     NotCsv: Kind("not-csv", 415, "The body is not CSV", "send text/csv in UTF-8"),
+    NotStep: Kind("not-step", 415, "The body is not said to be STEP", "send the file as model/step"),
     BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
     TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),

@@ -13,7 +13,7 @@ from app import problems
 from app.analyses.questions import what_can_be_asked
 from app.catalogue.routes import Number, summary
 from app.dependencies import TheCatalogues, TheJobs, TheModels, TheStore
-from app.http import NotJson, StrictRoute
+from app.http import STEP_TYPES, StrictRoute, require_step
 from app.paging import Cursor, Limit, page_of
 from app.waiting import LATER, accepted, finished
 from cad.export import DRAWINGS, MEDIA_TYPES
@@ -143,13 +143,20 @@ def artifact(sha256: str, store: TheStore) -> Response:
     return FileResponse(store.path(sha256), media_type="application/octet-stream", headers=headers)
 
 
-@router.post(
-    "/verify", openapi_extra={"requestBody": {"content": {"model/step": {"schema": {"type": "string"}}}}}
-)
+STEP_FILE: dict[str, Any] = {"type": "string", "format": "binary"}
+STEP_BODY: dict[str, Any] = {
+    "content": {kind: {"schema": STEP_FILE} for kind in STEP_TYPES},
+    "required": True,
+}
+
+
+@router.post("/verify", openapi_extra={"requestBody": STEP_BODY})
 async def verify(request: Request, models: TheModels) -> dict[str, Any]:
-    """From which build a STEP file is, and which revisions use it."""
-    if request.headers.get("content-type", "").partition(";")[0].strip() not in ("model/step", ""):
-        raise NotJson("send the STEP file itself as model/step")
+    """From which build a STEP file is, and which revisions use it.
+
+    The body is the file itself, sent as `model/step`. Which build it is stands in the first 64 KiB, its header.
+    """
+    require_step(request)
     return await run_in_threadpool(models.verify, await request.body())
 
 
