@@ -15,6 +15,7 @@ from app.calculations import rendering
 from app.catalogue.finding import find_templates
 from app.curves.arguments import argument
 from app.demo import demonstrate
+from app.heads import BoundedHead
 from app.main import create_app
 from app.settings import Settings
 from app.storage.errors import DataFolderInUse
@@ -72,7 +73,7 @@ def serve(host: str, port: int, data: Path | None) -> None:
             err=True,
         )
     click.echo(f"Crankwright at http://{host}:{port}/docs, data in {settings.data.absolute()}", err=True)
-    uvicorn.run(create_app(settings), host=host, port=port, log_level="warning")
+    uvicorn.run(create_app(settings), host=host, port=port, log_level="warning", http=BoundedHead)
 
 
 def _is_loopback(host: str) -> bool:

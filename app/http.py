@@ -32,6 +32,10 @@ class BodyTooLarge(HttpError):
     """The body is larger than the service takes."""
 
 
+class HeadTooLarge(HttpError):
+    """The address and the headers are longer than the service takes."""
+
+
 class TooManyValues(HttpError):
     """The answer would hold more values than the service gives at once."""
 

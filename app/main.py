@@ -28,8 +28,9 @@ from app.designs.graph import Catalogues
 from app.designs.regeneration import Regeneration
 from app.designs.routes import router as designs
 from app.designs.service import REGENERATE, REGENERATE_SLOWLY, Designs
+from app.heads import HeadLimit
 from app.health import Metrics
-from app.http import BodyLimit, BodyTooLarge
+from app.http import BodyLimit, BodyTooLarge, HeadTooLarge
 from app.idempotency import forget_old_keys
 from app.jobs.routes import router as jobs
 from app.jobs.service import Jobs
@@ -103,6 +104,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     problems.install(app)
     pages.install(app)
     app.add_middleware(BodyLimit, limit=chosen.body_limit, refuse=_too_large)
+    app.add_middleware(HeadLimit, refuse=_head_too_large)
     app.add_middleware(Metrics)
     app.openapi = partial(_openapi_3_1, app)  # type: ignore[method-assign]
     return app
@@ -155,6 +157,10 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
 
 def _too_large(told: str) -> Response:
     return problems.answer(problems.describe(BodyTooLarge(told)))
+
+
+def _head_too_large(told: str) -> Response:
+    return problems.answer(problems.describe(HeadTooLarge(told)))
 
 
 PROBLEM: dict[str, Any] = {

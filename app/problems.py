@@ -18,6 +18,7 @@ from starlette.exceptions import HTTPException
 from app.designs import errors as designs
 from app.http import (
     BodyTooLarge,
+    HeadTooLarge,
     NotCsv,
     NotJson,
     NotStep,
@@ -65,6 +66,7 @@ TABLE: dict[type[Exception], Kind] = {
     NotCsv: Kind("not-csv", 415, "The body is not CSV", "send text/csv in UTF-8"),
     NotStep: Kind("not-step", 415, "The body is not said to be STEP", "send the file as model/step"),
     BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
+    HeadTooLarge: Kind("head-too-large", 431, "The headers are too large", "send fewer or shorter headers"),
     TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),
     jobs.JobNotFound: Kind("no-such-job", 404, "No such job", "GET /api/v1/jobs lists them"),

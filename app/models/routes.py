@@ -6,11 +6,12 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Request, Response
 from fastapi.responses import FileResponse, JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
 from app.analyses.questions import what_can_be_asked
+from app.bounded import Bounded, at_most
 from app.catalogue.routes import Number, summary
 from app.dependencies import TheCatalogues, TheJobs, TheModels, TheStore
 from app.http import STEP_TYPES, StrictRoute, require_step
@@ -28,7 +29,10 @@ Id = Annotated[str, Path(max_length=64, examples=["ball_bearing"])]
 FOR_EVER = "public, max-age=31536000, immutable"
 
 
-class BuildIn(BaseModel):
+Given = Annotated[dict[str, Any], Field(max_length=500), at_most(500)]
+
+
+class BuildIn(Bounded):
     """Build a model from parameters."""
 
     model_config = ConfigDict(
@@ -39,9 +43,10 @@ class BuildIn(BaseModel):
         },
     )
 
-    parameters: dict[str, Any] = Field(description='quantities by name: `"48 mm"`; the others have defaults')
+    parameters: Given = Field(description='quantities by name: `"48 mm"`; the others have defaults')
     artifacts: list[str] = Field(
         [kind for kind in MEDIA_TYPES if kind not in DRAWINGS],
+        max_length=50,
         description="the kinds of files wanted; without it all but dimensioned drawings",
     )
 
@@ -154,7 +159,7 @@ STEP_BODY: dict[str, Any] = {
 async def verify(request: Request, models: TheModels) -> dict[str, Any]:
     """From which build a STEP file is, and which revisions use it.
 
-    The body is the file itself, sent as `model/step`. Which build it is stands in the first 64 KiB, its header.
+    The body is the file itself, sent as `model/step`; only the header, in its first 64 KiB, is looked at.
     """
     require_step(request)
     return await run_in_threadpool(models.verify, await request.body())
