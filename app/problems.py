@@ -36,6 +36,7 @@ from templates.core import errors as templates
 logger = logging.getLogger(__name__)
 
 MEDIA_TYPE = "application/problem+json"
+LONGEST_PLACE = 200  # characters of where in a body something is wrong; its names come from the client
 
 
 @dataclass(frozen=True)
@@ -123,13 +124,17 @@ def _validation(error: RequestValidationError) -> dict[str, Any]:
 
 
 def _located(found: Mapping[str, Any]) -> dict[str, Any]:
-    place = [str(part) for part in found["loc"]]
+    place = [str(part)[:LONGEST_PLACE] for part in found["loc"]]
     if found["type"] == "json_invalid":
         place = ["body"]
     inside = place[1:] if place[0] in ("body", "query", "path", "header") else place
     reason = found.get("ctx", {}).get("error", "") if found["type"] == "json_invalid" else ""
     detail = f"{found['msg']}: {reason}" if reason else found["msg"]
-    return {"name": ".".join(inside) or place[0], "code": found["type"], "detail": detail}
+    return {
+        "name": templates.plain(".".join(inside) or place[0], LONGEST_PLACE),
+        "code": found["type"],
+        "detail": detail,
+    }
 
 
 def _short(listed: Iterable[Mapping[str, Any]]) -> str:
@@ -195,7 +200,7 @@ async def _handle(request: Request, error: Exception) -> Response:
 async def _handle_http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     kind = HTTP.get(error.status_code) or Kind("http", error.status_code, error.detail, "see `detail`")
-    return answer(problem(kind, f"{request.url.path}: {error.detail}"), error.headers)
+    return answer(problem(kind, f"{request.url.path}: {error.detail}"[:2000]), error.headers)
 
 
 async def _handle_unexpected(request: Request, error: Exception) -> Response:

@@ -24,11 +24,13 @@ from app.jobs.service import Jobs
 from app.storage.database import Database
 from cad.model import CadModel
 from cad.regenerate import build_key
-from templates.core.errors import Fault, FaultyText, InvalidInputs
+from templates.core.errors import Fault, FaultyText, InvalidInputs, plain
 from templates.core.quantity import Value, read
 
 REGENERATE, REGENERATE_SLOWLY = "regenerate", "regenerate_and_analyse"
 """Kinds of jobs: the second is that of designs whose relations use finite elements."""
+
+LONGEST_PLACE = 200  # characters of where in a document something is wrong
 
 
 @dataclass(frozen=True)
@@ -214,10 +216,12 @@ def read_document(raw: Mapping[str, Any]) -> Document:
     try:
         return Document.model_validate(raw)
     except ValidationError as error:
-        faults = (
-            Fault(".".join(map(str, e["loc"])) or "design", e["type"], e["msg"]) for e in error.errors()
-        )
-        raise InvalidInputs(faults) from None
+        raise InvalidInputs(map(_fault, error.errors(include_url=False, include_input=False))) from None
+
+
+def _fault(found: Mapping[str, Any]) -> Fault:
+    place = ".".join(str(part)[:LONGEST_PLACE] for part in found["loc"])
+    return Fault(plain(place, LONGEST_PLACE) or "design", found["type"], found["msg"])
 
 
 def resolved(document: Document, catalogues: Catalogues) -> Document:

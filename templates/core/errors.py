@@ -128,6 +128,6 @@ def excerpt(raw: Any) -> str:
     return ascii(_brief.repr(raw))[1:-1][:80] if not isinstance(raw, str) else ascii(raw[:60])
 
 
-def plain(name: str) -> str:
+def plain(name: str, most: int = 80) -> str:
     """A name that was sent, short and fit for JSON: lone surrogates are escaped, other letters kept."""
-    return name[:80].encode("utf-8", "backslashreplace").decode("utf-8")
+    return name[:most].encode("utf-8", "backslashreplace").decode("utf-8")
