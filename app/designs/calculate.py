@@ -158,8 +158,8 @@ def _literal(graph: Graph, cell: Cell) -> Value | None:
 def _joined(result: Calculation, cell: Cell, assumed: Mapping[str, float]) -> Value:
     """The value of a relation, or of a list that mixes relations and quantities."""
     names = {name: result.value(name, assumed) for name in cell.uses}
-    limit_values(points := spanned(np.shape(value) for value in names.values()))
-    result.operations += points * sum(relation.parts for relation in cell.relations)
+    limit_values(count := spanned(np.shape(value) for value in names.values()))
+    result.operations += count * sum(relation.parts for relation in cell.relations)
     limit_operations(result.operations)
     if not isinstance(cell.raw, list):
         return _finite(cell.relations[0].value(names))

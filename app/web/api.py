@@ -70,7 +70,10 @@ class Api:
         Refused
             If the interface refuses.
         """
-        answer = await self._http.request(method, BASE + path, **more)
+        try:
+            answer = await self._http.request(method, BASE + path, **more)
+        except httpx.InvalidURL:  # made from what a client typed
+            raise Refused(404, {"title": "Not found", "detail": "there is nothing at this address"}) from None
         if answer.is_error:
             raise Refused(answer.status_code, answer.json())
         return answer
