@@ -14,6 +14,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
 LONGEST_HEAD = 2**16  # bytes
+MOST_HEADERS, MOST_FIELDS = 200, 1000  # headers, and fields in the address
 _CLOSED = (
     b"HTTP/1.1 431 Request Header Fields Too Large\r\n"
     b"Content-Type: text/plain; charset=utf-8\r\nContent-Length: 26\r\nConnection: close\r\n\r\n"
@@ -64,18 +65,22 @@ class HeadLimit:
         """Refuse, or pass on."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
-        elif _size(scope) > LONGEST_HEAD:
-            told = f"the address and the headers may have at most {LONGEST_HEAD // 1024} KiB together"
+        elif told := _too_large(scope):
             await self.refuse(told)(scope, receive, send)
         else:
             scope["headers"] = list(_without_quoted_cookies(scope["headers"]))
             await self.app(scope, receive, send)
 
 
-def _size(scope: Scope) -> int:
-    """Bytes of the address and of all headers."""
-    fields = sum(len(name) + len(value) for name, value in scope["headers"])
-    return fields + len(scope.get("raw_path") or b"") + len(scope["query_string"])
+def _too_large(scope: Scope) -> str:
+    """What is too much about a head; empty if nothing is."""
+    headers, query = scope["headers"], scope["query_string"]
+    size = sum(len(name) + len(value) for name, value in headers) + len(query)
+    if size + len(scope.get("raw_path") or b"") > LONGEST_HEAD:
+        return f"the address and the headers may have at most {LONGEST_HEAD // 1024} KiB together"
+    if len(headers) > MOST_HEADERS:
+        return f"a request may have at most {MOST_HEADERS} headers"
+    return f"an address may have at most {MOST_FIELDS} fields" if query.count(b"&") >= MOST_FIELDS else ""
 
 
 def _without_quoted_cookies(headers: Iterable[tuple[bytes, bytes]]) -> Iterable[tuple[bytes, bytes]]:

@@ -102,9 +102,14 @@ def kind_of(error: Exception) -> Kind:
 def describe(error: Exception) -> dict[str, Any]:
     """An error as a problem (RFC 9457), with all that it carries."""
     kind = kind_of(error)
-    detail = kind.remedy if kind is INTERNAL else str(error)
+    detail = kind.remedy if kind is INTERNAL else _detail(error)
     carried = next((tell(error) for cls, tell in _CARRIED.items() if isinstance(error, cls)), {})
     return {**problem(kind, detail[:2000]), **carried}
+
+
+def _detail(error: Exception) -> str:
+    """The text of an error; not FastAPI's own, which quotes the whole body, for `_validation` says it better."""
+    return "" if isinstance(error, RequestValidationError) else str(error)
 
 
 def problem(kind: Kind, detail: str) -> dict[str, Any]:

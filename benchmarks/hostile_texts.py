@@ -141,6 +141,7 @@ HEADERS: dict[str, Request] = {
     "a cookie in quotes": ("POST", f"{API}/designs", {**JSON, "Cookie": 'a="' + "\\a" * 25_000 + '"'}, b"{}"),
     "a header of a megabyte": _query("/healthz", **{"X-Long": "a" * LONG}),
     "an address of 60 kB": _query("/templates/oil_film/1?" + "&".join(f"a{i}=1" for i in range(7000))),
+    "1000 fields in an address": _query("/templates/oil_film/1?" + "&".join(f"a{i}=1" for i in range(1000))),
 }
 FORMS: dict[str, Request] = {
     "a megabyte of fields": ("POST", "/designs/{design}", FORM, b"a&" * (LONG // 2)),

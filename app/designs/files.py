@@ -16,7 +16,7 @@ from app.designs.errors import NotFound
 from app.designs.routes import Id, Number, Prefer
 from app.http import StrictRoute
 from app.models.routes import send_file
-from app.waiting import LATER, accepted, finished
+from app.waiting import LATER, accepted, accepted_kinds, finished
 from cad.export import MEDIA_TYPES
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
@@ -74,8 +74,7 @@ async def model_file(
 def _accepted(accept: str | None) -> str:
     """The kind that the client likes best, of those it likes equally the first; STEP by default."""
     kinds = {media: kind for kind, media in MEDIA_TYPES.items()}
-    named = (part.partition(";") for part in (accept or "").lower().split(","))
-    liked = [(_weight(more), kinds[media.strip()]) for media, _, more in named if media.strip() in kinds]
+    liked = [(_weight(more), kinds[media]) for media, more in accepted_kinds(accept) if media in kinds]
     return max(liked, key=lambda pair: pair[0], default=(1.0, "step"))[1]
 
 

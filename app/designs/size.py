@@ -10,9 +10,11 @@ from app.designs.document import Document
 from templates.core.errors import Fault, FaultyText
 from templates.core.relation import is_relation
 
-MOST_RELATION_TEXT = 100_000  # characters of all relations of a design: reading them takes up to a second
+MOST_RELATION_TEXT = (
+    50_000  # characters of all relations of a design; reading them takes a quarter of a second
+)
 MOST_VALUES = 100_000  # of a relation, or of all outputs of a step
-MOST_OPERATIONS = 50_000_000  # on single values, of all relations of a design
+MOST_OPERATIONS = 20_000_000  # on single values, of all relations of a design
 
 
 def too_many_relations(document: Document) -> Iterator[Fault]:

@@ -22,7 +22,7 @@ from app.reports.content import Report
 from app.reports.paper import Press
 from app.reports.screen import page
 from app.reports.service import Reports, tag
-from app.waiting import finished
+from app.waiting import accepted_kinds, finished
 from app.web.rendering import POLICY
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
@@ -154,8 +154,7 @@ def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str,
         if kind not in kinds:
             raise NotFound(f"there is no {what}.{kind[:20]}; there are {', '.join(kinds)}")
         return kind
-    named = [part.partition(";") for part in (accept or "").lower().split(",")]
-    weights = {media.strip(): _weight(more) for media, _, more in named}
+    weights = {media: _weight(more) for media, more in accepted_kinds(accept)}
     return max(kinds, key=lambda name: weights.get(kinds[name], 0.0))
 
 

@@ -11,7 +11,7 @@ from openpyxl import load_workbook
 from serving import API, HANG, created, problem
 
 from app.designs.explain import DEEPEST
-from app.heads import LONGEST_HEAD
+from app.heads import LONGEST_HEAD, MOST_FIELDS, MOST_HEADERS
 from benchmarks.hostile_texts import EVERY
 
 ANSWERED = {
@@ -66,6 +66,15 @@ class TestHeads:
     def test_a_long_head_is_a_problem(self, http):
         answer = http.get("/healthz", headers={"X-Long": "a" * (LONGEST_HEAD + 1)})
         assert "64 KiB" in problem(answer, 431, "head-too-large")["detail"]
+
+    def test_many_headers_are_a_problem(self, http):
+        answer = http.get("/healthz", headers=[("A", "b")] * (MOST_HEADERS + 1))
+        assert "200 headers" in problem(answer, 431, "head-too-large")["detail"]
+
+    def test_many_fields_are_a_problem(self, http):
+        assert http.get("/designs?" + "&".join(["a=1"] * MOST_FIELDS)).is_success
+        answer = http.get("/designs?" + "&".join(["a=1"] * (MOST_FIELDS + 1)))
+        assert "1000 fields" in problem(answer, 431, "head-too-large")["detail"]
 
     def test_a_head_below_the_limit_is_none(self, http):
         assert http.get("/healthz", headers={"X-Long": "a" * (LONGEST_HEAD - 1000)}).is_success
