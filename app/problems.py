@@ -16,7 +16,16 @@ from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
 
 from app.designs import errors as designs
-from app.http import BodyTooLarge, NotCsv, NotJson, PreconditionRequired, TooIntricate, TooManyValues
+from app.guard import BadHost, CrossSite, HostNotAllowed
+from app.http import (
+    BodyTooLarge,
+    NotCsv,
+    NotForm,
+    NotJson,
+    PreconditionRequired,
+    TooIntricate,
+    TooManyValues,
+)
 from app.jobs import errors as jobs
 from app.reports.errors import Unprintable
 from app.storage import errors as storage
@@ -55,6 +64,20 @@ TABLE: dict[type[Exception], Kind] = {
     PreconditionRequired: Kind("precondition-required", 428, "If-Match is needed", "send the design's ETag"),
     NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),
     NotCsv: Kind("not-csv", 415, "The body is not CSV", "send text/csv in UTF-8"),
+    NotForm: Kind("not-a-form", 415, "The body is not a form", "send application/x-www-form-urlencoded"),
+    BadHost: Kind("bad-host", 400, "The request names no host", "send one header Host, and the path alone"),
+    HostNotAllowed: Kind(
+        "host-not-allowed",
+        421,
+        "The service does not answer to this host",
+        "ask by localhost or the address it listens on, or let the operator set CRANKWRIGHT_ALLOWED_HOSTS",
+    ),
+    CrossSite: Kind(
+        "cross-site",
+        403,
+        "Another site may not do this",
+        "use the service's own pages, or a client that is no browser",
+    ),
     BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
     TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),

@@ -148,7 +148,7 @@ def artifact(sha256: str, store: TheStore) -> Response:
 )
 async def verify(request: Request, models: TheModels) -> dict[str, Any]:
     """From which build a STEP file is, and which revisions use it."""
-    if request.headers.get("content-type", "").partition(";")[0].strip() not in ("model/step", ""):
+    if request.headers.get("content-type", "").partition(";")[0].strip() != "model/step":
         raise NotJson("send the STEP file itself as model/step")
     return await run_in_threadpool(models.verify, await request.body())
 
