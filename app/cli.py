@@ -21,6 +21,7 @@ from app.main import create_app
 from app.settings import Settings
 from app.storage.errors import DataFolderInUse
 from app.storage.folder import DataFolder
+from app.targets import WholeTarget
 from cad.catalogue import models as find_models
 from templates.core.catalogue import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
@@ -86,7 +87,8 @@ def serve(host: str | None, port: int | None, data: Path | None, insecure: bool)
     click.echo(
         f"Crankwright at http://{place}:{settings.port}/docs, data in {settings.data.absolute()}", err=True
     )
-    uvicorn.run(create_app(settings), host=settings.host, port=settings.port, log_level="warning")
+    app = create_app(settings)
+    uvicorn.run(app, host=settings.host, port=settings.port, log_level="warning", http=WholeTarget)
 
 
 def _check_reach(host: str, insecure: bool) -> None:

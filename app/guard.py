@@ -19,12 +19,13 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.clients import is_inside
 from app.hosts import LONGEST, SETTING, Authority, Hosts, parse
 from app.http import HttpError
+from app.targets import is_mere_path
 
 logger = logging.getLogger(__name__)
 
 SAFE = {"GET", "HEAD", "OPTIONS"}
 OWN = {b"same-origin", b"none"}  # of Sec-Fetch-Site: our own pages, and what the user typed
-SCHEMES = {"ws": "http", "wss": "https"}  # of the page that opens a web socket
+SCHEMES = {"http": "http", "https": "https", "ws": "http", "wss": "https"}  # of connection: of its page
 POLICY = "default-src 'none'; frame-ancestors 'none'"
 HEADERS = (
     (b"content-security-policy", POLICY.encode()),
@@ -119,7 +120,7 @@ def check(scope: Scope, hosts: Hosts) -> None:
         If it comes from another site and is not a mere link.
     """
     looked = _looked_at(scope["headers"])
-    scheme: str = SCHEMES.get(scope["scheme"], scope["scheme"])
+    scheme = SCHEMES[scope["scheme"]]
     asked = _host(looked, scope)
     if not hosts.allows(asked, scheme, scope.get("server")):
         name = f"[{asked.name}]" if ":" in asked.name else asked.name
@@ -146,7 +147,7 @@ def _host(looked: Looked, scope: Scope) -> Authority:
     given = looked.get(b"host", [])
     if len(given) != 1:
         raise BadHost(f"send exactly one header Host; there are {len(given)}")
-    if not scope["path"].startswith("/") and scope["path"] != "*":
+    if not is_mere_path(scope):
         raise BadHost("send the path alone as the target of the request, such as /healthz, without a host")
     asked = parse(given[0].decode("latin-1"))
     if asked is None:

@@ -92,7 +92,7 @@ class Watched:
 
 def created(http, example: str) -> str:
     """The address of a design from the gallery, once its part is built."""
-    answer = http.post("/designs", content=f"example={example}")
+    answer = http.post("/designs", data={"example": example})
     assert answer.status_code == 303, answer.text
     place = answer.headers["location"]
     settled(http, place)
