@@ -1,11 +1,18 @@
 """What tests of the pages share: a page that is watched, designs of the gallery, a template of its own."""
 
+import shutil
 import sys
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[1] / "app"))
 
 from serving import API
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+FLAGS = (
+    "--no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
+    "--disable-component-update --disable-sync"
+).split()
 
 THIRD = '''
 """A third of a length, for tests of the pages."""
