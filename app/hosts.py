@@ -36,10 +36,14 @@ class Authority:
         return self.port or DEFAULT_PORTS.get(scheme, 80)
 
 
-@lru_cache(maxsize=1024)
 def parse(text: str) -> Authority | None:
     """The authority in a text such as `localhost:8000` or `[::1]:8000`; None if it is no authority."""
-    match = _AUTHORITY.fullmatch(text.lower()) if text.isascii() and len(text) <= LONGEST else None
+    return _parsed(text.lower()) if len(text) <= LONGEST and text.isascii() else None
+
+
+@lru_cache(maxsize=1024)  # of short texts only
+def _parsed(text: str) -> Authority | None:
+    match = _AUTHORITY.fullmatch(text)
     port = match and match["port"]
     if match is None or (port and not 0 < int(port) <= 65535):
         return None

@@ -1,7 +1,7 @@
 """Targets of requests that are no mere path, such as `GET http://evil.example/healthz`.
 
-uvicorn drops the host from such a target and serves the path. The guard shall see it and refuse: RFC 9112 wants
-that host to count instead of the header `Host`, and no client of this service sends one.
+uvicorn drops the host from such a target and serves the path, although RFC 9112 wants that host to count
+instead of the header `Host`. No client of this service sends one, so the guard refuses it.
 """
 
 from __future__ import annotations

@@ -167,9 +167,7 @@ def test_a_name_of_another_site_that_leads_here(browser, served, http, paper):
     before = state(http, paper)
     rule = "--host-resolver-rules=MAP evil.example 127.0.0.1"
     other = browser.browser_type.launch(executable_path=CHROMIUM, args=[*FLAGS, rule])
-    page = other.new_page(
-        bypass_csp=True
-    )  # the site's own page, loaded before its name changed, has no policy
+    page = other.new_page(bypass_csp=True)  # a page that the site sent before its name changed has no policy
     for path in ("/", "/docs", f"{API}/designs", paper):
         assert page.goto(f"http://evil.example:{port}{path}").status == 421
     script = "async ([path, method]) => (await fetch(path, { method })).status"
