@@ -12,7 +12,7 @@ from typing import Any
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
-from app import health, problems
+from app import docs, guard, health, problems
 from app.analyses.finding import Analysing
 from app.analyses.routes import router as analyses
 from app.analyses.service import ANALYSIS, Analyses, ModelAnalysis
@@ -30,7 +30,8 @@ from app.designs.routes import router as designs
 from app.designs.service import REGENERATE, REGENERATE_SLOWLY, Designs
 from app.heads import HeadLimit
 from app.health import Metrics
-from app.http import BodyLimit, BodyTooLarge, HeadTooLarge
+from app.hosts import Hosts
+from app.http import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
 from app.idempotency import forget_old_keys
 from app.jobs.routes import router as jobs
 from app.jobs.service import Jobs
@@ -76,6 +77,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         version=version("crankwright"),
         description=DESCRIPTION,
         lifespan=lifespan,
+        docs_url=None,  # ours has a policy
         redoc_url=None,
         telemetry={"tracing": False, "metrics": False, "logs": False},  # /metrics counts
         swagger_ui_parameters={"validatorUrl": None},  # the default one asks an outside address
@@ -102,10 +104,12 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.include_router(health.router)
     app.include_router(problems.router)
     problems.install(app)
+    docs.install(app)
     pages.install(app)
     app.add_middleware(BodyLimit, limit=chosen.body_limit, refuse=_too_large)
     app.add_middleware(HeadLimit, refuse=_head_too_large)
     app.add_middleware(Metrics)
+    guard.install(app, Hosts(chosen.allowed_hosts, chosen.host), _refused)
     app.openapi = partial(_openapi_3_1, app)  # type: ignore[method-assign]
     return app
 
@@ -156,11 +160,15 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
 
 
 def _too_large(told: str) -> Response:
-    return problems.answer(problems.describe(BodyTooLarge(told)))
+    return _refused(BodyTooLarge(told))
+
+
+def _refused(error: HttpError) -> Response:
+    return problems.answer(problems.describe(error))
 
 
 def _head_too_large(told: str) -> Response:
-    return problems.answer(problems.describe(HeadTooLarge(told)))
+    return _refused(HeadTooLarge(told))
 
 
 PROBLEM: dict[str, Any] = {

@@ -16,10 +16,12 @@ from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
 
 from app.designs import errors as designs
+from app.guard import BadHost, CrossSite, HostNotAllowed
 from app.http import (
     BodyTooLarge,
     HeadTooLarge,
     NotCsv,
+    NotForm,
     NotJson,
     NotStep,
     PreconditionRequired,
@@ -66,6 +68,20 @@ TABLE: dict[type[Exception], Kind] = {
     NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),
     NotCsv: Kind("not-csv", 415, "The body is not CSV", "send text/csv in UTF-8"),
     NotStep: Kind("not-step", 415, "The body is not said to be STEP", "send the file as model/step"),
+    NotForm: Kind("not-a-form", 415, "The body is not a form", "send application/x-www-form-urlencoded"),
+    BadHost: Kind("bad-host", 400, "The request names no host", "send one header Host, and the path alone"),
+    HostNotAllowed: Kind(
+        "host-not-allowed",
+        421,
+        "The service does not answer to this host",
+        "ask by localhost or the address it listens on, or let the operator set CRANKWRIGHT_ALLOWED_HOSTS",
+    ),
+    CrossSite: Kind(
+        "cross-site",
+        403,
+        "Another site may not do this",
+        "use the service's own pages, or a client that is no browser",
+    ),
     BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
     HeadTooLarge: Kind("head-too-large", 431, "The headers are too large", "send fewer or shorter headers"),
     TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
@@ -108,7 +124,7 @@ def describe(error: Exception) -> dict[str, Any]:
 
 
 def _detail(error: Exception) -> str:
-    """The text of an error; not FastAPI's own, which quotes the whole body, for `_validation` says it better."""
+    """The text of an error. FastAPI's own would quote the whole body; `_validation` says it better."""
     return "" if isinstance(error, RequestValidationError) else str(error)
 
 

@@ -1,9 +1,12 @@
 """What an operator may set: environment variables that begin with CRANKWRIGHT_, such as CRANKWRIGHT_PORT."""
 
 from pathlib import Path
+from typing import Annotated
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from app.hosts import check_entry
 
 
 class Settings(BaseSettings):
@@ -15,6 +18,13 @@ class Settings(BaseSettings):
     database_url: str | None = Field(None, description="SQLAlchemy URL; a SQLite file in `data` if not given")
     host: str = "127.0.0.1"
     port: int = Field(8000, ge=0, le=65535)
+    allowed_hosts: tuple[Annotated[str, AfterValidator(check_entry)], ...] = Field(
+        (),
+        description=(
+            "host names that the service answers to beside localhost, 127.0.0.0/8, [::1] and the address it "
+            'listens on; `"*.example.com"` stands for all sub-domains'
+        ),
+    )
     body_limit: int = Field(16 * 2**20, gt=0, description="largest request body [bytes]")
     template_folders: tuple[Path, ...] = Field((), description="folders of a team's own templates")
     wait_seconds: float = Field(2.0, ge=0, description="how long an answer waits for its job [s]")

@@ -1,7 +1,7 @@
 """What forms do: each is a call of the REST interface, then the page that shows what came of it.
 
 Without a script in the browser these are all actions there are; with one, `static/design.js` saves by itself.
-A form from another site is refused: a browser would send it without asking anyone.
+`app.guard` refuses a form of another site: a browser would send it without asking anyone.
 """
 
 from __future__ import annotations
@@ -9,10 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from typing import Any
-from urllib.parse import quote, urlsplit
+from urllib.parse import quote
 
-from fastapi import APIRouter, Depends, HTTPException, Request, Response
+from fastapi import APIRouter, Depends, Request, Response
 
+from app.http import FORM_TYPES, NotForm, check_type
 from app.web.api import Api, Refused, TheApi
 from app.web.design_page import design_page
 from app.web.forms import fields, kept, patch_of, value_of
@@ -26,15 +27,12 @@ STALE = 412
 ILL_NAMED = 422
 
 
-async def same_site(request: Request) -> None:
-    """Let forms of our own pages through only."""
-    kind, origin = request.headers.get("sec-fetch-site"), request.headers.get("origin")
-    foreign = kind not in (None, "same-origin", "none")
-    if foreign or (origin and urlsplit(origin).netloc != request.headers.get("host")):
-        raise HTTPException(403, "this form was sent from another site")
+async def forms_only(request: Request) -> None:
+    """Let bodies through only if they are forms."""
+    check_type(request, FORM_TYPES, NotForm)
 
 
-router = APIRouter(include_in_schema=False, dependencies=[Depends(same_site)])
+router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 
 @router.post("/designs")
