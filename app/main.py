@@ -30,7 +30,6 @@ from app.designs.routes import router as designs
 from app.designs.service import REGENERATE, REGENERATE_SLOWLY, Designs
 from app.health import Metrics
 from app.http import BodyLimit, BodyTooLarge
-from app.idempotency import forget_old_keys
 from app.jobs.routes import router as jobs
 from app.jobs.service import Jobs
 from app.jobs.shutdown import streams_end_on_signal
@@ -40,6 +39,7 @@ from app.models.service import BUILD, ModelBuild, Models
 from app.reports.paper import Press
 from app.reports.routes import router as reports
 from app.reports.service import Reports
+from app.retention.service import Retention
 from app.settings import Settings
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
@@ -126,8 +126,10 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     migrate(url)
     database = Database(url)
     stack.callback(database.close)
-    database.write(forget_old_keys)
     store = ArtifactStore(folder.artifacts)
+    retention = Retention(database, store, settings)
+    retention.start()
+    stack.callback(retention.stop)
     catalogues = Catalogues(
         find_templates(settings.template_folders), find_models(*settings.template_folders)
     )
