@@ -16,6 +16,7 @@ from app import health, problems
 from app.analyses.finding import Analysing
 from app.analyses.routes import router as analyses
 from app.analyses.service import ANALYSIS, Analyses, ModelAnalysis
+from app.cache import results
 from app.calculations.film_pressure import router as film_pressure
 from app.calculations.routes import router as calculations
 from app.calculations.routes import worksheets
@@ -127,6 +128,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     database = Database(url)
     stack.callback(database.close)
     store = ArtifactStore(folder.artifacts)
+    results.limit(settings.cache_mb)
     retention = Retention(database, store, settings)
     retention.start()
     stack.callback(retention.stop)

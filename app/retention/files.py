@@ -13,8 +13,8 @@ class Sweep:
     """Deletes files that two sweeps in succession saw without a reference.
 
     A file is stored before its row is written. The time between two sweeps is the grace for that, and for a
-    backup that copies the rows first. `put` touches a file that is there already, so a file that is wanted again
-    is another one to the sweep, whatever the wall clock says.
+    backup that copies the rows first. `put` touches a file that is there already, so to the sweep a file that
+    is wanted again is another one, whatever the wall clock says.
     """
 
     def __init__(self, database: Database, store: ArtifactStore) -> None:
