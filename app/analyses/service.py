@@ -47,11 +47,9 @@ class Analyses:
         shaft_of(shape)
         build = build_key(shape)
 
-        def is_known(session: Session) -> bool:
-            return set(outputs) <= repository.found(session, question.key(build)).keys()
-
         with self.database.read() as session:
-            if is_known(session) and is_fresh(session, [build]):
+            is_known = set(outputs) <= repository.found(session, question.key(build)).keys()
+            if is_known and is_fresh(session, [build]):
                 return None
         payload = {
             "model": shape.id,
@@ -62,7 +60,7 @@ class Analyses:
         }
 
         def unit(session: Session) -> str | None:
-            if renew(session, [build]) and is_known(session):
+            if renew(session, [build]) and is_known:  # it did not go meanwhile
                 return None
             return self.jobs.request(session, ANALYSIS, payload, client)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import defaultdict, deque
 from math import ceil
 
 from sqlalchemy.orm import Session
@@ -12,7 +12,7 @@ from app.jobs.errors import QueueFull
 from app.jobs.turns import Lane
 from app.settings import Settings
 
-_USUAL = {False: 5.0, True: 60.0}  # how long a job takes, by whether slow, before any has been measured [s]
+_USUAL = 5.0  # how long a job takes, before any of its lane has been measured [s]
 _MEASURED = 20  # jobs of a lane, over which the mean is taken
 _LONGEST = 3600  # advice [s]
 
@@ -21,16 +21,16 @@ class Durations:
     """How long the latest jobs of each lane took, by the monotonic clock."""
 
     def __init__(self) -> None:
-        self._seconds = {slow: deque[float](maxlen=_MEASURED) for slow in _USUAL}
+        self._seconds = defaultdict[Lane, deque[float]](lambda: deque(maxlen=_MEASURED))
 
-    def note(self, slow: bool, seconds: float) -> None:
+    def note(self, lane: Lane, seconds: float) -> None:
         """Note how long a job took [s]."""
-        self._seconds[slow].append(seconds)
+        self._seconds[lane].append(seconds)
 
-    def mean(self, slow: bool) -> float:
+    def mean(self, lane: Lane) -> float:
         """The mean of the latest jobs [s]."""
-        latest = list(self._seconds[slow])
-        return sum(latest) / len(latest) if latest else _USUAL[slow]
+        latest = list(self._seconds[lane])
+        return sum(latest) / len(latest) if latest else _USUAL
 
 
 def admit(session: Session, client: str, lane: Lane, settings: Settings, durations: Durations) -> None:
@@ -59,4 +59,4 @@ def _reserve(limit: int) -> int:
 def _seconds_to_a_place(session: Session, client: str, lane: Lane, workers: int, durations: Durations) -> int:
     """When a job of the client has probably left the queue [s]."""
     rounds = turns.count_until_next(session, client, lane) / (1 if lane.is_slow else workers)
-    return min(_LONGEST, max(1, ceil(rounds * durations.mean(lane.is_slow))))
+    return min(_LONGEST, max(1, ceil(rounds * durations.mean(lane))))

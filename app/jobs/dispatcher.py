@@ -116,7 +116,7 @@ class Dispatcher:
             try:
                 self._execute(job)
             finally:
-                self.durations.note(slow, time.monotonic() - start)
+                self.durations.note(self.lane(job.kind), time.monotonic() - start)
                 if self._running.get(job.id) is mine:  # given back, it may run again in another thread by now
                     del self._running[job.id]
 

@@ -50,12 +50,9 @@ class Models:
     def request(self, shape: CadModel, kinds: tuple[str, ...], client: str = "") -> str | None:
         """The job that makes a build and its files, or None if all are there."""
         key = build_key(shape)
-
-        def is_there(session: Session) -> bool:
-            return set(kinds) <= repository.artifacts(session, key).keys()
-
         with self.database.read() as session:
-            if is_there(session) and is_fresh(session, [key]):
+            is_there = set(kinds) <= repository.artifacts(session, key).keys()
+            if is_there and is_fresh(session, [key]):
                 return None
         payload = {
             "model": shape.id,
@@ -65,7 +62,7 @@ class Models:
         }
 
         def unit(session: Session) -> str | None:
-            if renew(session, [key]) and is_there(session):
+            if renew(session, [key]) and is_there:  # it did not go meanwhile
                 return None
             return self.jobs.request(session, BUILD, payload, client)
 

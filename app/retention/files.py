@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from app.retention.rows import referenced_files
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import ArtifactStore, Stored
 from app.storage.database import Database
 
 
@@ -19,20 +19,13 @@ class Sweep:
 
     def __init__(self, database: Database, store: ArtifactStore) -> None:
         self._database, self._store = database, store
-        self._seen: dict[
-            str, int
-        ] = {}  # what the last sweep saw without a reference, and when it was touched
+        self._seen: set[Stored] = set()  # by the last sweep, without a reference
 
     def run(self, is_stopping: Callable[[], bool] = lambda: False) -> int:
         """Sweep once; return how many files were deleted."""
-        files = {file.sha: file.touched for file in self._store.list()}  # before the rows: a new file has one
+        files = set(self._store.list())  # before the rows: a file that is put meanwhile is not looked at
         with self._database.read() as session:
             referenced = referenced_files(session)
-        unused = {sha: touched for sha, touched in files.items() if sha not in referenced}
-        count = 0
-        for sha in unused.keys() & self._seen.keys():
-            if is_stopping():
-                break
-            count += self._seen[sha] == unused[sha] and self._store.delete(sha, unused[sha])
-        self._seen = unused
-        return count
+        unused = {file for file in files if file.sha not in referenced}
+        twice, self._seen = unused & self._seen, unused
+        return sum(self._store.delete_unchanged(file) for file in twice if not is_stopping())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 from typing import Any
 
@@ -18,6 +19,8 @@ from app.storage.tables import (
     JobRow,
     RevisionModelRow,
 )
+
+_SHA256 = re.compile(r"(?<![0-9a-f])[0-9a-f]{64}(?![0-9a-f])")
 
 
 def delete_keys(session: Session, kept: float, most: int) -> int:
@@ -59,11 +62,17 @@ def delete_builds(session: Session, keys: Collection[str], kept: float) -> int:
 
 
 def referenced_files(session: Session) -> set[str]:
-    """The SHA-256 of every file that a row refers to: artifacts, and outputs of analyses that are files."""
-    artifacts = set(session.scalars(select(ArtifactRow.sha256)))
-    holds_file = cast(AnalysisRow.found, Text).contains('"sha256"')
-    outputs = session.scalars(select(AnalysisRow.found).where(holds_file))
-    return artifacts | {output["sha256"] for output in outputs if "sha256" in output}
+    """The SHA-256 of every file that a row refers to, and some hashes more, such as keys of builds.
+
+    Files belong to artifacts, to outputs of analyses that are files, and to whatever a job was given or made.
+    Whoever lets another column refer to files adds it here.
+    """
+    files = set(session.scalars(select(ArtifactRow.sha256)))
+    for column in (AnalysisRow.found, JobRow.payload, JobRow.result):
+        text = cast(column, Text)
+        for part in session.execute(select(text).where(text.like("%" + 64 * "_" + "%"))).scalars():
+            files.update(_SHA256.findall(part))
+    return files
 
 
 def _is_unwanted(session: Session, kept: float) -> ColumnElement[bool]:

@@ -18,11 +18,11 @@ _TEMPORARY = ".tmp-"
 
 @dataclass(frozen=True)
 class Stored:
-    """A file of the store; `touched` changes when its bytes are stored, also if they are there already."""
+    """A file in the store: its name, its size [bytes] and when it was last put [s since 1970]."""
 
     sha: str
     size: int
-    touched: int
+    modified: float
 
 
 class ArtifactStore:
@@ -33,7 +33,7 @@ class ArtifactStore:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._lock = threading.Lock()  # between storing a file and deleting it
+        self._changing = threading.Lock()  # nobody deletes a file that is being put
         folder.mkdir(parents=True, exist_ok=True)
         for stale in folder.glob(f"*/{_TEMPORARY}*"):
             stale.unlink()
@@ -41,23 +41,23 @@ class ArtifactStore:
     def put(self, data: bytes) -> str:
         """Store the bytes durably and return their SHA-256; the same bytes are stored once."""
         sha = hashlib.sha256(data).hexdigest()
-        with self._lock:
+        with self._changing:
             self._store(sha, data)
         return sha
 
     def list(self) -> Iterator[Stored]:
-        """Every file, in no order."""
+        """Every file in the store, in no order."""
         for path in self._folder.glob("??/*"):
             if _SHA256.fullmatch(path.name):
                 with suppress(FileNotFoundError):  # deleted meanwhile
-                    status = path.stat()
-                    yield Stored(path.name, status.st_size, status.st_mtime_ns)
+                    seen = path.stat()
+                    yield Stored(path.name, seen.st_size, seen.st_mtime)
 
-    def delete(self, sha: str, touched: int) -> bool:
-        """Delete a file unless it was stored again since it was listed; return whether it is deleted."""
-        location = self._location(sha)
-        with self._lock, suppress(FileNotFoundError):
-            if location.stat().st_mtime_ns == touched:
+    def delete_unchanged(self, seen: Stored) -> bool:
+        """Delete a file unless it was put again since it was listed; return whether it is deleted."""
+        location = self._location(seen.sha)
+        with self._changing, suppress(FileNotFoundError):
+            if location.stat().st_mtime == seen.modified:
                 location.unlink()
                 return True
         return False
@@ -69,7 +69,7 @@ class ArtifactStore:
             target.parent.mkdir(exist_ok=True)
             _write_whole(target, data)
         else:
-            os.utime(target)  # it is wanted again, see `delete`
+            os.utime(target)  # it is wanted again, see `delete_unchanged`
         # Even for a file found: the writer that renamed it may not have synced its folder yet.
         _sync_folder(target.parent)
         _sync_folder(self._folder)
