@@ -46,7 +46,6 @@ class Analyses:
         """
         shaft_of(shape)
         build = build_key(shape)
-
         with self.database.read() as session:
             is_known = set(outputs) <= repository.found(session, question.key(build)).keys()
             if is_known and is_fresh(session, [build]):

@@ -48,9 +48,9 @@ def next_turn(session: Session, client: str, lane: Lane) -> int:
 
 def _present_turn(session: Session, lane: Lane) -> int:
     """The turn that a lane is at: the lowest that waits, else the highest that runs."""
-    waiting = select(func.min(JobRow.turn)).where(JobRow.state == "queued", lane.holds())
-    running = select(func.max(JobRow.turn)).where(JobRow.state == "running", lane.holds())
-    turns = (session.scalar(query) for query in (waiting, running))
+    waiting = select(JobRow.turn).where(JobRow.state == "queued", lane.holds()).order_by(JobRow.turn)
+    running = select(JobRow.turn).where(JobRow.state == "running", lane.holds()).order_by(JobRow.turn.desc())
+    turns = (session.scalar(query.limit(1)) for query in (waiting, running))
     return next((turn for turn in turns if turn is not None), 0)
 
 
