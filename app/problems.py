@@ -88,6 +88,7 @@ TABLE: dict[type[Exception], Kind] = {
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),
     jobs.JobNotFound: Kind("no-such-job", 404, "No such job", "GET /api/v1/jobs lists them"),
     jobs.JobFinished: Kind("job-finished", 409, "The job has ended", "nothing is left to cancel"),
+    jobs.JobShared: Kind("job-shared", 409, "Others wait for the job", "leave it to them"),
     jobs.QueueFull: Kind("queue-full", 429, "Too much is waiting", "retry after the time in Retry-After"),
     Unprintable: Kind("unprintable", 422, "The report is too long for paper", "ask for text/html"),
     storage.ArtifactMissing: Kind(

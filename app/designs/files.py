@@ -10,6 +10,7 @@ from fastapi.responses import FileResponse
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
+from app.clients import TheClient
 from app.dependencies import TheDatabase, TheJobs, TheModels, TheStore
 from app.designs import views
 from app.designs.errors import NotFound
@@ -43,6 +44,7 @@ async def model_file(
     store: TheStore,
     models: TheModels,
     jobs: TheJobs,
+    client: TheClient,
     name: Id | None = None,
     kind: Id | None = None,
     number: Number | None = None,
@@ -61,7 +63,7 @@ async def model_file(
 
     model, key, file = await run_in_threadpool(find)
     if file is None:
-        job = await run_in_threadpool(lambda: models.request_file(key, wanted))
+        job = await run_in_threadpool(lambda: models.request_file(key, wanted, client))
         if not await finished(jobs, job, prefer):
             return accepted(job)
         if failed := await run_in_threadpool(lambda: jobs.get(job).problem):

@@ -13,6 +13,7 @@ from app import problems
 from app.analyses.questions import what_can_be_asked
 from app.bounded import Bounded, at_most
 from app.catalogue.routes import Number, summary
+from app.clients import TheClient
 from app.dependencies import TheCatalogues, TheJobs, TheModels, TheStore
 from app.http import STEP_TYPES, StrictRoute, require_step
 from app.paging import Cursor, Limit, page_of
@@ -93,12 +94,13 @@ async def picture(
     catalogues: TheCatalogues,
     models: TheModels,
     jobs: TheJobs,
+    client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
     """A picture (PNG) of the model's example."""
     cls = catalogues.models.get(id, number)
     shape = cls.from_quantities(cls.example)
-    job = await run_in_threadpool(models.request, shape, ("step", "png"))
+    job = await run_in_threadpool(models.request, shape, ("step", "png"), client)
     if not await finished(jobs, job, prefer):
         return accepted(job)
     return send_file(await run_in_threadpool(models.file, build_key(shape), "png"))
@@ -112,6 +114,7 @@ async def build(
     catalogues: TheCatalogues,
     models: TheModels,
     jobs: TheJobs,
+    client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
     """Build a model, check it, measure it on the finished STEP file. Equal parameters are built once."""
@@ -123,7 +126,7 @@ async def build(
         )
     shape = catalogues.models.get(id, number).from_quantities(body.parameters)
     kinds = tuple(dict.fromkeys(("step", *body.artifacts)))
-    job = await run_in_threadpool(models.request, shape, kinds)
+    job = await run_in_threadpool(models.request, shape, kinds, client)
     if not await finished(jobs, job, prefer):
         return accepted(job, {"build": build_key(shape), "artifacts": {}, "measurements": None})
     if job and (failed := await run_in_threadpool(lambda: jobs.get(job).problem)):

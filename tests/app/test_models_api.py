@@ -225,9 +225,7 @@ class TestVerify:
 class TestHealth:
     def test_health_and_readiness(self, http):
         assert http.get("/healthz").json() == {"status": "ok"}
-        ready = http.get("/readyz").json()
-        assert ready["status"] == "ready"
-        assert ready["designs"] == len(http.get(DESIGNS, params={"limit": 500}).json()["items"])
+        assert http.get("/readyz").json()["status"] == "ready"
 
     def test_metrics_count(self, http):
         def requests():
