@@ -108,7 +108,7 @@ def describe(error: Exception) -> dict[str, Any]:
 
 
 def _detail(error: Exception) -> str:
-    """The text of an error; not FastAPI's own, which quotes the whole body, for `_validation` says it better."""
+    """The text of an error; none of FastAPI's, which quotes the whole body: `_validation` says it better."""
     return "" if isinstance(error, RequestValidationError) else str(error)
 
 
