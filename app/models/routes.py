@@ -15,7 +15,7 @@ from app.bounded import Bounded, at_most
 from app.catalogue.routes import Number, summary
 from app.clients import TheClient
 from app.dependencies import TheCatalogues, TheJobs, TheModels, TheStore
-from app.http import STEP_TYPES, StrictRoute, require_step
+from app.http import StrictRoute, require_step
 from app.paging import Cursor, Limit, page_of
 from app.waiting import LATER, accepted, finished
 from cad.export import DRAWINGS, MEDIA_TYPES
@@ -152,17 +152,15 @@ def artifact(sha256: str, store: TheStore) -> Response:
 
 
 STEP_FILE: dict[str, Any] = {"type": "string", "format": "binary"}
-STEP_BODY: dict[str, Any] = {
-    "content": {kind: {"schema": STEP_FILE} for kind in STEP_TYPES},
-    "required": True,
-}
+STEP_BODY: dict[str, Any] = {"content": {"model/step": {"schema": STEP_FILE}}, "required": True}
 
 
 @router.post("/verify", openapi_extra={"requestBody": STEP_BODY})
 async def verify(request: Request, models: TheModels) -> dict[str, Any]:
     """From which build a STEP file is, and which revisions use it.
 
-    The body is the file itself, sent as `model/step`; only the header, in its first 64 KiB, is looked at.
+    The body is the file itself, sent as `model/step`; `application/step` and `application/p21` mean the same.
+    Which build it is stands in its header, within the first 64 KiB.
     """
     require_step(request)
     return await run_in_threadpool(models.verify, await request.body())
