@@ -18,7 +18,6 @@ from prometheus_client import (
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.dependencies import TheDatabase, TheJobs
-from app.designs import repository
 
 router = APIRouter(tags=["health"])
 
@@ -26,7 +25,9 @@ REGISTRY = CollectorRegistry()
 REQUESTS = Counter("crankwright_requests_total", "Requests answered", ["status"], registry=REGISTRY)
 SECONDS = Histogram("crankwright_request_seconds", "Time to answer [s]", registry=REGISTRY)
 QUEUED = Gauge("crankwright_jobs_queued", "Jobs that wait", registry=REGISTRY)
-DESIGNS = Gauge("crankwright_designs", "Designs in the lists", registry=REGISTRY)
+OLDEST = Gauge(
+    "crankwright_jobs_oldest_seconds", "How long the oldest of them has waited [s]", registry=REGISTRY
+)
 
 
 @router.get("/healthz")
@@ -36,18 +37,19 @@ async def healthz() -> dict[str, str]:
 
 
 @router.get("/readyz")
-def readyz(database: TheDatabase) -> dict[str, Any]:
+def readyz(database: TheDatabase, jobs: TheJobs) -> dict[str, Any]:
     """The database answers."""
     with database.read() as session:
-        return {"status": "ready", "designs": repository.count(session)}
+        jobs.queued(session)
+        return {"status": "ready"}
 
 
 @router.get("/metrics")
 def metrics(database: TheDatabase, jobs: TheJobs) -> Response:
     """Figures for Prometheus."""
     with database.read() as session:
-        DESIGNS.set(repository.count(session))
         QUEUED.set(jobs.queued(session))
+        OLDEST.set(jobs.oldest_queued_age(session))
     return Response(generate_latest(REGISTRY), media_type=CONTENT_TYPE_LATEST)
 
 

@@ -18,6 +18,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 JSON_TYPES = {"application/json"}
 PATCH_TYPES = {"application/json", "application/merge-patch+json"}
+STEP_TYPES = ("model/step", "application/step", "application/p21")
+"""The registered name of STEP's clear text, and two that were in use before it."""
 FORM_TYPES = {"application/x-www-form-urlencoded"}
 MOST_BRACKETS, MOST_QUOTES = 250_000, 400_000
 """In one body. A list of numbers has one bracket; millions of them keep the parser, and the server, busy."""
@@ -29,6 +31,10 @@ class HttpError(Exception):
 
 class BodyTooLarge(HttpError):
     """The body is larger than the service takes."""
+
+
+class HeadTooLarge(HttpError):
+    """The address and the headers are longer than the service takes."""
 
 
 class TooManyValues(HttpError):
@@ -49,6 +55,10 @@ class NotForm(HttpError):
 
 class NotCsv(HttpError):
     """The content type is not that of a table."""
+
+
+class NotStep(HttpError):
+    """The content type is not that of a STEP file."""
 
 
 class PreconditionRequired(HttpError):
@@ -114,6 +124,21 @@ def check_type(request: Request, allowed: set[str], error: type[HttpError] = Not
         return  # an empty body is judged by what the route needs
     if given.partition(";")[0].strip().lower() not in allowed:
         raise error(f"content type {given[:80]!r} is not taken here; send {' or '.join(sorted(allowed))}")
+
+
+def require_step(request: Request) -> None:
+    """Refuse a body that does not say that it is a STEP file; packed ones (`+zip`) are not understood.
+
+    Raises
+    ------
+    NotStep
+        If the content type is another, or missing.
+    """
+    given = request.headers.get("content-type", "")
+    if given.partition(";")[0].strip().lower() not in STEP_TYPES:
+        raise NotStep(
+            f"content type {given[:80]!r} is not taken here; send the STEP file itself as model/step"
+        )
 
 
 def _check_intricacy(body: bytes) -> None:

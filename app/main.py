@@ -16,6 +16,7 @@ from app import docs, guard, health, problems
 from app.analyses.finding import Analysing
 from app.analyses.routes import router as analyses
 from app.analyses.service import ANALYSIS, Analyses, ModelAnalysis
+from app.cache import results
 from app.calculations.film_pressure import router as film_pressure
 from app.calculations.routes import router as calculations
 from app.calculations.routes import worksheets
@@ -28,10 +29,10 @@ from app.designs.graph import Catalogues
 from app.designs.regeneration import Regeneration
 from app.designs.routes import router as designs
 from app.designs.service import REGENERATE, REGENERATE_SLOWLY, Designs
+from app.heads import HeadLimit
 from app.health import Metrics
 from app.hosts import Hosts
-from app.http import BodyLimit, BodyTooLarge, HttpError
-from app.idempotency import forget_old_keys
+from app.http import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
 from app.jobs.routes import router as jobs
 from app.jobs.service import Jobs
 from app.jobs.shutdown import streams_end_on_signal
@@ -41,6 +42,7 @@ from app.models.service import BUILD, ModelBuild, Models
 from app.reports.paper import Press
 from app.reports.routes import router as reports
 from app.reports.service import Reports
+from app.retention.service import Retention
 from app.settings import Settings
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
@@ -106,6 +108,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     docs.install(app)
     pages.install(app)
     app.add_middleware(BodyLimit, limit=chosen.body_limit, refuse=_too_large)
+    app.add_middleware(HeadLimit, refuse=_head_too_large)
     app.add_middleware(Metrics)
     guard.install(app, Hosts(chosen.allowed_hosts, chosen.host), _refused)
     app.openapi = partial(_openapi_3_1, app)  # type: ignore[method-assign]
@@ -130,8 +133,11 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     migrate(url)
     database = Database(url)
     stack.callback(database.close)
-    database.write(forget_old_keys)
     store = ArtifactStore(folder.artifacts)
+    results.limit(settings.cache_mb)
+    retention = Retention(database, store, settings)
+    retention.start()
+    stack.callback(retention.stop)
     catalogues = Catalogues(
         find_templates(settings.template_folders), find_models(*settings.template_folders)
     )
@@ -163,6 +169,10 @@ def _too_large(told: str) -> Response:
 
 def _refused(error: HttpError) -> Response:
     return problems.answer(problems.describe(error))
+
+
+def _head_too_large(told: str) -> Response:
+    return _refused(HeadTooLarge(told))
 
 
 PROBLEM: dict[str, Any] = {

@@ -19,9 +19,11 @@ from app.designs import errors as designs
 from app.guard import BadHost, CrossSite, HostNotAllowed
 from app.http import (
     BodyTooLarge,
+    HeadTooLarge,
     NotCsv,
     NotForm,
     NotJson,
+    NotStep,
     PreconditionRequired,
     TooIntricate,
     TooManyValues,
@@ -36,6 +38,7 @@ from templates.core import errors as templates
 logger = logging.getLogger(__name__)
 
 MEDIA_TYPE = "application/problem+json"
+LONGEST_PLACE = 200  # characters of where in a body something is wrong; its names come from the client
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,7 @@ TABLE: dict[type[Exception], Kind] = {
     PreconditionRequired: Kind("precondition-required", 428, "If-Match is needed", "send the design's ETag"),
     NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),
     NotCsv: Kind("not-csv", 415, "The body is not CSV", "send text/csv in UTF-8"),
+    NotStep: Kind("not-step", 415, "The body is not said to be STEP", "send the file as model/step"),
     NotForm: Kind("not-a-form", 415, "The body is not a form", "send application/x-www-form-urlencoded"),
     BadHost: Kind("bad-host", 400, "The request names no host", "send one header Host, and the path alone"),
     HostNotAllowed: Kind(
@@ -79,10 +83,12 @@ TABLE: dict[type[Exception], Kind] = {
         "use the service's own pages, or a client that is no browser",
     ),
     BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
+    HeadTooLarge: Kind("head-too-large", 431, "The headers are too large", "send fewer or shorter headers"),
     TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),
     jobs.JobNotFound: Kind("no-such-job", 404, "No such job", "GET /api/v1/jobs lists them"),
     jobs.JobFinished: Kind("job-finished", 409, "The job has ended", "nothing is left to cancel"),
+    jobs.JobShared: Kind("job-shared", 409, "Others wait for the job", "leave it to them"),
     jobs.QueueFull: Kind("queue-full", 429, "Too much is waiting", "retry after the time in Retry-After"),
     Unprintable: Kind("unprintable", 422, "The report is too long for paper", "ask for text/html"),
     storage.ArtifactMissing: Kind(
@@ -113,9 +119,14 @@ def kind_of(error: Exception) -> Kind:
 def describe(error: Exception) -> dict[str, Any]:
     """An error as a problem (RFC 9457), with all that it carries."""
     kind = kind_of(error)
-    detail = kind.remedy if kind is INTERNAL else str(error)
+    detail = kind.remedy if kind is INTERNAL else _detail(error)
     carried = next((tell(error) for cls, tell in _CARRIED.items() if isinstance(error, cls)), {})
     return {**problem(kind, detail[:2000]), **carried}
+
+
+def _detail(error: Exception) -> str:
+    """The text of an error. FastAPI's own would quote the whole body; `_validation` says it better."""
+    return "" if isinstance(error, RequestValidationError) else str(error)
 
 
 def problem(kind: Kind, detail: str) -> dict[str, Any]:
@@ -135,13 +146,17 @@ def _validation(error: RequestValidationError) -> dict[str, Any]:
 
 
 def _located(found: Mapping[str, Any]) -> dict[str, Any]:
-    place = [str(part) for part in found["loc"]]
+    place = [str(part)[:LONGEST_PLACE] for part in found["loc"]]
     if found["type"] == "json_invalid":
         place = ["body"]
     inside = place[1:] if place[0] in ("body", "query", "path", "header") else place
     reason = found.get("ctx", {}).get("error", "") if found["type"] == "json_invalid" else ""
     detail = f"{found['msg']}: {reason}" if reason else found["msg"]
-    return {"name": ".".join(inside) or place[0], "code": found["type"], "detail": detail}
+    return {
+        "name": templates.plain(".".join(inside) or place[0], LONGEST_PLACE),
+        "code": found["type"],
+        "detail": detail,
+    }
 
 
 def _short(listed: Iterable[Mapping[str, Any]]) -> str:
@@ -207,7 +222,7 @@ async def _handle(request: Request, error: Exception) -> Response:
 async def _handle_http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     kind = HTTP.get(error.status_code) or Kind("http", error.status_code, error.detail, "see `detail`")
-    return answer(problem(kind, f"{request.url.path}: {error.detail}"), error.headers)
+    return answer(problem(kind, f"{request.url.path}: {error.detail}"[:2000]), error.headers)
 
 
 async def _handle_unexpected(request: Request, error: Exception) -> Response:

@@ -28,9 +28,20 @@ class Settings(BaseSettings):
     body_limit: int = Field(16 * 2**20, gt=0, description="largest request body [bytes]")
     template_folders: tuple[Path, ...] = Field((), description="folders of a team's own templates")
     wait_seconds: float = Field(2.0, ge=0, description="how long an answer waits for its job [s]")
-    queue_limit: int = Field(200, gt=0, description="jobs that may be queued before new ones are refused")
+    queue_limit: int = Field(1000, gt=0, description="jobs that may be queued before new ones are refused")
+    client_queue_limit: int = Field(50, gt=0, description="jobs of one client that may be queued")
     workers: int = Field(1, gt=0, description="jobs that run at the same time, beside one analysis")
     job_deadline: float = Field(60.0, gt=0, description="longest run of one job process [s]")
     job_memory_mb: int = Field(3072, gt=0, description="memory of one job process beside the program [MiB]")
     analysis_deadline: float = Field(300.0, gt=0, description="longest run of one analysis of a solid [s]")
     analysis_memory_mb: int = Field(6144, gt=0, description="memory of one such analysis [MiB]")
+    cache_mb: int = Field(256, gt=0, description="memory for results that are kept to be used again [MiB]")
+    keep_jobs_days: float = Field(
+        90, gt=0, description="how long an ended job is listed [days of operation]; at least as long as keys"
+    )
+    keep_keys_days: float = Field(
+        7, gt=0, description="how long an Idempotency-Key is remembered [days of operation]"
+    )
+    keep_builds_days: float = Field(
+        90, ge=1, description="how long a build that no revision uses is kept [days of operation]"
+    )

@@ -7,12 +7,13 @@ instead of the header `Host`. No client of this service sends one, so the guard 
 from __future__ import annotations
 
 from starlette.types import Scope
-from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+
+from app.heads import BoundedHead
 
 _KEY = "crankwright.target"
 
 
-class WholeTarget(HttpToolsProtocol):
+class WholeTarget(BoundedHead):
     """uvicorn's protocol, which leaves a note in the scope where the target is no mere path."""
 
     def on_headers_complete(self) -> None:

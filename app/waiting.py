@@ -15,6 +15,14 @@ LATER: dict[int | str, dict[str, Any]] = {
 }
 """What a route that may wait for a job says of its answers."""
 
+MOST_ACCEPTED = 50  # kinds in one Accept; browsers send up to ten
+
+
+def accepted_kinds(accept: str | None) -> list[tuple[str, str]]:
+    """The media types of an Accept header, each with its parameters."""
+    named = (part.partition(";") for part in (accept or "").lower().split(",", MOST_ACCEPTED)[:MOST_ACCEPTED])
+    return [(media.strip(), parameters) for media, _, parameters in named]
+
 
 async def finished(jobs: Jobs, job: str | None, prefer: str | None) -> bool:
     """Whether the job, if there is one, ended within the time that the client waits."""

@@ -24,6 +24,7 @@ from app.analyses.questions import (
 from app.analyses.schemas import AnalysisIn, SurfaceOut
 from app.calculations.display import Units, converted
 from app.catalogue.routes import Number
+from app.clients import TheClient
 from app.dependencies import TheAnalyses, TheCatalogues, TheJobs
 from app.designs.errors import NotFound
 from app.http import StrictRoute
@@ -47,6 +48,7 @@ async def analyse(
     catalogues: TheCatalogues,
     analyses: TheAnalyses,
     jobs: TheJobs,
+    client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
     units: Units = "si",
 ) -> Response:
@@ -61,7 +63,7 @@ async def analyse(
     cls = catalogues.models.get(id, number)
     outputs = _checked(cls, kind, body)
     shape, asked = cls.from_quantities(body.parameters), question(kind, body)
-    job = await run_in_threadpool(analyses.request, shape, asked, outputs)
+    job = await run_in_threadpool(analyses.request, shape, asked, outputs, client)
     if not await finished(jobs, job, prefer):
         return accepted(job, await run_in_threadpool(analyses.show, shape, asked, ()))
     if failed := await run_in_threadpool(jobs.problem, job):

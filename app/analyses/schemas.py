@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.analyses.questions import Options
+from app.bounded import at_most
 
 THROW: dict[str, Any] = {
     "journal_diameter": "50 mm",
@@ -32,6 +33,9 @@ EXAMPLE: dict[str, Any] = {
 """One triangle."""
 
 
+Given = Annotated[dict[str, Any], Field(max_length=500), at_most(500)]
+
+
 class AnalysisIn(Options):
     """Analyse a model's solid by finite elements."""
 
@@ -44,7 +48,7 @@ class AnalysisIn(Options):
         }
     )
 
-    parameters: dict[str, Any] = Field(description='quantities by name: `"48 mm"`; the others have defaults')
+    parameters: Given = Field(description='quantities by name: `"48 mm"`; the others have defaults')
     outputs: list[str] | None = Field(
         None,
         max_length=10,

@@ -14,6 +14,7 @@ from app.analyses.views import shown
 from app.designs import repository as builds
 from app.designs.errors import NotFound
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.models.ages import is_fresh, renew
 from app.models.builds import Builds
 from app.models.service import FAILURES, File
 from app.problems import describe
@@ -33,7 +34,9 @@ class Analyses:
     def __init__(self, database: Database, store: ArtifactStore, jobs: Jobs) -> None:
         self.database, self.store, self.jobs = database, store, jobs
 
-    def request(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> str | None:
+    def request(
+        self, shape: CadModel, question: Question, outputs: tuple[str, ...], client: str = ""
+    ) -> str | None:
         """The job that builds and analyses a model, or None if all outputs are known.
 
         Raises
@@ -42,8 +45,10 @@ class Analyses:
             If the model is no shaft.
         """
         shaft_of(shape)
+        build = build_key(shape)
         with self.database.read() as session:
-            if set(outputs) <= repository.found(session, question.key(build_key(shape))).keys():
+            is_known = set(outputs) <= repository.found(session, question.key(build)).keys()
+            if is_known and is_fresh(session, [build]):
                 return None
         payload = {
             "model": shape.id,
@@ -53,9 +58,10 @@ class Analyses:
             "outputs": [*outputs],
         }
 
-        def unit(session: Session) -> str:
-            alike = self.jobs.waiting(session, ANALYSIS, payload)
-            return alike or self.jobs.enqueue(session, ANALYSIS, payload)
+        def unit(session: Session) -> str | None:
+            if renew(session, [build]) and is_known:  # it did not go meanwhile
+                return None
+            return self.jobs.request(session, ANALYSIS, payload, client)
 
         job = self.database.write(unit)
         self.jobs.wake()

@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 from fastapi import APIRouter
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
+from app.bounded import Bounded
 from app.calculations.display import Units, converted
 from app.http import StrictRoute
 from templates.core.errors import Fault, InvalidInputs
@@ -47,7 +48,7 @@ class FilmPressure(Template):
     eta: Array = given("mPa*s", "dynamic viscosity", gt=0)
 
 
-class FilmPressureIn(BaseModel):
+class FilmPressureIn(Bounded):
     """A journal at rest in its film."""
 
     model_config = ConfigDict(

@@ -10,13 +10,14 @@ from fastapi.responses import FileResponse
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
+from app.clients import TheClient
 from app.dependencies import TheDatabase, TheJobs, TheModels, TheStore
 from app.designs import views
 from app.designs.errors import NotFound
 from app.designs.routes import Id, Number, Prefer
 from app.http import StrictRoute
 from app.models.routes import send_file
-from app.waiting import LATER, accepted, finished
+from app.waiting import LATER, accepted, accepted_kinds, finished
 from cad.export import MEDIA_TYPES
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
@@ -43,6 +44,7 @@ async def model_file(
     store: TheStore,
     models: TheModels,
     jobs: TheJobs,
+    client: TheClient,
     name: Id | None = None,
     kind: Id | None = None,
     number: Number | None = None,
@@ -61,7 +63,7 @@ async def model_file(
 
     model, key, file = await run_in_threadpool(find)
     if file is None:
-        job = await run_in_threadpool(lambda: models.request_file(key, wanted))
+        job = await run_in_threadpool(lambda: models.request_file(key, wanted, client))
         if not await finished(jobs, job, prefer):
             return accepted(job)
         if failed := await run_in_threadpool(lambda: jobs.get(job).problem):
@@ -74,8 +76,7 @@ async def model_file(
 def _accepted(accept: str | None) -> str:
     """The kind that the client likes best, of those it likes equally the first; STEP by default."""
     kinds = {media: kind for kind, media in MEDIA_TYPES.items()}
-    named = (part.partition(";") for part in (accept or "").lower().split(","))
-    liked = [(_weight(more), kinds[media.strip()]) for media, _, more in named if media.strip() in kinds]
+    liked = [(_weight(more), kinds[media]) for media, more in accepted_kinds(accept) if media in kinds]
     return max(liked, key=lambda pair: pair[0], default=(1.0, "step"))[1]
 
 

@@ -101,6 +101,8 @@ class Regeneration:
             with self.database.read() as session:
                 calculation = calculate(graph, built(session), analysed(session), assumed)
             raise_if(calculation.faults)
+            if not self.builds.keep(calculation.shapes[name] for name in calculation.measures):
+                continue  # one was deleted just now: it is built again
             waiting = sorted(calculation.shapes.keys() - calculation.measures.keys())
             for name in waiting:
                 with _named(name):

@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import func, select
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.designs.errors import NotFound
 from app.designs.results import ModelState
+from app.storage.clock import operated
 from app.storage.identity import new_id, now
 from app.storage.tables import ArtifactRow, BuildRow, DesignRow, RevisionModelRow, RevisionRow
 
@@ -167,7 +168,13 @@ def add_build(
 ) -> None:
     """Record a build; the same build made twice is one."""
     row = BuildRow(
-        key=key, model=model, version=version, parameters=parameters, measurements=measured, created=now()
+        key=key,
+        model=model,
+        version=version,
+        parameters=parameters,
+        measurements=measured,
+        created=now(),
+        operated=operated(session),
     )
     session.merge(row)
     session.flush()
@@ -215,8 +222,3 @@ def users_of(session: Session, key: str) -> list[Mapping[str, Any]]:
     )
     rows = session.execute(query).all()
     return [{"design": id, "revision": number, "current": number == head} for id, number, head in rows]
-
-
-def count(session: Session) -> int:
-    """How many designs there are."""
-    return session.scalar(select(func.count()).select_from(DesignRow).where(DesignRow.deleted.is_(None))) or 0

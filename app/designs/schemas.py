@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
+from app.bounded import Bounded
 from app.calculations.schemas import OIL_FILM
 from app.designs.document import Document, Model, Name
 
@@ -42,14 +43,14 @@ class DesignIn(Document):
     note: str | None = Note
 
 
-class RestoreIn(BaseModel):
+class RestoreIn(Bounded):
     """A note for the revision that a restore makes."""
 
     model_config = ConfigDict(strict=True, extra="forbid")
     note: str | None = Note
 
 
-class CopyIn(BaseModel):
+class CopyIn(Bounded):
     """A name for the copy."""
 
     model_config = ConfigDict(strict=True, extra="forbid")

@@ -2,6 +2,7 @@
 
 import logging
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -10,10 +11,12 @@ from typing import Any
 from sqlalchemy.orm import Session
 
 from app.jobs import repository
+from app.jobs.admission import Durations
 from app.jobs.context import JobContext, publish
 from app.jobs.errors import JobFailed
 from app.jobs.events import Events
 from app.jobs.job import Job
+from app.jobs.turns import Lane
 from app.storage.database import Database
 from app.workers.base import Limits, Worker
 from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed, MemoryExceeded
@@ -53,6 +56,7 @@ class Dispatcher:
         describe: Callable[[Exception], Problem],
     ) -> None:
         self.kinds: dict[str, Kind] = {}
+        self.durations = Durations()
         self._database = database
         self._worker = worker
         self._limits = limits
@@ -71,6 +75,10 @@ class Dispatcher:
             self._threads.append(thread)
             thread.start()
             self.wake()
+
+    def lane(self, kind: str) -> Lane:
+        """The lane in which jobs of a kind wait."""
+        return Lane.of(kind, self._slow_kinds())
 
     def wake(self) -> None:
         """Have a thread of each lane look at the queue."""
@@ -104,20 +112,23 @@ class Dispatcher:
 
     def _empty_queue(self, slow: bool) -> None:
         while not self._stopping.is_set() and (job := self._database.write(partial(self._claim, slow=slow))):
-            mine = self._running[job.id]
+            mine, start = self._running[job.id], time.monotonic()
             try:
                 self._execute(job)
             finally:
+                self.durations.note(self.lane(job.kind), time.monotonic() - start)
                 if self._running.get(job.id) is mine:  # given back, it may run again in another thread by now
                     del self._running[job.id]
 
     def _claim(self, session: Session, *, slow: bool) -> Job | None:
         """Claim a job and register it still in the writer thread: who sees it running can interrupt it."""
-        kinds = [name for name, kind in self.kinds.items() if kind.is_slow]
-        job = repository.claim(session, kinds, take_slow=slow)
+        job = repository.claim(session, self._slow_kinds(), take_slow=slow)
         if job is not None:
             self._running[job.id] = threading.Event()
         return job
+
+    def _slow_kinds(self) -> tuple[str, ...]:
+        return tuple(name for name, kind in self.kinds.items() if kind.is_slow)
 
     def _execute(self, job: Job) -> None:
         """Run a claimed job to whatever end."""

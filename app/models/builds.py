@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 
 from app.designs import repository, results
 from app.jobs.service import JobContext
+from app.models.ages import is_fresh, renew
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.workers.progress import report
@@ -37,11 +38,20 @@ class Builds:
             If the process was stopped, or stopped itself.
         """
         with self.database.read() as session:
-            if repository.artifact(session, build_key(shape), STEP):
-                return
+            there = repository.artifact(session, build_key(shape), STEP) is not None
+        if there and self.keep([shape]):
+            return
         made = context.run(build_in_worker, shape.id, shape.version, shape.inputs_si(), self.folders)
         sha = self.store.put(made.step)
         self.database.write(lambda session: self._record(session, shape, made, sha))
+
+    def keep(self, shapes: Iterable[CadModel]) -> bool:
+        """Keep builds for as long as the job that counts on them runs; return whether all are there."""
+        keys = [build_key(shape) for shape in shapes]
+        with self.database.read() as session:
+            if is_fresh(session, keys):
+                return True
+        return self.database.write(lambda session: renew(session, keys))
 
     def derive(self, key: str, kind: str, context: JobContext) -> None:
         """Make a file of another kind from the STEP file of a build, unless it is made already."""

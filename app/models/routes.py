@@ -6,14 +6,16 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Request, Response
 from fastapi.responses import FileResponse, JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
 from app.analyses.questions import what_can_be_asked
+from app.bounded import Bounded, at_most
 from app.catalogue.routes import Number, summary
+from app.clients import TheClient
 from app.dependencies import TheCatalogues, TheJobs, TheModels, TheStore
-from app.http import NotJson, StrictRoute
+from app.http import STEP_TYPES, StrictRoute, require_step
 from app.paging import Cursor, Limit, page_of
 from app.waiting import LATER, accepted, finished
 from cad.export import DRAWINGS, MEDIA_TYPES
@@ -28,7 +30,10 @@ Id = Annotated[str, Path(max_length=64, examples=["ball_bearing"])]
 FOR_EVER = "public, max-age=31536000, immutable"
 
 
-class BuildIn(BaseModel):
+Given = Annotated[dict[str, Any], Field(max_length=500), at_most(500)]
+
+
+class BuildIn(Bounded):
     """Build a model from parameters."""
 
     model_config = ConfigDict(
@@ -39,9 +44,10 @@ class BuildIn(BaseModel):
         },
     )
 
-    parameters: dict[str, Any] = Field(description='quantities by name: `"48 mm"`; the others have defaults')
+    parameters: Given = Field(description='quantities by name: `"48 mm"`; the others have defaults')
     artifacts: list[str] = Field(
         [kind for kind in MEDIA_TYPES if kind not in DRAWINGS],
+        max_length=50,
         description="the kinds of files wanted; without it all but dimensioned drawings",
     )
 
@@ -88,12 +94,13 @@ async def picture(
     catalogues: TheCatalogues,
     models: TheModels,
     jobs: TheJobs,
+    client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
     """A picture (PNG) of the model's example."""
     cls = catalogues.models.get(id, number)
     shape = cls.from_quantities(cls.example)
-    job = await run_in_threadpool(models.request, shape, ("step", "png"))
+    job = await run_in_threadpool(models.request, shape, ("step", "png"), client)
     if not await finished(jobs, job, prefer):
         return accepted(job)
     return send_file(await run_in_threadpool(models.file, build_key(shape), "png"))
@@ -107,6 +114,7 @@ async def build(
     catalogues: TheCatalogues,
     models: TheModels,
     jobs: TheJobs,
+    client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
     """Build a model, check it, measure it on the finished STEP file. Equal parameters are built once."""
@@ -118,7 +126,7 @@ async def build(
         )
     shape = catalogues.models.get(id, number).from_quantities(body.parameters)
     kinds = tuple(dict.fromkeys(("step", *body.artifacts)))
-    job = await run_in_threadpool(models.request, shape, kinds)
+    job = await run_in_threadpool(models.request, shape, kinds, client)
     if not await finished(jobs, job, prefer):
         return accepted(job, {"build": build_key(shape), "artifacts": {}, "measurements": None})
     if job and (failed := await run_in_threadpool(lambda: jobs.get(job).problem)):
@@ -143,13 +151,20 @@ def artifact(sha256: str, store: TheStore) -> Response:
     return FileResponse(store.path(sha256), media_type="application/octet-stream", headers=headers)
 
 
-@router.post(
-    "/verify", openapi_extra={"requestBody": {"content": {"model/step": {"schema": {"type": "string"}}}}}
-)
+STEP_FILE: dict[str, Any] = {"type": "string", "format": "binary"}
+STEP_BODY: dict[str, Any] = {
+    "content": {kind: {"schema": STEP_FILE} for kind in STEP_TYPES},
+    "required": True,
+}
+
+
+@router.post("/verify", openapi_extra={"requestBody": STEP_BODY})
 async def verify(request: Request, models: TheModels) -> dict[str, Any]:
-    """From which build a STEP file is, and which revisions use it."""
-    if request.headers.get("content-type", "").partition(";")[0].strip() != "model/step":
-        raise NotJson("send the STEP file itself as model/step")
+    """From which build a STEP file is, and which revisions use it.
+
+    The body is the file itself, sent as `model/step`; only the header, in its first 64 KiB, is looked at.
+    """
+    require_step(request)
     return await run_in_threadpool(models.verify, await request.body())
 
 

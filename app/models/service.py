@@ -12,6 +12,7 @@ from sqlalchemy.orm import Session
 from app.designs import repository, results
 from app.designs.errors import NotFound
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.models.ages import is_fresh, renew
 from app.models.builds import Builds
 from app.problems import describe
 from app.storage.artifacts import ArtifactStore
@@ -46,11 +47,12 @@ class Models:
     ) -> None:
         self.database, self.store, self.jobs, self.catalogue = database, store, jobs, catalogue
 
-    def request(self, shape: CadModel, kinds: tuple[str, ...]) -> str | None:
+    def request(self, shape: CadModel, kinds: tuple[str, ...], client: str = "") -> str | None:
         """The job that makes a build and its files, or None if all are there."""
         key = build_key(shape)
         with self.database.read() as session:
-            if set(kinds) <= repository.artifacts(session, key).keys():
+            is_there = set(kinds) <= repository.artifacts(session, key).keys()
+            if is_there and is_fresh(session, [key]):
                 return None
         payload = {
             "model": shape.id,
@@ -58,19 +60,27 @@ class Models:
             "parameters": as_text(shape),
             "kinds": [*kinds],
         }
-        return self._enqueued(payload)
 
-    def request_file(self, key: str, kind: str) -> str:
+        def unit(session: Session) -> str | None:
+            if renew(session, [key]) and is_there:  # it did not go meanwhile
+                return None
+            return self.jobs.request(session, BUILD, payload, client)
+
+        job = self.database.write(unit)
+        self.jobs.wake()
+        return job
+
+    def request_file(self, key: str, kind: str, client: str = "") -> str:
         """The job that makes a file of a finished build, whichever recipe it was made by."""
-        return self.request_files(key, (kind,))
+        return self.request_files(key, (kind,), client)
 
-    def request_files(self, key: str, kinds: tuple[str, ...]) -> str:
+    def request_files(self, key: str, kinds: tuple[str, ...], client: str = "") -> str:
         """The job that makes several files of a finished build."""
-        return self._enqueued({"build": key, "kinds": [*kinds]})
+        payload = {"build": key, "kinds": [*kinds]}
 
-    def _enqueued(self, payload: dict[str, Any]) -> str:
         def unit(session: Session) -> str:
-            return self.jobs.waiting(session, BUILD, payload) or self.jobs.enqueue(session, BUILD, payload)
+            renew(session, [key])
+            return self.jobs.request(session, BUILD, payload, client)
 
         job = self.database.write(unit)
         self.jobs.wake()

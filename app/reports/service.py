@@ -64,13 +64,13 @@ class Reports:
             "steps": worksheets(told["steps"], self.catalogues.templates, system),
         }
 
-    def request_pictures(self, id: str, number: int) -> list[str]:
+    def request_pictures(self, id: str, number: int, client: str = "") -> list[str]:
         """The jobs that make what a report shows of every built model; none if all is there."""
         with self.database.read() as session:
             row = repository.revision(session, id, number)
             keys = {m.build_key for m in row.models if m.build_key and repository.build(session, m.build_key)}
             missing = {key: _missing(session, key) for key in sorted(keys)}
-        return [self.models.request_files(key, kinds) for key, kinds in missing.items() if kinds]
+        return [self.models.request_files(key, kinds, client) for key, kinds in missing.items() if kinds]
 
     def gather(self, id: str, number: int, system: System, *, pending: bool) -> Report:
         """All that the report says; `pending` if its pictures are still being made."""

@@ -4,12 +4,25 @@ import hashlib
 import os
 import re
 import tempfile
+import threading
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from app.storage.errors import ArtifactMissing
 
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 _TEMPORARY = ".tmp-"
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A file in the store: its name, its size [bytes] and when it was last put [s since 1970]."""
+
+    sha: str
+    size: int
+    modified: float
 
 
 class ArtifactStore:
@@ -20,6 +33,7 @@ class ArtifactStore:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self._changing = threading.Lock()  # nobody deletes a file that is being put
         folder.mkdir(parents=True, exist_ok=True)
         for stale in folder.glob(f"*/{_TEMPORARY}*"):
             stale.unlink()
@@ -27,15 +41,38 @@ class ArtifactStore:
     def put(self, data: bytes) -> str:
         """Store the bytes durably and return their SHA-256; the same bytes are stored once."""
         sha = hashlib.sha256(data).hexdigest()
+        with self._changing:
+            self._store(sha, data)
+        return sha
+
+    def list(self) -> Iterator[Stored]:
+        """Every file in the store, in no order."""
+        for path in self._folder.glob("??/*"):
+            if _SHA256.fullmatch(path.name):
+                with suppress(FileNotFoundError):  # deleted meanwhile
+                    seen = path.stat()
+                    yield Stored(path.name, seen.st_size, seen.st_mtime)
+
+    def delete_unchanged(self, seen: Stored) -> bool:
+        """Delete a file unless it was put again since it was listed; return whether it is deleted."""
+        location = self._location(seen.sha)
+        with self._changing, suppress(FileNotFoundError):
+            if location.stat().st_mtime == seen.modified:
+                location.unlink()
+                return True
+        return False
+
+    def _store(self, sha: str, data: bytes) -> None:
         target = self._location(sha)
         # A file of another size was torn by a failing disk: the good bytes in hand replace it.
         if not target.is_file() or target.stat().st_size != len(data):
             target.parent.mkdir(exist_ok=True)
             _write_whole(target, data)
+        else:
+            os.utime(target)  # it is wanted again, see `delete_unchanged`
         # Even for a file found: the writer that renamed it may not have synced its folder yet.
         _sync_folder(target.parent)
         _sync_folder(self._folder)
-        return sha
 
     def path(self, sha: str) -> Path:
         """Where an artifact lies.

@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 from sqlalchemy import Connection
 from sqlalchemy.orm import Session
 
+from app.storage.clock import OperationClock
 from app.storage.engines import reading_engine, writing_engine
 from app.storage.errors import CommitFailed, DatabaseClosed
 
@@ -33,6 +34,7 @@ class Database:
     def __init__(self, url: str) -> None:
         self._reader = reading_engine(url)
         self._writer = writing_engine(url)
+        self.clock = OperationClock()
         self._waiting: queue.SimpleQueue[_Pending | None] = queue.SimpleQueue()
         self._closing = threading.Lock()
         self._closed = False
@@ -90,6 +92,8 @@ class Database:
             wanted = [pending for pending in group if pending.future.set_running_or_notify_cancel()]
             if wanted:
                 self._commit(wanted)
+        if self.clock.elapsed:
+            self._commit([])
 
     def _next_group(self) -> "tuple[list[_Pending], bool]":
         """Wait for a unit, then take those that came meanwhile; also tell whether more may come."""
@@ -104,12 +108,14 @@ class Database:
     def _commit(self, group: "list[_Pending]") -> None:
         try:
             with self._writer.begin() as connection:
+                seconds = self.clock.advance(connection)
                 for pending in group:
                     pending.run(connection)
         except Exception as error:
             for pending in group:
                 pending.refuse(error)
         else:
+            self.clock.commit(seconds)
             for pending in group:
                 pending.settle()
 

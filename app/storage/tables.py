@@ -166,6 +166,7 @@ class JobRow(Base):
         Index(None, "state", "turn", "id"),
         Index(None, "client", "state"),
         Index(None, "design_id", "revision"),
+        Index(None, "operated"),
     )
 
     id: Mapped[str] = mapped_column(primary_key=True)
@@ -182,15 +183,17 @@ class JobRow(Base):
     result: Mapped[str | None]  # a link
     created: Mapped[str]
     updated: Mapped[str]
-    client: Mapped[str] = mapped_column(default="")  # who asked for it first; see `app.clients`
+    client: Mapped[str] = mapped_column(default="")  # whose turn it takes; see `app.clients`
+    others: Mapped[list[str]] = mapped_column(Json, default=list)  # clients that wait for it as well
     turn: Mapped[int] = mapped_column(BigInteger, default=0)
-    operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when it ended [s of operation]
+    operated: Mapped[int] = mapped_column(BigInteger, default=0)  # queued, then ended [s of operation]
 
 
 class IdempotencyRow(Base):
     """What was answered to a request that may be sent again."""
 
     __tablename__ = "idempotency"
+    __table_args__ = (Index(None, "operated"),)
 
     key: Mapped[str] = mapped_column(primary_key=True)
     scope: Mapped[str] = mapped_column(primary_key=True)  # method and path

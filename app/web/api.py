@@ -75,7 +75,10 @@ class Api:
             If the interface refuses.
         """
         extensions = {_CLIENT: self._client}
-        answer = await self._http.request(method, BASE + path, extensions=extensions, **more)
+        try:
+            answer = await self._http.request(method, BASE + path, extensions=extensions, **more)
+        except httpx.InvalidURL:  # made from what a client typed
+            raise Refused(404, {"title": "Not found", "detail": "there is nothing at this address"}) from None
         if answer.is_error:
             raise Refused(answer.status_code, answer.json())
         return answer

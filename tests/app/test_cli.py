@@ -120,7 +120,7 @@ class TestServe:
         (data / "artifacts" / "also mine").write_bytes(b"\x00")
         server = ServerProcess(data)
         with server, httpx.Client(base_url=server.url, trust_env=False) as http:
-            assert http.get("/readyz").json() == {"status": "ready", "designs": 0}
+            assert http.get("/readyz").json() == {"status": "ready"}
             assert http.post("/api/v1/designs", json={"name": "kept"}).status_code == 201
             refused = run("serve", "--data", str(data))
         assert (data / "notes.txt").read_text() == "mine"
