@@ -35,6 +35,7 @@ from app.jobs.routes import router as jobs
 from app.jobs.service import Jobs
 from app.jobs.shutdown import streams_end_on_signal
 from app.models.builds import Builds
+from app.models.healing import Healing
 from app.models.routes import router as models
 from app.models.service import BUILD, ModelBuild, Models
 from app.reports.paper import Press
@@ -44,6 +45,7 @@ from app.settings import Settings
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.folder import DataFolder
+from app.storage.integrity import refuse_damage
 from app.storage.migrations import migrate
 from app.web import assembly as pages
 from app.workers.base import Limits
@@ -123,6 +125,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     folder = DataFolder(settings.data)
     stack.callback(folder.release)
     url = settings.database_url or folder.database_url
+    refuse_damage(url)  # before anything is written to it
     migrate(url)
     database = Database(url)
     stack.callback(database.close)
@@ -148,6 +151,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     app.state.designs = Designs(database, queue, catalogues)
     app.state.models = Models(database, store, queue, catalogues.models)
     app.state.analyses = Analyses(database, store, queue)
+    app.state.healing = Healing(database, store, app.state.models, app.state.analyses)
     app.state.reports = Reports(database, store, app.state.models, catalogues)
     limits = Limits(settings.job_deadline, settings.job_memory_mb)
     app.state.press = Press(worker, limits, settings.workers)

@@ -1,4 +1,4 @@
-"""Files named by the SHA-256 of their bytes: written once, whole or not at all, and verified when they are read."""
+"""Files named by the SHA-256 of their bytes: written whole or not at all, verified when they are read."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO, Protocol
+from typing import Protocol
 
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.storage.verified import Stamp, Verified, stamp_of
@@ -113,7 +114,7 @@ class ArtifactStore:
                 raise self._set_aside(sha, stamp_of(file), f"its {len(data)} bytes have another hash")
         return data
 
-    def open(self, sha: str) -> BinaryIO:
+    def open(self, sha: str) -> BufferedReader:
         """Open a verified artifact for reading; raises as `fetch` does.
 
         The file stays the verified one even if another takes its name. Its bytes are hashed once for every
@@ -149,7 +150,7 @@ class ArtifactStore:
                     seen = path.lstat()
                     yield Stored(path.name, seen.st_size, seen.st_mtime)
 
-    def _verify(self, sha: str, file: BinaryIO) -> None:
+    def _verify(self, sha: str, file: BufferedReader) -> None:
         stamp = stamp_of(file)
         if self._verified.has(sha, stamp):
             return
@@ -162,7 +163,7 @@ class ArtifactStore:
         file.seek(0)
         self._verified.add(sha, stamp)
 
-    def _opened(self, sha: str) -> BinaryIO:
+    def _opened(self, sha: str) -> BufferedReader:
         location = self._location(sha)
         try:
             if not stat.S_ISREG(location.lstat().st_mode):  # a pipe, a link, a folder
@@ -171,7 +172,7 @@ class ArtifactStore:
         except FileNotFoundError:
             raise ArtifactMissing(sha) from None
 
-    def _unreadable(self, sha: str, file: BinaryIO, error: OSError) -> Exception:
+    def _unreadable(self, sha: str, file: BufferedReader, error: OSError) -> Exception:
         """A disk that cannot give the bytes back has damaged them; any other error is none of the file's."""
         if error.errno not in _FAILING_DISK:
             return error

@@ -1,4 +1,4 @@
-"""Damage of the database that shows while it is in use: it is named once, and from then on nothing is written."""
+"""Damage of the database that shows while it is in use: from then on nothing is written."""
 
 from __future__ import annotations
 

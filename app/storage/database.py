@@ -26,7 +26,7 @@ GROUP = 256  # units in one transaction: bounds how long the first of them waits
 
 
 class Database:
-    """Reads in snapshots, writes by units of work; once damage has shown, it reads what it can and writes nothing.
+    """Reads in snapshots, writes by units of work; once damage has shown, it only reads.
 
     Rows stay readable after their session has ended; what was not loaded by then cannot be loaded later.
     """

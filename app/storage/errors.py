@@ -65,9 +65,9 @@ class DatabaseDamaged(StorageError):
     def __str__(self) -> str:
         return (
             f"The database {self.database} is damaged: {'; '.join(self.faults)}. Nothing is written to it. "
-            "Stop the service, keep a copy of the data folder, then restore the last backup with `crankwright "
-            "restore FILE --data NEW_FOLDER`, or save what is readable with `sqlite3 crankwright.sqlite "
-            ".recover | sqlite3 recovered.sqlite`."
+            "Stop the service, keep a copy of the data folder, then restore the last backup with "
+            "`crankwright restore FILE --data NEW_FOLDER`, or save what is readable with "
+            "`sqlite3 crankwright.sqlite .recover | sqlite3 recovered.sqlite`."
         )
 
 
