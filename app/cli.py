@@ -1,4 +1,4 @@
-"""The command line: `crankwright serve | demo | evaluate | template list | template show | freeze`."""
+"""The command line: `crankwright serve | demo | evaluate | template … | freeze | check | backup | restore`."""
 
 from __future__ import annotations
 
@@ -16,9 +16,11 @@ from app.catalogue.finding import find_templates
 from app.curves.arguments import argument
 from app.demo import demonstrate
 from app.main import create_app
+from app.maintenance.commands import backup_command, check_command, restore_command
 from app.settings import Settings
-from app.storage.errors import DataFolderInUse
+from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
+from app.storage.integrity import refuse_damage
 from cad.catalogue import models as find_models
 from templates.core.catalogue import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
@@ -57,8 +59,10 @@ def serve(host: str, port: int, data: Path | None) -> None:
     """Serve the REST interface; its documentation is at /docs."""
     settings = Settings(data=data, host=host, port=port) if data else Settings(host=host, port=port)
     try:
-        DataFolder(settings.data).release()
-    except DataFolderInUse as error:
+        folder = DataFolder(settings.data)
+        refuse_damage(settings.database_url or folder.database_url)
+        folder.release()
+    except (DataFolderInUse, DatabaseDamaged) as error:
         raise click.ClickException(str(error)) from None
     except OSError as error:
         told = f"{settings.data.absolute()} cannot hold the data: {error.strerror}"
@@ -82,6 +86,11 @@ def _is_loopback(host: str) -> bool:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
         return False
+
+
+main.add_command(check_command)
+main.add_command(backup_command)
+main.add_command(restore_command)
 
 
 @main.command()

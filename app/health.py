@@ -1,10 +1,9 @@
-"""`/healthz`, `/readyz` and `/metrics`, at the root."""
+"""`/healthz` and `/metrics`, at the root; `/readyz` is in `app.readiness`."""
 
 from __future__ import annotations
 
 import time
 from functools import cache
-from typing import Any
 
 from fastapi import APIRouter, Response
 from prometheus_client import (
@@ -33,13 +32,6 @@ DESIGNS = Gauge("crankwright_designs", "Designs in the lists", registry=REGISTRY
 async def healthz() -> dict[str, str]:
     """The process is alive."""
     return {"status": "ok"}
-
-
-@router.get("/readyz")
-def readyz(database: TheDatabase) -> dict[str, Any]:
-    """The database answers."""
-    with database.read() as session:
-        return {"status": "ready", "designs": repository.count(session)}
 
 
 @router.get("/metrics")

@@ -12,7 +12,7 @@ from typing import Any
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
-from app import health, problems
+from app import health, problems, readiness
 from app.analyses.finding import Analysing
 from app.analyses.routes import router as analyses
 from app.analyses.service import ANALYSIS, Analyses, ModelAnalysis
@@ -101,6 +101,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     ):
         app.include_router(router)
     app.include_router(health.router)
+    app.include_router(readiness.router)
     app.include_router(problems.router)
     problems.install(app)
     pages.install(app)
@@ -153,6 +154,13 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     app.state.analyses = Analyses(database, store, queue)
     app.state.healing = Healing(database, store, app.state.models, app.state.analyses)
     app.state.reports = Reports(database, store, app.state.models, catalogues)
+    app.state.readiness = readiness.Readiness(
+        {
+            "database": readiness.Writing(database),
+            "space": readiness.Space(folder.path, settings.minimum_free_mb),
+            "processes": readiness.Processes(worker),
+        }
+    )
     limits = Limits(settings.job_deadline, settings.job_memory_mb)
     app.state.press = Press(worker, limits, settings.workers)
 

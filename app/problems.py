@@ -43,6 +43,7 @@ class Kind:
 INVALID = Kind("invalid-inputs", 422, "Some inputs are wrong", "mend each of `errors`; nothing was saved")
 INTERNAL = Kind("internal", 500, "The service failed", "this is a fault of the program; please report it")
 
+NOT_READY = Kind("not-ready", 503, "The service is not ready", "see `errors`; ask the operator")
 REBUILDING = Kind("rebuilding", 503, "The file is being made again", "retry after the time in Retry-After")
 
 TABLE: dict[type[Exception], Kind] = {
@@ -171,7 +172,7 @@ router = APIRouter(tags=["problems"])
 @router.get("/problems/{slug}")
 def explain_problem(slug: str) -> dict[str, Any]:
     """What a kind of problem means, and how to mend it."""
-    kinds = {kind.slug: kind for kind in (*TABLE.values(), *HTTP.values(), REBUILDING, INTERNAL)}
+    kinds = {kind.slug: kind for kind in (*TABLE.values(), *HTTP.values(), NOT_READY, REBUILDING, INTERNAL)}
     if slug not in kinds:
         raise HTTPException(404, f"there is no problem {slug[:60]!r}")
     return vars(kinds[slug])

@@ -21,7 +21,7 @@ from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.storage.verified import Stamp, Verified, stamp_of
 
 QUARANTINE = "quarantine"
-_SHA256 = re.compile(r"[0-9a-f]{64}")
+SHA256 = re.compile(r"[0-9a-f]{64}")
 _TEMPORARY = ".tmp-"
 _FAILING_DISK = {errno.EIO, errno.EBADMSG, getattr(errno, "EUCLEAN", errno.EIO)}
 
@@ -145,7 +145,7 @@ class ArtifactStore:
     def list(self) -> Iterator[Stored]:
         """Every artifact in the folder, verified or not, without those that were set aside."""
         for path in self.folder.glob("[0-9a-f][0-9a-f]/*"):
-            if _SHA256.fullmatch(path.name):
+            if SHA256.fullmatch(path.name):
                 with suppress(FileNotFoundError):  # deleted meanwhile
                     seen = path.lstat()
                     yield Stored(path.name, seen.st_size, seen.st_mtime)
@@ -191,7 +191,7 @@ class ArtifactStore:
 
     def _location(self, sha: str) -> Path:
         # A name comes from a URL: anything but a hash could lead out of the folder.
-        if not _SHA256.fullmatch(sha):
+        if not SHA256.fullmatch(sha):
             raise ArtifactMissing(sha)
         return self.folder / sha[:2] / sha
 

@@ -50,6 +50,10 @@ class Worker(Protocol):
         """
         ...
 
+    def answers(self) -> bool:
+        """Whether a function would find a process that is alive; if none is, one is started. Never blocks."""
+        ...
+
     def close(self) -> None:
         """End what runs and let no more run."""
         ...
