@@ -1,4 +1,4 @@
-"""The command line: `crankwright serve | demo | evaluate | template list | template show | freeze`."""
+"""The command line: `crankwright serve | demo | evaluate | template | freeze | check | backup | restore`"""
 
 from __future__ import annotations
 
@@ -18,9 +18,11 @@ from app.curves.arguments import argument
 from app.demo import demonstrate
 from app.hosts import is_loopback
 from app.main import create_app
+from app.maintenance.commands import backup_command, check_command, restore_command
 from app.settings import Settings
-from app.storage.errors import DataFolderInUse
+from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
+from app.storage.integrity import refuse_damage
 from app.targets import WholeTarget
 from cad.catalogue import models as find_models
 from templates.core.catalogue import Catalogue
@@ -76,8 +78,10 @@ def serve(host: str | None, port: int | None, data: Path | None, insecure: bool)
     settings = Settings(**{name: value for name, value in given.items() if value is not None})
     _check_reach(settings.host, insecure)
     try:
-        DataFolder(settings.data).release()
-    except DataFolderInUse as error:
+        folder = DataFolder(settings.data)
+        refuse_damage(settings.database_url or folder.database_url)
+        folder.release()
+    except (DataFolderInUse, DatabaseDamaged) as error:
         raise click.ClickException(str(error)) from None
     except OSError as error:
         told = f"{settings.data.absolute()} cannot hold the data: {error.strerror}"
@@ -108,6 +112,11 @@ def _check_reach(host: str, insecure: bool) -> None:
             f"refusing to listen on {host} {danger}. {remedy}; or add --insecure if all of them may."
         )
     click.secho(f"WARNING: listening on {host} {danger}. {remedy}.", fg="yellow", err=True)
+
+
+main.add_command(check_command)
+main.add_command(backup_command)
+main.add_command(restore_command)
 
 
 @main.command()

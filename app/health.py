@@ -1,10 +1,9 @@
-"""`/healthz`, `/readyz` and `/metrics`, at the root."""
+"""`/healthz` and `/metrics`, at the root; `/readyz` is in `app.readiness`."""
 
 from __future__ import annotations
 
 import time
 from functools import cache
-from typing import Any
 
 from fastapi import APIRouter, Response
 from prometheus_client import (
@@ -34,14 +33,6 @@ OLDEST = Gauge(
 async def healthz() -> dict[str, str]:
     """The process is alive."""
     return {"status": "ok"}
-
-
-@router.get("/readyz")
-def readyz(database: TheDatabase, jobs: TheJobs) -> dict[str, Any]:
-    """The database answers."""
-    with database.read() as session:
-        jobs.queued(session)
-        return {"status": "ready"}
 
 
 @router.get("/metrics")

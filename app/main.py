@@ -12,7 +12,7 @@ from typing import Any
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
-from app import docs, guard, health, problems
+from app import docs, guard, health, problems, readiness
 from app.analyses.finding import Analysing
 from app.analyses.routes import router as analyses
 from app.analyses.service import ANALYSIS, Analyses, ModelAnalysis
@@ -37,6 +37,7 @@ from app.jobs.routes import router as jobs
 from app.jobs.service import Jobs
 from app.jobs.shutdown import streams_end_on_signal
 from app.models.builds import Builds
+from app.models.healing import Healing
 from app.models.routes import router as models
 from app.models.service import BUILD, ModelBuild, Models
 from app.reports.paper import Press
@@ -47,6 +48,7 @@ from app.settings import Settings
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.folder import DataFolder
+from app.storage.integrity import refuse_damage
 from app.storage.migrations import migrate
 from app.web import assembly as pages
 from app.workers.base import Limits
@@ -103,6 +105,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     ):
         app.include_router(router)
     app.include_router(health.router)
+    app.include_router(readiness.router)
     app.include_router(problems.router)
     problems.install(app)
     docs.install(app)
@@ -130,6 +133,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     folder = DataFolder(settings.data)
     stack.callback(folder.release)
     url = settings.database_url or folder.database_url
+    refuse_damage(url)  # before anything is written to it
     migrate(url)
     database = Database(url)
     stack.callback(database.close)
@@ -158,7 +162,15 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     app.state.designs = Designs(database, queue, catalogues)
     app.state.models = Models(database, store, queue, catalogues.models)
     app.state.analyses = Analyses(database, store, queue)
+    app.state.healing = Healing(database, store, app.state.models, app.state.analyses)
     app.state.reports = Reports(database, store, app.state.models, catalogues)
+    app.state.readiness = readiness.Readiness(
+        {
+            "database": readiness.Writing(database),
+            "space": readiness.Space(folder.path, settings.minimum_free_mb),
+            "processes": readiness.Processes(worker),
+        }
+    )
     limits = Limits(settings.job_deadline, settings.job_memory_mb)
     app.state.press = Press(worker, limits, settings.workers)
 

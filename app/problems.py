@@ -29,6 +29,7 @@ from app.http import (
     TooManyValues,
 )
 from app.jobs import errors as jobs
+from app.models.errors import CannotRebuild
 from app.reports.errors import Unprintable
 from app.storage import errors as storage
 from app.workers import errors as workers
@@ -53,6 +54,9 @@ class Kind:
 
 INVALID = Kind("invalid-inputs", 422, "Some inputs are wrong", "mend each of `errors`; nothing was saved")
 INTERNAL = Kind("internal", 500, "The service failed", "this is a fault of the program; please report it")
+
+NOT_READY = Kind("not-ready", 503, "The service is not ready", "see `errors`; ask the operator")
+REBUILDING = Kind("rebuilding", 503, "The file is being made again", "retry after the time in Retry-After")
 
 TABLE: dict[type[Exception], Kind] = {
     templates.InvalidInputs: INVALID,
@@ -93,6 +97,13 @@ TABLE: dict[type[Exception], Kind] = {
     Unprintable: Kind("unprintable", 422, "The report is too long for paper", "ask for text/html"),
     storage.ArtifactMissing: Kind(
         "no-such-artifact", 404, "No such artifact", "take the hash from a revision"
+    ),
+    storage.ArtifactDamaged: Kind("artifact-damaged", 503, "The file is damaged", "retry: it is made again"),
+    storage.DatabaseDamaged: Kind(
+        "database-damaged", 503, "The database is damaged", "the operator restores a backup; see `detail`"
+    ),
+    CannotRebuild: Kind(
+        "artifact-gone", 410, "The file is lost", "see `detail` for why, and for what is left"
     ),
     storage.StorageError: Kind("storage", 503, "The storage is not available", "retry; ask the operator"),
     GeometryError: Kind("geometry", 422, "No sound solid came out", "change the parameters in `errors`"),
@@ -183,6 +194,10 @@ _CARRIED: dict[type[Exception], Callable[[Any], dict[str, Any]]] = {
         "errors": [{"name": error.name, "code": error.code, "detail": error.detail}]
     },
     designs.NotConverged: lambda error: {"rounds": error.rounds},
+    CannotRebuild: lambda error: {
+        **error.links,
+        "errors": [{"name": "artifact", "code": error.code, "detail": error.detail}],
+    },
     workers.WorkerError: lambda error: {
         "errors": [{"name": "model", "code": kind_of(error).slug, "detail": str(error)}]
     },
@@ -195,7 +210,7 @@ router = APIRouter(tags=["problems"])
 @router.get("/problems/{slug}")
 def explain_problem(slug: str) -> dict[str, Any]:
     """What a kind of problem means, and how to mend it."""
-    kinds = {kind.slug: kind for kind in (*TABLE.values(), *HTTP.values(), INTERNAL)}
+    kinds = {kind.slug: kind for kind in (*TABLE.values(), *HTTP.values(), NOT_READY, REBUILDING, INTERNAL)}
     if slug not in kinds:
         raise HTTPException(404, f"there is no problem {slug[:60]!r}")
     return vars(kinds[slug])

@@ -16,6 +16,7 @@ class Settings(BaseSettings):
 
     data: Path = Field(Path("crankwright-data"), description="folder of the database and the artifacts")
     database_url: str | None = Field(None, description="SQLAlchemy URL; a SQLite file in `data` if not given")
+    minimum_free_mb: int = Field(200, ge=0, description="free disk space below which /readyz says 503 [MiB]")
     host: str = "127.0.0.1"
     port: int = Field(8000, ge=0, le=65535)
     allowed_hosts: tuple[Annotated[str, AfterValidator(check_entry)], ...] = Field(

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Query, Response
-from fastapi.responses import FileResponse, JSONResponse
+from fastapi.responses import JSONResponse
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
@@ -22,11 +23,12 @@ from app.analyses.questions import (
     question,
 )
 from app.analyses.schemas import AnalysisIn, SurfaceOut
-from app.calculations.display import Units, converted
+from app.calculations.display import System, Units, converted
 from app.catalogue.routes import Number
 from app.clients import TheClient
-from app.dependencies import TheAnalyses, TheCatalogues, TheJobs
+from app.dependencies import TheAnalyses, TheCatalogues, TheHealing, TheJobs, TheStore
 from app.designs.errors import NotFound
+from app.healing import UNAVAILABLE, StoredFile, lost
 from app.http import StrictRoute
 from app.models.routes import FOR_EVER
 from app.waiting import LATER, accepted, finished
@@ -95,27 +97,39 @@ def analyses_of_build(key: str, analyses: TheAnalyses, units: Units = "si") -> d
 @router.get(
     "/analyses/{key}/surface",
     response_model=SurfaceOut,
-    responses={304: {"description": "as it was when the ETag of If-None-Match was sent"}},
+    responses={304: {"description": "as it was when the ETag of If-None-Match was sent"}, **UNAVAILABLE},
 )
-def show_surface(
+async def show_surface(
     key: str,
     analyses: TheAnalyses,
+    store: TheStore,
+    healing: TheHealing,
+    jobs: TheJobs,
     units: Units = "si",
     if_none_match: Annotated[str | None, Header(description="the ETag of a surface that is at hand")] = None,
+    prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
     """The solid's surface under a load of 1 N·m: how far every point moves, how it turns, how it is stressed.
 
     For a picture: the corners of plane triangles, with a value at each. It never changes. It is there once an
     analysis was asked for `"outputs": ["surface"]`, whose answer links to it.
     """
-    file = analyses.surface(key)
+    file = await run_in_threadpool(analyses.surface, key)
     shown = "" if units == "si" else f"-{units}"
     headers = {"ETag": f'"{file.sha256}{shown}"', "Cache-Control": FOR_EVER}
     if if_none_match and headers["ETag"] in if_none_match:
         return Response(status_code=304, headers=headers)
+    if answer := await lost(file.sha256, healing, jobs, prefer):
+        return answer
+    file = await run_in_threadpool(analyses.surface, key)
+    headers["ETag"] = f'"{file.sha256}{shown}"'
     if shown:
-        return JSONResponse(converted(json.loads(file.path.read_bytes()), units), headers=headers)
-    return FileResponse(file.path, media_type="application/json", headers=headers)
+        return await run_in_threadpool(_converted, store.read, file.sha256, units, headers)
+    return StoredFile(store, file.sha256, "application/json", headers)
+
+
+def _converted(read: Callable[[str], bytes], sha256: str, units: System, headers: dict[str, str]) -> Response:
+    return JSONResponse(converted(json.loads(read(sha256)), units), headers=headers)
 
 
 def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...]:

@@ -18,6 +18,7 @@ from app.designs.graph import SOLID, Catalogues, Graph, build_graph, raise_if
 from app.designs.service import analysed, built, starts
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.models.builds import Builds
+from app.models.errors import CannotRebuild
 from app.problems import describe
 from app.storage.database import Database
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
@@ -27,6 +28,7 @@ from templates.core.units import unit
 
 FAILURES = (
     NotConverged, TemplateError, GeometryError, AnalysisError, DeadlineExceeded, MemoryExceeded,
+    CannotRebuild,
 )  # fmt: skip
 """What a design itself brings about."""
 
@@ -117,6 +119,7 @@ class Regeneration:
         for name, kind in waiting:
             question = calculation.graph.blocks[name].analyses[kind]
             with _named(name, kind):
+                self.builds.make(calculation.shapes[name], context)  # its file may be lost
                 self.analysing.find(
                     calculation.shapes[name], question, calculation.graph.wanted(name, kind), context
                 )

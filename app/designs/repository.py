@@ -157,6 +157,11 @@ def artifact(session: Session, key: str, kind: str) -> ArtifactRow | None:
     return session.get(ArtifactRow, (key, kind))
 
 
+def artifact_named(session: Session, sha256: str) -> ArtifactRow | None:
+    """An artifact by the hash of its bytes; several builds may have files of equal bytes."""
+    return session.scalar(select(ArtifactRow).where(ArtifactRow.sha256 == sha256).limit(1))
+
+
 def artifacts(session: Session, key: str | None) -> dict[str, str]:
     """The SHA-256 of every artifact of a build, by kind."""
     rows = session.scalars(select(ArtifactRow).where(ArtifactRow.build_key == key))
@@ -164,7 +169,13 @@ def artifacts(session: Session, key: str | None) -> dict[str, str]:
 
 
 def add_build(
-    session: Session, key: str, model: str, version: int, parameters: dict[str, Any], measured: dict[str, Any]
+    session: Session,
+    key: str,
+    model: str,
+    version: int,
+    parameters: dict[str, Any],
+    measured: dict[str, Any],
+    made_by: str,
 ) -> None:
     """Record a build; the same build made twice is one."""
     row = BuildRow(
@@ -175,6 +186,7 @@ def add_build(
         measurements=measured,
         created=now(),
         operated=operated(session),
+        made_by=made_by,
     )
     session.merge(row)
     session.flush()

@@ -14,9 +14,11 @@ from app.analyses.questions import what_can_be_asked
 from app.bounded import Bounded, at_most
 from app.catalogue.routes import Number, summary
 from app.clients import TheClient
-from app.dependencies import TheCatalogues, TheJobs, TheModels, TheStore
+from app.dependencies import TheCatalogues, TheHealing, TheJobs, TheModels, TheStore
+from app.healing import UNAVAILABLE, StoredFile, lost
 from app.http import StrictRoute, require_step
 from app.paging import Cursor, Limit, page_of
+from app.storage.artifacts import ArtifactStore
 from app.waiting import LATER, accepted, finished
 from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.inspect import MEASURES
@@ -86,13 +88,14 @@ def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, A
 @router.get(
     "/models/{id}/versions/{number}/picture",
     response_class=FileResponse,
-    responses={200: {"content": {"image/png": {}}}, **LATER},
+    responses={200: {"content": {"image/png": {}}}, **LATER, **UNAVAILABLE},
 )
 async def picture(
     id: Id,
     number: Number,
     catalogues: TheCatalogues,
     models: TheModels,
+    store: TheStore,
     jobs: TheJobs,
     client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
@@ -103,7 +106,9 @@ async def picture(
     job = await run_in_threadpool(models.request, shape, ("step", "png"), client)
     if not await finished(jobs, job, prefer):
         return accepted(job)
-    return send_file(await run_in_threadpool(models.file, build_key(shape), "png"))
+    if failed := await run_in_threadpool(jobs.problem, job):
+        return problems.answer(failed)
+    return send_file(store, await run_in_threadpool(models.file, build_key(shape), "png"))
 
 
 @router.post("/models/{id}/versions/{number}/build", responses=LATER)
@@ -143,12 +148,20 @@ def show_build(key: str, models: TheModels) -> dict[str, Any]:
 @router.get(
     "/artifacts/{sha256}",
     response_class=FileResponse,
-    responses={200: {"content": {"application/octet-stream": {}}}},
+    responses={200: {"content": {"application/octet-stream": {}}}, **UNAVAILABLE},
 )
-def artifact(sha256: str, store: TheStore) -> Response:
-    """The bytes of this hash; they never change."""
+async def artifact(
+    sha256: str,
+    store: TheStore,
+    healing: TheHealing,
+    jobs: TheJobs,
+    prefer: Annotated[str | None, Header()] = None,
+) -> Response:
+    """The bytes of this hash; they never change. A file that was lost is made again from its row."""
+    if answer := await lost(sha256, healing, jobs, prefer, same=True):
+        return answer
     headers = {"ETag": f'"{sha256}"', "Cache-Control": FOR_EVER}
-    return FileResponse(store.path(sha256), media_type="application/octet-stream", headers=headers)
+    return StoredFile(store, sha256, "application/octet-stream", headers)
 
 
 STEP_FILE: dict[str, Any] = {"type": "string", "format": "binary"}
@@ -166,7 +179,9 @@ async def verify(request: Request, models: TheModels) -> dict[str, Any]:
     return await run_in_threadpool(models.verify, await request.body())
 
 
-def send_file(file: Any, headers: dict[str, str] | None = None, name: str | None = None) -> Response:
+def send_file(
+    store: ArtifactStore, file: Any, headers: dict[str, str] | None = None, name: str | None = None
+) -> Response:
     """A stored file with its hash as ETag."""
     sent = {"ETag": f'"{file.sha256}"', **(headers or {})}
-    return FileResponse(file.path, media_type=MEDIA_TYPES[file.kind], headers=sent, filename=name)
+    return StoredFile(store, file.sha256, MEDIA_TYPES[file.kind], sent, name)

@@ -35,6 +35,10 @@ def canonical_json(value: Any) -> str:
     return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 
 
+class NotWritten(ValueError):
+    """A column holds what this program has never written there."""
+
+
 class Json(TypeDecorator[Any]):
     """A JSON value in a text column; None is NULL. Replace a value whole: a change inside it is not seen."""
 
@@ -46,8 +50,11 @@ class Json(TypeDecorator[Any]):
         return None if value is None else canonical_json(value)
 
     def process_result_value(self, value: str | None, dialect: Dialect) -> Any:
-        """From the column to Python."""
-        return None if value is None else json.loads(value)
+        """From the column to Python; text that is no JSON was not written by this program."""
+        try:
+            return None if value is None else json.loads(value)
+        except ValueError as error:
+            raise NotWritten(f"a stored text is no JSON: {error}") from error
 
 
 class Base(DeclarativeBase):
@@ -128,6 +135,7 @@ class BuildRow(Base):
     measurements: Mapped[dict[str, Any]] = mapped_column(Json)
     created: Mapped[str]
     operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when last wanted [s of operation]
+    made_by: Mapped[str] = mapped_column(default="")  # kernel and recipe; empty in builds of version 0.1
 
     artifacts: Mapped[list["ArtifactRow"]] = relationship(order_by="ArtifactRow.kind")
 

@@ -13,6 +13,7 @@ from contextlib import suppress
 from functools import cached_property
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any
 
 from app.workers.base import Limits
@@ -59,6 +60,13 @@ class JobProcess:
             os.killpg(self._pid, signal.SIGKILL)
         self._connection.close()
         self._status.close()
+
+    def is_born(self) -> bool:
+        """Whether the forkserver has made the process; reads nothing, so its owner may use it meanwhile."""
+        try:
+            return "_pid" in self.__dict__ or self._status.poll()
+        except OSError:  # it has got a job and is gone
+            return False
 
     @cached_property
     def _pid(self) -> int:
@@ -118,6 +126,18 @@ class ForkServer:
         with theirs, told:
             self._send([theirs.fileno(), told.fileno()])
         return JobProcess(connection, status)
+
+    def is_alive(self) -> bool:
+        """Whether the forkserver runs; neither ended nor stopped by a signal."""
+        return self._process.poll() is None and not self.is_stopped()
+
+    def is_stopped(self) -> bool:
+        """Whether a signal has stopped the forkserver: it lives and answers nobody. Linux only."""
+        try:
+            state = Path(f"/proc/{self._process.pid}/stat").read_text().rpartition(")")[2].split()[0]
+        except OSError:
+            return False
+        return state in "Tt"
 
     def close(self) -> None:
         """End the forkserver and all its processes."""

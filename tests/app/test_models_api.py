@@ -223,9 +223,8 @@ class TestVerify:
 
 
 class TestHealth:
-    def test_health_and_readiness(self, http):
+    def test_health(self, http):
         assert http.get("/healthz").json() == {"status": "ok"}
-        assert http.get("/readyz").json()["status"] == "ready"
 
     def test_metrics_count(self, http):
         def requests():

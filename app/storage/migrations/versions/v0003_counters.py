@@ -20,6 +20,7 @@ def upgrade() -> None:
     )
     with op.batch_alter_table("build") as build:
         build.add_column(sa.Column("operated", sa.BigInteger(), nullable=False, server_default="0"))
+        build.add_column(sa.Column("made_by", sa.Text(), nullable=False, server_default=""))
     with op.batch_alter_table("job") as job:
         job.add_column(sa.Column("client", sa.Text(), nullable=False, server_default=""))
         job.add_column(sa.Column("others", sa.Text(), nullable=False, server_default="[]"))
