@@ -7,6 +7,7 @@ from functools import cache
 from typing import Any
 
 from fastapi import APIRouter, Response
+from fastapi.responses import PlainTextResponse
 from prometheus_client import (
     CONTENT_TYPE_LATEST,
     CollectorRegistry,
@@ -42,7 +43,7 @@ def readyz(database: TheDatabase) -> dict[str, Any]:
         return {"status": "ready", "designs": repository.count(session)}
 
 
-@router.get("/metrics")
+@router.get("/metrics", response_class=PlainTextResponse)
 def metrics(database: TheDatabase, jobs: TheJobs) -> Response:
     """Figures for Prometheus."""
     with database.read() as session:

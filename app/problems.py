@@ -15,6 +15,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
 
+from app.allow import allowed_methods
 from app.designs import errors as designs
 from app.http import BodyTooLarge, NotCsv, NotJson, PreconditionRequired, TooIntricate, TooManyValues
 from app.jobs import errors as jobs
@@ -184,7 +185,8 @@ async def _handle(request: Request, error: Exception) -> Response:
 async def _handle_http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     kind = HTTP.get(error.status_code) or Kind("http", error.status_code, error.detail, "see `detail`")
-    return answer(problem(kind, f"{request.url.path}: {error.detail}"), error.headers)
+    headers = {"Allow": allowed_methods(request)} if error.status_code == 405 else error.headers
+    return answer(problem(kind, f"{request.url.path}: {error.detail}"), headers)
 
 
 async def _handle_unexpected(request: Request, error: Exception) -> Response:

@@ -6,6 +6,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
+from app.values import Given
+
 Text = Annotated[str, StringConstraints(max_length=100)]
 MOST_NAMES = 2000  # in one request: every unknown one is compared with all that are known
 
@@ -25,7 +27,7 @@ class Asked(BaseModel):
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
-    inputs: dict[str, Any] = Field(
+    inputs: dict[str, Given] = Field(
         max_length=MOST_NAMES,
         description='quantities by name: `"25 kN"` or `{"value": 25, "unit": "kN"}`',
     )
@@ -62,5 +64,12 @@ class SolveIn(Asked):
     )
 
     unknown: Text = Field(description="the input to find")
-    bounds: list[Any] = Field(description="the lowest and the highest value to try")
-    target: dict[str, Any] = Field(max_length=200, description="one output and its wanted value")
+    bounds: list[Given] = Field(
+        description="the lowest and the highest value to try",
+        json_schema_extra={"minItems": 2, "maxItems": 2},
+    )
+    target: dict[str, Given] = Field(
+        max_length=200,
+        description="one output and its wanted value",
+        json_schema_extra={"minProperties": 1, "maxProperties": 1},
+    )

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Request, Response
 from fastapi.responses import FileResponse, JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
@@ -15,6 +15,7 @@ from app.catalogue.routes import Number, summary
 from app.dependencies import TheCatalogues, TheJobs, TheModels, TheStore
 from app.http import NotJson, StrictRoute
 from app.paging import Cursor, Limit, page_of
+from app.values import Given
 from app.waiting import LATER, accepted, finished
 from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.inspect import MEASURES
@@ -28,6 +29,9 @@ Id = Annotated[str, Path(max_length=64, examples=["ball_bearing"])]
 FOR_EVER = "public, max-age=31536000, immutable"
 
 
+FileKind = Annotated[str, WithJsonSchema({"type": "string", "enum": list(MEDIA_TYPES)})]
+
+
 class BuildIn(BaseModel):
     """Build a model from parameters."""
 
@@ -39,8 +43,10 @@ class BuildIn(BaseModel):
         },
     )
 
-    parameters: dict[str, Any] = Field(description='quantities by name: `"48 mm"`; the others have defaults')
-    artifacts: list[str] = Field(
+    parameters: dict[str, Given] = Field(
+        description='quantities by name: `"48 mm"`; the others have defaults'
+    )
+    artifacts: list[FileKind] = Field(
         [kind for kind in MEDIA_TYPES if kind not in DRAWINGS],
         description="the kinds of files wanted; without it all but dimensioned drawings",
     )
