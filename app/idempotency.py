@@ -18,6 +18,7 @@ from app.storage.identity import as_text, now
 from app.storage.tables import IdempotencyRow
 
 KEPT = timedelta(days=7)
+BEFORE_CLIENTS = ""  # the client of keys that version 0.1 kept, which asked for none
 
 
 @dataclass(frozen=True)
@@ -37,12 +38,17 @@ class Once:
         KeyReused
             If the key came with another body.
         """
-        row = session.get(IdempotencyRow, (self.key, self.scope, self.client)) if self.key else None
+        if not self.key:
+            return None
+        row = self._row(session, self.client) or self._row(session, BEFORE_CLIENTS)
         if row is None:
             return None
         if row.fingerprint != self.fingerprint:
             raise KeyReused(row.key)
         return row.location
+
+    def _row(self, session: Session, client: str) -> IdempotencyRow | None:
+        return session.get(IdempotencyRow, (self.key, self.scope, client))
 
     def keep(self, session: Session, status: int, location: dict[str, Any]) -> None:
         """Remember what this request led to."""
