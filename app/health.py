@@ -6,6 +6,7 @@ import time
 from functools import cache
 
 from fastapi import APIRouter, Response
+from fastapi.responses import PlainTextResponse
 from prometheus_client import (
     CONTENT_TYPE_LATEST,
     CollectorRegistry,
@@ -35,7 +36,7 @@ async def healthz() -> dict[str, str]:
     return {"status": "ok"}
 
 
-@router.get("/metrics")
+@router.get("/metrics", response_class=PlainTextResponse)
 def metrics(database: TheDatabase, jobs: TheJobs) -> Response:
     """Figures for Prometheus."""
     with database.read() as session:

@@ -16,7 +16,7 @@ from app.storage.clock import operated
 from app.storage.identity import now
 from app.storage.tables import IdempotencyRow
 
-NOBODY = ""  # the client of keys that were kept before there were clients
+BEFORE_CLIENTS = ""  # the client of keys that version 0.1 kept, which asked for none
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Once:
         KeyReused
             If the key came with another body.
         """
-        row = self._row(session, self.client) or self._row(session, NOBODY)
+        row = self._row(session, self.client) or self._row(session, BEFORE_CLIENTS)
         if row is None:
             return None
         if row.fingerprint != self.fingerprint:

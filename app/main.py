@@ -23,6 +23,7 @@ from app.calculations.routes import worksheets
 from app.catalogue.finding import find_templates
 from app.catalogue.routes import router as catalogue
 from app.curves.routes import router as curves
+from app.description import describe_interface
 from app.designs.events import router as design_events
 from app.designs.files import router as design_files
 from app.designs.graph import Catalogues
@@ -114,18 +115,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.add_middleware(HeadLimit, refuse=_head_too_large)
     app.add_middleware(Metrics)
     guard.install(app, Hosts(chosen.allowed_hosts, chosen.host), _refused)
-    app.openapi = partial(_openapi_3_1, app)  # type: ignore[method-assign]
+    app.openapi = partial(describe_interface, app)  # type: ignore[method-assign]
     return app
-
-
-def _openapi_3_1(app: FastAPI) -> dict[str, Any]:
-    """The description without `itemSchema`, which FastAPI writes for event streams: that is OpenAPI 3.2."""
-    described = FastAPI.openapi(app)
-    operations = [operation for item in described["paths"].values() for operation in item.values()]
-    for answer in (answer for operation in operations for answer in operation["responses"].values()):
-        for content in answer.get("content", {}).values():
-            content.pop("itemSchema", None)
-    return described
 
 
 def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:

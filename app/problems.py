@@ -15,6 +15,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
 
+from app.allow import allowed_methods
 from app.designs import errors as designs
 from app.guard import BadHost, CrossSite, HostNotAllowed
 from app.http import (
@@ -237,7 +238,8 @@ async def _handle(request: Request, error: Exception) -> Response:
 async def _handle_http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     kind = HTTP.get(error.status_code) or Kind("http", error.status_code, error.detail, "see `detail`")
-    return answer(problem(kind, f"{request.url.path}: {error.detail}"[:2000]), error.headers)
+    headers = {"Allow": allowed_methods(request)} if error.status_code == 405 else error.headers
+    return answer(problem(kind, f"{request.url.path}: {error.detail}"[:2000]), headers)
 
 
 async def _handle_unexpected(request: Request, error: Exception) -> Response:

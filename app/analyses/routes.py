@@ -81,10 +81,12 @@ def show_analysis(
     units: Units = "si",
 ) -> dict[str, Any]:
     """All that was found for one question about one solid. It was found once for all loads."""
-    if wrong := load_faults(load):
+    wrong = load_faults(load)
+    told: dict[str, Any] = analyses.show_all(key, 1.0 if wrong else load_of(load))  # 404 comes first
+    if wrong:
         raise InvalidInputs(wrong)
-    told: dict[str, Any] = converted(analyses.show_all(key, load_of(load)), units)
-    return told
+    shown: dict[str, Any] = converted(told, units)
+    return shown
 
 
 @router.get("/builds/{key}/analyses")

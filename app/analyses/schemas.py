@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
-from app.analyses.questions import Options
-from app.bounded import at_most
+from app.analyses.questions import KINDS, Options, offered
+from app.values import Parameters
 
 THROW: dict[str, Any] = {
     "journal_diameter": "50 mm",
@@ -33,7 +33,10 @@ EXAMPLE: dict[str, Any] = {
 """One triangle."""
 
 
-Given = Annotated[dict[str, Any], Field(max_length=500), at_most(500)]
+Output = Annotated[
+    str,
+    WithJsonSchema({"type": "string", "enum": sorted({name for kind in KINDS for name in offered(kind)})}),
+]
 
 
 class AnalysisIn(Options):
@@ -48,8 +51,8 @@ class AnalysisIn(Options):
         }
     )
 
-    parameters: Given = Field(description='quantities by name: `"48 mm"`; the others have defaults')
-    outputs: list[str] | None = Field(
+    parameters: Parameters = Field(description='quantities by name: `"48 mm"`; the others have defaults')
+    outputs: list[Output] | None = Field(
         None,
         max_length=10,
         description="what to find; without it all but `maximum_stress`, which is dear, and `surface`",

@@ -17,6 +17,7 @@ from starlette.concurrency import run_in_threadpool
 from app.bounded import Bounded
 from app.calculations.display import Units, converted
 from app.http import StrictRoute
+from app.values import GIVEN
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.template import Array, Template, given
 from templates.physics.film_measures import measure
@@ -55,7 +56,15 @@ class FilmPressureIn(Bounded):
         strict=True, extra="forbid", json_schema_extra={"examples": [{"inputs": TYPICAL}]}
     )
 
-    inputs: dict[str, Any] = Field(max_length=20, description="one value each, as in `evaluate`")
+    inputs: dict[str, Any] = Field(
+        max_length=20,
+        description="one value each, as in `evaluate`",
+        json_schema_extra={
+            "properties": dict.fromkeys(TYPICAL, GIVEN),
+            "required": list(TYPICAL),
+            "additionalProperties": False,
+        },
+    )
 
 
 @router.post("/film-pressure")

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Field, StringConstraints
 
 from app.bounded import Bounded, at_most
+from app.values import Given
 
 Text = Annotated[str, StringConstraints(max_length=100)]
 MOST_NAMES = 2000  # in one request
@@ -27,7 +28,7 @@ class Asked(Bounded):
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
-    inputs: Annotated[dict[str, Any], at_most(MOST_NAMES)] = Field(
+    inputs: Annotated[dict[str, Given], at_most(MOST_NAMES)] = Field(
         max_length=MOST_NAMES,
         description='quantities by name: `"25 kN"` or `{"value": 25, "unit": "kN"}`',
     )
@@ -66,5 +67,12 @@ class SolveIn(Asked):
     )
 
     unknown: Text = Field(description="the input to find")
-    bounds: list[Any] = Field(description="the lowest and the highest value to try")
-    target: dict[str, Any] = Field(max_length=200, description="one output and its wanted value")
+    bounds: list[Given] = Field(
+        description="the lowest and the highest value to try",
+        json_schema_extra={"minItems": 2, "maxItems": 2},
+    )
+    target: dict[str, Given] = Field(
+        max_length=200,
+        description="one output and its wanted value",
+        json_schema_extra={"minProperties": 1, "maxProperties": 1},
+    )

@@ -21,11 +21,14 @@ from pydantic import (
 
 from app.analyses.questions import Options
 from app.bounded import Bounded, at_most
+from app.values import Given
 
-Word = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
-Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f]+$")]
+WORD = r"^[A-Za-z][A-Za-z0-9_]{0,63}$"
+Word = Annotated[str, StringConstraints(pattern=WORD)]
+NAME = r"^[^\x00-\x1f\x7f]+$"  # no control characters
+Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=NAME)]
 Version = Annotated[int, Field(ge=1, le=10**6)] | Literal["latest"] | None
-Values = Annotated[dict[Word, Any], Field(max_length=500), at_most(500)]
+Values = Annotated[dict[Word, Given], Field(max_length=500), at_most(500)]
 MOST_VALUES = 10_000  # that all steps and models of a design set together
 
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
@@ -73,7 +76,7 @@ class Iteration(Bounded):
     through: str = Field(
         max_length=200, pattern=r"^[A-Za-z][A-Za-z0-9_]*(\.[a-z_]+){1,2}$", examples=["model.mass"]
     )
-    start: Any = Field(examples=["3 kg"])
+    start: Given = Field(examples=["3 kg"])
     tolerance: float = Field(1e-4, ge=1e-9, lt=1, description="relative")
     limit: int = Field(20, ge=1, le=100, description="rounds")
 

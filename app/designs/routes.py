@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Header, Path, Query, Response
 from fastapi.responses import JSONResponse
+from pydantic import WithJsonSchema
 from starlette.concurrency import run_in_threadpool
 
 from app.calculations.display import Units, converted
@@ -13,7 +14,7 @@ from app.dependencies import TheCatalogues, TheDatabase, TheDesigns, TheJobs, Th
 from app.designs import repository, views
 from app.designs.explain import explain
 from app.designs.preview import preview
-from app.designs.schemas import LONGEST_NOTE, CopyIn, DesignIn, RestoreIn
+from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn, RestoreIn
 from app.designs.service import Designs, Saved
 from app.http import StrictRoute
 from app.jobs.service import Jobs
@@ -29,13 +30,11 @@ Prefer = Annotated[str | None, Header(description="`wait=5` or `respond-async`")
 IfMatch = Annotated[str | None, Header(description='the ETag of the design that was read, such as `"3"`')]
 Patch = Annotated[
     dict[str, Any],
-    Body(
-        description="a merge patch of the design, with an optional `note`; null removes",
-        examples=[{"parameters": {"scale": "1.01"}, "note": "next size"}],
-    ),
+    Body(description="a merge patch of the design, with an optional `note`; null removes"),
+    WithJsonSchema(PATCH),
 ]
 MERGE_PATCH: dict[str, Any] = {
-    "requestBody": {"content": {"application/merge-patch+json": {"schema": {"type": "object"}}}}
+    "requestBody": {"content": {"application/merge-patch+json": {"schema": PATCH}}}
 }
 
 

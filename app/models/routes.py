@@ -6,12 +6,12 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Request, Response
 from fastapi.responses import FileResponse, JSONResponse
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, WithJsonSchema
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
 from app.analyses.questions import what_can_be_asked
-from app.bounded import Bounded, at_most
+from app.bounded import Bounded
 from app.catalogue.routes import Number, summary
 from app.clients import TheClient
 from app.dependencies import TheCatalogues, TheHealing, TheJobs, TheModels, TheStore
@@ -19,6 +19,7 @@ from app.healing import UNAVAILABLE, StoredFile, lost
 from app.http import StrictRoute, require_step
 from app.paging import Cursor, Limit, page_of
 from app.storage.artifacts import ArtifactStore
+from app.values import Parameters
 from app.waiting import LATER, accepted, finished
 from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.inspect import MEASURES
@@ -32,7 +33,7 @@ Id = Annotated[str, Path(max_length=64, examples=["ball_bearing"])]
 FOR_EVER = "public, max-age=31536000, immutable"
 
 
-Given = Annotated[dict[str, Any], Field(max_length=500), at_most(500)]
+FileKind = Annotated[str, WithJsonSchema({"type": "string", "enum": list(MEDIA_TYPES)})]
 
 
 class BuildIn(Bounded):
@@ -46,8 +47,8 @@ class BuildIn(Bounded):
         },
     )
 
-    parameters: Given = Field(description='quantities by name: `"48 mm"`; the others have defaults')
-    artifacts: list[str] = Field(
+    parameters: Parameters = Field(description='quantities by name: `"48 mm"`; the others have defaults')
+    artifacts: list[FileKind] = Field(
         [kind for kind in MEDIA_TYPES if kind not in DRAWINGS],
         max_length=50,
         description="the kinds of files wanted; without it all but dimensioned drawings",

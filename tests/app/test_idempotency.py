@@ -5,7 +5,7 @@ from serving import API, moody, problem
 from sqlalchemy import update
 
 from app.designs.errors import KeyReused
-from app.idempotency import NOBODY, Once
+from app.idempotency import BEFORE_CLIENTS, Once
 from app.storage.tables import IdempotencyRow
 
 SCOPE = "POST /designs"
@@ -30,14 +30,14 @@ def test_two_clients_may_choose_the_same_key(database):
 
 
 def test_a_key_of_before_there_were_clients_is_honoured(database):
-    kept(database, Once("key", SCOPE, "body", NOBODY), id="old")
+    kept(database, Once("key", SCOPE, "body", BEFORE_CLIENTS), id="old")
     assert looked_up(database, Once("key", SCOPE, "body", ANNA)) == {"id": "old"}
     with pytest.raises(KeyReused):
         looked_up(database, Once("key", SCOPE, "another body", ANNA))
 
 
 def test_a_clients_own_key_comes_before_an_old_one(database):
-    kept(database, Once("key", SCOPE, "body", NOBODY), id="old")
+    kept(database, Once("key", SCOPE, "body", BEFORE_CLIENTS), id="old")
     kept(database, Once("key", SCOPE, "another body", ANNA), id="own")
     assert looked_up(database, Once("key", SCOPE, "another body", ANNA)) == {"id": "own"}
 
@@ -63,6 +63,6 @@ class TestOverHttp:
 
     def test_a_request_of_before_the_upgrade_is_repeated_after_it(self, http, served):
         first = self.post(http, "cara", key="old-key")
-        old = update(IdempotencyRow).where(IdempotencyRow.key == "old-key").values(client=NOBODY)
+        old = update(IdempotencyRow).where(IdempotencyRow.key == "old-key").values(client=BEFORE_CLIENTS)
         served.app.state.database.write(lambda session: session.execute(old).rowcount)
         assert self.post(http, "cara", key="old-key").json()["id"] == first.json()["id"]
