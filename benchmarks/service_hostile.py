@@ -217,10 +217,9 @@ def _row(times: list[float], statuses: set[int], pings: list[float]) -> dict[str
 
 
 def _line(name: str, row: dict[str, Any]) -> str:
-    told = "{processor:6.1f} ms of the processor, {median:7.1f} ms, slowest {slowest:8.1f}, /healthz {healthz:6.1f} ms  {statuses}".format(
-        **row
-    )
-    return f"{name:44} {told}{'' if row['met'] else '  MISSED'}"
+    cost = "{processor:6.1f} ms of the processor, {median:7.1f} ms, slowest {slowest:7.1f}".format(**row)
+    verdict = "" if row["met"] else "  MISSED"
+    return f"{name:38} {cost}, /healthz {row['healthz']:6.1f} ms  {row['statuses']}{verdict}"
 
 
 def main() -> None:
