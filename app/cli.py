@@ -1,4 +1,4 @@
-"""The command line: `crankwright serve | demo | evaluate | template … | freeze | check | backup | restore`."""
+"""The command line: `crankwright serve | demo | evaluate | template | freeze | check | backup | restore`"""
 
 from __future__ import annotations
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from typing import BinaryIO
 
 from anyio import to_thread
 from fastapi import Response
@@ -16,7 +15,7 @@ from app.jobs.service import Jobs
 from app.models.healing import Healing, other_bytes
 from app.storage.artifacts import ArtifactStore
 from app.storage.errors import ArtifactDamaged
-from app.storage.verified import Stamp, stamp_of
+from app.storage.verified import Opened
 from app.waiting import finished
 
 RETRY_AFTER = 2  # s
@@ -74,28 +73,26 @@ class StoredFile(FileResponse):
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Send the file; an answer that has begun breaks off if the bytes change meanwhile."""
-        file = await to_thread.run_sync(self._store.open, self._sha)
-        with file:
-            self.path = f"/dev/fd/{file.fileno()}"  # this file, whatever takes its name
-            self.stat_result = os.fstat(file.fileno())
+        opened = await to_thread.run_sync(self._store.open, self._sha)
+        with opened:
+            descriptor = opened.file.fileno()
+            self.path = f"/dev/fd/{descriptor}"  # this file, whatever takes its name
+            self.stat_result = os.fstat(descriptor)
             self.set_stat_headers(self.stat_result)
-            await super().__call__(scope, receive, self._watched(file, send))
+            await super().__call__(scope, receive, self._watched(opened, send))
 
-    def _watched(self, file: BinaryIO, send: Send) -> Send:
-        stamp = stamp_of(file)
-
+    def _watched(self, opened: Opened, send: Send) -> Send:
         async def watched(message: Message) -> None:
-            nonlocal stamp
-            if stamp_of(file) != stamp:
-                stamp = await to_thread.run_sync(self._verified_again, stamp.inode)
+            nonlocal opened
+            if not opened.is_unchanged():
+                opened = await to_thread.run_sync(self._verified_again, opened)
             await send(message)
 
         return watched
 
-    def _verified_again(self, inode: int) -> Stamp:
-        """The stamp of the file after a change that left its bytes as they were, such as a later time."""
-        with self._store.open(self._sha) as file:
-            stamp = stamp_of(file)
-        if stamp.inode != inode:
-            raise ArtifactDamaged(self._sha, "it changed while it was being sent")
-        return stamp
+    def _verified_again(self, opened: Opened) -> Opened:
+        """The file after a change that left its bytes as they were, such as a later time."""
+        with self._store.open(self._sha) as again:
+            if again.stamp.inode != opened.stamp.inode:
+                raise ArtifactDamaged(self._sha, "it changed while it was being sent")
+            return Opened(opened.file, again.stamp)

@@ -1,7 +1,7 @@
 """Back up a data folder while the service runs: a snapshot of the database first, then the files it names.
 
-The bytes of an artifact are synced before the row that names it is committed. So every file of the snapshot is
-there, unless it is damaged, or the service has deleted it with its row meanwhile.
+The bytes of an artifact are synced before the row that names it is committed. So every file of the snapshot
+is there, unless it is damaged, or the service has deleted it with its row meanwhile.
 """
 
 from __future__ import annotations
@@ -165,7 +165,9 @@ def _temporary(target: Path, what: str) -> Iterator[Path]:
 
 
 def _publish(archive: Path, target: Path) -> None:
-    os.link(archive, target)  # unlike a rename, it never replaces a file
+    if target.exists():
+        raise CannotRun(f"{target} has appeared meanwhile: a backup never replaces another.")
+    os.rename(archive, target)
     descriptor = os.open(target.absolute().parent, os.O_RDONLY)
     try:
         os.fsync(descriptor)

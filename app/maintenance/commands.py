@@ -13,7 +13,7 @@ import click
 from app.maintenance.backup import Contents, back_up
 from app.maintenance.check import Findings, check
 from app.maintenance.errors import CannotRun
-from app.maintenance.folder import PG_DUMP, database_file
+from app.maintenance.folder import PG_DUMP, database_file, is_in_use
 from app.maintenance.restore import restore
 from app.settings import Settings
 from app.storage.engines import sqlite_file
@@ -28,9 +28,7 @@ _data = click.option(
 
 
 @click.command("check")
-@click.option(
-    "--repair", "repairing", is_flag=True, help="make lost files again; the service must be stopped"
-)
+@click.option("--repair", "repairing", is_flag=True, help="make lost files again; stop the service first")
 @_data
 def check_command(repairing: bool, data: Path | None) -> None:
     """Check the database, every artifact and every reference; exit code 0 clean, 1 faults, 2 cannot run."""
@@ -38,7 +36,7 @@ def check_command(repairing: bool, data: Path | None) -> None:
     with _refusing():
         if repairing:
             _repair(settings)
-        findings = _check(settings, in_use=_in_use(settings))
+        findings = _check(settings, in_use=is_in_use(settings.data))
     sys.exit(FAULTS if findings.count else CLEAN)
 
 
@@ -66,9 +64,7 @@ def restore_command(file: Path, data: Path) -> None:
         restored = restore(file, data, _say)
     _say(f"restored to {data.absolute()}, the state of {restored.manifest['created']}")
     if missing := (restored.end or {})["missing"]:
-        _say(
-            f"{len(missing)} files were lost already when the backup was made: run `crankwright check --repair`"
-        )
+        _say(f"{len(missing)} files were lost before the backup was made: run `crankwright check --repair`")
 
 
 def _repair(settings: Settings) -> None:
@@ -86,9 +82,7 @@ def _repair(settings: Settings) -> None:
     try:
         findings = _check(settings, in_use=False)
         if findings.database:
-            raise CannotRun(
-                "A damaged database is not repaired: restore the last backup; its faults are listed above."
-            )
+            raise CannotRun("A damaged database cannot be repaired: restore the last backup.")
         repair(settings.data, f"sqlite:///{path.absolute()}", findings, settings, _say)
     finally:
         folder.release()
@@ -100,14 +94,6 @@ def _check(settings: Settings, *, in_use: bool) -> Findings:
     for line in findings.lines():
         click.echo(line)
     return findings
-
-
-def _in_use(settings: Settings) -> bool:
-    try:
-        DataFolder(settings.data).release()
-    except DataFolderInUse:
-        return True
-    return False
 
 
 def _summarise(file: Path, contents: Contents) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,6 +10,7 @@ from pathlib import Path
 
 from app.maintenance.errors import CannotRun
 from app.storage.engines import sqlite_file
+from app.storage.folder import LOCK
 from app.storage.integrity import is_damage
 from app.storage.migrations import known_schemas
 
@@ -32,6 +34,18 @@ def database_file(data: Path, url: str | None) -> Path:
     if not path.is_file():
         raise CannotRun(f"There is no database {path.absolute()}: name the data folder by --data.")
     return path
+
+
+def is_in_use(data: Path) -> bool:
+    """Whether a service holds the folder; unlike `DataFolder` it creates nothing and takes nothing."""
+    try:
+        with (data / LOCK).open("rb") as lock:
+            fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except FileNotFoundError:
+        return False
+    except BlockingIOError:
+        return True
+    return False
 
 
 @contextmanager

@@ -5,6 +5,7 @@ Nothing in the archive decides where a byte goes: only entries of known names an
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import json
 import os
@@ -28,15 +29,7 @@ from app.storage.integrity import faults
 
 LARGEST_NOTE = 64 * 2**20  # of the manifest and the end [bytes]; the end names every missing file
 _CHUNK = 2**20
-_BROKEN = (
-    tarfile.TarError,
-    EOFError,
-    zlib.error,
-    json.JSONDecodeError,
-    UnicodeDecodeError,
-    KeyError,
-    TypeError,
-)
+_BROKEN = (tarfile.TarError, gzip.BadGzipFile, EOFError, zlib.error, ValueError, KeyError, TypeError)
 
 
 @dataclass
@@ -76,8 +69,8 @@ def restore(archive: Path, data: Path, say: Say) -> Restored:
 def _refuse_content(data: Path) -> None:
     if data.exists() and (not data.is_dir() or any(data.iterdir())):
         raise CannotRun(
-            f"{data.absolute()} is not empty, and a restore never overwrites. Name a new folder by --data, or "
-            f"stop the service and move the old one aside: mv {data.absolute()} {data.absolute()}.old"
+            f"{data.absolute()} is not empty, and a restore never overwrites. Name a new folder by --data, "
+            f"or stop the service and move the old one aside: mv {data.absolute()} {data.absolute()}.old"
         )
 
 
@@ -120,9 +113,7 @@ def _take(entry: tarfile.TarInfo, file: IO[bytes], folder: Path, restored: Resto
     elif (artifact := ARTIFACT.fullmatch(entry.name)) and restored.database:
         _take_artifact(artifact[2], file, folder / entry.name, restored)
     else:
-        raise CannotRun(
-            f"The archive holds {entry.name[:100]!r}, which no backup of Crankwright holds there."
-        )
+        raise CannotRun(f"The archive holds {entry.name[:100]!r}, which no backup of ours holds there.")
 
 
 def _take_artifact(sha: str, file: IO[bytes], place: Path, restored: Restored) -> None:
@@ -139,9 +130,7 @@ def _manifest(entry: tarfile.TarInfo, file: IO[bytes]) -> dict[str, Any]:
         raise CannotRun(f"This is no backup of Crankwright: it begins with {entry.name[:100]!r}.")
     manifest = _note(entry, file)
     if manifest["format"] != FORMAT:
-        raise CannotRun(
-            f"The backup has format {manifest['format']}; this program reads {FORMAT}: upgrade it."
-        )
+        raise CannotRun(f"The backup has format {manifest['format']}; this program reads {FORMAT}: upgrade.")
     return manifest
 
 

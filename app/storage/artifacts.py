@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Protocol
 
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
-from app.storage.verified import Stamp, Verified, stamp_of
+from app.storage.verified import Opened, Stamp, Verified, stamp_of
 
 QUARANTINE = "quarantine"
 SHA256 = re.compile(r"[0-9a-f]{64}")
@@ -100,8 +100,8 @@ class ArtifactStore:
         ArtifactDamaged
             The bytes had another hash; the file has been set aside.
         """
-        self.open(sha).close()
-        return self._location(sha)
+        with self.open(sha):
+            return self._location(sha)
 
     def read(self, sha: str) -> bytes:
         """Return the bytes of an artifact, verified by themselves; raises as `fetch` does."""
@@ -114,7 +114,7 @@ class ArtifactStore:
                 raise self._set_aside(sha, stamp_of(file), f"its {len(data)} bytes have another hash")
         return data
 
-    def open(self, sha: str) -> BufferedReader:
+    def open(self, sha: str) -> Opened:
         """Open a verified artifact for reading; raises as `fetch` does.
 
         The file stays the verified one even if another takes its name. Its bytes are hashed once for every
@@ -122,16 +122,15 @@ class ArtifactStore:
         """
         file = self._opened(sha)
         try:
-            self._verify(sha, file)
+            return Opened(file, self._verify(sha, file))
         except BaseException:
             file.close()
             raise
-        return file
 
     def exists(self, sha: str) -> bool:
         """Whether the artifact is there and its bytes still have this hash; a damaged one is set aside."""
         try:
-            self.open(sha).close()
+            self.open(sha).file.close()
         except (ArtifactMissing, ArtifactDamaged):
             return False
         return True
@@ -150,10 +149,10 @@ class ArtifactStore:
                     seen = path.lstat()
                     yield Stored(path.name, seen.st_size, seen.st_mtime)
 
-    def _verify(self, sha: str, file: BufferedReader) -> None:
+    def _verify(self, sha: str, file: BufferedReader) -> Stamp:
         stamp = stamp_of(file)
         if self._verified.has(sha, stamp):
-            return
+            return stamp
         try:
             found = hashlib.file_digest(file, "sha256").hexdigest()
         except OSError as error:
@@ -162,6 +161,7 @@ class ArtifactStore:
             raise self._set_aside(sha, stamp, f"its {stamp.size} bytes have another hash")
         file.seek(0)
         self._verified.add(sha, stamp)
+        return stamp
 
     def _opened(self, sha: str) -> BufferedReader:
         location = self._location(sha)

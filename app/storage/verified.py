@@ -7,7 +7,7 @@ import threading
 import time
 from collections import OrderedDict
 from dataclasses import dataclass
-from typing import BinaryIO
+from io import BufferedReader
 
 REMEMBERED = 20_000  # files; some 200 bytes each
 _RACY = 1_000_000_000  # a change within this time of the last one may show the same times [ns]
@@ -23,7 +23,27 @@ class Stamp:
     changed: int
 
 
-def stamp_of(file: BinaryIO) -> Stamp:
+@dataclass(frozen=True)
+class Opened:
+    """An open file, and the stamp that it had when its bytes were verified."""
+
+    file: BufferedReader
+    stamp: Stamp
+
+    def is_unchanged(self) -> bool:
+        """Whether the file still has that stamp."""
+        return stamp_of(self.file) == self.stamp
+
+    def __enter__(self) -> Opened:
+        """Keep it open."""
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        """Close it."""
+        self.file.close()
+
+
+def stamp_of(file: BufferedReader) -> Stamp:
     """The stamp of an open file."""
     seen = os.fstat(file.fileno())
     return Stamp(seen.st_ino, seen.st_size, seen.st_mtime_ns, seen.st_ctime_ns)
