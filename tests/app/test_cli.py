@@ -9,7 +9,7 @@ from pathlib import Path
 import httpx
 import pytest
 from click.testing import CliRunner
-from serving import PATIENCE, ServerProcess
+from serving import API, PATIENCE, ServerProcess
 
 from app.calculations.schemas import OIL_FILM
 from app.cli import main
@@ -120,7 +120,7 @@ class TestServe:
         (data / "artifacts" / "also mine").write_bytes(b"\x00")
         server = ServerProcess(data)
         with server, httpx.Client(base_url=server.url, trust_env=False) as http:
-            assert http.get("/readyz").json() == {"status": "ready", "designs": 0}
+            assert http.get(f"{API}/designs").json()["items"] == []
             assert http.post("/api/v1/designs", json={"name": "kept"}).status_code == 201
             refused = run("serve", "--data", str(data))
         assert (data / "notes.txt").read_text() == "mine"
