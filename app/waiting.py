@@ -20,14 +20,15 @@ async def finished(jobs: Jobs, job: str | None, prefer: str | None) -> bool:
     """Whether the job, if there is one, ended within the time that the client waits."""
     if job is None:
         return True
-    return await jobs.wait(job, _seconds(prefer, jobs.wait_seconds)) in (
+    return await jobs.wait(job, patience(prefer, jobs.wait_seconds)) in (
         "done",
         "failed",
         "cancelled",
     )
 
 
-def _seconds(prefer: str | None, default: float) -> float:
+def patience(prefer: str | None, default: float) -> float:
+    """How long the client waits for an answer [s]: as it prefers, else the default."""
     if prefer and "respond-async" in prefer:
         return 0.0
     asked = re.search(r"\bwait=([0-9]{1,4})\b", prefer or "")

@@ -31,6 +31,7 @@ ALLOWANCE = 3.0
 """The tables of the levels leave out stiffness and damping, which take twice as long as all the rest."""
 SCANS, CLOSINGS = 8, 60
 """Of `solve`: how often the samples of its scan are evaluated, in all, and single points after that."""
+MOST_POINTS = 10**12  # a request may claim more than a float can hold
 PROBED = 1000  # numbers in a request beyond which only the first of each array is looked at
 
 
@@ -43,9 +44,9 @@ def estimated_seconds(
 ) -> float:
     """How long `evaluate` will take, reading and writing included [s]; for wrong inputs, anything."""
     shapes = _shapes(cls, inputs)
-    numbers = sum(map(math.prod, shapes.values()))
+    numbers = min(MOST_POINTS, sum(map(math.prod, shapes.values())))
     levels = _levels(cls, inputs, level, tolerance, numbers)
-    points = spanned(_points(cls, shapes))
+    points = min(MOST_POINTS, spanned(_points(cls, shapes)))
     return numbers * PER_NUMBER + _evaluating(cls, levels, points, outputs) + _profiles(cls, shapes, outputs)
 
 
@@ -91,7 +92,7 @@ def _profiles(
 ) -> float:
     """What outputs along curves take beside those of the points [s]."""
     curves = (math.prod(s) for name, s in shapes.items() if isinstance(cls.inputs.get(name), Curve))
-    return max(curves, default=0) * len(_wanted(cls, outputs)) * PER_VALUE
+    return min(MOST_POINTS, max(curves, default=0)) * len(_wanted(cls, outputs)) * PER_VALUE
 
 
 def _levels(

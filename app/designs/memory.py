@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from threading import Lock
 from typing import Any
 
+from app.calculations.steps import evaluated_step
 from app.designs.graph import Block
-from templates.core.evaluate import Evaluation, evaluate
+from templates.core.evaluate import Evaluation
 
 REMEMBERED = 512  # evaluations of steps; a preview changes one of them and finds the others here
 
@@ -33,7 +34,7 @@ class Memory:
             if found := self._kept.get(key):
                 self._kept.move_to_end(key)
                 return found
-        made = evaluate(block.cls, raw, outputs=wanted, level=block.level, tolerance=block.tolerance)
+        made = evaluated_step(block.cls, raw, wanted, block.level, block.tolerance)
         with self._lock:
             self._kept[key] = made
             while len(self._kept) > REMEMBERED:

@@ -9,11 +9,11 @@ from typing import Any
 from pydantic_core import from_json, to_json
 
 from app.calculations.display import System, converted
+from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
 from app.designs.calculate import Calculation
 from templates.core.catalogue import Catalogue
 from templates.core.errors import TemplateError
-from templates.core.evaluate import evaluate
 from templates.core.template import Template
 from templates.core.verdicts import Check, checks
 
@@ -82,5 +82,5 @@ def _retyped(echo: Mapping[str, Any]) -> Any:
 def _written_out(
     cls: Any, inputs: bytes, outputs: tuple[str, ...], level: str | None, system: System
 ) -> tuple[list[dict[str, Any]], list[Check]]:
-    made = evaluate(cls, from_json(inputs), outputs=outputs, level=level)
+    made = evaluated_step(cls, from_json(inputs), outputs, level, None)
     return formulas(made.template, system, made.outputs), list(checks(made.template))

@@ -2,7 +2,7 @@
 
 import logging
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -25,21 +25,22 @@ Completion = Callable[[Session], str | None]
 Handler = Callable[[Job, JobContext], Completion]
 FailureHook = Callable[[Session, Job, Problem], None]
 
+FAST, SLOW = "fast", "slow"
 MAX_CRASHES = 2
 _PAUSE = 1.0  # before the queue is looked at again after the database has failed [s]
 
 
 @dataclass(frozen=True)
 class Kind:
-    """What to do with jobs of a kind, and whether they take minutes."""
+    """What to do with jobs of a kind, and in which lane."""
 
     handler: Handler
     on_failure: FailureHook
-    is_slow: bool = False
+    lane: str = FAST
 
 
 class Dispatcher:
-    """Runs the queued jobs, as many at a time as there are threads; slow ones in a thread of their own.
+    """Runs the queued jobs, as many at a time as there are threads; every lane has threads of its own.
 
     So whoever changes a bearing does not wait until somebody's analysis is done.
     """
@@ -58,16 +59,17 @@ class Dispatcher:
         self._limits = limits
         self._events = events
         self._describe = describe
-        self._awake = {False: threading.Semaphore(0), True: threading.Semaphore(0)}  # by whether slow
+        self._awake = {FAST: threading.Semaphore(0), SLOW: threading.Semaphore(0)}
         self._stopping = threading.Event()
         self._running: dict[str, threading.Event] = {}  # job id -> set to stop it
         self._threads: list[threading.Thread] = []
 
-    def start(self, threads: int) -> None:
-        """Begin to take jobs from the queue."""
-        lanes = [*(False for _ in range(threads)), True]
-        for number, slow in enumerate(lanes):
-            thread = threading.Thread(target=self._work, args=[slow], name=f"jobs-{number}", daemon=True)
+    def start(self, threads: int, beside: Mapping[str, int]) -> None:
+        """Begin to take jobs from the queue, with so many threads for fast ones and for lanes `beside`."""
+        counts = {FAST: threads, SLOW: 1, **beside}
+        self._awake = {lane: threading.Semaphore(0) for lane in counts}
+        for number, lane in enumerate(lane for lane, count in counts.items() for _ in range(count)):
+            thread = threading.Thread(target=self._work, args=[lane], name=f"jobs-{number}", daemon=True)
             self._threads.append(thread)
             thread.start()
             self.wake()
@@ -92,18 +94,18 @@ class Dispatcher:
         for thread in self._threads:
             thread.join()
 
-    def _work(self, slow: bool) -> None:
+    def _work(self, lane: str) -> None:
         while not self._stopping.is_set():
-            self._awake[slow].acquire()
+            self._awake[lane].acquire()
             try:
-                self._empty_queue(slow)
+                self._empty_queue(lane)
             except Exception:
                 logger.exception("The queue of jobs could not be read or written; trying again")
                 self._stopping.wait(_PAUSE)
                 self.wake()
 
-    def _empty_queue(self, slow: bool) -> None:
-        while not self._stopping.is_set() and (job := self._database.write(partial(self._claim, slow=slow))):
+    def _empty_queue(self, lane: str) -> None:
+        while not self._stopping.is_set() and (job := self._database.write(partial(self._claim, lane=lane))):
             mine = self._running[job.id]
             try:
                 self._execute(job)
@@ -111,10 +113,11 @@ class Dispatcher:
                 if self._running.get(job.id) is mine:  # given back, it may run again in another thread by now
                     del self._running[job.id]
 
-    def _claim(self, session: Session, *, slow: bool) -> Job | None:
+    def _claim(self, session: Session, *, lane: str) -> Job | None:
         """Claim a job and register it still in the writer thread: who sees it running can interrupt it."""
-        kinds = [name for name, kind in self.kinds.items() if kind.is_slow]
-        job = repository.claim(session, kinds, take_slow=slow)
+        beside = {name: kind.lane for name, kind in self.kinds.items() if kind.lane != FAST}
+        kinds = [name for name, its in beside.items() if lane in (FAST, its)]
+        job = repository.claim(session, kinds, take_slow=lane != FAST)
         if job is not None:
             self._running[job.id] = threading.Event()
         return job

@@ -1,14 +1,14 @@
 """What the rest of the server can do with jobs."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from sqlalchemy.orm import Session
 
 from app.jobs import repository
 from app.jobs.context import JobContext, publish
-from app.jobs.dispatcher import Completion, Dispatcher, FailureHook, Handler, Kind, Problem
+from app.jobs.dispatcher import FAST, SLOW, Completion, Dispatcher, FailureHook, Handler, Kind, Problem
 from app.jobs.errors import JobFailed, JobFinished, JobNotFound, QueueFull
 from app.jobs.events import Events
 from app.jobs.job import FINAL, Job, State
@@ -48,20 +48,31 @@ class Jobs:
         self._dispatcher = Dispatcher(database, worker, limits, self.events, describe)
 
     def register(
-        self, kind: str, handler: Handler, on_failure: FailureHook = _ignore, *, is_slow: bool = False
+        self,
+        kind: str,
+        handler: Handler,
+        on_failure: FailureHook = _ignore,
+        *,
+        is_slow: bool = False,
+        lane: str | None = None,
     ) -> None:
         """Say what runs jobs of a kind; slow ones run beside the others, one at a time.
+
+        A kind may have a lane of its own, whose threads `start` is asked for.
 
         The handler runs in a thread of the queue and returns a completion. That stores what the job has made
         and returns a link to it, in the transaction that marks the job as done. `on_failure` runs in the one
         that marks it as failed or cancelled.
         """
-        self._dispatcher.kinds[kind] = Kind(handler, on_failure, is_slow)
+        self._dispatcher.kinds[kind] = Kind(handler, on_failure, lane or (SLOW if is_slow else FAST))
 
-    def start(self) -> None:
-        """Queue again what a killed server left running, and begin to work. Register the kinds first."""
+    def start(self, lanes: Mapping[str, int] | None = None) -> None:
+        """Queue again what a killed server left running, and begin to work. Register the kinds first.
+
+        `lanes` gives the number of threads of lanes beside the usual two.
+        """
         self._database.write(repository.give_back_all)
-        self._dispatcher.start(self.settings.workers)
+        self._dispatcher.start(self.settings.workers, lanes or {})
 
     def stop(self) -> None:
         """End all subscriptions and all running jobs; they stay in the queue for the next start."""
@@ -76,6 +87,7 @@ class Jobs:
         *,
         design: str | None = None,
         revision: int | None = None,
+        client: str = "",
     ) -> str:
         """Queue a job in a unit of work and return its id; call `wake` when that is committed.
 
@@ -86,7 +98,7 @@ class Jobs:
         """
         if repository.count_queued(session) >= self.settings.queue_limit:
             raise QueueFull(RETRY_AFTER)
-        return repository.add(session, kind, payload, design, revision)
+        return repository.add(session, kind, payload, design, revision, client)
 
     def waiting(self, session: Session, kind: str, payload: dict[str, Any]) -> str | None:
         """Return the id of a job that is to do just this and has not ended."""

@@ -62,9 +62,9 @@ class WarmProcesses:
 
     def close(self) -> None:
         """Kill all processes; what still runs ends with JobCrashed."""
+        self._closed = True
+        self._forkserver.close()  # before the lock, which who waits for a stopped forkserver may hold
         with self._lock:
-            self._closed = True
-            self._forkserver.close()
             for process in self._idle:
                 process.kill()
             self._idle.clear()

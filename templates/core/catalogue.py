@@ -98,6 +98,17 @@ def find(folders: Iterable[Path], base: type[T], kind: str = "template") -> Cata
     return Catalogue(dict(sorted(versions.items())), kind)
 
 
+def declared_in_file(path: Path) -> type[Template]:
+    """The template, or model, that one versioned file declares.
+
+    Raises
+    ------
+    UnusableFile
+        If it cannot be imported, or declares none or several.
+    """
+    return _declared_in(_usable(path), path)
+
+
 def _imported(path: Path) -> ModuleType:
     """The module of a file: by its package's name where it has one, else by its path."""
     package = _package(path.parent)
