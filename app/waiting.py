@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from fastapi import Request
 from fastapi.responses import JSONResponse, Response
 
 from app.jobs.service import Jobs
@@ -33,6 +34,12 @@ def patience(prefer: str | None, default: float) -> float:
         return 0.0
     asked = re.search(r"\bwait=([0-9]{1,4})\b", prefer or "")
     return min(float(asked[1]), LONGEST) if asked else default
+
+
+async def client_left(request: Request) -> None:
+    """Wait until the client has closed its connection; the body has been read."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
 
 
 def accepted(job: str | None, body: dict[str, Any] | None = None) -> Response:

@@ -14,7 +14,7 @@ from app.calculations.jobs import CalculationJobs
 from app.calculations.operations import Question, answered
 from app.calculations.pool import Calculation, CalculationPool
 from app.clients import get_client
-from app.waiting import accepted, patience
+from app.waiting import accepted, client_left, patience
 from app.workers.errors import JobCancelled
 
 
@@ -60,7 +60,7 @@ class Answering:
             The client has left.
         """
         end = asyncio.create_task(_done(calculation.future))
-        leaving = asyncio.create_task(_left(request))
+        leaving = asyncio.create_task(client_left(request))
         try:
             await asyncio.wait({end, leaving}, timeout=seconds, return_when=asyncio.FIRST_COMPLETED)
             if calculation.future.done():
@@ -83,12 +83,6 @@ async def _done(future: Future[Any]) -> None:
 
     future.add_done_callback(wake)
     await done.wait()
-
-
-async def _left(request: Request) -> None:
-    """Wait until the client has closed its connection; the body has been read."""
-    while (await request.receive())["type"] != "http.disconnect":
-        pass
 
 
 async def get_answering(request: Request) -> Answering:

@@ -107,16 +107,6 @@ class CalculationPool:
             loser.future.set_exception(TooManyCalculations(RETRY_AFTER))
         return calculation
 
-    def run(self, client: str, function: Callable[[*Ts], Any], *args: *Ts) -> Any:
-        """Calculate and return the result, from a thread that has nothing else to do.
-
-        Raises
-        ------
-        TooManyCalculations, WorkerError, Exception
-            As `submit`, as `Worker.run`, or what the function raises.
-        """
-        return self.submit(client, function, *args).future.result()
-
     def cancel(self, calculation: Calculation) -> None:
         """End a calculation: one that waits at once, one that runs with its process."""
         calculation.cancelled.set()

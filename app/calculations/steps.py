@@ -5,10 +5,13 @@ Who calculates, and for which client, is set by the route or the job that calcul
 
 from __future__ import annotations
 
+import asyncio
+import threading
 from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import wait
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Any, ParamSpec, TypeVar
 
 from anyio import CapacityLimiter, to_thread
@@ -18,6 +21,7 @@ from app.calculations.cost import EXPENSIVE, estimated_seconds
 from app.calculations.pool import CalculationPool
 from app.calculations.sources import Source, loaded
 from app.clients import get_client
+from app.waiting import client_left
 from app.workers.progress import report
 from templates.core.evaluate import Evaluation, evaluate
 from templates.core.progress import reporting
@@ -26,6 +30,7 @@ from templates.core.template import Template
 P = ParamSpec("P")
 T = TypeVar("T")
 
+GLANCE = 0.1  # how often a thread looks whether its client has left [s]
 THREADS = 64  # that may wait for the pool; the other routes have theirs
 
 
@@ -43,6 +48,7 @@ class Caller:
 
     steps: Steps
     client: str
+    left: threading.Event = field(default_factory=threading.Event)  # the client has closed its connection
 
 
 _caller: ContextVar[Caller | None] = ContextVar("caller", default=None)
@@ -62,15 +68,19 @@ def evaluated_step(
     InvalidInputs
         Where the template refuses.
     TooManyCalculations, WorkerError
-        As `CalculationPool.run`.
+        As `CalculationPool.submit` and `Worker.run`.
     """
     caller = _caller.get()
     if caller is None or estimated_seconds(cls, raw, level, tolerance, outputs) <= EXPENSIVE:
         return evaluate(cls, raw, outputs=outputs, level=level, tolerance=tolerance)
     source = caller.steps.sources[cls]
-    made: Evaluation = caller.steps.pool.run(
+    calculation = caller.steps.pool.submit(
         caller.client, _evaluated, source, dict(raw), outputs, level, tolerance
     )
+    while not wait([calculation.future], GLANCE).done:
+        if caller.left.is_set():
+            caller.steps.pool.cancel(calculation)
+    made: Evaluation = calculation.future.result()
     return made
 
 
@@ -115,6 +125,22 @@ class Threads:
         if self._limiter is None:
             self._limiter = CapacityLimiter(THREADS)
         return await to_thread.run_sync(lambda: function(*args, **options), limiter=self._limiter)
+
+    async def run_for(
+        self, request: Request, function: Callable[P, T], *args: P.args, **options: P.kwargs
+    ) -> T:
+        """Call a function that changes nothing; what it calculates ends if the client leaves."""
+        leaving = asyncio.create_task(_note_leaving(request, _caller.get()))
+        try:
+            return await self.run(function, *args, **options)
+        finally:
+            leaving.cancel()
+
+
+async def _note_leaving(request: Request, caller: Caller | None) -> None:
+    await client_left(request)
+    if caller is not None:
+        caller.left.set()
 
 
 async def get_threads(request: Request) -> Threads:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Body, Header, Path, Query, Response
+from fastapi import APIRouter, Body, Header, Path, Query, Request, Response
 from fastapi.responses import JSONResponse
 from starlette.concurrency import run_in_threadpool
 
@@ -109,12 +109,15 @@ async def preview_design(
     database: TheDatabase,
     catalogues: TheCatalogues,
     threads: TheThreads,
+    request: Request,
     worksheet: Annotated[bool, Query(description="also every step, its formulas written out")] = False,
     units: Units = "si",
 ) -> dict[str, Any]:
     """What a change would do to outputs and model parameters; nothing is saved."""
     patch, _ = _noted(body)
-    return await threads.run(preview, database, catalogues, id, patch, worksheet=worksheet, system=units)
+    return await threads.run_for(
+        request, preview, database, catalogues, id, patch, worksheet=worksheet, system=units
+    )
 
 
 @router.post("/{id}/auto-map", responses=LATER)
@@ -198,7 +201,7 @@ def measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str
 
 @router.get("/{id}/explain/{parameter}")
 async def explain_parameter(
-    id: Id, parameter: Id, designs: TheDesigns, threads: TheThreads
+    id: Id, parameter: Id, designs: TheDesigns, threads: TheThreads, request: Request
 ) -> dict[str, Any]:
     """Where a model parameter comes from: dimension ← relation ← output ← formula ← inputs."""
 
@@ -207,7 +210,7 @@ async def explain_parameter(
             document = repository.head(session, id).document
         return explain(designs.prepare(document)[1], parameter)
 
-    return await threads.run(told)
+    return await threads.run_for(request, told)
 
 
 def _noted(body: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
