@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,8 @@ from templates.core.solve import POLISHES, SAMPLES
 from templates.core.template import Template
 
 EXPENSIVE = 0.05  # beyond this a calculation leaves the server's process [s]
+
+QUICK = 1e-4  # at one point [s]
 
 PER_CALL, PER_OUTPUT = 2e-4, 5e-5  # of one point, without levels [s]
 PER_VALUE = 1e-6  # each number of an answer, calculated and written as JSON [s]
@@ -71,6 +74,14 @@ def solving_seconds(
 def writing_seconds(cls: type[Template], outputs: Collection[str] | None = None) -> float:
     """How long it takes to write the formulas out [s]."""
     return PER_FORMULA * len(_wanted(cls, outputs))
+
+
+@cache
+def is_quick(cls: type[Template]) -> bool:
+    """Whether a few points take, at every level, no longer than a thread needs to begin."""
+    return not cls.most_points and all(
+        _level_seconds(cls, level, 1) <= QUICK for level in cls.levels or (SINGLE,)
+    )
 
 
 def _shapes(cls: type[Template], inputs: Mapping[str, Any]) -> dict[str, tuple[int, ...]]:

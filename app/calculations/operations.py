@@ -72,6 +72,6 @@ def _read(model: type[Asked], body: bytes) -> Asked:
     except ValueError as error:
         raise InvalidBody.not_json(str(error)[:200]) from None
     try:
-        return model.model_validate(raw)
+        return model.model_validate(raw, from_attributes=True)  # as FastAPI, whose words are used
     except ValidationError as error:
         raise InvalidBody.of(error) from None

@@ -15,7 +15,7 @@ from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
 
 from app.calculations.answering import Answering, TheAnswering
-from app.calculations.cost import EXPENSIVE, estimated_seconds, solving_seconds, writing_seconds
+from app.calculations.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
 from app.calculations.display import System, Units
 from app.calculations.operations import Question
 from app.calculations.schemas import Asked, EvaluateIn, SolveIn
@@ -28,7 +28,7 @@ from app.http import StrictRequest, StrictRoute
 from app.waiting import LATER
 
 LONGEST_ID, PLAIN_NUMBER = 64, re.compile("[1-9][0-9]{0,5}")
-FEW = 100  # points and names that are taken in the event loop, if no level is dear: a thread costs more
+FEW = 100  # points and names that are taken in the event loop, if every level is quick: a thread costs more
 LARGE = 256 * 1024  # bytes of a body that is read in the process that calculates
 SYSTEMS: dict[str | None, System] = {None: "si", "si": "si", "us": "us"}
 
@@ -104,7 +104,7 @@ async def evaluate(
 ) -> Response:
     """Evaluate a template: inputs in any unit, scalars or arrays; only what is asked for is computed."""
     cls = catalogues.templates.get(id, number)
-    if points(body.inputs) <= FEW and len(body.inputs) <= FEW and not cls.most_points:
+    if points(body.inputs) <= FEW and len(body.inputs) <= FEW and is_quick(cls):
         return _json(to_json(run_evaluate(cls, body)))
     if estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs) > EXPENSIVE:
         return await answering.answer(request, Question(id, number, "evaluate", await request.body()))

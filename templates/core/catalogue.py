@@ -26,6 +26,9 @@ from templates.core.template import VERSIONED, Template
 
 T = TypeVar("T", bound=Template)
 
+OUTSIDE = "_outside"
+"""The package to which files belong that are in none."""
+
 
 @dataclass(frozen=True)
 class Catalogue(Generic[T]):
@@ -115,7 +118,8 @@ def _imported(path: Path) -> ModuleType:
     if package:
         return importlib.import_module(f"{package}.{path.stem}")
     path = path.resolve()
-    name = f"_outside.{hashlib.sha256(bytes(path.parent)).hexdigest()[:12]}.{path.stem}"
+    sys.modules.setdefault(OUTSIDE, ModuleType(OUTSIDE))  # else nothing of such a file could be pickled
+    name = f"{OUTSIDE}.{hashlib.sha256(bytes(path.parent)).hexdigest()[:12]}.{path.stem}"
     if name in sys.modules:
         return sys.modules[name]
     spec = importlib.util.spec_from_file_location(name, path)
