@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -76,12 +75,15 @@ def writing_seconds(cls: type[Template], outputs: Collection[str] | None = None)
     return PER_FORMULA * len(_wanted(cls, outputs))
 
 
-@cache
 def is_quick(cls: type[Template]) -> bool:
     """Whether a few points take, at every level, no longer than a thread needs to begin."""
-    return not cls.most_points and all(
-        _level_seconds(cls, level, 1) <= QUICK for level in cls.levels or (SINGLE,)
-    )
+    if cls not in _quick:
+        levels = cls.levels or (SINGLE,)
+        _quick[cls] = not cls.most_points and all(_level_seconds(cls, n, 1) <= QUICK for n in levels)
+    return _quick[cls]
+
+
+_quick: dict[Any, bool] = {}
 
 
 def _shapes(cls: type[Template], inputs: Mapping[str, Any]) -> dict[str, tuple[int, ...]]:
