@@ -18,6 +18,8 @@ from app.analyses.finding import Analysing
 from app.analyses.routes import router as analyses
 from app.analyses.service import ANALYSIS, Analyses, ModelAnalysis
 from app.cache import results
+from app.calculations.answers import router as answers
+from app.calculations.assembly import LANES, assemble_calculations
 from app.calculations.film_pressure import router as film_pressure
 from app.calculations.routes import router as calculations
 from app.calculations.routes import worksheets
@@ -95,6 +97,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     for router in (
         calculations,
         worksheets,
+        answers,
         film_pressure,
         curves,
         catalogue,
@@ -157,12 +160,13 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     queue = Jobs(database, worker, settings, problems.describe)
     builds = Builds(database, store, settings.template_folders)
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
-    regeneration = Regeneration(database, builds, analysing, catalogues)
+    assemble_calculations(app, settings, stack, catalogues.templates, database, store, queue)
+    regeneration = Regeneration(database, builds, analysing, catalogues, app.state.steps)
     queue.register(REGENERATE, regeneration, Regeneration.failed)
     queue.register(REGENERATE_SLOWLY, regeneration, Regeneration.failed, is_slow=True)
     queue.register(BUILD, ModelBuild(builds, catalogues.models))
     queue.register(ANALYSIS, ModelAnalysis(builds, analysing, catalogues.models), is_slow=True)
-    queue.start()
+    queue.start(LANES)
     stack.callback(queue.stop)
     app.state.database, app.state.store, app.state.jobs = database, store, queue
     app.state.catalogues, app.state.settings = catalogues, settings
@@ -176,6 +180,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
             "database": readiness.Writing(database),
             "space": readiness.Space(folder.path, settings.minimum_free_mb),
             "processes": readiness.Processes(worker),
+            "calculations": readiness.Processes(app.state.calculations),
         }
     )
     limits = Limits(settings.job_deadline, settings.job_memory_mb)

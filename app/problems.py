@@ -16,6 +16,7 @@ from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
 
 from app.allow import allowed_methods
+from app.calculations.errors import InvalidBody
 from app.designs import errors as designs
 from app.guard import BadHost, CrossSite, HostNotAllowed
 from app.http import (
@@ -62,6 +63,7 @@ REBUILDING = Kind("rebuilding", 503, "The file is being made again", "retry afte
 TABLE: dict[type[Exception], Kind] = {
     templates.InvalidInputs: INVALID,
     RequestValidationError: INVALID,
+    InvalidBody: INVALID,
     templates.UnknownTemplate: Kind("unknown-template", 404, "No such version", "GET the list of versions"),
     templates.Unreachable: Kind("unreachable", 422, "The target is out of reach", "see `reachable`"),
     templates.TemplateError: Kind("refused", 422, "The calculation refuses", "see `detail`"),
@@ -114,7 +116,7 @@ TABLE: dict[type[Exception], Kind] = {
     UnreadableStep: Kind("unreadable-step", 422, "Not a STEP file", "send a STEP file (ISO 10303-21)"),
     workers.DeadlineExceeded: Kind("deadline", 422, "The work took too long", "simplify the model"),
     workers.MemoryExceeded: Kind("memory", 422, "The work took too much memory", "simplify the model"),
-    workers.JobCrashed: Kind("crashed", 422, "The geometry kernel crashed", "change the parameters"),
+    workers.JobCrashed: Kind("crashed", 422, "The process crashed", "change the inputs"),
     workers.JobCancelled: Kind("cancelled", 409, "The work was cancelled", "send the change again"),
 }
 HTTP = {
@@ -152,7 +154,7 @@ def _faults(error: templates.InvalidInputs) -> dict[str, Any]:
     return {"errors": listed, "detail": f"{count} {'fault' if count == 1 else 'faults'}: {_short(listed)}"}
 
 
-def _validation(error: RequestValidationError) -> dict[str, Any]:
+def _validation(error: RequestValidationError | InvalidBody) -> dict[str, Any]:
     listed = [_located(found) for found in error.errors()]
     return {"errors": listed, "detail": _short(listed)}
 
@@ -189,6 +191,7 @@ def _geometry(error: GeometryError) -> dict[str, Any]:
 _CARRIED: dict[type[Exception], Callable[[Any], dict[str, Any]]] = {
     templates.InvalidInputs: _faults,
     RequestValidationError: _validation,
+    InvalidBody: _validation,
     templates.Unreachable: _unreachable,
     GeometryError: _geometry,
     AnalysisError: lambda error: {

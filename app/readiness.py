@@ -11,7 +11,7 @@ import time
 from collections.abc import Awaitable, Callable, Mapping
 from concurrent.futures import Future
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import JSONResponse
@@ -21,7 +21,6 @@ from sqlalchemy.orm import Session
 from app import problems
 from app.storage.database import Database
 from app.storage.tables import CounterRow
-from app.workers.base import Worker
 
 router = APIRouter(tags=["health"])
 
@@ -101,10 +100,18 @@ class Space:
         return f"{free:.0f} MiB are free, less than the {self._minimum} MiB of CRANKWRIGHT_MINIMUM_FREE_MB"
 
 
+class Answering(Protocol):
+    """Has processes that may be alive or not."""
+
+    def answers(self) -> bool:
+        """Whether one is; see `Worker.answers`."""
+        ...
+
+
 class Processes:
     """Asks whether a job would find a process now or soon."""
 
-    def __init__(self, worker: Worker, patience: float = FORK) -> None:
+    def __init__(self, worker: Answering, patience: float = FORK) -> None:
         self._worker, self._patience = worker, patience
 
     async def __call__(self) -> str | None:

@@ -34,6 +34,21 @@ class Settings(BaseSettings):
     workers: int = Field(1, gt=0, description="jobs that run at the same time, beside one analysis")
     job_deadline: float = Field(60.0, gt=0, description="longest run of one job process [s]")
     job_memory_mb: int = Field(3072, gt=0, description="memory of one job process beside the program [MiB]")
+    calculation_processes: int = Field(
+        0, ge=0, description="processes for expensive calculations; 0: as many as cores"
+    )
+    calculation_waiting: int = Field(
+        32, gt=0, description="expensive calculations that may wait before new ones are refused"
+    )
+    calculation_deadline: float = Field(
+        30.0,
+        gt=0,
+        description="how long an answer waits for its calculation, which then goes on as a job [s]",
+    )
+    calculation_job_deadline: float = Field(300.0, gt=0, description="longest run of one calculation [s]")
+    calculation_memory_mb: int = Field(
+        2048, gt=0, description="memory of one calculation beside the program [MiB]"
+    )
     analysis_deadline: float = Field(300.0, gt=0, description="longest run of one analysis of a solid [s]")
     analysis_memory_mb: int = Field(6144, gt=0, description="memory of one such analysis [MiB]")
     cache_mb: int = Field(256, gt=0, description="memory for results that are kept to be used again [MiB]")

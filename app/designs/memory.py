@@ -7,8 +7,9 @@ from hashlib import sha256
 from typing import Any, NamedTuple
 
 from app.cache import Cache, results
+from app.calculations.steps import evaluated_step
 from app.designs.graph import Block
-from templates.core.evaluate import Evaluation, evaluate
+from templates.core.evaluate import Evaluation
 
 
 class _Kept(NamedTuple):
@@ -33,8 +34,7 @@ class Memory:
         key = (block.cls, block.level, block.tolerance, wanted, _fingerprint(raw))
         kept: _Kept | None = self._cache.get(key)
         if kept is None:
-            computed = evaluate(block.cls, raw, outputs=wanted, level=block.level, tolerance=block.tolerance)
-            return self._keep(key, computed)
+            return self._keep(key, evaluated_step(block.cls, raw, wanted, block.level, block.tolerance))
         if kept.values != _count(kept.evaluation):
             self._keep(key, kept.evaluation)
         return kept.evaluation

@@ -141,8 +141,8 @@ class Designs:
         document = resolved(read_document(raw), self.catalogues)
         graph, faults = build_graph(document, self.catalogues)
         raise_if(faults)
-        with self.database.read() as session:
-            return document, calculate(graph, built(session), analysed(session), starts(document))
+        known = built(self.database), analysed(self.database)
+        return document, calculate(graph, *known, starts(document))
 
     def _append(self, id: str, base: int, raw: Mapping[str, Any], note: str | None, once: Once) -> Saved:
         written, kind = self._written(raw, note)
@@ -252,12 +252,16 @@ def resolved(document: Document, catalogues: Catalogues) -> Document:
     return plain
 
 
-def built(session: Session) -> Measured:
-    """What models measure, for those that have been built."""
+def built(database: Database) -> Measured:
+    """What models measure, for those that have been built.
+
+    It is looked up when asked for: a step may take minutes, and no connection is held meanwhile.
+    """
 
     def measured(shape: CadModel) -> Measures | None:
-        row = repository.build(session, build_key(shape))
-        return row.measurements["measures"] if row else None
+        with database.read() as session:
+            row = repository.build(session, build_key(shape))
+            return row.measurements["measures"] if row else None
 
     return measured
 
@@ -267,11 +271,12 @@ def analyses_wanted(graph: Graph) -> bool:
     return any(graph.wanted(block.name, kind) for block in graph.blocks.values() for kind in block.analyses)
 
 
-def analysed(session: Session) -> Analysed:
-    """What finite elements found on models, where all that is wanted has been found."""
+def analysed(database: Database) -> Analysed:
+    """What finite elements found on models, where all that is wanted has been found; likewise."""
 
     def known(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Found | None:
-        found = analyses.found(session, question.key(build_key(shape)))
+        with database.read() as session:
+            found = analyses.found(session, question.key(build_key(shape)))
         if not set(wanted) <= found.keys():
             return None
         return under_load(question, {name: found[name] for name in wanted})

@@ -10,11 +10,11 @@ from pydantic_core import from_json, to_json
 
 from app.cache import results as kept
 from app.calculations.display import System, converted
+from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
 from app.designs.calculate import Calculation
 from templates.core.catalogue import Catalogue
 from templates.core.errors import TemplateError
-from templates.core.evaluate import evaluate
 from templates.core.template import Template
 from templates.core.verdicts import Check, checks
 
@@ -84,7 +84,7 @@ def _written_out(
     key = (_written_out, cls, sha256(inputs).digest(), outputs, level, system)
     written: tuple[list[dict[str, Any]], list[Check]] | None = kept.get(key)
     if written is None:
-        evaluation = evaluate(cls, from_json(inputs), outputs=outputs, level=level)
+        evaluation = evaluated_step(cls, from_json(inputs), outputs, level, None)
         written = formulas(evaluation.template, system, evaluation.outputs), list(checks(evaluation.template))
         kept.keep(key, written)
     return written

@@ -33,7 +33,9 @@ class Durations:
         return sum(latest) / len(latest) if latest else _USUAL
 
 
-def admit(session: Session, client: str, lane: Lane, settings: Settings, durations: Durations) -> None:
+def admit(
+    session: Session, client: str, lane: Lane, threads: int, settings: Settings, durations: Durations
+) -> None:
     """Let a client queue one more job, or refuse it.
 
     A tenth of the queue is kept for clients of whom nothing waits yet, so whoever fills the rest refuses no
@@ -48,7 +50,7 @@ def admit(session: Session, client: str, lane: Lane, settings: Settings, duratio
     total = settings.queue_limit - (_reserve(settings.queue_limit) if own else 0)
     is_share_full = own >= settings.client_queue_limit
     if is_share_full or turns.count_queued(session) >= total:
-        seconds = _seconds_to_a_place(session, client, lane, settings.workers, durations)
+        seconds = _seconds_to_a_place(session, client, lane, threads, durations)
         raise QueueFull(seconds, own if is_share_full else None)
 
 
@@ -56,7 +58,7 @@ def _reserve(limit: int) -> int:
     return max(1, limit // 10) if limit > 1 else 0
 
 
-def _seconds_to_a_place(session: Session, client: str, lane: Lane, workers: int, durations: Durations) -> int:
+def _seconds_to_a_place(session: Session, client: str, lane: Lane, threads: int, durations: Durations) -> int:
     """When a job of the client has probably left the queue [s]."""
-    rounds = turns.count_until_next(session, client, lane) / (1 if lane.is_slow else workers)
+    rounds = turns.count_until_next(session, client, lane) / threads
     return min(_LONGEST, max(1, ceil(rounds * durations.mean(lane))))

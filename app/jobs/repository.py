@@ -4,14 +4,13 @@ What a claimed job writes is fenced: it takes effect only while the row is runni
 claimed, so a job which was cancelled or claimed again cannot write any more.
 """
 
-from collections.abc import Collection
 from typing import Any, cast
 
 from sqlalchemy import ColumnElement, and_, select, update
 from sqlalchemy.orm import Session
 
 from app.jobs.job import Job, State
-from app.jobs.turns import UNFINISHED, Lane
+from app.jobs.turns import ALL_KINDS, UNFINISHED, Lane
 from app.storage.clock import operated
 from app.storage.identity import new_id, now
 from app.storage.tables import JobRow
@@ -57,10 +56,9 @@ def find_waiting(session: Session, kind: str, payload: dict[str, Any]) -> str | 
     return session.scalar(same.where(JobRow.state.in_(UNFINISHED)).limit(1))
 
 
-def claim(session: Session, slow: Collection[str] = (), *, take_slow: bool = False) -> Job | None:
-    """Make the queued job whose turn it is, of the slow kinds or of the others, a running one; return it."""
-    lane = Lane(tuple(slow), take_slow).holds()
-    queue = select(JobRow.id).where(JobRow.state == "queued", lane).order_by(JobRow.turn, JobRow.id)
+def claim(session: Session, lane: Lane = ALL_KINDS) -> Job | None:
+    """Make the queued job of a lane whose turn it is a running one, and return it."""
+    queue = select(JobRow.id).where(JobRow.state == "queued", lane.holds()).order_by(JobRow.turn, JobRow.id)
     claimed = update(JobRow).where(JobRow.id == queue.limit(1).scalar_subquery())
     values = {"state": "running", "attempt": JobRow.attempt + 1, "progress": 0.0, "log": [], "updated": now()}
     row = session.scalar(claimed.values(values).returning(JobRow))

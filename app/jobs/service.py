@@ -1,7 +1,7 @@
 """What the rest of the server can do with jobs."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from sqlalchemy.orm import Session
@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 from app.jobs import repository, turns
 from app.jobs.admission import admit
 from app.jobs.context import JobContext, publish
-from app.jobs.dispatcher import Completion, Dispatcher, FailureHook, Handler, Kind, Problem
+from app.jobs.dispatcher import FAST, SLOW, Completion, Dispatcher, FailureHook, Handler, Kind, Problem
 from app.jobs.errors import JobFailed, JobFinished, JobNotFound
 from app.jobs.events import Events
 from app.jobs.job import FINAL, Job, State
@@ -48,20 +48,31 @@ class Jobs:
         self._dispatcher = Dispatcher(database, worker, limits, self.events, describe)
 
     def register(
-        self, kind: str, handler: Handler, on_failure: FailureHook = _ignore, *, is_slow: bool = False
+        self,
+        kind: str,
+        handler: Handler,
+        on_failure: FailureHook = _ignore,
+        *,
+        is_slow: bool = False,
+        lane: str | None = None,
     ) -> None:
         """Say what runs jobs of a kind; slow ones run beside the others, one at a time.
+
+        A kind may have a lane of its own, whose threads `start` is asked for.
 
         The handler runs in a thread of the queue and returns a completion. That stores what the job has made
         and returns a link to it, in the transaction that marks the job as done. `on_failure` runs in the one
         that marks it as failed or cancelled.
         """
-        self._dispatcher.kinds[kind] = Kind(handler, on_failure, is_slow)
+        self._dispatcher.kinds[kind] = Kind(handler, on_failure, lane or (SLOW if is_slow else FAST))
 
-    def start(self) -> None:
-        """Queue again what a killed server left running, and begin to work. Register the kinds first."""
+    def start(self, lanes: Mapping[str, int] | None = None) -> None:
+        """Queue again what a killed server left running, and begin to work. Register the kinds first.
+
+        `lanes` gives the number of threads of lanes beside the usual two.
+        """
         self._database.write(repository.give_back_all)
-        self._dispatcher.start(self.settings.workers)
+        self._dispatcher.start(self.settings.workers, lanes or {})
 
     def stop(self) -> None:
         """End all subscriptions and all running jobs; they stay in the queue for the next start."""
@@ -86,7 +97,8 @@ class Jobs:
             Too many jobs are waiting, of this client or of all.
         """
         lane = self._dispatcher.lane(kind)
-        admit(session, client, lane, self.settings, self._dispatcher.durations)
+        threads = self._dispatcher.threads(kind)
+        admit(session, client, lane, threads, self.settings, self._dispatcher.durations)
         turn = turns.next_turn(session, client, lane)
         return repository.add(session, kind, payload, design, revision, client, turn)
 

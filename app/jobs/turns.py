@@ -2,13 +2,12 @@
 
 A client's new job takes the turn after its own last one, but none before the turn that the queue is at; jobs
 run by turn, those of one turn by age. So a newcomer comes second, however many jobs of another client wait.
-Slow kinds run in a lane of their own and have their own turns. Every function runs in the transaction of its
+Every lane has turns of its own. Every function runs in the transaction of its
 caller.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,19 +23,17 @@ MOST_OTHERS = 20  # clients that are remembered to wait for a job, beside the on
 
 @dataclass(frozen=True)
 class Lane:
-    """The jobs that wait for the same threads: those of the slow kinds, or all others."""
+    """The jobs that wait for the same threads: those of some kinds, or in the common lane all others."""
 
-    slow_kinds: tuple[str, ...] = ()
-    is_slow: bool = False
-
-    @classmethod
-    def of(cls, kind: str, slow_kinds: Collection[str]) -> Lane:
-        """The lane of a kind."""
-        return cls(tuple(slow_kinds), kind in slow_kinds)
+    kinds: tuple[str, ...] = ()
+    is_common: bool = True
 
     def holds(self) -> ColumnElement[bool]:
         """The condition that a job is in this lane."""
-        return JobRow.kind.in_(self.slow_kinds) if self.is_slow else JobRow.kind.not_in(self.slow_kinds)
+        return JobRow.kind.not_in(self.kinds) if self.is_common else JobRow.kind.in_(self.kinds)
+
+
+ALL_KINDS = Lane()
 
 
 def next_turn(session: Session, client: str, lane: Lane) -> int:

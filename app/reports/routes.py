@@ -12,6 +12,7 @@ from fastapi.responses import JSONResponse
 from starlette.concurrency import run_in_threadpool
 
 from app.calculations.display import Units
+from app.calculations.steps import ExpensiveSteps, TheThreads
 from app.clients import TheClient
 from app.dependencies import TheJobs
 from app.designs.errors import NotFound
@@ -26,7 +27,9 @@ from app.reports.service import Reports, tag
 from app.waiting import accepted_kinds, finished
 from app.web.rendering import POLICY
 
-router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
+router = APIRouter(
+    prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
+)
 
 REPORTS = {"html": "text/html", "pdf": "application/pdf"}
 TABLES = {
@@ -72,6 +75,8 @@ async def report(
     press: ThePress,
     jobs: TheJobs,
     client: TheClient,
+    threads: TheThreads,
+    request: Request,
     number: Number | None = None,
     kind: Id | None = None,
     units: Units = "si",
@@ -83,7 +88,7 @@ async def report(
     wanted = _wanted("report", kind, accept, REPORTS)
     revision = await run_in_threadpool(reports.number, id, number)
     job = await _waited(reports, jobs, id, revision, prefer, client)
-    told = await run_in_threadpool(lambda: reports.gather(id, revision, units, pending=job is not None))
+    told = await threads.run_for(request, reports.gather, id, revision, units, pending=job is not None)
     headers = _headers(told, wanted, job)
     if job is None and if_none_match and headers["ETag"] in if_none_match:
         return Response(status_code=304, headers=headers)
@@ -99,9 +104,11 @@ async def report(
 @router.get("/{id}/worksheet.{kind}", **_described(TABLES))
 @router.get("/{id}/revisions/{number}/worksheet", **_described(TABLES))
 @router.get("/{id}/revisions/{number}/worksheet.{kind}", **_described(TABLES))
-def worksheet(
+async def worksheet(
     id: Id,
     reports: TheReports,
+    threads: TheThreads,
+    request: Request,
     number: Number | None = None,
     kind: Id | None = None,
     units: Units = "si",
@@ -113,14 +120,15 @@ def worksheet(
     table.
     """
     wanted = _wanted("worksheet", kind, accept, TABLES)
-    revision = reports.number(id, number)
-    told = reports.told(id, revision, units)
+    revision = await run_in_threadpool(reports.number, id, number)
+    told = await threads.run_for(request, reports.told, id, revision, units)
     headers = {"Vary": "Accept", "Design-Revision": str(revision)}
     if wanted == "json":
         return JSONResponse(told, headers=headers)
     write = tables.write_csv if wanted == "csv" else tables.write_xlsx
     headers["Content-Disposition"] = f'attachment; filename="design_{_plain(id)}_r{revision}.{wanted}"'
-    return Response(write(tables.of(told)), headers=headers, media_type=TABLES[wanted])
+    table = await run_in_threadpool(lambda: write(tables.of(told)))
+    return Response(table, headers=headers, media_type=TABLES[wanted])
 
 
 async def _waited(

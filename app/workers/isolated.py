@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
 from multiprocessing import Pipe
@@ -30,11 +30,12 @@ _PATIENCE = 1.0  # how long the forkserver may take to end by itself [s]
 
 
 class JobProcess:
-    """A process that waits for one job, runs it, and is gone."""
+    """A process that waits for one job, runs it, and is gone, unless it is `reusable` after that."""
 
     def __init__(self, connection: Connection, status: Connection) -> None:
         self._connection = connection
         self._status = status
+        self.reusable = False
 
     def start(self, request: Request) -> None:
         """Send the process its job.
@@ -44,6 +45,7 @@ class JobProcess:
         OSError
             The process died while it was waiting.
         """
+        self.reusable = False
         self._connection.send(request)
 
     def finish(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event | None) -> Any:
@@ -52,7 +54,8 @@ class JobProcess:
             _ = self._pid  # the clock starts when the process exists, not while the forkserver is importing
             return self._converse(limits, on_progress, cancelled or threading.Event())
         finally:
-            self.kill()
+            if not self.reusable:
+                self.kill()
 
     def kill(self) -> None:
         """End the process, and those which it has started."""
@@ -83,9 +86,11 @@ class JobProcess:
                 case Progress(fraction, text):
                     if on_progress is not None:
                         on_progress(fraction, text)
-                case Returned(value):
+                case Returned(value, reusable):
+                    self.reusable = reusable
                     return value
-                case Raised(error):
+                case Raised(error, reusable):
+                    self.reusable = reusable
                     raise error
 
     def _await_message(self, end: float, limits: Limits, cancelled: threading.Event) -> None:
@@ -114,8 +119,9 @@ class JobProcess:
 class ForkServer:
     """Starts the forkserver, starts it anew if it has died, and asks it for processes."""
 
-    def __init__(self, preload: Sequence[str]) -> None:
+    def __init__(self, preload: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
         self._preload = preload
+        self._environment = environment or {}
         self._lock = threading.Lock()
         self._start()
 
@@ -160,6 +166,7 @@ class ForkServer:
                 [sys.executable, "-c", _BOOT, json.dumps(sys.path), str(theirs.fileno()), *self._preload],
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
+                env={**os.environ, **self._environment},
                 start_new_session=True,  # Ctrl-C in a terminal is for the server, which ends its jobs itself
             )
 

@@ -58,7 +58,7 @@ def claim(database):
 
     def claim(*, end=True, slow=False):
         def unit(session):
-            job = repository.claim(session, (SLOW,), take_slow=slow)
+            job = repository.claim(session, Lane((SLOW,), is_common=not slow))
             if job and end:
                 repository.end(session, job, "done", [])
             return job and job.payload["name"]
@@ -215,7 +215,7 @@ class TestAdmission:
         jobs = make(client_queue_limit=2, queue_limit=1000, workers=2)
         for _ in range(30):
             jobs._dispatcher.durations.note(Lane((SLOW,)), 7.0)
-            jobs._dispatcher.durations.note(Lane((SLOW,), True), 100.0)
+            jobs._dispatcher.durations.note(Lane((SLOW,), is_common=False), 100.0)
         for number in range(6):
             put(f"name:{number}", "other", jobs=jobs)
         put(ANNA, "first", jobs=jobs), put(ANNA, "second", jobs=jobs)
