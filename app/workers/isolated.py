@@ -117,7 +117,10 @@ class JobProcess:
 
 
 class ForkServer:
-    """Starts the forkserver, starts it anew if it has died, and asks it for processes."""
+    """Starts the forkserver, starts it anew if it has died, and asks it for processes.
+
+    Its `environment` holds defaults: what the operator has set in the server's own environment prevails.
+    """
 
     def __init__(self, preload: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
         self._preload = preload
@@ -166,7 +169,7 @@ class ForkServer:
                 [sys.executable, "-c", _BOOT, json.dumps(sys.path), str(theirs.fileno()), *self._preload],
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
-                env={**os.environ, **self._environment},
+                env={**self._environment, **os.environ},
                 start_new_session=True,  # Ctrl-C in a terminal is for the server, which ends its jobs itself
             )
 
