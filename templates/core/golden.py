@@ -1,4 +1,4 @@
-"""Frozen versions: a digest of the code, some inputs, every result; so a change beneath shows in its results.
+"""Frozen versions: digests of the code, some inputs, every result; so a change beneath shows in its results.
 
 `crankwright freeze` writes the record of a released version once; a test compares for ever after. A file that
 exists is never overwritten: a change to a released version is a new version.
@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.catalogue import digest
 from templates.core.declare import Choice
+from templates.core.digests import digests, release_file
 from templates.core.errors import InvalidInputs
 from templates.core.evaluate import is_told
 from templates.core.intake import Input
@@ -29,7 +29,7 @@ def record(cls: type[Template]) -> dict[str, Any]:
     return {
         "id": cls.id,
         "version": cls.version,
-        "digest": digest(cls),
+        **digests(cls),
         "precision": cls.precision,
         "cases": list(_cases(cls)),
     }
@@ -41,7 +41,7 @@ def golden_file(cls: type[Template], folder: Path) -> Path:
 
 
 def freeze(cls: type[Template], folder: Path) -> Path:
-    """Write the record of a version that is to be released; where it stands.
+    """Write the record of a version that is to be released, and its digests beside its file; where it stands.
 
     Raises
     ------
@@ -53,6 +53,15 @@ def freeze(cls: type[Template], folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     with path.open("x", encoding="utf-8") as file:
         file.write(text + "\n")
+    mark_released(cls)
+    return path
+
+
+def mark_released(cls: type[Template]) -> Path:
+    """Record the digests of a version beside its file, where the service reads them; never over a record."""
+    path = release_file(cls)
+    if not path.exists():
+        path.write_text(json.dumps(digests(cls), indent=1) + "\n", encoding="utf-8")
     return path
 
 

@@ -7,7 +7,6 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from templates.core.catalogue import digest
 from templates.core.declare import (
     Choice,
     Curve,
@@ -19,6 +18,7 @@ from templates.core.declare import (
     Table,
     Text,
 )
+from templates.core.digests import content_digest, digest
 from templates.core.intake import Input, is_single
 from templates.core.mathml import expression, mathml, symbol, symbols
 from templates.core.meaning import Bounds
@@ -38,6 +38,7 @@ def describe(cls: type[Template]) -> dict[str, Any]:
         "status": "withdrawn" if cls.withdrawn else "released",
         "withdrawn": cls.withdrawn,
         "digest": digest(cls),
+        "content_digest": content_digest(cls),
         "inputs": inputs_schema(cls),
         "outputs": outputs_schema(cls),
         "formulas": [formula_on_paper(cls, formula) for formula in cls.formulas.values()],

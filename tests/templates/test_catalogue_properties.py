@@ -13,8 +13,9 @@ import pytest
 import templates
 from cad.catalogue import models
 from templates.core import dimensions, golden, report
-from templates.core.catalogue import digest, find
+from templates.core.catalogue import find
 from templates.core.declare import Choice, Curve, Derived, Given, Profile, Text
+from templates.core.digests import digests, release_file
 from templates.core.errors import InvalidInputs
 from templates.core.evaluate import evaluate, is_told
 from templates.core.intake import is_single
@@ -165,9 +166,10 @@ class TestGolden:
         path = golden.golden_file(cls, GOLDEN)
         assert path.exists(), f"not frozen; run: crankwright freeze {cls.id} {cls.version}"
         record = json.loads(path.read_text(encoding="utf-8"))
-        assert record["digest"] == digest(cls), (
+        assert {name: record[name] for name in digests(cls)} == digests(cls), (
             f"the code of {cls.id} {cls.version} was edited; a change to a released version is a new version"
         )
+        assert json.loads(release_file(cls).read_text(encoding="utf-8")) == digests(cls)
         assert len(record["cases"]) > len(cls.inputs)
         for case in record["cases"]:
             check_case(cls, case, record["precision"])
