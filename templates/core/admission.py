@@ -25,7 +25,7 @@ def absence(self: Template, declaration: Formula[Any]) -> str | None:
 def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:
     """The fault of a formula's result outside its domain, with the inputs that it follows from."""
     meaning = declaration.meaning.at(self.level)
-    beneath = sorted(self.ancestors(declaration.attribute) & self.declarations.keys())
+    beneath = sorted(self.depends_on(declaration.attribute) & self.declarations.keys())
     used = (self.declarations[n].name for n in beneath)
     inputs = ", ".join(name for name in used if name in self.inputs) or "constants alone"
     if np.isfinite(value):

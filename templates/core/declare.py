@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from templates.core.meaning import Bounds, Meaning, meaning
 from templates.core.quantity import Typed, read, unit
-from templates.core.syntax import attributes_used, returned
+from templates.core.syntax import attributes_used, inputs_read_as_given, returned
 
 Array = NDArray[np.float64]
 Truth = bool | NDArray[np.bool_]
@@ -131,6 +131,11 @@ class Formula(Declaration, Generic[T]):
         """The attributes that the formula refers to, in order of appearance."""
         return attributes_used(self.function)
 
+    @cached_property
+    def uses_as_given(self) -> tuple[str, ...]:
+        """The inputs whose given value it reads, without the formula of their default."""
+        return inputs_read_as_given(self.function)
+
 
 class Derived(Formula[T]):
     """An optional input: a value given by the user, else this formula of other inputs; `shown` as output."""
@@ -196,6 +201,11 @@ class Shared(Generic[T]):
         """The attributes of the template that it refers to."""
         return attributes_used(self.function)
 
+    @cached_property
+    def uses_as_given(self) -> tuple[str, ...]:
+        """The inputs whose given value it reads, without the formula of their default."""
+        return inputs_read_as_given(self.function)
+
 
 class Requirement:
     """A rule between inputs; where it does not hold, the inputs it names are refused."""
@@ -213,6 +223,11 @@ class Requirement:
     def uses(self) -> tuple[str, ...]:
         """The attributes of the template that the rule refers to."""
         return attributes_used(self.function)
+
+    @cached_property
+    def uses_as_given(self) -> tuple[str, ...]:
+        """The inputs whose given value it reads, without the formula of their default."""
+        return inputs_read_as_given(self.function)
 
 
 def given(

@@ -195,7 +195,7 @@ def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
     why = absence(template, formula) or "there is nothing to tell here"
     if isinstance(value, str):
         return Answer(value or None, None, reason=None if value else why)
-    beneath = template.ancestors(formula.attribute)
+    beneath = template.depends_on(formula.attribute)
     masks = [m for m in template.ledger.masks if not (m.tells or beneath.isdisjoint(m.names))]
     shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), value.shape)
     told = np.broadcast_to(value, shape).astype(object)
@@ -214,7 +214,7 @@ def _with_reasons(
 
     A profile has one reason as a whole.
     """
-    beneath = template.ancestors(formula.attribute)
+    beneath = template.depends_on(formula.attribute)
     profile = formula if isinstance(formula, Profile) else None
     masks = [mask for mask in template.ledger.masks if not beneath.isdisjoint(mask.names)]
     if not masks and not np.isnan(si).any():

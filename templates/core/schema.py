@@ -152,7 +152,7 @@ def formula_on_paper(cls: type[Template], formula: Formula[Any]) -> dict[str, An
         "latex": latex,
         "mathml": mathml(latex),
         "source": formula.meaning.source,
-        "uses": list(dict.fromkeys(_declared_beneath(cls, formula.uses))),
+        "uses": list(dict.fromkeys(_declared_beneath(cls, (*formula.uses, *formula.uses_as_given)))),
     }
 
 
@@ -162,7 +162,8 @@ def _declared_beneath(cls: type[Template], attributes: Iterable[str]) -> Iterato
         if attribute in cls.declarations:
             yield cls.declarations[attribute].name
         elif attribute in cls.intermediates:
-            yield from _declared_beneath(cls, cls.intermediates[attribute].uses)
+            node = cls.intermediates[attribute]
+            yield from _declared_beneath(cls, (*node.uses, *node.uses_as_given))
 
 
 def declared_limits(cls: type[Template]) -> list[dict[str, Any]]:
