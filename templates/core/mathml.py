@@ -37,7 +37,7 @@ _FUNCTIONS = {"log10": r"\lg", "log": r"\ln", "exp": r"\exp", "sin": r"\sin", "c
 
 
 def symbol(declared: Declaration) -> str:
-    """The symbol on paper: as declared, else from the attribute, as `nu_1` → `\\nu_{1}`."""
+    r"""The symbol on paper: as declared, else from the attribute, as `nu_1` → `\nu_{1}`."""
     return declared.meaning.symbol or _from_attribute(declared.attribute)
 
 

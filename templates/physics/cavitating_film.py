@@ -74,16 +74,25 @@ def solved_ring(
 ) -> SolvedRing:
     """Solve the static film with cavities, from a coarse mesh to the one asked for.
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter B/D [-].
-        grooves: where oil is fed.
-        ambient: pressure at the ends above that of the cavity, 0 or more [-].
-        around: intervals around.
-        across: intervals across half the width.
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D [-].
+    grooves
+        Where oil is fed.
+    ambient
+        Pressure at the ends above that of the cavity, 0 or more [-].
+    around
+        Intervals around.
+    across
+        Intervals across half the width.
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
     """
     require_film(np.asarray(eps), np.asarray(ratio))
     require(np.asarray(len(grooves) > 0), "grooves: at least one must feed the film")

@@ -58,11 +58,16 @@ def transient_orbit(
 ) -> TransientOrbit | None:
     """March one case until it repeats; None where the film is not found or does not repeat.
 
-    Args:
-        load: one case.
-        ratio: width over diameter B/D [-].
-        start: (2,) relative eccentricity at the first angle.
-        marching: mesh and step.
+    Parameters
+    ----------
+    load
+        One case.
+    ratio
+        Width over diameter B/D [-].
+    start
+        (2,) relative eccentricity at the first angle.
+    marching
+        Mesh and step.
     """
     count = min(MOST_NODES, int(np.ceil(load.period / marching.step - 1e-9)))
     place = load.angle[0] + load.period * np.arange(1, count + 1) / count
