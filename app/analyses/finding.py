@@ -6,13 +6,14 @@ import json
 from typing import Any
 
 from app.analyses import repository
-from app.analyses.questions import SURFACE, Question
+from app.analyses.questions import Question
 from app.designs import repository as builds
 from app.jobs.service import JobContext
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.workers.base import Limits
 from app.workers.progress import report
+from cad.analysis.kinds import SURFACE
 from cad.errors import AnalysisError
 from cad.model import CadModel
 from cad.regenerate import build_key

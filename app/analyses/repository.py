@@ -8,10 +8,11 @@ from typing import Any
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.analyses.questions import STRESSES, Question, in_order
+from app.analyses.questions import Question, in_order
 from app.designs.errors import NotFound
 from app.storage.identity import now
 from app.storage.tables import AnalysisRow
+from cad.analysis.kinds import STRESSES
 
 Found = dict[str, dict[str, Any]]
 

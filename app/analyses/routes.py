@@ -12,7 +12,6 @@ from starlette.concurrency import run_in_threadpool
 from app import problems
 from app.analyses.questions import (
     DEAR,
-    KINDS,
     faults,
     in_order,
     load_faults,
@@ -29,6 +28,7 @@ from app.designs.errors import NotFound
 from app.http import StrictRoute
 from app.models.routes import FOR_EVER
 from app.waiting import LATER, accepted, finished
+from cad.analysis.kinds import KINDS
 from cad.model import CadModel
 from templates.core.errors import Fault, InvalidInputs
 

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from templates.core.declare import Array, Declaration, Formula, Profile
+from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.ledger import Ledger, Mask, Notice
+from templates.core.spec import Declaration, Formula, Profile
 
 if TYPE_CHECKING:
     from templates.core.template import Template

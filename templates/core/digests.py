@@ -23,7 +23,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from templates.core.declare import Declaration, Requirement, Shared
+from templates.core.spec import Declaration, Requirement, Shared
 from templates.core.template import Template
 
 DIGEST_VERSION = 2

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.declare import Choice
 from templates.core.digests import digests, release_file
 from templates.core.errors import InvalidInputs
 from templates.core.evaluate import is_told
 from templates.core.intake import Input
+from templates.core.spec import Choice
 from templates.core.template import Template
 
 STEPS = (0.9, 1.1)  # every numeric input in turn, around the example

@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.admission import warn_if_outside
-from templates.core.declare import Array, Choice, Curve, Declaration, Derived, Given, Requirement, Table
+from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_name
 from templates.core.ledger import Ledger, Mask, Notice
-from templates.core.quantity import Typed, read, unit
+from templates.core.quantity import Typed, read
+from templates.core.spec import Choice, Curve, Declaration, Derived, Given, Requirement, Table
+from templates.core.units import unit
 
 Input = Given | Choice | Derived[Any]
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import latex2mathml.converter
 
-from templates.core.declare import Declaration, Formula
+from templates.core.spec import Declaration, Formula
 from templates.core.syntax import returned, syntax
 from templates.core.template import Template
 

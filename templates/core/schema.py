@@ -7,7 +7,11 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from templates.core.declare import (
+from templates.core.digests import content_digest, digest
+from templates.core.intake import Input, is_single
+from templates.core.mathml import expression, mathml, symbol, symbols
+from templates.core.meaning import Bounds
+from templates.core.spec import (
     Choice,
     Curve,
     Declaration,
@@ -18,10 +22,6 @@ from templates.core.declare import (
     Table,
     Text,
 )
-from templates.core.digests import content_digest, digest
-from templates.core.intake import Input, is_single
-from templates.core.mathml import expression, mathml, symbol, symbols
-from templates.core.meaning import Bounds
 from templates.core.template import Template
 
 _KEYWORDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}

@@ -16,17 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.admission import absence, masked, refusal, warn_if_outside, whole
+from templates.core.arrays import Array, Truth
 from templates.core.declare import (
-    Array,
-    Choice,
-    Declaration,
-    Derived,
-    Formula,
-    Given,
-    Profile,
-    Requirement,
-    Shared,
-    Truth,
     by_name,
     choice,
     curve,
@@ -52,6 +43,7 @@ from templates.core.intake import (
     violations,
 )
 from templates.core.ledger import Ledger, Mask
+from templates.core.spec import Choice, Declaration, Derived, Formula, Given, Profile, Requirement, Shared
 
 __all__ = [
     "Array", "Template", "Truth", "choice", "curve", "derived", "formula", "given", "profile", "require",

@@ -1,12 +1,9 @@
 """The array type of the physics functions, the refusal of values outside a domain, points and curves."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from templates.core.arrays import Array, Mask
 from templates.core.declare import units
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 ECCENTRICITY_LIMIT = 1 - 1e-7
 """The largest relative eccentricity that any formula here accepts."""

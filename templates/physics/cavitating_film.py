@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array, Mask, require, require_film
+from templates.core.arrays import Array, Mask
+from templates.physics.arrays import require, require_film
 from templates.physics.cavitating_network import Groove, Ring, fed_network, grooved_ring
 from templates.physics.cavitation import Cavitation, Network, cavitation
 from templates.physics.film_equations import dual_widths

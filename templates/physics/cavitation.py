@@ -21,7 +21,7 @@ import numpy as np
 from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import splu
 
-from templates.physics.arrays import Array, Mask
+from templates.core.arrays import Array, Mask
 
 _MOST_STEPS = 200
 _ACCURACY = 1e-11

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array, Mask
+from templates.core.arrays import Array, Mask
 from templates.physics.banded import Banded, banded
 from templates.physics.film_equations import Equations, dual_widths
 

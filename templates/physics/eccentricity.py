@@ -9,7 +9,8 @@ from collections.abc import Callable
 import numpy as np
 from scipy.special import expit, logit
 
-from templates.physics.arrays import ECCENTRICITY_LIMIT, Array, require
+from templates.core.arrays import Array
+from templates.physics.arrays import ECCENTRICITY_LIMIT, require
 from templates.physics.roots import bracketed_root
 
 _LOWEST = 1e-20

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from templates.physics.arrays import ECCENTRICITY_LIMIT, Array
+from templates.core.arrays import Array
+from templates.physics.arrays import ECCENTRICITY_LIMIT
 from templates.physics.cavitating_dynamics import LinearFilm, linear_film
 from templates.physics.cavitating_film import CavitatingFilm, SolvedRing, measured, solved_ring
 from templates.physics.cavitating_network import Groove

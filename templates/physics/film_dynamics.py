@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array, require
+from templates.core.arrays import Array
+from templates.physics.arrays import require
 from templates.physics.complementarity import Rupture
 from templates.physics.film_equations import dual_widths, midpoints, perturbed_equations, squeeze
 from templates.physics.film_measures import force

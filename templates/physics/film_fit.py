@@ -12,7 +12,8 @@ DIN 31652-2:1983; ISO 7902-2:1998, clause 4; K. Butenschön, Diss. Karlsruhe 197
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from templates.physics.arrays import Array, require, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require, require_film
 from templates.physics.short_bearing import load_Ocvirk_1952
 
 NARROWEST, WIDEST = 0.125, 1.0

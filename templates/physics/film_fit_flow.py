@@ -5,7 +5,7 @@ References
 DIN 31652-2:1983; ISO 7902-2:1998, clause 5.
 """
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 
 def side_flow_ISO_7902(eps: Array, ratio: Array) -> Array:

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from templates.physics.arrays import Array, require, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require, require_film
 from templates.physics.film_measures import Film
 from templates.physics.film_mesh import sommerfeld_angle
 from templates.physics.short_bearing import attitude_Ocvirk_1952, load_Ocvirk_1952, peak_pressure_Ocvirk_1952

@@ -6,7 +6,8 @@ is a cubic, and a bracketed search ends at rounding.
 
 import numpy as np
 
-from templates.physics.arrays import ECCENTRICITY_LIMIT, Array, require
+from templates.core.arrays import Array
+from templates.physics.arrays import ECCENTRICITY_LIMIT, require
 from templates.physics.film_map import FilmMap, film_map, require_mapped
 from templates.physics.roots import bracketed_root
 from templates.physics.short_bearing import load_Ocvirk_1952

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array, require
+from templates.core.arrays import Array
+from templates.physics.arrays import require
 from templates.physics.long_bearing import rupture_Swift_Stieber
 
 _MARGIN = 1.03

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from templates.physics.arrays import Array, Mask, require, require_film
+from templates.core.arrays import Array, Mask
+from templates.physics.arrays import require, require_film
 from templates.physics.banded import Banded, banded
 from templates.physics.complementarity import finer
 from templates.physics.film_equations import Equations, dual_widths, film_equations, midpoints, squeeze

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.fed_film import Feed, fed_coefficients
 from templates.physics.film_dynamics import plain_coefficients
 from templates.physics.film_map import mapped_coefficients, mapped_load

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.physics.arrays import Array, Mask
+from templates.core.arrays import Array, Mask
 from templates.physics.mobility_law import MobilityLaw
 from templates.physics.periodic_steps import differences, imbalance, newton_step
 

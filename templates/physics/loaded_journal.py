@@ -6,8 +6,8 @@ over the whole circle as in DIN 31652 and ISO 7902.
 
 import numpy as np
 
+from templates.core.arrays import Array
 from templates.core.declare import units
-from templates.physics.arrays import Array
 from templates.physics.film_map import NARROWEST, WIDEST, mapped_film
 from templates.physics.film_map_inverse import mapped_eccentricity
 from templates.physics.petrov import friction_number_Petrov_1883

@@ -11,7 +11,8 @@ H. W. Swift, Proc. Inst. Civ. Eng. 233, 1932, p. 267; W. Stieber, Das Schwimmlag
 
 import numpy as np
 
-from templates.physics.arrays import Array, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require_film
 from templates.physics.roots import bracketed_root
 
 

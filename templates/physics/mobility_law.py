@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from templates.physics.arrays import Array, Mask
+from templates.core.arrays import Array, Mask
 from templates.physics.mobility_map import coordinates, mobility_map
 from templates.physics.spline_slopes import at_thirds, surfaces_with_slopes
 

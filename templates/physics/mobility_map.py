@@ -22,7 +22,8 @@ from pathlib import Path
 
 import numpy as np
 
-from templates.physics.arrays import ECCENTRICITY_LIMIT, Array, require
+from templates.core.arrays import Array
+from templates.physics.arrays import ECCENTRICITY_LIMIT, require
 from templates.physics.film_mobility import Motion
 from templates.physics.uniform_spline import Axis, surface
 from templates.physics.volume_spline import Axes, at_third, volume

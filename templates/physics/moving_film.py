@@ -16,7 +16,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq
 
-from templates.physics.arrays import Array, require, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require, require_film
 from templates.physics.complementarity import Rupture, finer, rupture
 from templates.physics.film_equations import film_equations, midpoints, squeeze
 from templates.physics.film_measures import force

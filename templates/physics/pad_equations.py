@@ -10,7 +10,7 @@ R. E. Lynch, J. R. Rice, D. H. Thomas, Numer. Math. 6, 1964, p. 185.
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.pad_mesh import across, grading
 
 

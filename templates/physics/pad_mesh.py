@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 _FLATTEST = 1e-9
 """The smallest ln(a) with which the map is made; below it the film is even to rounding."""

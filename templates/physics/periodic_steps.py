@@ -12,7 +12,7 @@ equation should (L-stable for equal steps), and needs no cycles run in.
 import numpy as np
 from scipy.linalg.lapack import dtbtrs
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 _NEARLY = 1 + 1e-15
 """Keeps a cycle that brings every disturbance back unchanged from being exactly singular."""

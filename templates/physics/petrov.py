@@ -7,7 +7,7 @@ N. P. Petrov, Inzhenernyj Zhurnal, 1883; course MEC 315.
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 
 def friction_Petrov_1883(radius: Array, width: Array, clearance: Array, eta: Array, omega: Array) -> Array:

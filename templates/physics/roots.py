@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 _STEPS = 200
 

@@ -11,7 +11,8 @@ F. W. Ocvirk, NACA TN 2808, 1952; G. B. DuBois and F. W. Ocvirk, NACA TR 1157, 1
 
 import numpy as np
 
-from templates.physics.arrays import Array, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require_film
 
 
 def load_Ocvirk_1952(eps: Array, ratio: Array) -> Array:

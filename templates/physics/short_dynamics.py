@@ -8,7 +8,8 @@ section 3.4. There y is along the load; here x is, and y ahead of x in the sense
 
 import numpy as np
 
-from templates.physics.arrays import Array, require, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require, require_film
 
 
 def coefficients_Holmes_1960(eps: Array) -> tuple[Array, Array]:

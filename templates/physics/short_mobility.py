@@ -11,7 +11,8 @@ J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; J. Lubr. Technol. 93, 
 
 import numpy as np
 
-from templates.physics.arrays import Array, require, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require, require_film
 from templates.physics.roots import bracketed_root
 
 _BLOCK = 4096

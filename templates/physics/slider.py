@@ -10,7 +10,8 @@ Lord Rayleigh, Phil. Mag. 35, 1918, p. 1; A. Cameron, Basic Lubrication Theory, 
 
 import numpy as np
 
-from templates.physics.arrays import Array, Mask, require
+from templates.core.arrays import Array, Mask
+from templates.physics.arrays import require
 
 _NEAR = 0.1
 

@@ -25,8 +25,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from templates.core.arrays import Array
 from templates.core.declare import units
-from templates.physics.arrays import Array, require
+from templates.physics.arrays import require
 from templates.physics.arrays import spread as spread
 from templates.physics.pad_equations import solved_pads
 from templates.physics.pad_mesh import Grading, grading

@@ -17,7 +17,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from templates.physics.arrays import Array, Mask
+from templates.core.arrays import Array, Mask
 from templates.physics.eccentricity import eccentricity
 from templates.physics.fed_film import Feed, fed_film
 from templates.physics.film_fit import attitude_ISO_7902, load_ISO_7902

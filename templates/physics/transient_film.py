@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.film_equations import dual_widths
 from templates.physics.transient_balance import Balance, Journal, balance
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 _BLOCK = 4096
 """Points evaluated at a time, so that their weights stay in the processor's cache."""

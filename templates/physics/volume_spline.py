@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse import csr_array
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.uniform_spline import Axis
 
 _BLOCK = 1024

@@ -7,7 +7,7 @@ J. W. Lund, Trans. ASME J. Appl. Mech. 87, 1965, p. 911; J. S. Rao, Rotor Dynami
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 
 def whirl_stiffness(K: Array, B: Array) -> Array:

@@ -14,12 +14,12 @@ import templates
 from cad.catalogue import models
 from templates.core import dimensions, golden, report
 from templates.core.catalogue import find
-from templates.core.declare import Choice, Curve, Derived, Given, Profile, Text
 from templates.core.digests import digests, release_file
 from templates.core.errors import InvalidInputs
 from templates.core.evaluate import evaluate, is_told
 from templates.core.intake import is_single
 from templates.core.schema import describe, inputs_schema
+from templates.core.spec import Choice, Curve, Derived, Given, Profile, Text
 from templates.core.template import Template
 
 GOLDEN = Path(__file__).parents[1] / "golden"

@@ -11,8 +11,9 @@ from cadquery import Shape, Workplane
 
 from benchmarks.shoulder_fillet import END, FILLET, NARROW, SHOULDER, shoulder
 from cad.analysis.corners import sharp_inner_edges
-from cad.analysis.elastic import BOUNDARIES, Boundary, System, respond
-from cad.analysis.levels import DEFAULT, LEVELS, Level
+from cad.analysis.elastic import System, respond
+from cad.analysis.kinds import BOUNDARIES, DEFAULT_LEVEL, Boundary
+from cad.analysis.levels import LEVELS, Level
 from cad.analysis.mesh import Grid, make_grid
 from cad.analysis.modes import torsional_mode
 from cad.analysis.solid import LOADED, MIRROR, Solid, read_solid
@@ -32,7 +33,7 @@ def shaft_of(workplane: Workplane, length: float, mirrors: tuple[str, ...] = ("y
     return read_solid(step, Shaft(0.0, length), mirrors)
 
 
-@pytest.mark.parametrize("level", [level for level in LEVELS if level.name in (DEFAULT, "fine")])
+@pytest.mark.parametrize("level", [level for level in LEVELS if level.name in (DEFAULT_LEVEL, "fine")])
 def test_a_circular_shaft_twists_and_vibrates_as_coulomb_says(level: Level) -> None:
     """K = G I_p / l and f = sqrt(G / rho) / (4 l), exact for a circular section, held and free."""
     solid = shaft_of(Workplane().circle(25).extrude(200), 200)
