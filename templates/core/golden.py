@@ -32,6 +32,7 @@ def record(cls: type[Template]) -> dict[str, Any]:
         **digests(cls),
         "precision": cls.precision,
         "cases": list(_cases(cls)),
+        "levels": list(cases_of_levels(cls)),
     }
 
 
@@ -77,6 +78,19 @@ def _cases(cls: type[Template]) -> Iterator[dict[str, Any]]:
                 yield {"inputs": _plain(inputs), "refused": sorted(fault.code for fault in refusal.faults)}
 
 
+def cases_of_levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
+    """The example at every level but the default one, at which the other cases are."""
+    example = _given(cls)
+    for level in cls.levels:
+        if level == cls.default_level:
+            continue
+        case = {"level": level, "inputs": _plain(example)}
+        try:
+            yield {**case, "outputs": results(cls, example, level)}
+        except InvalidInputs as refusal:
+            yield {**case, "refused": sorted(fault.code for fault in refusal.faults)}
+
+
 def _given(cls: type[Template]) -> dict[str, Any]:
     """The example's inputs in SI with defaults; without what is missing or shown as an output."""
     template = cls.from_quantities(cls.example)
@@ -95,8 +109,8 @@ def _steps(declared: Input, value: Any) -> list[Any]:
     return [value * step for step in STEPS]
 
 
-def results(cls: type[Template], inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Every output in SI for SI inputs.
+def results(cls: type[Template], inputs: Mapping[str, Any], level: str = "") -> dict[str, Any]:
+    """Every output in SI for SI inputs, at the default level unless another is named.
 
     Raises
     ------
@@ -104,6 +118,7 @@ def results(cls: type[Template], inputs: Mapping[str, Any]) -> dict[str, Any]:
         Where the template refuses.
     """
     template = cls.from_si(inputs)
+    template = template.at(level) if level else template
     with np.errstate(all="ignore"):
         return _plain({name: getattr(template, formula.attribute) for name, formula in cls.formulas.items()})
 

@@ -174,14 +174,22 @@ class TestGolden:
         for case in record["cases"]:
             check_case(cls, case, record["precision"])
 
+    @every_template
+    def test_golden_results_of_every_level_are_unchanged(self, cls):
+        cases = json.loads(golden.golden_file(cls, GOLDEN).read_text(encoding="utf-8"))
+        recorded = {case["level"] for case in cases["levels"]}
+        assert recorded == set(cls.levels) - {cls.default_level}
+        for case in cases["levels"]:
+            check_case(cls, case, cases["precision"])
+
 
 def check_case(cls, case, precision):
     if "refused" in case:
         with pytest.raises(InvalidInputs) as refusal:
-            golden.results(cls, case["inputs"])
+            golden.results(cls, case["inputs"], case.get("level", ""))
         assert sorted(fault.code for fault in refusal.value.faults) == case["refused"]
         return
-    results = golden.results(cls, case["inputs"])
+    results = golden.results(cls, case["inputs"], case.get("level", ""))
     assert results.keys() == case["outputs"].keys()
     for name, value in case["outputs"].items():
         if isinstance(value, list):
