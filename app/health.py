@@ -1,12 +1,12 @@
-"""`/healthz`, `/readyz` and `/metrics`, at the root."""
+"""`/healthz` and `/metrics`, at the root; `/readyz` is in `app.readiness`."""
 
 from __future__ import annotations
 
 import time
 from functools import cache
-from typing import Any
 
 from fastapi import APIRouter, Response
+from fastapi.responses import PlainTextResponse
 from prometheus_client import (
     CONTENT_TYPE_LATEST,
     CollectorRegistry,
@@ -18,7 +18,6 @@ from prometheus_client import (
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.dependencies import TheDatabase, TheJobs
-from app.designs import repository
 
 router = APIRouter(tags=["health"])
 
@@ -26,7 +25,9 @@ REGISTRY = CollectorRegistry()
 REQUESTS = Counter("crankwright_requests_total", "Requests answered", ["status"], registry=REGISTRY)
 SECONDS = Histogram("crankwright_request_seconds", "Time to answer [s]", registry=REGISTRY)
 QUEUED = Gauge("crankwright_jobs_queued", "Jobs that wait", registry=REGISTRY)
-DESIGNS = Gauge("crankwright_designs", "Designs in the lists", registry=REGISTRY)
+OLDEST = Gauge(
+    "crankwright_jobs_oldest_seconds", "How long the oldest of them has waited [s]", registry=REGISTRY
+)
 
 
 @router.get("/healthz")
@@ -35,19 +36,12 @@ async def healthz() -> dict[str, str]:
     return {"status": "ok"}
 
 
-@router.get("/readyz")
-def readyz(database: TheDatabase) -> dict[str, Any]:
-    """The database answers."""
-    with database.read() as session:
-        return {"status": "ready", "designs": repository.count(session)}
-
-
-@router.get("/metrics")
+@router.get("/metrics", response_class=PlainTextResponse)
 def metrics(database: TheDatabase, jobs: TheJobs) -> Response:
     """Figures for Prometheus."""
     with database.read() as session:
-        DESIGNS.set(repository.count(session))
         QUEUED.set(jobs.queued(session))
+        OLDEST.set(jobs.oldest_queued_age(session))
     return Response(generate_latest(REGISTRY), media_type=CONTENT_TYPE_LATEST)
 
 

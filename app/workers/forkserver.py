@@ -20,7 +20,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from types import ModuleType
 
-from app.workers.job_process import Rehearsal, serve_one_job
+from app.workers.job_process import Rehearsal, serve_jobs
 
 Nursery = dict[int, Connection]  # process id of a living job -> where its exit code is told
 
@@ -108,7 +108,7 @@ def _become_job(
     for other in foreign:  # a copy left open here would hide the end of its owner
         other.close()
     os.set_inheritable(job.fileno(), False)
-    serve_one_job(job, parent, rehearsals)
+    serve_jobs(job, parent, rehearsals)
 
 
 def _bury(nursery: Nursery) -> None:
