@@ -49,6 +49,15 @@ def test_who_types_something_else_stops_it(watched, served):
     assert eventually(lambda: served.app.state.calculations.running == 0)
 
 
+def test_who_leaves_the_page_stops_it(watched, served):
+    watched.open(PLACE)
+    progress, _ = parts(watched)
+    watched.page.get_by_label("duration").first.fill("60 s")
+    expect(progress).to_contain_text("half asleep")
+    watched.open("/templates/third/1")
+    assert eventually(lambda: served.app.state.calculations.running == 0)
+
+
 def test_a_page_whose_address_asks_for_a_long_calculation_follows_it(watched):
     watched.open(f"{PLACE}?duration=5+s")
     progress, value = parts(watched)

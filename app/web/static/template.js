@@ -29,13 +29,15 @@ async function tried(signal) {
   return answer.status === 202 ? calculated(answer.location, signal) : answer;
 }
 
-// What takes long is a job: how far it is, a way to stop it, and its answer. Who types anew stops it as well.
+// What takes long is a job: how far it is, a way to stop it, and its answer. Who types or leaves stops it as well.
 async function calculated(job, signal) {
-  const stop = () => call("DELETE", job).catch(() => {}); // it has ended meanwhile
+  const stop = () => fetch(job, { method: "DELETE", keepalive: true }).catch(() => {}); // it has ended meanwhile
   if (signal?.aborted) stop();
   signal?.addEventListener("abort", stop);
+  addEventListener("pagehide", stop);
   markOutdated(true);
   await follow(job, progress, "Calculating …");
+  removeEventListener("pagehide", stop);
   if (signal?.aborted) throw new DOMException("something else is wanted now", "AbortError");
   progress.hidden = true;
   return call("GET", job.replace("/jobs/", "/evaluations/"));
