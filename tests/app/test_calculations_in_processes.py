@@ -45,8 +45,8 @@ def settings(tmp_path_factory, log):
 @pytest.fixture(scope="module")
 def server(settings):
     with serving(settings) as server:
-        processes = server.app.state.calculations._worker
-        assert processes.run(os.getpid) != os.getpid()  # they have been imported
+        pool = server.app.state.calculations
+        assert pool.submit("tests", os.getpid).future.result(60) != os.getpid()  # they have been imported
         yield server
 
 
