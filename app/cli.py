@@ -1,4 +1,4 @@
-"""The command line: `crankwright serve | demo | evaluate | template | freeze | check | backup | restore`"""
+"""The command line: `crankwright serve | demo | evaluate | template | freeze | check | backup | restore`."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def evaluate(
 
     A curve may come from a CSV file, pressure=@diagram.csv, from the column of that name or from another:
     pressure_angle=@diagram.csv:crank_angle.
-    """
+    """  # noqa: D400
     cls = _find(template, version)
     try:
         raw = dict(_pair(text) for text in inputs)

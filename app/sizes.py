@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pint
 
-from templates.core.declare import Declaration, Requirement, Shared
+from templates.core.spec import Declaration, Requirement, Shared
 from templates.core.units import Unit
 
 _SHARED = (

@@ -21,9 +21,10 @@ from typing import Any
 
 import numpy as np
 
+from templates.core.arrays import Array
 from templates.oil_film.oil_film_v1 import OilFilm as Paper
 from templates.oil_film.oil_film_v2 import OilFilm
-from templates.physics.arrays import ECCENTRICITY_LIMIT, Array
+from templates.physics.arrays import ECCENTRICITY_LIMIT
 from templates.physics.film_fit import load_ISO_7902
 from templates.physics.film_map import _DAMPING_SCALE, _STIFFNESS_SCALE, decode
 from templates.physics.journal_coefficients import coefficients_at

@@ -11,7 +11,8 @@ from time import perf_counter
 
 import numpy as np
 
-from templates.physics.arrays import ECCENTRICITY_LIMIT, Array
+from templates.core.arrays import Array
+from templates.physics.arrays import ECCENTRICITY_LIMIT
 from templates.physics.film_dynamics import linear_forces
 from templates.physics.film_map import (
     NARROWEST,

@@ -14,7 +14,8 @@ from time import perf_counter
 import numpy as np
 from scipy.special import lambertw
 
-from templates.physics.arrays import ECCENTRICITY_LIMIT, Array
+from templates.core.arrays import Array
+from templates.physics.arrays import ECCENTRICITY_LIMIT
 from templates.physics.film_mobility import Motion, film_mobility
 from templates.physics.mobility_map import (
     LARGEST,

@@ -15,8 +15,8 @@ from time import perf_counter
 
 import numpy as np
 
+from templates.core.arrays import Array
 from templates.oil_film.slider_bearing_v1 import SliderBearing
-from templates.physics.arrays import Array
 from templates.physics.slider_film import NARROWEST, STATIONS, STEEPEST, WIDEST, PadFilm, finite_pad, pad_film
 
 TABLE = Path("templates/oil_film/slider_bearing_v1.accuracy.json")

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from app.calculations.size import shape, spanned
-from templates.core.declare import Curve, Table
 from templates.core.errors import InvalidInputs
 from templates.core.levels import SINGLE, accuracy
 from templates.core.quantity import Typed
 from templates.core.solve import POLISHES, SAMPLES
+from templates.core.spec import Curve, Table
 from templates.core.template import Template
 
 EXPENSIVE = 0.05  # beyond this a calculation leaves the server's process [s]

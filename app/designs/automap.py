@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from app.designs.graph import Block, Graph
-from templates.core.declare import Choice
+from templates.core.spec import Choice
 from templates.core.units import compatible, unit
 
 

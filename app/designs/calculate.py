@@ -18,11 +18,11 @@ from app.designs.graph import SOLID, Block, Cell, Graph
 from app.designs.memory import memory
 from app.designs.size import limit_operations, limit_values
 from cad.model import CadModel
-from templates.core.declare import Choice
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.evaluate import Evaluation
 from templates.core.quantity import Typed, read, read_any
 from templates.core.relation import is_relation, parse
+from templates.core.spec import Choice
 from templates.core.template import Template
 from templates.core.units import Value, unit
 

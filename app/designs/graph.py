@@ -21,10 +21,10 @@ from app.designs.document import Document
 from app.designs.size import too_many_relations
 from cad.model import CadModel
 from templates.core.catalogue import Catalogue
-from templates.core.declare import Choice
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_names
 from templates.core.quantity import read_any
 from templates.core.relation import Kind, Relation, is_relation, parse
+from templates.core.spec import Choice
 from templates.core.template import Template
 from templates.core.units import compatible, unit
 

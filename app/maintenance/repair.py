@@ -10,7 +10,6 @@ from typing import TypeVar, TypeVarTuple
 
 from app.analyses import repository as analyses
 from app.analyses.finding import Analysing
-from app.analyses.questions import SURFACE
 from app.maintenance.check import Findings, Say
 from app.maintenance.rows import Named
 from app.models.builds import Builds
@@ -22,6 +21,7 @@ from app.storage.database import Database
 from app.workers.base import Limits
 from app.workers.errors import WorkerError
 from app.workers.local import LocalProcesses
+from cad.analysis.kinds import SURFACE
 from cad.catalogue import models as find_models
 from cad.errors import AnalysisError, GeometryError
 from cad.export import DERIVED

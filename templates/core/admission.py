@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from templates.core.declare import Array, Declaration, Formula, Profile
+from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.ledger import Ledger, Mask, Notice
+from templates.core.spec import Declaration, Formula, Profile
 
 if TYPE_CHECKING:
     from templates.core.template import Template
@@ -25,7 +26,7 @@ def absence(self: Template, declaration: Formula[Any]) -> str | None:
 def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:
     """The fault of a formula's result outside its domain, with the inputs that it follows from."""
     meaning = declaration.meaning.at(self.level)
-    beneath = sorted(self.ancestors(declaration.attribute) & self.declarations.keys())
+    beneath = sorted(self.depends_on(declaration.attribute) & self.declarations.keys())
     used = (self.declarations[n].name for n in beneath)
     inputs = ", ".join(name for name in used if name in self.inputs) or "constants alone"
     if np.isfinite(value):

@@ -1,16 +1,10 @@
-"""Finds every `<id>_v<version>.py` in a list of folders: one file adds a template, nothing is registered.
-
-A released version is a file that nobody edits. Its digest is that of its source without docstrings and
-without its marks, so a better explanation, or a warning, is no change of the calculation.
-"""
+"""Finds every `<id>_v<version>.py` in a list of folders: one file adds a template, nothing is registered."""
 
 from __future__ import annotations
 
-import ast
 import hashlib
 import importlib
 import importlib.util
-import inspect
 import sys
 import traceback
 from collections.abc import Iterable, Iterator
@@ -20,7 +14,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import Generic, TypeVar
 
-from templates.core.declare import Declaration, Requirement, Shared
 from templates.core.errors import UnknownTemplate, UnusableFile, plain
 from templates.core.template import VERSIONED, Template
 
@@ -164,42 +157,3 @@ def _declared_in(module: ModuleType, path: Path) -> type[Template]:
     if len(found) != 1:
         raise UnusableFile(str(path), f"it declares {len(found)} templates; it must declare one")
     return found[0]
-
-
-MARKS = frozenset({"withdrawn", "film_bore"})
-"""What a class says of itself for its readers: it may be said later, for nothing is calculated by it."""
-
-
-def digest(cls: type[Template]) -> str:
-    """SHA-256 of the template's file, without docstrings, comments, layout and `MARKS`.
-
-    The files of groups, which hand it givens, formulas or rules, are part of it.
-    """
-    parts = dict.fromkeys(_bare(base) for base in cls.__mro__ if base is cls or _declares(base))
-    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
-
-
-def _declares(base: type) -> bool:
-    """Whether a base declares anything of its own; the bases that are the language do not."""
-    return any(isinstance(value, (Declaration, Requirement, Shared)) for value in vars(base).values())
-
-
-def _bare(cls: type) -> str:
-    """The file of a class, as far as it calculates."""
-    module = inspect.getmodule(cls)
-    assert module is not None
-    return ast.unparse(_Bare().visit(ast.parse(inspect.getsource(module))))
-
-
-class _Bare(ast.NodeTransformer):
-    """Takes away what does not calculate."""
-
-    def visit_Expr(self, node: ast.Expr) -> ast.AST | None:
-        is_text = isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
-        return None if is_text else node
-
-    def visit_Assign(self, node: ast.Assign) -> ast.AST | None:
-        return None if {ast.unparse(target) for target in node.targets} <= MARKS else node
-
-    def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.AST | None:
-        return None if ast.unparse(node.target) in MARKS else node

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import pint
 
-from templates.core.declare import Choice, Derived, Formula, Requirement, Table
+from templates.core.spec import Choice, Derived, Formula, Requirement, Table
 from templates.core.syntax import attributes_used
 from templates.core.template import Template
 from templates.core.units import registry, unit

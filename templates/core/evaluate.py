@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.admission import absence
-from templates.core.declare import Choice, Derived, Formula, Given, Profile, Text
+from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name, unknown_names
 from templates.core.intake import Input, remarks
 from templates.core.ledger import Notice
 from templates.core.levels import Rung, accuracy, at_level, climb
 from templates.core.quantity import Typed, Unit, require_same_kind
+from templates.core.spec import Choice, Derived, Formula, Given, Profile, Text
 from templates.core.template import Template
 
 
@@ -196,7 +197,7 @@ def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
     why = absence(template, formula) or "there is nothing to tell here"
     if isinstance(value, str):
         return Answer(value or None, None, reason=None if value else why)
-    beneath = template.ancestors(formula.attribute)
+    beneath = template.depends_on(formula.attribute)
     masks = [m for m in template.ledger.masks if not (m.tells or beneath.isdisjoint(m.names))]
     shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), value.shape)
     told = np.broadcast_to(value, shape).astype(object)
@@ -209,13 +210,13 @@ def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
 
 
 def _with_reasons(
-    template: Template, formula: Formula[Any], si: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.object_] | None]:
+    template: Template, formula: Formula[Any], si: Array
+) -> tuple[Array, NDArray[np.object_] | None]:
     """The values with NaN where a mask of anything beneath covers them, and the reason for each NaN.
 
     A profile has one reason as a whole.
     """
-    beneath = template.ancestors(formula.attribute)
+    beneath = template.depends_on(formula.attribute)
     profile = formula if isinstance(formula, Profile) else None
     masks = [mask for mask in template.ledger.masks if not beneath.isdisjoint(mask.names)]
     if not masks and not np.isnan(si).any():
@@ -266,7 +267,7 @@ def _shown(declared: Given | Derived[Any], si: Any, source: str) -> Echo:
     return Echo(plain, declared.meaning.unit, source, {})
 
 
-def _with_nulls(shown: NDArray[np.float64]) -> list[Any]:
+def _with_nulls(shown: Array) -> list[Any]:
     """An array as a list, None where a default follows from an input that means nothing."""
     plain = shown.astype(object)
     plain[np.isnan(shown)] = None

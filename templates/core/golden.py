@@ -1,4 +1,4 @@
-"""Frozen versions: a digest of the code, some inputs, every result; so a change beneath shows in its results.
+"""Frozen versions: digests of the code, some inputs, every result; so a change beneath shows in its results.
 
 `crankwright freeze` writes the record of a released version once; a test compares for ever after. A file that
 exists is never overwritten: a change to a released version is a new version.
@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.catalogue import digest
-from templates.core.declare import Choice
+from templates.core.digests import digests, release_file
 from templates.core.errors import InvalidInputs
 from templates.core.evaluate import is_told
 from templates.core.intake import Input
+from templates.core.spec import Choice
 from templates.core.template import Template
 
 STEPS = (0.9, 1.1)  # every numeric input in turn, around the example
@@ -29,9 +29,10 @@ def record(cls: type[Template]) -> dict[str, Any]:
     return {
         "id": cls.id,
         "version": cls.version,
-        "digest": digest(cls),
+        **digests(cls),
         "precision": cls.precision,
         "cases": list(_cases(cls)),
+        "levels": list(cases_of_levels(cls)),
     }
 
 
@@ -41,7 +42,7 @@ def golden_file(cls: type[Template], folder: Path) -> Path:
 
 
 def freeze(cls: type[Template], folder: Path) -> Path:
-    """Write the record of a version that is to be released; where it stands.
+    """Write the record of a version that is to be released, and its digests beside its file; where it stands.
 
     Raises
     ------
@@ -53,6 +54,15 @@ def freeze(cls: type[Template], folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     with path.open("x", encoding="utf-8") as file:
         file.write(text + "\n")
+    mark_released(cls)
+    return path
+
+
+def mark_released(cls: type[Template]) -> Path:
+    """Record the digests of a version beside its file, where the service reads them; never over a record."""
+    path = release_file(cls)
+    if not path.exists():
+        path.write_text(json.dumps(digests(cls), indent=1) + "\n", encoding="utf-8")
     return path
 
 
@@ -66,6 +76,19 @@ def _cases(cls: type[Template]) -> Iterator[dict[str, Any]]:
                 yield {"inputs": _plain(inputs), "outputs": results(cls, inputs)}
             except InvalidInputs as refusal:
                 yield {"inputs": _plain(inputs), "refused": sorted(fault.code for fault in refusal.faults)}
+
+
+def cases_of_levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
+    """The example at every level but the default one, at which the other cases are."""
+    example = _given(cls)
+    for level in cls.levels:
+        if level == cls.default_level:
+            continue
+        case = {"level": level, "inputs": _plain(example)}
+        try:
+            yield {**case, "outputs": results(cls, example, level)}
+        except InvalidInputs as refusal:
+            yield {**case, "refused": sorted(fault.code for fault in refusal.faults)}
 
 
 def _given(cls: type[Template]) -> dict[str, Any]:
@@ -86,8 +109,8 @@ def _steps(declared: Input, value: Any) -> list[Any]:
     return [value * step for step in STEPS]
 
 
-def results(cls: type[Template], inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Every output in SI for SI inputs.
+def results(cls: type[Template], inputs: Mapping[str, Any], level: str = "") -> dict[str, Any]:
+    """Every output in SI for SI inputs, at the default level unless another is named.
 
     Raises
     ------
@@ -95,6 +118,7 @@ def results(cls: type[Template], inputs: Mapping[str, Any]) -> dict[str, Any]:
         Where the template refuses.
     """
     template = cls.from_si(inputs)
+    template = template.at(level) if level else template
     with np.errstate(all="ignore"):
         return _plain({name: getattr(template, formula.attribute) for name, formula in cls.formulas.items()})
 

@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.admission import warn_if_outside
-from templates.core.declare import Array, Choice, Curve, Declaration, Derived, Given, Requirement, Table
+from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_names
 from templates.core.ledger import Ledger, Mask, Notice
-from templates.core.quantity import Typed, read, unit
+from templates.core.quantity import Typed, read
+from templates.core.spec import Choice, Curve, Declaration, Derived, Given, Requirement, Table
+from templates.core.units import unit
 
 Input = Given | Choice | Derived[Any]
 
@@ -52,60 +54,66 @@ def _example(declared: Input) -> str:
 
 
 def admitted(
-    cls: type[Template], typed: Mapping[str, Typed | str], ledger: Ledger, faults: list[Fault]
-) -> Iterator[tuple[str, Any]]:
-    """The SI value of every input that was given or has a constant default, faults put aside."""
+    cls: type[Template], typed: Mapping[str, Typed | str], ledger: Ledger
+) -> tuple[dict[str, Any], list[Fault]]:
+    """The SI value of every input that was given or has a constant default, by attribute; and the faults."""
+    values: dict[str, Any] = {}
+    faults: list[Fault] = []
     for name, declared in cls.inputs.items():
         source = typed.get(name) or (None if isinstance(declared, Derived) else declared.default)
         if isinstance(source, Typed):
-            yield declared.attribute, _bounded(declared, source, ledger, faults)
+            values[declared.attribute], fault = _bounded(declared, source, ledger)
+            faults += [fault] if fault else []
         elif source is not None:
-            yield declared.attribute, source
+            values[declared.attribute] = source
         elif isinstance(declared, Given) and declared.optional:
             ledger.missing |= set() if declared.alternative else {declared.attribute}
-            yield declared.attribute, () if isinstance(declared, Table) else np.float64(np.nan)
+            values[declared.attribute] = () if isinstance(declared, Table) else np.float64(np.nan)
+    return values, faults
 
 
-def _bounded(declared: Input, typed: Typed, ledger: Ledger, faults: list[Fault]) -> Any:
-    """The value, checked: a faulty single value or curve is refused, a faulty point of an array is masked."""
-    meaning, value = declared.meaning, typed.si
+def _bounded(declared: Input, typed: Typed, ledger: Ledger) -> tuple[Any, Fault | None]:
+    """The value and what is wrong with it; a faulty point of an array is masked, and is no fault."""
     if isinstance(declared, Table):
-        return _rows(declared, value, faults)
-    if is_single(declared) and isinstance(value, np.ndarray):
-        told = f"{meaning.words} is one value for all points: give a number, not an array"
-        faults.append(Fault(declared.name, "not_single", told))
-        return np.float64(np.nan)
-    is_curve = isinstance(declared, Curve) and not (declared.constant and isinstance(value, float))
-    if isinstance(value, float) and not is_curve and meaning.admits(value):
-        value = np.float64(value)
-        if meaning.published_si is not None:
-            warn_if_outside(ledger, declared, value)
-        return value
-    inside = meaning.admits(value)
-    if isinstance(declared, Curve) and is_curve and not isinstance(value, np.ndarray):
-        told = f"{meaning.words} is a curve: give an array over the {declared.along}, in {meaning.unit}"
-        faults.append(Fault(declared.name, "not_a_curve", told))
-    elif is_curve or not isinstance(value, np.ndarray):
-        value = value if is_curve else np.float64(value)
-        if not np.all(inside):
-            faults.append(_out_of_bounds(declared, typed, inside))
+        return _rows(declared, typed.si)
+    if is_single(declared) and isinstance(typed.si, np.ndarray):
+        detail = f"{declared.meaning.words} is one value for all points: give a number, not an array"
+        return np.float64(np.nan), Fault(declared.name, "not_single", detail)
+    if isinstance(declared, Curve) and not (declared.constant and isinstance(typed.si, float)):
+        value, fault = _along_a_cycle(declared, typed)
+    elif isinstance(typed.si, np.ndarray):
+        value, fault = _mask_given(declared, typed.si, declared.meaning.admits(typed.si), ledger), None
     else:
-        value = _mask_given(declared, value, inside, ledger)
-    if meaning.published_si is not None:
+        value, fault = _one_number(declared, typed)
+    if declared.meaning.published_si is not None:
         warn_if_outside(ledger, declared, value)
-    return value
+    return value, fault
 
 
-def _rows(declared: Table, value: Any, faults: list[Fault]) -> tuple[tuple[float, ...], ...]:
+def _one_number(declared: Input, typed: Typed) -> tuple[np.float64, Fault | None]:
+    inside = declared.meaning.admits(typed.si)
+    return np.float64(typed.si), None if inside else _out_of_bounds(declared, typed, inside)
+
+
+def _along_a_cycle(declared: Curve, typed: Typed) -> tuple[Any, Fault | None]:
+    """A curve means something as a whole: one point out of its domain refuses it."""
+    meaning, value = declared.meaning, typed.si
+    if not isinstance(value, np.ndarray):
+        detail = f"{meaning.words} is a curve: give an array over the {declared.along}, in {meaning.unit}"
+        return value, Fault(declared.name, "not_a_curve", detail)
+    inside = meaning.admits(value)
+    return value, None if np.all(inside) else _out_of_bounds(declared, typed, inside)
+
+
+def _rows(declared: Table, value: Any) -> tuple[tuple[tuple[float, ...], ...], Fault | None]:
     """The rows of a table; a single row may stand alone."""
     rows = np.atleast_2d(value)
     fits = rows.ndim == 2 and rows.shape[1] == len(declared.columns) and len(rows) <= declared.most
     if not fits or not np.all(declared.meaning.admits(rows)):
         rows_of = f"at most {declared.most} rows of {', '.join(declared.columns)}"
-        told = f"{declared.meaning.words} are {rows_of}, each {declared.meaning.wanted}"
-        faults.append(Fault(declared.name, "not_a_table", told))
-        return ()
-    return tuple(map(tuple, rows.tolist()))
+        detail = f"{declared.meaning.words} are {rows_of}, each {declared.meaning.wanted}"
+        return (), Fault(declared.name, "not_a_table", detail)
+    return tuple(map(tuple, rows.tolist())), None
 
 
 def _out_of_bounds(declared: Declaration, typed: Typed, inside: Any) -> Fault:

@@ -20,11 +20,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.declare import Text
+from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
+from templates.core.spec import Text
 from templates.core.template import Template
-
-Array = NDArray[np.float64]
 
 SINGLE = "only"  # how the table of a template without levels calls its one
 

@@ -16,7 +16,7 @@ from typing import Any
 import latex2mathml.converter
 from cachetools import LRUCache, cached
 
-from templates.core.declare import Declaration, Formula
+from templates.core.spec import Declaration, Formula
 from templates.core.syntax import returned, syntax
 from templates.core.template import Template
 
@@ -40,7 +40,7 @@ _FUNCTIONS = {"log10": r"\lg", "log": r"\ln", "exp": r"\exp", "sin": r"\sin", "c
 
 
 def symbol(declared: Declaration) -> str:
-    """The symbol on paper: as declared, else from the attribute, as `nu_1` → `\\nu_{1}`."""
+    r"""The symbol on paper: as declared, else from the attribute, as `nu_1` → `\nu_{1}`."""
     return declared.meaning.symbol or _from_attribute(declared.attribute)
 
 

@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -141,6 +141,36 @@ def _named(words: str, name: str | None) -> str:
     if not _API_NAME.fullmatch(name):
         raise TypeError(f"{words!r} makes the API name {name!r}; give it a name= in snake_case")
     return name
+
+
+class Keywords(TypedDict, total=False):
+    """The keywords that every declaration shares: those of `meaning`, for editors and type checkers."""
+
+    name: str | None
+    """API name, where the words would make another."""
+    symbol: str | None
+    """LaTeX on paper, where the attribute would make another."""
+    source: str | None
+    """Who published it."""
+    gt: float | None
+    ge: float | None
+    lt: float | None
+    le: float | None
+    """The domain, in the declared unit; a value outside is refused."""
+    published: tuple[float | None, float | None]
+    """The range that the source claims; outside it an answer carries a warning."""
+    remedy: str | None
+    """What to do outside the domain."""
+    also: tuple[str, ...]
+    """Other words under which the quantity is known."""
+    integer: bool
+    """Whether the value is a whole number."""
+    assumes: tuple[str, ...]
+    """Attributes whose published range bounds this formula too, though it does not use them."""
+    absent: str | None
+    """Why a result may be missing without being a fault."""
+    per_level: Mapping[str, tuple[Bounds, Bounds]] | None
+    """Domain and published range at single levels of fidelity."""
 
 
 def meaning(

@@ -14,8 +14,8 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from templates.core.arrays import Array
 from templates.core.errors import FaultyText, excerpt
 from templates.core.units import Unit, Value, compatible, registry, require_same_kind, unit
 
@@ -189,7 +189,7 @@ def _finite(number: float) -> float:
     return number
 
 
-def _array(raw: Sequence[Any]) -> NDArray[np.float64]:
+def _array(raw: Sequence[Any]) -> Array:
     """A list of numbers, nested evenly, as an array; `true` and texts are no numbers."""
     flat, shape = list(raw), [len(raw)]
     while flat and isinstance(flat[0], (list, tuple)) and len(shape) < _DEEPEST:

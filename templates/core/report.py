@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.core.declare import Choice
 from templates.core.mathml import amount, expression, mathml, symbol, symbols
+from templates.core.spec import Choice
 from templates.core.template import Template
 from templates.core.units import unit
 

@@ -7,8 +7,11 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from templates.core.catalogue import digest
-from templates.core.declare import (
+from templates.core.digests import content_digest, digest
+from templates.core.intake import Input, is_single
+from templates.core.mathml import expression, mathml, symbol, symbols
+from templates.core.meaning import Bounds
+from templates.core.spec import (
     Choice,
     Curve,
     Declaration,
@@ -19,9 +22,6 @@ from templates.core.declare import (
     Table,
     Text,
 )
-from templates.core.intake import Input, is_single
-from templates.core.mathml import expression, mathml, symbol, symbols
-from templates.core.meaning import Bounds
 from templates.core.template import Template
 
 _KEYWORDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
@@ -38,6 +38,7 @@ def describe(cls: type[Template]) -> dict[str, Any]:
         "status": "withdrawn" if cls.withdrawn else "released",
         "withdrawn": cls.withdrawn,
         "digest": digest(cls),
+        "content_digest": content_digest(cls),
         "inputs": inputs_schema(cls),
         "outputs": outputs_schema(cls),
         "formulas": [formula_on_paper(cls, formula) for formula in cls.formulas.values()],
@@ -151,7 +152,7 @@ def formula_on_paper(cls: type[Template], formula: Formula[Any]) -> dict[str, An
         "latex": latex,
         "mathml": mathml(latex),
         "source": formula.meaning.source,
-        "uses": list(dict.fromkeys(_declared_beneath(cls, formula.uses))),
+        "uses": list(dict.fromkeys(_declared_beneath(cls, (*formula.uses, *formula.uses_as_given)))),
     }
 
 
@@ -161,7 +162,8 @@ def _declared_beneath(cls: type[Template], attributes: Iterable[str]) -> Iterato
         if attribute in cls.declarations:
             yield cls.declarations[attribute].name
         elif attribute in cls.intermediates:
-            yield from _declared_beneath(cls, cls.intermediates[attribute].uses)
+            node = cls.intermediates[attribute]
+            yield from _declared_beneath(cls, (*node.uses, *node.uses_as_given))
 
 
 def declared_limits(cls: type[Template]) -> list[dict[str, Any]]:

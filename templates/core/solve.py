@@ -10,15 +10,15 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from templates.core.declare import Choice, Curve, Formula, Profile, Table, Text
+from templates.core.arrays import Array, Mask
 from templates.core.errors import Fault, FaultyText, InvalidInputs, Unreachable, unknown_name
 from templates.core.evaluate import Evaluation, evaluate
 from templates.core.intake import Input, is_single
 from templates.core.ledger import Notice
 from templates.core.quantity import Typed, read
+from templates.core.spec import Choice, Curve, Formula, Profile, Table, Text
 from templates.core.template import Template
 
 SAMPLES = 1025  # of the scan; cheap as one array call
@@ -177,18 +177,18 @@ def _is_array(value: Any) -> bool:
     return isinstance(value, list) or (isinstance(value, Mapping) and isinstance(value.get("value"), list))
 
 
-def _typed(declared: Input, si: NDArray[np.float64]) -> Typed:
+def _typed(declared: Input, si: Array) -> Typed:
     return Typed(None, declared.meaning.unit, si, {})
 
 
-def _grid(low: float, high: float) -> NDArray[np.float64]:
+def _grid(low: float, high: float) -> Array:
     """Samples between the bounds: even in the logarithm where both are positive and far apart."""
     if low > 0 and high > 10 * low:
         return np.geomspace(low, high, SAMPLES)
     return np.linspace(low, high, SAMPLES)
 
 
-def _crosses(residual: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _crosses(residual: Array) -> Mask:
     """Whether the residual changes its sign between each sample and the next."""
     return np.asarray(np.sign(residual[:-1]) * np.sign(residual[1:]) < 0)
 
@@ -204,14 +204,14 @@ class _Curve:
     wanted: float
     fidelity: dict[str, Any]
 
-    def residual(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def residual(self, values: Array) -> Array:
         """Output minus target [SI] at these values of the unknown; NaN where the template refuses."""
         raw, name = {**self.raw, self.declared.name: _typed(self.declared, values)}, self.formula.name
         answer = evaluate(self.cls, raw, outputs=[name], **self.fidelity).outputs[name].value
         si = self.formula.meaning.scale.to_si(np.asarray(answer, dtype=float))
         return np.broadcast_to(si - self.wanted, values.shape)
 
-    def scan(self, low: float, high: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def scan(self, low: float, high: float) -> tuple[Array, Array]:
         """Values of the unknown and their residuals; dense where the target is crossed or the domain ends.
 
         So a jump is told from a crossing, and the end of the reachable range is found.
@@ -225,7 +225,7 @@ class _Curve:
             grid = np.unique(np.concatenate([grid, *fine]))
         return grid, self.residual(grid)
 
-    def roots(self, grid: NDArray[np.float64], residual: NDArray[np.float64]) -> list[float]:
+    def roots(self, grid: Array, residual: Array) -> list[float]:
         """Every crossing of the target, closed in to rounding; jumps across it are none."""
         if np.isnan(residual).all():
             return []
@@ -249,7 +249,7 @@ class _Curve:
             root -= miss / slope
         return root
 
-    def unreachable(self, grid: NDArray[np.float64], residual: NDArray[np.float64]) -> Unreachable:
+    def unreachable(self, grid: Array, residual: Array) -> Unreachable:
         """The error that tells what can be reached between the bounds, and why the target cannot."""
         meaning, name = self.formula.meaning, self.formula.name
         if np.isnan(residual).all():
@@ -267,7 +267,7 @@ class _Curve:
         return Unreachable(name, detail, (low, high), meaning.unit)
 
 
-def _not_monotone(declared: Input, formula: Formula[Any], residual: NDArray[np.float64]) -> list[Notice]:
+def _not_monotone(declared: Input, formula: Formula[Any], residual: Array) -> list[Notice]:
     known = residual[np.isfinite(residual)]
     steps, rounding = np.diff(known), 1e-12 * np.max(np.abs(known), initial=0.0)
     if (steps >= -rounding).all() or (steps <= rounding).all():

@@ -33,7 +33,37 @@ def syntax(function: Callable[..., Any]) -> ast.FunctionDef:
 
 
 def attributes_used(function: Callable[..., Any]) -> tuple[str, ...]:
-    """The names x in `self.x` within a method, each once, in order of appearance."""
-    nodes = (node for node in ast.walk(syntax(function)) if isinstance(node, ast.Attribute))
-    own = [n for n in nodes if isinstance(n.value, ast.Name) and n.value.id == "self"]
-    return tuple(dict.fromkeys(n.attr for n in sorted(own, key=lambda n: (n.lineno, n.col_offset))))
+    """The names x in `self.x` and `getattr(self, "x")` within a method, each once, in order of appearance."""
+    return _in_order(function, _used)
+
+
+def inputs_read_as_given(function: Callable[..., Any]) -> tuple[str, ...]:
+    """The names x in `self.as_given("x")` within a method: the value is used, the formula of x is not."""
+    return _in_order(function, _read_as_given)
+
+
+def _in_order(function: Callable[..., Any], name_of: Callable[[ast.AST], str | None]) -> tuple[str, ...]:
+    nodes = [node for node in ast.walk(syntax(function)) if isinstance(node, (ast.Attribute, ast.Call))]
+    names = (name_of(node) for node in sorted(nodes, key=lambda node: (node.lineno, node.col_offset)))
+    return tuple(dict.fromkeys(name for name in names if name is not None))
+
+
+def _used(node: ast.AST) -> str | None:
+    match node:
+        case ast.Attribute(value=ast.Name(id="self"), attr=name):
+            return name
+        case ast.Call(
+            func=ast.Name(id="getattr"), args=[ast.Name(id="self"), ast.Constant(value=str(name)), *_]
+        ):
+            return name
+    return None
+
+
+def _read_as_given(node: ast.AST) -> str | None:
+    match node:
+        case ast.Call(func=ast.Attribute(value=ast.Name(id="self"), attr="as_given")):
+            arguments = [*node.args, *(keyword.value for keyword in node.keywords)]
+            match arguments:
+                case [ast.Constant(value=str(name))]:
+                    return name
+    return None

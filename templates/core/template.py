@@ -16,17 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.admission import absence, masked, refusal, warn_if_outside, whole
+from templates.core.arrays import Array, Truth
 from templates.core.declare import (
-    Array,
-    Choice,
-    Declaration,
-    Derived,
-    Formula,
-    Given,
-    Profile,
-    Requirement,
-    Shared,
-    Truth,
     by_name,
     choice,
     curve,
@@ -52,6 +43,7 @@ from templates.core.intake import (
     violations,
 )
 from templates.core.ledger import Ledger, Mask
+from templates.core.spec import Choice, Declaration, Derived, Formula, Given, Profile, Requirement, Shared
 
 __all__ = [
     "Array", "Template", "Truth", "choice", "curve", "derived", "formula", "given", "profile", "require",
@@ -148,8 +140,8 @@ class Template:
         """
         typed, faults = read_inputs(cls, raw)
         ledger = Ledger(typed=typed)
-        values = dict(admitted(cls, typed, ledger, faults))
-        faults = [fault for fault in faults if fault.name not in pending]
+        values, refused = admitted(cls, typed, ledger)
+        faults = [fault for fault in (*faults, *refused) if fault.name not in pending]
         if faults:
             raise InvalidInputs(faults)
         return cls._checked(values, ledger, pending)
@@ -171,7 +163,10 @@ class Template:
         return points_of(self, {name: v for name, v in given.items() if isinstance(v, np.ndarray)})
 
     def as_given(self, attribute: str) -> Any:
-        """The value of an input as it was given, or its default; NaN where its formula has to make it."""
+        """The value of an input as it was given, or its default; NaN where its formula has to make it.
+
+        Name the attribute by a literal: the language reads from the source which inputs a formula depends on.
+        """
         return vars(self)[attribute] if attribute in self.ledger.handed else np.float64(np.nan)
 
     def ladder(self) -> tuple[str, ...]:
@@ -215,24 +210,43 @@ class Template:
     @classmethod
     def _waits(cls, rule: Requirement, pending: Collection[str]) -> bool:
         """Whether a rule is about any of the inputs that are pending, by name or beneath what it uses."""
-        beneath = {name for used in rule.uses for name in cls.ancestors(used)} if pending else set()
+        if not pending:
+            return False
+        beneath = {name for used in rule.uses for name in cls.dependencies(used)}.union(rule.uses_as_given)
         attributes = {cls.inputs[name].attribute for name in pending}
         return not (attributes.isdisjoint(beneath) and frozenset(pending).isdisjoint(rule.names))
 
     @classmethod
     def ancestors(cls, attribute: str) -> frozenset[str]:
-        """The attributes on which this one depends, directly or not, itself included."""
+        """The attributes that are evaluated for this one, directly or not, itself included."""
         if attribute not in cls._ancestry:
             cls._ancestry[attribute] = frozenset(cls._beneath(attribute))
         return cls._ancestry[attribute]
+
+    @classmethod
+    def dependencies(cls, attribute: str) -> frozenset[str]:
+        """The ancestors, and the inputs that any of them reads as given.
+
+        Formulas beneath an input's default may read the input as given: this is no order of evaluation.
+        """
+        ancestors = cls.ancestors(attribute)
+        return ancestors.union(*(getattr(cls._node(name), "uses_as_given", ()) for name in ancestors))
+
+    def depends_on(self, attribute: str) -> frozenset[str]:
+        """The dependencies of an attribute here: an input read as given counts only where it was given."""
+        ancestors = self.ancestors(attribute)
+        return ancestors | (self.dependencies(attribute) & self.ledger.handed)
+
+    @classmethod
+    def _node(cls, attribute: str) -> Declaration | Shared[Any] | None:
+        return cls.declarations.get(attribute) or cls.intermediates.get(attribute)
 
     @classmethod
     def _beneath(cls, attribute: str) -> Iterator[str]:
         found, waiting = {attribute}, [attribute]
         while waiting:
             yield (name := waiting.pop())
-            node = cls.declarations.get(name) or cls.intermediates.get(name)
-            new = dict.fromkeys(n for n in getattr(node, "uses", ()) if n not in found)
+            new = dict.fromkeys(n for n in getattr(cls._node(name), "uses", ()) if n not in found)
             found |= new.keys()
             waiting += new
 

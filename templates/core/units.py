@@ -15,13 +15,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-import numpy as np
 import pint
-from numpy.typing import NDArray
 
+from templates.core.arrays import Array
 from templates.core.errors import FaultyText
 
-Value = float | NDArray[np.float64]
+Value = float | Array
 
 registry: pint.UnitRegistry[float] = pint.UnitRegistry()
 registry.define("@alias revolution = rev")

@@ -13,10 +13,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from templates.core.declare import Declaration, Requirement
 from templates.core.mathml import Writer, amount, symbol, symbols
 from templates.core.meaning import Bounds, Meaning
 from templates.core.report import shown
+from templates.core.spec import Declaration, Requirement
 from templates.core.syntax import returned, syntax
 from templates.core.template import Template
 

@@ -1,12 +1,9 @@
 """The array type of the physics functions, the refusal of values outside a domain, points and curves."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from templates.core.arrays import Array, Mask
 from templates.core.declare import units
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 ECCENTRICITY_LIMIT = 1 - 1e-7
 """The largest relative eccentricity that any formula here accepts."""
@@ -15,8 +12,10 @@ ECCENTRICITY_LIMIT = 1 - 1e-7
 def require(accepted: Mask, complaint: str) -> None:
     """Refuse unless every element is accepted; a NaN never is.
 
-    Raises:
-        ValueError: with the complaint, which names the argument and its limit.
+    Raises
+    ------
+    ValueError
+        With the complaint, which names the argument and its limit.
     """
     if not np.all(accepted):
         raise ValueError(complaint)
@@ -25,8 +24,10 @@ def require(accepted: Mask, complaint: str) -> None:
 def require_film(eps: Array, ratio: Array) -> None:
     """Refuse an eccentricity outside [0, 1 − 1e-7] or a width ratio that is not positive and finite.
 
-    Raises:
-        ValueError: naming the argument and its limit.
+    Raises
+    ------
+    ValueError
+        Naming the argument and its limit.
     """
     eps, ratio = np.asarray(eps), np.asarray(ratio)
     require((eps >= 0) & (eps <= ECCENTRICITY_LIMIT), "eps must lie in [0, 1 - 1e-7]")

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.declare import Truth, units
-from templates.physics.arrays import Array
+from templates.core.arrays import Array, Truth
+from templates.core.declare import units
 
 Phasor = NDArray[np.complex128]
 _VANISHES = 1e-12  # of the sum of all sizes; what is left is rounding

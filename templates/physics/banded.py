@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
-from templates.physics.arrays import Array, Mask
+from templates.core.arrays import Array, Mask
 from templates.physics.film_equations import Equations, dual_widths
 
 
@@ -24,12 +24,16 @@ class Banded:
     def solve(self, inside: Mask, b: Array) -> Array:
         """Solve A P = b at the nodes inside and P = 0 at the others.
 
-        Args:
-            inside: (n + 1, m + 1) the nodes of the film.
-            b: (n + 1, m + 1, ...) right-hand sides.
+        Parameters
+        ----------
+        inside
+            (n + 1, m + 1) the nodes of the film.
+        b
+            (n + 1, m + 1, ...) right-hand sides.
 
-        Returns:
-            P like b.
+        Returns
+        -------
+        P like b.
         """
         film = inside[self.order, :-1].ravel()
         count = int(film.nonzero()[0][-1]) + 1 if film.any() else 0

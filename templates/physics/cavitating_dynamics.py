@@ -15,7 +15,7 @@ import numpy as np
 from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import splu
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.cavitating_film import SolvedRing, force
 from templates.physics.cavitating_network import perturbed_flows
 from templates.physics.film_equations import midpoints

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array, Mask, require, require_film
+from templates.core.arrays import Array, Mask
+from templates.physics.arrays import require, require_film
 from templates.physics.cavitating_network import Groove, Ring, fed_network, grooved_ring
 from templates.physics.cavitation import Cavitation, Network, cavitation
 from templates.physics.film_equations import dual_widths
@@ -74,16 +75,25 @@ def solved_ring(
 ) -> SolvedRing:
     """Solve the static film with cavities, from a coarse mesh to the one asked for.
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter B/D [-].
-        grooves: where oil is fed.
-        ambient: pressure at the ends above that of the cavity, 0 or more [-].
-        around: intervals around.
-        across: intervals across half the width.
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D [-].
+    grooves
+        Where oil is fed.
+    ambient
+        Pressure at the ends above that of the cavity, 0 or more [-].
+    around
+        Intervals around.
+    across
+        Intervals across half the width.
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
     """
     require_film(np.asarray(eps), np.asarray(ratio))
     require(np.asarray(len(grooves) > 0), "grooves: at least one must feed the film")

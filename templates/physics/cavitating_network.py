@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csc_array, diags_array, eye_array, kron
 
-from templates.physics.arrays import Array, Mask
+from templates.core.arrays import Array, Mask
 from templates.physics.cavitation import Network
 from templates.physics.film_equations import dual_widths, midpoints
 from templates.physics.film_mesh import gap, ring_mesh

@@ -3,8 +3,9 @@
 The gap falls linearly from the inlet to the outlet, and is deeper by a constant over a pocket in
 between; the film ruptures at the pocket's start and re-forms inside it, mass being conserved.
 
-References:
-    M. T. Fowell, A. V. Olver, A. D. Gosman, H. A. Spikes, I. Pegg, Trans. ASME J. Tribol. 129, 2007, p. 336.
+References
+----------
+M. T. Fowell, A. V. Olver, A. D. Gosman, H. A. Spikes, I. Pegg, Trans. ASME J. Tribol. 129, 2007, p. 336.
 """
 
 from dataclasses import dataclass
@@ -12,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csc_array, diags_array, eye_array
 
-from templates.physics.arrays import Array, require
+from templates.core.arrays import Array
+from templates.physics.arrays import require
 from templates.physics.cavitation import Cavitation, Network, cavitation
 
 
@@ -59,14 +61,19 @@ class PocketedFilm:
 def film_Fowell_2007(slider: PocketedSlider) -> PocketedFilm:
     """Flow, re-formation and peak pressure of a pocketed slider whose film ruptures at the pocket's start.
 
-    Args:
-        slider: geometry and running state.
+    Parameters
+    ----------
+    slider
+        Geometry and running state.
 
-    Raises:
-        ValueError: if the film does not re-form inside the pocket.
+    Raises
+    ------
+    ValueError
+        If the film does not re-form inside the pocket.
 
-    References:
-        Fowell et al. 2007, equations 10–21.
+    References
+    ----------
+    Fowell et al. 2007, equations 10–21.
     """
     h_i, h_o = slider.inlet, slider.outlet
     h_a, h_b = slider.land(np.array([slider.pocket_start, slider.pocket_end]))

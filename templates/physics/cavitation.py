@@ -9,9 +9,10 @@ Solved by the Fischer–Burmeister–Newton–Schur method: the complementarity 
 P + lambda = sqrt(P² + lambda²), Newton's method takes both at once, and at every node the unknown
 on which this equation depends more is eliminated, which leaves one sparse system.
 
-References:
-    T. Woloszynski, P. Podsiadlo, G. W. Stachowiak, Tribology Letters 58:18, 2015;
-    H. G. Elrod, Trans. ASME J. Lubr. Technol. 103, 1981, p. 350.
+References
+----------
+T. Woloszynski, P. Podsiadlo, G. W. Stachowiak, Tribology Letters 58:18, 2015;
+H. G. Elrod, Trans. ASME J. Lubr. Technol. 103, 1981, p. 350.
 """
 
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ import numpy as np
 from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import splu
 
-from templates.physics.arrays import Array, Mask
+from templates.core.arrays import Array, Mask
 
 _MOST_STEPS = 200
 _ACCURACY = 1e-11
@@ -63,12 +64,17 @@ class Cavitation:
 def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Cavitation:
     """Solve for pressure and void.
 
-    Args:
-        network: balances of flow.
-        start: pressure and void of a nearby film; a re-formation front moves about one node a step.
+    Parameters
+    ----------
+    network
+        Balances of flow.
+    start
+        Pressure and void of a nearby film; a re-formation front moves about one node a step.
 
-    Raises:
-        ArithmeticError: if Newton's method has not converged after 200 steps.
+    Raises
+    ------
+    ArithmeticError
+        If Newton's method has not converged after 200 steps.
     """
     free = ~network.fixed
     A, T = network.A[free][:, free], network.T[free][:, free]

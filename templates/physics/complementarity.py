@@ -6,15 +6,16 @@ At each step the nodes of the film solve A P = b by banded Cholesky and the othe
 nodes with P < 0 leave the film and nodes that gain oil join it. A is an M-matrix, so the pressure
 rises from step to step and the set is final after finitely many. A coarser mesh gives the start.
 
-References:
-    M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13, 2003, p. 865.
+References
+----------
+M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13, 2003, p. 865.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array, Mask
+from templates.core.arrays import Array, Mask
 from templates.physics.banded import Banded, banded
 from templates.physics.film_equations import Equations, dual_widths
 
@@ -38,12 +39,17 @@ class Rupture:
 def rupture(equations: Equations, film: Mask | None = None) -> Rupture:
     """Find pressure and film.
 
-    Args:
-        equations: balances of flow.
-        film: the nodes supposed inside the film; by default those to which motion brings oil.
+    Parameters
+    ----------
+    equations
+        Balances of flow.
+    film
+        The nodes supposed inside the film; by default those to which motion brings oil.
 
-    Raises:
-        ArithmeticError: if the set is not final after 1000 steps, which no film should need.
+    Raises
+    ------
+    ArithmeticError
+        If the set is not final after 1000 steps, which no film should need.
     """
     matrix = banded(equations)
     may = np.zeros(matrix.shape, bool)

@@ -16,8 +16,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from templates.core.arrays import Array
 from templates.core.declare import units
-from templates.physics.arrays import Array
 from templates.physics.slider_crank import Motion
 
 GRAVITY = 9.80665  # m/s², by which a pendulum's period tells its inertia

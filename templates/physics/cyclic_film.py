@@ -13,8 +13,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from templates.core.arrays import Array
 from templates.core.declare import units
-from templates.physics.arrays import Array
 from templates.physics.arrays import largest_load as largest_load
 from templates.physics.journal_orbit import CyclicLoad, Orbit, periodic_orbit
 from templates.physics.mobility_law import MapLaw, MobilityLaw, ShortLaw

@@ -9,7 +9,8 @@ from collections.abc import Callable
 import numpy as np
 from scipy.special import expit, logit
 
-from templates.physics.arrays import ECCENTRICITY_LIMIT, Array, require
+from templates.core.arrays import Array
+from templates.physics.arrays import ECCENTRICITY_LIMIT, require
 from templates.physics.roots import bracketed_root
 
 _LOWEST = 1e-20
@@ -18,21 +19,29 @@ _LOWEST = 1e-20
 def eccentricity(load: Callable[..., Array], So: Array, *parameters: Array) -> Array:
     """Find eps with load(eps, *parameters) = So [-].
 
-    Args:
-        load: a function of eps and the parameters that rises strictly with eps, elementwise.
-        So: Sommerfeld number, 0 or more; any shape that broadcasts with the parameters [-].
-        parameters: further arguments of the load function, such as the width ratio.
+    Parameters
+    ----------
+    load
+        a function of eps and the parameters that rises strictly with eps, elementwise.
+    So
+        Sommerfeld number, 0 or more; any shape that broadcasts with the parameters [-].
+    parameters
+        Further arguments of the load function, such as the width ratio.
 
-    Returns:
-        eps; 0 where So is 0, NaN where So is more than the film bears at eps 1 − 1e-7.
+    Returns
+    -------
+    eps; 0 where So is 0, NaN where So is more than the film bears at eps 1 − 1e-7.
 
-    Raises:
-        ValueError: if So is negative or not finite, or the load function refuses a parameter.
+    Raises
+    ------
+    ValueError
+        If So is negative or not finite, or the load function refuses a parameter.
 
-    Example:
-        >>> from templates.physics.short_bearing import load_Ocvirk_1952
-        >>> round(float(eccentricity(load_Ocvirk_1952, 1.500762164, 1.0)), 8)
-        0.5
+    Examples
+    --------
+    >>> from templates.physics.short_bearing import load_Ocvirk_1952
+    >>> round(float(eccentricity(load_Ocvirk_1952, 1.500762164, 1.0)), 8)
+    0.5
     """
     So = np.asarray(So, float)
     require(np.isfinite(So) & (So >= 0), "So must be 0 or more and finite")

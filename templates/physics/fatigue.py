@@ -22,7 +22,8 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.declare import Array, units
+from templates.core.arrays import Array
+from templates.core.declare import units
 
 GOODMAN, GERBER, MORROW, NONE = "goodman", "gerber", "morrow", "none"
 

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from templates.physics.arrays import ECCENTRICITY_LIMIT, Array
+from templates.core.arrays import Array
+from templates.physics.arrays import ECCENTRICITY_LIMIT
 from templates.physics.cavitating_dynamics import LinearFilm, linear_film
 from templates.physics.cavitating_film import CavitatingFilm, SolvedRing, measured, solved_ring
 from templates.physics.cavitating_network import Groove
@@ -102,14 +103,20 @@ class Lack:
 def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> tuple[Array, Array]:
     """Stiffness and damping in axes of the load, psi²/(B D eta omega_h) times those in c and omega_h, (2, 2).
 
-    Args:
-        eps: relative eccentricity [-].
-        ratio: width over diameter B/D [-].
-        attitude: angle from the load to the narrowest gap; without grooves the film has its own [rad].
-        feed: grooves and supply pressure.
+    Parameters
+    ----------
+    eps
+        Relative eccentricity [-].
+    ratio
+        Width over diameter B/D [-].
+    attitude
+        Angle from the load to the narrowest gap; without grooves the film has its own [rad].
+    feed
+        Grooves and supply pressure.
 
-    Returns:
-        Both, NaN where the cavities do not settle.
+    Returns
+    -------
+    Both, NaN where the cavities do not settle.
     """
     try:
         film = linear_film(solved_ring(max(eps, _SMALLEST), ratio, feed.placed(attitude), 0.0, *_FINE))
@@ -123,10 +130,14 @@ def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> t
 def fed_film(So: float, ratio: float, feed: Feed) -> FedFilm | None:
     """Find the film that bears So; None if there is none or it is not found.
 
-    Args:
-        So: Sommerfeld number F psi²/(B D eta omega_h), 0 or more [-].
-        ratio: width over diameter B/D, 0.01 … 100 [-].
-        feed: grooves and supply pressure.
+    Parameters
+    ----------
+    So
+        Sommerfeld number F psi²/(B D eta omega_h), 0 or more [-].
+    ratio
+        Width over diameter B/D, 0.01 … 100 [-].
+    feed
+        Grooves and supply pressure.
     """
     smallest = 0.0 if feed.pressure > 0 else float(mapped_load(np.array(_SMALLEST), np.array(ratio)))
     search = Search(max(So, smallest), ratio, feed)

@@ -4,16 +4,18 @@ The film's extent is held: at a free rupture pressure and gradient vanish, so it
 order. Axes: x along the load, y ahead of x in the sense of rotation. K = k c W⁻¹ and
 B = b c omega_h W⁻¹ with radial clearance c and load W; force on the journal = −k·x − b·dx/dt.
 
-References:
-    J. W. Lund and K. K. Thomsen, Topics in Fluid Film Bearing and Rotor Bearing System Design,
-    ASME 1978, p. 1.
+References
+----------
+J. W. Lund and K. K. Thomsen, Topics in Fluid Film Bearing and Rotor Bearing System Design,
+ASME 1978, p. 1.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array, require
+from templates.core.arrays import Array
+from templates.physics.arrays import require
 from templates.physics.complementarity import Rupture
 from templates.physics.film_equations import dual_widths, midpoints, perturbed_equations, squeeze
 from templates.physics.film_measures import force
@@ -38,14 +40,21 @@ class Coefficients:
 def plain_coefficients(eps: float, ratio: float, around: int = 128, across: int = 16) -> Coefficients:
     """Stiffness and damping of the film of `reynolds.static_film`, its supply line fixed in space.
 
-    Args:
-        eps: relative eccentricity, above 0 to 1 − 1e-7 [-].
-        ratio: width over diameter B/D [-].
-        around: intervals around.
-        across: intervals across half the width.
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, above 0 to 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D [-].
+    around
+        Intervals around.
+    across
+        Intervals across half the width.
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
     """
     require(np.asarray(eps > 0), "eps must be above 0: without load, coefficients over load do not exist")
     field = static_field(eps, ratio, around, across)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.film_mesh import Mesh
 
 
@@ -71,12 +71,18 @@ class Equations:
 def film_equations(mesh: Mesh, ratio: float, H: Array, H_mid: Array, source: Array) -> Equations:
     """Balances of flow for a gap that is given at the nodes and between them.
 
-    Args:
-        mesh: the nodes.
-        ratio: width over diameter B/D [-].
-        H: (n + 1,) gap at the nodes [-].
-        H_mid: (n,) gap midway between the nodes [-].
-        source: (n + 1,) what motion brings to the nodes, see `rotation` and `squeeze`.
+    Parameters
+    ----------
+    mesh
+        The nodes.
+    ratio
+        Width over diameter B/D [-].
+    H
+        (n + 1,) gap at the nodes [-].
+    H_mid
+        (n,) gap midway between the nodes [-].
+    source
+        (n + 1,) what motion brings to the nodes, see `rotation` and `squeeze`.
     """
     return Equations(
         around=H_mid**3 / np.diff(mesh.phi),

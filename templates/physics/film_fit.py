@@ -4,14 +4,16 @@ Inside its range So errs by 2.4 % (median) and 6.8 % (largest), the attitude by 
 Outside it is badly wrong (+221 % at B/D 1.5, tenfold at 2) and is therefore refused.
 Boundary condition: P = 0 at the ends and at the widest gap, rupture after Swift and Stieber.
 
-References:
-    DIN 31652-2:1983; ISO 7902-2:1998, clause 4; K. Butenschön, Diss. Karlsruhe 1976.
+References
+----------
+DIN 31652-2:1983; ISO 7902-2:1998, clause 4; K. Butenschön, Diss. Karlsruhe 1976.
 """
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from templates.physics.arrays import Array, require, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require, require_film
 from templates.physics.short_bearing import load_Ocvirk_1952
 
 NARROWEST, WIDEST = 0.125, 1.0
@@ -35,19 +37,26 @@ def load_ISO_7902(eps: Array, ratio: Array) -> Array:
 
     .. math:: So = So_{Ocvirk}(\epsilon, b) \cdot a_1(b) \frac{\epsilon - 1}{a_2(b) + \epsilon}
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter b = B/D, 1/8 … 1 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter b = B/D, 1/8 … 1 [-].
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
 
-    Example:
-        >>> round(float(load_ISO_7902(0.5, 0.5)), 3)
-        0.315
+    Examples
+    --------
+    >>> round(float(load_ISO_7902(0.5, 0.5)), 3)
+    0.315
 
-    References:
-        ISO 7902-2:1998.
+    References
+    ----------
+    ISO 7902-2:1998.
     """
     _require_width(eps, ratio)
     return load_Ocvirk_1952(eps, ratio) * polyval(ratio, _A1) * (eps - 1) / (polyval(ratio, _A2) + eps)
@@ -61,15 +70,21 @@ def attitude_ISO_7902(eps: Array, ratio: Array) -> Array:
 
     One public copy prints 0.104565 for 0.105465.
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter b = B/D, 1/8 … 1 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter b = B/D, 1/8 … 1 [-].
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
 
-    References:
-        ISO 7902-2:1998.
+    References
+    ----------
+    ISO 7902-2:1998.
     """
     _require_width(eps, ratio)
     factor = polyval(eps, [constant + slope * ratio for constant, slope in _ANGLE], tensor=False)

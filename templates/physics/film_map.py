@@ -12,7 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from templates.physics.arrays import Array, require, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require, require_film
 from templates.physics.film_measures import Film
 from templates.physics.film_mesh import sommerfeld_angle
 from templates.physics.short_bearing import attitude_Ocvirk_1952, load_Ocvirk_1952, peak_pressure_Ocvirk_1952
@@ -56,12 +57,17 @@ def film_map() -> FilmMap:
 def mapped_load(eps: Array, ratio: Array) -> Array:
     """Sommerfeld number So = F psi²/(B D eta omega_h) [-].
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter B/D, 0.01 … 100 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D, 0.01 … 100 [-].
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
     """
     return load_Ocvirk_1952(eps, ratio) * np.exp(_look_up(film_map().load, eps, ratio)[0])
 
@@ -69,12 +75,17 @@ def mapped_load(eps: Array, ratio: Array) -> Array:
 def mapped_film(eps: Array, ratio: Array) -> dict[str, Array]:
     """Everything that `film_measures.Film` names but the imbalance, by name.
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter B/D, 0.01 … 100 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D, 0.01 … 100 [-].
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
     """
     eps, ratio = np.broadcast_arrays(np.asarray(eps, float), np.asarray(ratio, float))
     return decode(eps, ratio, _look_up(film_map().static, eps, ratio))
@@ -83,12 +94,17 @@ def mapped_film(eps: Array, ratio: Array) -> dict[str, Array]:
 def mapped_coefficients(eps: Array, ratio: Array) -> tuple[Array, Array]:
     """Stiffness k c/W and damping b c omega_h/W, (..., 2, 2) each: `film_dynamics.plain_coefficients`.
 
-    Args:
-        eps: relative eccentricity, above 0 to 1 − 1e-7 [-].
-        ratio: width over diameter B/D, 0.01 … 100 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, above 0 to 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D, 0.01 … 100 [-].
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
     """
     eps, ratio = np.broadcast_arrays(np.asarray(eps, float), np.asarray(ratio, float))
     require(eps > 0, "eps must be above 0: without load, coefficients over load do not exist")
@@ -105,9 +121,10 @@ def mapped_coefficients(eps: Array, ratio: Array) -> tuple[Array, Array]:
 def map_error(eps: Array, ratio: Array) -> Array:
     """Largest error found about a point between the map and fresh, finer solutions.
 
-    Returns:
-        (..., 8): of ln So, ln tan(attitude/2), ln P_max, ln tan(gamma/2) of the peak, ln side flow,
-        ln supply flow, ln shear by streamers, tan(gamma/2) of the rupture; gamma is Sommerfeld's angle.
+    Returns
+    -------
+    (..., 8): of ln So, ln tan(attitude/2), ln P_max, ln tan(gamma/2) of the peak, ln side flow,
+    ln supply flow, ln shear by streamers, tan(gamma/2) of the rupture; gamma is Sommerfeld's angle.
     """
     data = film_map()
     cells = np.array(data.error.shape[:2])
@@ -169,8 +186,10 @@ def encode_linear(eps: float, forces: Array) -> Array:
 def require_mapped(eps: Array, ratio: Array) -> None:
     """Refuse a point outside the map.
 
-    Raises:
-        ValueError: naming the argument and its limit.
+    Raises
+    ------
+    ValueError
+        Naming the argument and its limit.
     """
     require_film(eps, ratio)
     ratio = np.asarray(ratio)

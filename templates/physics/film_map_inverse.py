@@ -6,7 +6,8 @@ is a cubic, and a bracketed search ends at rounding.
 
 import numpy as np
 
-from templates.physics.arrays import ECCENTRICITY_LIMIT, Array, require
+from templates.core.arrays import Array
+from templates.physics.arrays import ECCENTRICITY_LIMIT, require
 from templates.physics.film_map import FilmMap, film_map, require_mapped
 from templates.physics.roots import bracketed_root
 from templates.physics.short_bearing import load_Ocvirk_1952
@@ -19,15 +20,21 @@ _LOWEST = 1e-20
 def mapped_eccentricity(So: Array, ratio: Array) -> Array:
     """Relative eccentricity eps that bears So: the inverse of `film_map.mapped_load` [-].
 
-    Args:
-        So: Sommerfeld number F psi²/(B D eta omega_h), 0 or more [-].
-        ratio: width over diameter B/D, 0.01 … 100 [-].
+    Parameters
+    ----------
+    So
+        Sommerfeld number F psi²/(B D eta omega_h), 0 or more [-].
+    ratio
+        Width over diameter B/D, 0.01 … 100 [-].
 
-    Returns:
-        eps; 0 where So is 0, NaN where So is more than the film bears at eps 1 − 1e-7.
+    Returns
+    -------
+    eps; 0 where So is 0, NaN where So is more than the film bears at eps 1 − 1e-7.
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
     """
     So, ratio = np.broadcast_arrays(np.asarray(So, float), np.asarray(ratio, float))
     require(np.isfinite(So) & (So >= 0), "So must be 0 or more and finite")

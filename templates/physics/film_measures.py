@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.complementarity import Rupture
 from templates.physics.film_equations import Equations
 from templates.physics.film_mesh import Mesh, sommerfeld_angle

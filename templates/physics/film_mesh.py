@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array, require
+from templates.core.arrays import Array
+from templates.physics.arrays import require
 from templates.physics.long_bearing import rupture_Swift_Stieber
 
 _MARGIN = 1.03
@@ -47,11 +48,14 @@ def swell(phi: Array, eps: float) -> Array:
 def gregory(n: int) -> Array:
     """Weights of Gregory's fourth-order rule on n + 1 equally spaced points at unit distance.
 
-    Raises:
-        ValueError: if n is less than 6.
+    Raises
+    ------
+    ValueError
+        If n is less than 6.
 
-    References:
-        A. Ralston and P. Rabinowitz, A First Course in Numerical Analysis, 1978, section 4.12.
+    References
+    ----------
+    A. Ralston and P. Rabinowitz, A First Course in Numerical Analysis, 1978, section 4.12.
     """
     require(np.asarray(n >= 6), "a mesh needs at least 6 intervals each way")
     end = np.array([3 / 8, 7 / 6, 23 / 24])
@@ -66,11 +70,16 @@ def sommerfeld_angle(phi: Array, eps: float) -> Array:
 def journal_mesh(eps: float, ratio: float, n: int, m: int) -> Mesh:
     """Mesh from the widest gap to just past the farthest place at which the film can rupture.
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter B/D [-].
-        n: intervals around.
-        m: intervals across half the width.
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D [-].
+    n
+        Intervals around.
+    m
+        Intervals across half the width.
     """
     end = np.tan(_MARGIN * (float(rupture_Swift_Stieber(np.asarray(eps))) - np.pi) / 2)
     end = 2 * np.arctan(end * np.sqrt((1 - eps) / (1 + eps)))

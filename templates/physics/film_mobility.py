@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from templates.physics.arrays import Array, Mask, require, require_film
+from templates.core.arrays import Array, Mask
+from templates.physics.arrays import require, require_film
 from templates.physics.banded import Banded, banded
 from templates.physics.complementarity import finer
 from templates.physics.film_equations import Equations, dual_widths, film_equations, midpoints, squeeze
@@ -55,16 +56,25 @@ def film_mobility(
 ) -> Motion:
     """Solve for the motion.
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter B/D [-].
-        load_direction: angle of the load on the journal from the narrowest gap, −pi … pi [rad].
-        around: intervals around, even.
-        across: intervals across half the width.
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D [-].
+    load_direction
+        Angle of the load on the journal from the narrowest gap, −pi … pi [rad].
+    around
+        Intervals around, even.
+    across
+        Intervals across half the width.
 
-    Raises:
-        ValueError: if an argument lies outside its range.
-        ArithmeticError: if the film does not settle in 200 steps, which no film should need.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
+    ArithmeticError
+        If the film does not settle in 200 steps, which no film should need.
     """
     require_film(np.asarray(eps), np.asarray(ratio))
     require(np.asarray(abs(load_direction) <= np.pi), "load_direction must lie in [-pi, pi]")

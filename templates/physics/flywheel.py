@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from templates.core.arrays import Array
 from templates.core.declare import units
-from templates.physics.arrays import Array
 from templates.physics.gas_pressure import GasCycle
 from templates.physics.slider_crank import Motion, crank_motion
 

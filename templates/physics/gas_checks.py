@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from templates.core.declare import Truth, units
-from templates.physics.arrays import Array
+from templates.core.arrays import Array, Truth
+from templates.core.declare import units
 from templates.physics.gas_cycle import Polytropic, wrapped
 from templates.physics.gas_pressure import GasCycle
 

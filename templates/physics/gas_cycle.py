@@ -24,7 +24,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.gas_pressure import GasCycle, NoGas, Tabulated, one_cycle
 from templates.physics.slider_crank import Motion, angle_of_travel, travel_integral
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from templates.core.arrays import Array
 from templates.core.declare import units
-from templates.physics.arrays import Array
 from templates.physics.slider_crank import Motion, travel_integral
 
 

@@ -16,11 +16,11 @@ ISO 7902-1:1998, clause 6.4; DIN 31652-1:1983, section 4.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any
 
 import numpy as np
 
-from templates.physics.arrays import ECCENTRICITY_LIMIT, Array, Mask
+from templates.core.arrays import Array, Mask
+from templates.physics.arrays import ECCENTRICITY_LIMIT
 from templates.physics.film_map import NARROWEST, WIDEST, mapped_load
 from templates.physics.oil import density, vogel, walther
 from templates.physics.roots import bracketed_root
@@ -33,43 +33,46 @@ _ACCURACY = 1e-13
 
 @dataclass(frozen=True)
 class Running:
-    """A bearing at work, in SI; arrays that broadcast together."""
+    """A bearing at work, in SI; arrays that broadcast together.
 
-    F: Any
+    Name the arguments. They may stand in a row only because version 2 of oil_film is released like that.
+    """
+
+    F: Array
     """Load [N]."""
-    D: Any
+    D: Array
     """Diameter [m]."""
-    W: Any
+    W: Array
     """Width [m]."""
-    psi: Any
+    psi: Array
     """Relative clearance [-]."""
-    omega_m: Any
+    omega_m: Array
     """Size of the hydrodynamic speed [rad/s]."""
-    omega_s: Any
+    omega_s: Array
     """Speed of sliding in its sense [rad/s]."""
-    A: Any
+    A: Array
     """Walther's intercept [-]."""
-    B: Any
+    B: Array
     """Walther's slope [-]."""
-    a: Any
+    a: Array
     """Vogel's factor, if the viscosity follows from his law, else NaN [Pa s]."""
-    b: Any
+    b: Array
     """Vogel's slope [K]."""
-    offset: Any
+    offset: Array
     """Vogel's offset [K]."""
-    eta: Any
+    eta: Array
     """Dynamic viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
-    rho_ref: Any
+    rho_ref: Array
     """Density at T_ref [kg/m³]."""
-    T_ref: Any
+    T_ref: Array
     """Temperature of rho_ref [K]."""
-    heat_capacity: Any
+    heat_capacity: Array
     """Of the oil per volume, rho c [J/(m³ K)]."""
-    T_supply: Any
+    T_supply: Array
     """Temperature of the oil supplied, else NaN [K]."""
-    T_ambient: Any
+    T_ambient: Array
     """Temperature of the air, else NaN [K]."""
-    kA: Any
+    kA: Array
     """Heat transfer coefficient times area, else NaN [W/K]."""
 
     def viscosity(self, T: Array) -> Array:
@@ -132,12 +135,13 @@ class HeatBalance:
 
 def heat_balance(running: Running) -> HeatBalance:
     """Find the film temperature of every point that has a supply, or air to cool it."""
-    parts = np.broadcast_arrays(*(np.asarray(getattr(running, f.name), float) for f in fields(running)))
-    everything = Running(*parts)
+    names = [field.name for field in fields(running)]
+    parts = np.broadcast_arrays(*(np.asarray(getattr(running, name), dtype=float) for name in names))
+    everything = Running(**dict(zip(names, parts, strict=True)))
     asked = asked_for(everything.T_supply, everything.T_ambient, everything.kA)
     T, residual = np.full(asked.shape, np.nan), np.full(asked.shape, np.nan)
     if asked.any():
-        point = Running(*(part[asked] for part in parts))
+        point = Running(**{name: part[asked] for name, part in zip(names, parts, strict=True)})
         T[asked], residual[asked] = _found(point)
     return HeatBalance(T[()], (2 * T - everything.T_supply)[()], residual[()])
 

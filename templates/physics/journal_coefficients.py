@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.fed_film import Feed, fed_coefficients
 from templates.physics.film_dynamics import plain_coefficients
 from templates.physics.film_map import mapped_coefficients, mapped_load
@@ -72,13 +72,20 @@ def coefficients_at(
 ) -> tuple[Array, Array]:
     """Stiffness and damping, (..., 2, 2) each; NaN at points that are NaN and at level fit [-].
 
-    Args:
-        level: as in `static_journal`.
-        eps: relative eccentricity [-].
-        ratio: width over diameter B/D [-].
-        attitude: angle from the load to the narrowest gap; mass_conserving places grooves by it [rad].
-        pressure: supply pressure above ambient; likewise [-].
-        grooves: (angle from the load, width) of each; likewise [rad].
+    Parameters
+    ----------
+    level
+        As in `static_journal`.
+    eps
+        Relative eccentricity [-].
+    ratio
+        Width over diameter B/D [-].
+    attitude
+        Angle from the load to the narrowest gap; mass_conserving places grooves by it [rad].
+    pressure
+        Supply pressure above ambient; likewise [-].
+    grooves
+        (angle from the load, width) of each; likewise [rad].
     """
     points = np.broadcast_arrays(*(np.asarray(a, float) for a in (eps, ratio, attitude, pressure)))
     known = np.isfinite(points).all(axis=0) & (level in SOLVERS)

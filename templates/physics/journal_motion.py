@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from templates.core.declare import Array, units
+from templates.core.arrays import Array
+from templates.core.declare import units
 
 STANDARD_GRAVITY = 9.80665  # m/s²
 

@@ -9,8 +9,9 @@ is solved for at once, from a coarse ring of nodes to the finest, so the orbit i
 of Newton's method and no cycles are run in. Second order in the step, 1° or less, and a quarter of that where
 the smallest gap would err by more than 0.2 per cent; the difference from twice the step tells the error.
 
-References:
-    J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; J. Lubr. Technol. 93, 1971, p. 168.
+References
+----------
+J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; J. Lubr. Technol. 93, 1971, p. 168.
 """
 
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.physics.arrays import Array, Mask
+from templates.core.arrays import Array, Mask
 from templates.physics.mobility_law import MobilityLaw
 from templates.physics.periodic_steps import differences, imbalance, newton_step
 
@@ -110,9 +111,12 @@ class Ring:
 def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
     """The orbit of every case, by the mobility of a law; NaN where none was found.
 
-    Args:
-        load: the cycle; a case without any load has no orbit of its own and is NaN.
-        law: mobility of the same cases.
+    Parameters
+    ----------
+    load
+        The cycle; a case without any load has no orbit of its own and is NaN.
+    law
+        Mobility of the same cases.
     """
     cases, size = load.w.shape[0], max(1, _BLOCK // node_counts(load).sum())
     borne = np.isfinite(load.w).all(axis=-1) & np.isfinite(load.S).all(axis=(0, 2)) & load.S.any(axis=(0, 2))

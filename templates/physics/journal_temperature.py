@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from templates.core.declare import Array, units
-from templates.physics.arrays import Mask
+from templates.core.arrays import Array, Mask
+from templates.core.declare import units
 from templates.physics.heat_balance import HeatBalance, asked_for
 
 

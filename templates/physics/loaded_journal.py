@@ -6,8 +6,8 @@ over the whole circle as in DIN 31652 and ISO 7902.
 
 import numpy as np
 
+from templates.core.arrays import Array
 from templates.core.declare import units
-from templates.physics.arrays import Array
 from templates.physics.film_map import NARROWEST, WIDEST, mapped_film
 from templates.physics.film_map_inverse import mapped_eccentricity
 from templates.physics.petrov import friction_number_Petrov_1883
@@ -19,13 +19,20 @@ from templates.physics.petrov import friction_number_Petrov_1883
 def load_number(load: Array, psi: Array, eta: Array, omega: Array, width: Array, diameter: Array) -> Array:
     """Sommerfeld number So = F psi²/(B D eta omega); NaN at rest, where no film forms [-].
 
-    Args:
-        load: radial load F [N].
-        psi: relative clearance, radial clearance over radius [-].
-        eta: dynamic viscosity [Pa s].
-        omega: angular velocity of the journal relative to bearing and load [rad/s].
-        width: B [m].
-        diameter: D [m].
+    Parameters
+    ----------
+    load
+        Radial load F [N].
+    psi
+        Relative clearance, radial clearance over radius [-].
+    eta
+        Dynamic viscosity [Pa s].
+    omega
+        Angular velocity of the journal relative to bearing and load [rad/s].
+    width
+        B [m].
+    diameter
+        D [m].
     """
     return load * psi**2 / (width * diameter * eta * np.where(omega > 0, omega, np.nan))
 
@@ -34,9 +41,12 @@ def load_number(load: Array, psi: Array, eta: Array, omega: Array, width: Array,
 def eccentricity_of_load(So: Array, ratio: Array) -> Array:
     """Relative eccentricity at a load; NaN where So is, and beyond the film map (B/D 0.01 … 100) [-].
 
-    Args:
-        So: Sommerfeld number [-].
-        ratio: width over diameter B/D [-].
+    Parameters
+    ----------
+    So
+        Sommerfeld number [-].
+    ratio
+        Width over diameter B/D [-].
     """
     known = np.isfinite(So) & (So >= 0) & (ratio >= NARROWEST) & (ratio <= WIDEST)
     eps = mapped_eccentricity(np.where(known, So, 0.0), np.where(known, ratio, 1.0))
@@ -47,13 +57,17 @@ def eccentricity_of_load(So: Array, ratio: Array) -> Array:
 def friction_over_Petrov(eps: Array, ratio: Array) -> Array:
     """Friction on the journal in the loaded film over Petrov's, 1 or more; NaN where eps is [-].
 
-    Args:
-        eps: relative eccentricity [-].
-        ratio: width over diameter B/D, 0.01 … 100 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity [-].
+    ratio
+        Width over diameter B/D, 0.01 … 100 [-].
 
-    Example:
-        >>> round(float(friction_over_Petrov(np.float64(0.965), np.float64(2.0))), 1)
-        5.3
+    Examples
+    --------
+    >>> round(float(friction_over_Petrov(np.float64(0.965), np.float64(2.0))), 1)
+    5.3
     """
     known = np.isfinite(eps)
     film = mapped_film(np.where(known, eps, 0.0), np.where(known, ratio, 1.0))

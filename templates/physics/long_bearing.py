@@ -3,14 +3,16 @@
 Three boundary conditions, which differ by −20 and +50 % in load at eps 0.5; each name says its own.
 H = 1 + eps cos(theta) from the widest gap; gamma is Sommerfeld's angle, H = (1−eps²)/(1−eps cos gamma).
 
-References:
-    A. Sommerfeld, Z. Math. Phys. 50, 1904, p. 97; L. Gümbel, Monatsbl. Berl. Bez.-Ver. VDI, 1914;
-    H. W. Swift, Proc. Inst. Civ. Eng. 233, 1932, p. 267; W. Stieber, Das Schwimmlager, VDI 1933.
+References
+----------
+A. Sommerfeld, Z. Math. Phys. 50, 1904, p. 97; L. Gümbel, Monatsbl. Berl. Bez.-Ver. VDI, 1914;
+H. W. Swift, Proc. Inst. Civ. Eng. 233, 1932, p. 267; W. Stieber, Das Schwimmlager, VDI 1933.
 """
 
 import numpy as np
 
-from templates.physics.arrays import Array, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require_film
 from templates.physics.roots import bracketed_root
 
 
@@ -19,15 +21,19 @@ def load_Sommerfeld_1904(eps: Array) -> Array:
 
     .. math:: So = \frac{6\pi\epsilon}{(2+\epsilon^2)\sqrt{1-\epsilon^2}}
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
 
-    Example:
-        >>> round(float(load_Sommerfeld_1904(0.5)), 6)
-        4.836798
+    Examples
+    --------
+    >>> round(float(load_Sommerfeld_1904(0.5)), 6)
+    4.836798
 
-    References:
-        Sommerfeld 1904.
+    References
+    ----------
+    Sommerfeld 1904.
     """
     require_film(eps, np.ones(()))
     return 6 * np.pi * eps / ((2 + eps**2) * np.sqrt((1 - eps) * (1 + eps)))
@@ -44,15 +50,19 @@ def load_Gumbel_1914(eps: Array) -> Array:
 
     .. math:: So = \frac{3\epsilon\sqrt{4\epsilon^2 + \pi^2(1-\epsilon^2)}}{(2+\epsilon^2)(1-\epsilon^2)}
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
 
-    Example:
-        >>> round(float(load_Gumbel_1914(0.5)), 6)
-        2.576583
+    Examples
+    --------
+    >>> round(float(load_Gumbel_1914(0.5)), 6)
+    2.576583
 
-    References:
-        Gümbel 1914.
+    References
+    ----------
+    Gümbel 1914.
     """
     return np.hypot(*_force_Gumbel(eps))
 
@@ -62,15 +72,19 @@ def attitude_Gumbel_1914(eps: Array) -> Array:
 
     .. math:: \tan\beta = \frac{\pi\sqrt{1-\epsilon^2}}{2\epsilon}
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
 
-    Example:
-        >>> round(float(np.degrees(attitude_Gumbel_1914(0.5))), 4)
-        69.819
+    Examples
+    --------
+    >>> round(float(np.degrees(attitude_Gumbel_1914(0.5))), 4)
+    69.819
 
-    References:
-        Gümbel 1914.
+    References
+    ----------
+    Gümbel 1914.
     """
     require_film(eps, np.ones(()))
     return np.arctan2(np.pi * np.sqrt((1 - eps) * (1 + eps)), 2 * eps)
@@ -81,11 +95,14 @@ def rupture_Swift_Stieber(eps: Array) -> Array:
 
     .. math:: \epsilon(\sin\gamma\cos\gamma - \gamma) + 2(\sin\gamma - \gamma\cos\gamma) = 0
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
 
-    References:
-        Swift 1932; Stieber 1933.
+    References
+    ----------
+    Swift 1932; Stieber 1933.
     """
     require_film(eps, np.ones(()))
     eps = np.asarray(eps, float)
@@ -106,11 +123,14 @@ def force_Swift_Stieber(eps: Array) -> tuple[Array, Array]:
                 So_\perp = \frac{3\epsilon(\gamma_r-\sin\gamma_r\cos\gamma_r)}
         {2\sqrt{1-\epsilon^2}(1-\epsilon\cos\gamma_r)}
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
 
-    References:
-        Swift 1932; Stieber 1933; integrals by parts of the pressure in `pressure_Swift_Stieber`.
+    References
+    ----------
+    Swift 1932; Stieber 1933; integrals by parts of the pressure in `pressure_Swift_Stieber`.
     """
     gamma = rupture_Swift_Stieber(eps)
     s2, one = (1 - eps) * (1 + eps), 1 - eps * np.cos(gamma)
@@ -122,15 +142,19 @@ def force_Swift_Stieber(eps: Array) -> tuple[Array, Array]:
 def load_Swift_Stieber(eps: Array) -> Array:
     """Sommerfeld number So of the long bearing whose film starts at the widest gap and ruptures freely [-].
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
 
-    Example:
-        >>> round(float(load_Swift_Stieber(0.5)), 5)
-        3.22778
+    Examples
+    --------
+    >>> round(float(load_Swift_Stieber(0.5)), 5)
+    3.22778
 
-    References:
-        Swift 1932; Stieber 1933.
+    References
+    ----------
+    Swift 1932; Stieber 1933.
     """
     return np.hypot(*force_Swift_Stieber(eps))
 
@@ -138,11 +162,14 @@ def load_Swift_Stieber(eps: Array) -> Array:
 def attitude_Swift_Stieber(eps: Array) -> Array:
     """Angle between load and narrowest gap of the freely rupturing film [rad].
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
 
-    References:
-        Swift 1932; Stieber 1933.
+    References
+    ----------
+    Swift 1932; Stieber 1933.
     """
     along, across = force_Swift_Stieber(eps)
     return np.arctan2(across, along)
@@ -156,12 +183,16 @@ def pressure_Swift_Stieber(eps: Array, gamma: Array) -> Array:
         \left[2(\sin\gamma - \gamma\cos\gamma_r) +
         \epsilon(2\cos\gamma_r\sin\gamma - \gamma - \sin\gamma\cos\gamma)\right]
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        gamma: Sommerfeld's angle from the widest gap, 0 … 2 pi [rad].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    gamma
+        Sommerfeld's angle from the widest gap, 0 … 2 pi [rad].
 
-    References:
-        Swift 1932; Stieber 1933.
+    References
+    ----------
+    Swift 1932; Stieber 1933.
     """
     end = rupture_Swift_Stieber(eps)
     s2, sin, cos, cos_end = (1 - eps) * (1 + eps), np.sin(gamma), np.cos(gamma), np.cos(end)
@@ -172,10 +203,13 @@ def pressure_Swift_Stieber(eps: Array, gamma: Array) -> Array:
 def peak_pressure_Swift_Stieber(eps: Array) -> Array:
     """Largest pressure P = p psi²/(eta omega), where the gap equals that of the rupture [-].
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
 
-    References:
-        Swift 1932; Stieber 1933.
+    References
+    ----------
+    Swift 1932; Stieber 1933.
     """
     return pressure_Swift_Stieber(eps, 2 * np.pi - rupture_Swift_Stieber(eps))

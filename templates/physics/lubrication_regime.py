@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.declare import Array, units
+from templates.core.arrays import Array
+from templates.core.declare import units
 
 
 @units("m", "m", "m", returns="1", latex=r"\frac{{{0}}}{{\sqrt{{{1}^2+{2}^2}}}}")

@@ -3,15 +3,16 @@
 In Booker's frame, xi along the load on the journal and eta ahead of it; points are (cases, places), and
 every case has a width of its own. Two laws: Booker's closed form, and the map of the finite bearing.
 
-References:
-    J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; J. Lubr. Technol. 93, 1971, p. 168.
+References
+----------
+J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; J. Lubr. Technol. 93, 1971, p. 168.
 """
 
 from typing import Protocol
 
 import numpy as np
 
-from templates.physics.arrays import Array, Mask
+from templates.core.arrays import Array, Mask
 from templates.physics.mobility_map import coordinates, mobility_map
 from templates.physics.spline_slopes import at_thirds, surfaces_with_slopes
 

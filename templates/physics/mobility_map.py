@@ -11,8 +11,9 @@ Measured at 800 places: M errs by 7e-4 of its size or less to eps 0.999 at B/D 0
 Range: eps 0 … 1 − 1e-6, B/D 0.02 … 10, every direction; beyond it is refused. Velocity of the centre:
 d(eps)/dt = M F psi²/(B D eta) + omega_bar × eps, omega_bar the mean speed of journal and sleeve.
 
-References:
-    J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; J. Lubr. Technol. 93, 1971, p. 168.
+References
+----------
+J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; J. Lubr. Technol. 93, 1971, p. 168.
 """
 
 from dataclasses import dataclass
@@ -21,7 +22,8 @@ from pathlib import Path
 
 import numpy as np
 
-from templates.physics.arrays import ECCENTRICITY_LIMIT, Array, require
+from templates.core.arrays import Array
+from templates.physics.arrays import ECCENTRICITY_LIMIT, require
 from templates.physics.film_mobility import Motion
 from templates.physics.uniform_spline import Axis, surface
 from templates.physics.volume_spline import Axes, at_third, volume
@@ -60,16 +62,23 @@ def mobility_map() -> MobilityMap:
 def mapped_mobility(eps: Array, ratio: Array, load_direction: Array) -> Array:
     """Mobility M: the velocity that a load gives the journal in a film that does not turn [-].
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-6 [-].
-        ratio: width over diameter B/D, 0.02 … 10 [-]; fastest if it is one number.
-        load_direction: angle of the load on the journal from the narrowest gap, −pi … pi [rad].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-6 [-].
+    ratio
+        Width over diameter B/D, 0.02 … 10 [-]; fastest if it is one number.
+    load_direction
+        Angle of the load on the journal from the narrowest gap, −pi … pi [rad].
 
-    Returns:
-        (2, ...) along the line of centres (towards the narrowest gap) and ahead of it.
+    Returns
+    -------
+    (2, ...) along the line of centres (towards the narrowest gap) and ahead of it.
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
     """
     eps = np.asarray(eps, float)
     require((eps >= 0) & (eps <= LARGEST), "eps must lie in [0, 1 - 1e-6] for the mobility map")
@@ -82,16 +91,23 @@ def mapped_mobility(eps: Array, ratio: Array, load_direction: Array) -> Array:
 def mapped_mobility_along_load(xi: Array, eta: Array, ratio: Array) -> Array:
     """The same in Booker's frame, without angles: the form for integrating an orbit [-].
 
-    Args:
-        xi: relative eccentricity along the load on the journal [-].
-        eta: the same ahead of the load, a quarter turn in the positive sense [-].
-        ratio: width over diameter B/D, 0.02 … 10 [-]; fastest if it is one number.
+    Parameters
+    ----------
+    xi
+        Relative eccentricity along the load on the journal [-].
+    eta
+        The same ahead of the load, a quarter turn in the positive sense [-].
+    ratio
+        Width over diameter B/D, 0.02 … 10 [-]; fastest if it is one number.
 
-    Returns:
-        (2, ...) M along the load and ahead of it.
+    Returns
+    -------
+    (2, ...) M along the load and ahead of it.
 
-    Raises:
-        ValueError: if the eccentricity exceeds 1 − 1e-6, or B/D lies outside its range.
+    Raises
+    ------
+    ValueError
+        If the eccentricity exceeds 1 − 1e-6, or B/D lies outside its range.
     """
     xi, eta, ratio = _accepted(xi, eta, ratio)
     return decode_motion(xi, eta, ratio, _look_up("motion", xi, eta, ratio))
@@ -100,18 +116,25 @@ def mapped_mobility_along_load(xi: Array, eta: Array, ratio: Array) -> Array:
 def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
     """What the film does under the load, in Booker's frame [-].
 
-    Args:
-        xi: relative eccentricity along the load on the journal [-].
-        eta: the same ahead of the load, a quarter turn in the positive sense [-].
-        ratio: width over diameter B/D, 0.02 … 10 [-].
+    Parameters
+    ----------
+    xi
+        Relative eccentricity along the load on the journal [-].
+    eta
+        The same ahead of the load, a quarter turn in the positive sense [-].
+    ratio
+        Width over diameter B/D, 0.02 … 10 [-].
 
-    Returns:
-        (2, ...) largest pressure p_max B D/F, and side flow Q/(B D v), where v = c |M| F psi²/(B D eta),
-        c the radial clearance, is the speed that the load gives the journal in the turning frame. Side
-        flow is rough, to 10 per cent and worse, where 1 − xi < 0.01 and the load meets the thinnest film.
+    Returns
+    -------
+    (2, ...) largest pressure p_max B D/F, and side flow Q/(B D v), where v = c |M| F psi²/(B D eta),
+    c the radial clearance, is the speed that the load gives the journal in the turning frame. Side
+    flow is rough, to 10 per cent and worse, where 1 − xi < 0.01 and the load meets the thinnest film.
 
-    Raises:
-        ValueError: if the eccentricity exceeds 1 − 1e-6, or B/D lies outside its range.
+    Raises
+    ------
+    ValueError
+        If the eccentricity exceeds 1 − 1e-6, or B/D lies outside its range.
     """
     xi, eta, ratio = _accepted(xi, eta, ratio)
     P_max, side = _look_up("film", xi, eta, ratio)
@@ -121,8 +144,9 @@ def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
 def mobility_error(xi: Array, eta: Array, ratio: Array) -> Array:
     """Largest error found about a point between the map and fresh, finer solutions.
 
-    Returns:
-        (..., 4): of ln M along the load, of M as a vector over its size, of ln P_max, of side flow.
+    Returns
+    -------
+    (..., 4): of ln M along the load, of M as a vector over its size, of ln P_max, of side flow.
     """
     data = mobility_map()
     cells = np.array(data.error.shape[:3])
@@ -168,8 +192,10 @@ def decode_motion(xi: Array, eta: Array, ratio: Array, values: Array) -> Array:
 def _accepted(xi: Array, eta: Array, ratio: Array) -> tuple[Array, Array, Array]:
     """Arrays within the map's range.
 
-    Raises:
-        ValueError: naming the argument and its limit.
+    Raises
+    ------
+    ValueError
+        Naming the argument and its limit.
     """
     xi, eta, ratio = (np.asarray(x, float) for x in (xi, eta, ratio))
     inside = xi**2 + eta**2 <= (LARGEST + 4e-16) ** 2

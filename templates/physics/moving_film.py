@@ -6,8 +6,9 @@ Boundary condition: P = 0 at the ends only; the film is free to lie anywhere on 
 ruptures, and forms, where P = dP/dn = 0. Without a supply line, rotation alone has another
 attitude than the static film of `reynolds` at small eps and wide bearings.
 
-References:
-    J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; K. Butenschön, Diss. Karlsruhe 1976.
+References
+----------
+J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; K. Butenschön, Diss. Karlsruhe 1976.
 """
 
 from dataclasses import replace
@@ -15,7 +16,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq
 
-from templates.physics.arrays import Array, require, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require, require_film
 from templates.physics.complementarity import Rupture, finer, rupture
 from templates.physics.film_equations import film_equations, midpoints, squeeze
 from templates.physics.film_measures import force
@@ -27,19 +29,28 @@ _COARSEST = 16, 4
 def moving_force(eps: float, ratio: float, direction: float, around: int = 128, across: int = 16) -> Array:
     """Load borne by a film between a journal whose centre moves and a still bearing.
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter B/D [-].
-        direction: angle of the velocity from the narrowest gap; 0 closing, pi separating [rad].
-        around: intervals around, even.
-        across: intervals across half the width.
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D [-].
+    direction
+        Angle of the velocity from the narrowest gap; 0 closing, pi separating [rad].
+    around
+        Intervals around, even.
+    across
+        Intervals across half the width.
 
-    Returns:
-        (2,) F psi²/(B D eta v/c) along the line of centres (towards the narrowest gap) and ahead of it,
-        with v the speed of the centre and c the radial clearance.
+    Returns
+    -------
+    (2,) F psi²/(B D eta v/c) along the line of centres (towards the narrowest gap) and ahead of it,
+    with v the speed of the centre and c the radial clearance.
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
     """
     mesh, solution = moving_film(eps, ratio, direction, around, across)
     return np.array(force(mesh, solution.P))
@@ -57,18 +68,27 @@ def extrapolated_force(
 def mobility(eps: float, ratio: float, load_direction: float, around: int = 128, across: int = 16) -> Array:
     """Velocity that a load gives the journal in a film that does not turn: Booker's mobility, without a map.
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter B/D [-].
-        load_direction: angle of the load on the journal from the narrowest gap, −pi … pi [rad].
-        around: intervals around, even.
-        across: intervals across half the width.
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D [-].
+    load_direction
+        Angle of the load on the journal from the narrowest gap, −pi … pi [rad].
+    around
+        Intervals around, even.
+    across
+        Intervals across half the width.
 
-    Returns:
-        (2,) M along the line of centres and ahead of it: d(eps)/dt = M F psi²/(B D eta).
+    Returns
+    -------
+    (2,) M along the line of centres and ahead of it: d(eps)/dt = M F psi²/(B D eta).
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
     """
     require(np.asarray(abs(load_direction) <= np.pi), "load_direction must lie in [-pi, pi]")
 

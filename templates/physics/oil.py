@@ -16,7 +16,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from templates.core.declare import Array, units
+from templates.core.arrays import Array
+from templates.core.declare import units
 
 MM2_PER_S = 1e-6  # m²/s
 _CELSIUS = 273.15  # K

@@ -16,7 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from templates.core.declare import Array, units
+from templates.core.arrays import Array
+from templates.core.declare import units
 from templates.physics.oil import MM2_PER_S
 
 _DATA = Path(__file__).parent / "data" / "oil_grades.csv"

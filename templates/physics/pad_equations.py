@@ -3,28 +3,35 @@
 They are those of `film_equations` on the mesh of `pad_mesh`. A converging film does not rupture, and then
 they separate: their eigenvectors across the pad leave one tridiagonal system along it each.
 
-References:
-    R. E. Lynch, J. R. Rice, D. H. Thomas, Numer. Math. 6, 1964, p. 185.
+References
+----------
+R. E. Lynch, J. R. Rice, D. H. Thomas, Numer. Math. 6, 1964, p. 185.
 """
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.pad_mesh import across, grading
 
 
 def solved_pads(a: Array, width: Array, along: int, across_half: int) -> tuple[Array, Array]:
     """Solve converging pads on one mesh.
 
-    Args:
-        a: (N,) film ratio h_i/h_o, 1 or more [-].
-        width: (N,) b/l [-].
-        along: intervals n along the pad.
-        across_half: intervals across half the width.
+    Parameters
+    ----------
+    a
+        (N,) film ratio h_i/h_o, 1 or more [-].
+    width
+        (N,) b/l [-].
+    along
+        Intervals n along the pad.
+    across_half
+        Intervals across half the width.
 
-    Returns:
-        (N, 4) load, its moment about the inlet, inlet flow and side flow as in `slider_film.PadFilm`, and
-        (N, n + 1) the pressure p h_o²/(6 eta U l) at mid-width.
+    Returns
+    -------
+    (N, 4) load, its moment about the inlet, inlet flow and side flow as in `slider_film.PadFilm`, and
+    (N, n + 1) the pressure p h_o²/(6 eta U l) at mid-width.
     """
     x = grading(a, width).place(np.linspace(0, 1, along + 1))
     middle, cells = (x[:, 1:] + x[:, :-1]) / 2, _cells(x)
@@ -64,11 +71,16 @@ def _modes(zeta: Array) -> tuple[Array, Array, Array]:
 def _tridiagonal(conductance: Array, leak: Array, eigenvalues: Array, source: Array) -> Array:
     """Solve the balances along the pad for every mode by Gaussian elimination, (n − 1, N, m).
 
-    Args:
-        conductance: (N, n) between neighbours.
-        leak: (N, n − 1) across, to be multiplied by the modes' eigenvalues.
-        eigenvalues: (N, m).
-        source: (N, n − 1), the same for all modes but for their share.
+    Parameters
+    ----------
+    conductance
+        (N, n) between neighbours.
+    leak
+        (N, n − 1) across, to be multiplied by the modes' eigenvalues.
+    eigenvalues
+        (N, m).
+    source
+        (N, n − 1), the same for all modes but for their share.
     """
     g = conductance.T[:, :, None]
     pivot = leak.T[:, :, None] * eigenvalues + (g[:-1] + g[1:])

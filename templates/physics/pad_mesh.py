@@ -5,15 +5,16 @@ The nodes are equally spaced in t, 0 … 1, which maps smoothly to x, so that di
 extrapolation keep their order. From t to s, tanh crowds the nodes in the two end layers, as thick as the pad
 is wide; from s to x, :math:`H = a^{1-s}` gives every decade of the film its share.
 
-References:
-    M. Vinokur, J. Comput. Phys. 50, 1983, p. 215, for the stretching with two given slopes.
+References
+----------
+M. Vinokur, J. Comput. Phys. 50, 1983, p. 215, for the stretching with two given slopes.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 _FLATTEST = 1e-9
 """The smallest ln(a) with which the map is made; below it the film is even to rounding."""
@@ -55,9 +56,12 @@ class Grading:
 def grading(a: Array, width: Array) -> Grading:
     """The map for pads of film ratio a ≥ 1 and width b/l.
 
-    Args:
-        a: film ratio h_i/h_o [-].
-        width: b/l [-].
+    Parameters
+    ----------
+    a
+        Film ratio h_i/h_o [-].
+    width
+        b/l [-].
     """
     logarithm = np.maximum(np.log(a), _FLATTEST)
     outlet = _layer_slope(width / np.pi * np.expm1(logarithm) / logarithm)
@@ -83,10 +87,14 @@ def _stretch(logarithm: Array) -> Array:
 def across(a: Array, width: Array, m: int) -> Array:
     """Nodes from the middle to the side, graded to its layer, as thick as the pad is long [-].
 
-    Args:
-        a: film ratio h_i/h_o; of a steep pad the outlet's thin film makes the layer thinner [-].
-        width: b/l [-].
-        m: intervals.
+    Parameters
+    ----------
+    a
+        Film ratio h_i/h_o; of a steep pad the outlet's thin film makes the layer thinner [-].
+    width
+        b/l [-].
+    m
+        Intervals.
     """
     layer = (1 / (width * np.sqrt(a)))[..., None]
     return 1 - layer * np.sinh(np.arcsinh(1 / layer) * (1 - np.arange(m + 1) / m))

@@ -12,7 +12,7 @@ equation should (L-stable for equal steps), and needs no cycles run in.
 import numpy as np
 from scipy.linalg.lapack import dtbtrs
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 _NEARLY = 1 + 1e-15
 """Keeps a cycle that brings every disturbance back unchanged from being exactly singular."""
@@ -32,13 +32,18 @@ def imbalance(a: Array, e: Array, f: Array) -> Array:
 def newton_step(a: Array, left: Array, slopes: Array) -> Array:
     """The change of all nodes that removes an imbalance.
 
-    Args:
-        a: (3, K) of `differences`.
-        left: (2, C, K) of `imbalance`.
-        slopes: (2, 2, C, K) of f by e.
+    Parameters
+    ----------
+    a
+        (3, K) of `differences`.
+    left
+        (2, C, K) of `imbalance`.
+    slopes
+        (2, 2, C, K) of f by e.
 
-    Returns:
-        (2, C, K); not finite for cases that have no such change.
+    Returns
+    -------
+    (2, C, K); not finite for cases that have no such change.
     """
     inverse = _inverse(a[0], slopes)
     change = _solved(a, inverse, left)

@@ -1,12 +1,13 @@
 """Friction of a concentric journal after Petrov: light load, high speed, high viscosity.
 
-References:
-    N. P. Petrov, Inzhenernyj Zhurnal, 1883; course MEC 315.
+References
+----------
+N. P. Petrov, Inzhenernyj Zhurnal, 1883; course MEC 315.
 """
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 
 def friction_Petrov_1883(radius: Array, width: Array, clearance: Array, eta: Array, omega: Array) -> Array:
@@ -16,17 +17,24 @@ def friction_Petrov_1883(radius: Array, width: Array, clearance: Array, eta: Arr
 
     The course prints :math:`4\pi^2 r^2\eta N b/(60 c)` with N in rpm, which is the same.
 
-    Args:
-        radius: journal radius [m].
-        width: bearing width [m].
-        clearance: radial clearance [m].
-        eta: dynamic viscosity [Pa s].
-        omega: angular velocity of the journal relative to the bearing [rad/s].
+    Parameters
+    ----------
+    radius
+        Journal radius [m].
+    width
+        Bearing width [m].
+    clearance
+        Radial clearance [m].
+    eta
+        Dynamic viscosity [Pa s].
+    omega
+        Angular velocity of the journal relative to the bearing [rad/s].
 
-    Example:
-        >>> omega = 1500 * 2 * np.pi / 60
-        >>> round(float(friction_Petrov_1883(0.025, 0.1, 0.00025, 11.877e-3, omega)), 4)
-        2.9305
+    Examples
+    --------
+    >>> omega = 1500 * 2 * np.pi / 60
+    >>> round(float(friction_Petrov_1883(0.025, 0.1, 0.00025, 11.877e-3, omega)), 4)
+    2.9305
     """
     return 2 * np.pi * radius**2 * width * eta * omega / clearance
 

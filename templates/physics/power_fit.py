@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from templates.core.declare import Array, units
+from templates.core.arrays import Array
+from templates.core.declare import units
 
 _CASES = r"\begin{{cases}}%s & {0}<10\\ %s & 10\le {0}\le 100\\ %s & {0}>100\end{{cases}}"
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from templates.core.declare import Array, Truth
+from templates.core.arrays import Array, Truth
 
 
 def above(limit: Array, value: Callable[[], Array]) -> Truth:

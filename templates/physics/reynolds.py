@@ -8,9 +8,10 @@ Everything is dimensionless: P = p psi²/(eta omega_h), So = F psi²/(B D eta om
 Second-order finite volumes; 128 × 16 intervals err by about 0.05 % in So up to eps 0.999 (0.1 % at
 1 − 1e-6), and by Richardson's extrapolation from there to twice as many by some 1e-5.
 
-References:
-    H. W. Swift, Proc. Inst. Civ. Eng. 233, 1932, p. 267; W. Stieber, Das Schwimmlager, VDI 1933;
-    DIN 31652-1; ISO 7902-1.
+References
+----------
+H. W. Swift, Proc. Inst. Civ. Eng. 233, 1932, p. 267; W. Stieber, Das Schwimmlager, VDI 1933;
+DIN 31652-1; ISO 7902-1.
 """
 
 from dataclasses import fields, replace
@@ -31,19 +32,27 @@ _CENTRED = 1e-9
 def static_film(eps: float, ratio: float, around: int = 128, across: int = 16) -> Film:
     """Solve the static film.
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter B/D, 0.01 … 100 [-].
-        around: intervals around, 16 times a power of 2 for the fastest start.
-        across: intervals across half the width, 4 times a power of 2 likewise.
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D, 0.01 … 100 [-].
+    around
+        Intervals around, 16 times a power of 2 for the fastest start.
+    across
+        Intervals across half the width, 4 times a power of 2 likewise.
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
 
-    Example:
-        >>> film = static_film(0.8, 1.0)
-        >>> round(film.So, 3), round(float(np.degrees(film.attitude)), 2)
-        (3.572, 36.22)
+    Examples
+    --------
+    >>> film = static_film(0.8, 1.0)
+    >>> round(film.So, 3), round(float(np.degrees(film.attitude)), 2)
+    (3.572, 36.22)
     """
     if eps == 0:
         direction = static_film(_CENTRED, ratio, around, across)
@@ -54,9 +63,10 @@ def static_film(eps: float, ratio: float, around: int = 128, across: int = 16) -
 def extrapolated_film(eps: float, ratio: float, around: int = 128, across: int = 16) -> tuple[Film, Film]:
     """Solve on the mesh given and on twice as many intervals, and extrapolate by Richardson.
 
-    Returns:
-        The film extrapolated with order 2, and the difference between it and the finer solution:
-        an estimate of that solution's error.
+    Returns
+    -------
+    The film extrapolated with order 2, and the difference between it and the finer solution:
+    an estimate of that solution's error.
     """
     coarse = static_film(eps, ratio, around, across)
     fine = static_film(eps, ratio, 2 * around, 2 * across)

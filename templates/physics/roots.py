@@ -1,15 +1,16 @@
 """Roots of many equations at once, each inside its bracket.
 
-References:
-    T. R. Chandrupatla, Adv. Eng. Software 28, 1997, p. 145;
-    P. O. J. Scherer, Computational Physics, 2010, section 6.1.7.3.
+References
+----------
+T. R. Chandrupatla, Adv. Eng. Software 28, 1997, p. 145;
+P. O. J. Scherer, Computational Physics, 2010, section 6.1.7.3.
 """
 
 from collections.abc import Callable
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 _STEPS = 200
 
@@ -17,13 +18,18 @@ _STEPS = 200
 def bracketed_root(f: Callable[[Array], Array], low: Array, high: Array, tolerance: float = 4e-16) -> Array:
     """Find x in [low, high] with f(x) = 0 by inverse quadratic interpolation or bisection, elementwise.
 
-    Args:
-        f: a function of an array like low, elementwise.
-        low, high: the brackets; f has opposite signs at their ends.
-        tolerance: relative accuracy of x.
+    Parameters
+    ----------
+    f
+        a function of an array like low, elementwise.
+    low, high
+        The brackets; f has opposite signs at their ends.
+    tolerance
+        Relative accuracy of x.
 
-    Returns:
-        x; NaN where the bracket holds no change of sign.
+    Returns
+    -------
+    x; NaN where the bracket holds no change of sign.
     """
     a, b = np.array(high, float), np.array(low, float)
     fa, fb = f(a), f(b)

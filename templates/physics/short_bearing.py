@@ -4,13 +4,15 @@ For bearings with B/D up to about 1/4. Against the converged Reynolds solution a
 high by 0.1–0.8 % up to eps 0.8, by 1.8 % at 0.9 and by 18 % at 0.99.
 Boundary condition: P = 0 at the ends, at the widest gap and over the whole diverging half (Gümbel).
 
-References:
-    F. W. Ocvirk, NACA TN 2808, 1952; G. B. DuBois and F. W. Ocvirk, NACA TR 1157, 1953.
+References
+----------
+F. W. Ocvirk, NACA TN 2808, 1952; G. B. DuBois and F. W. Ocvirk, NACA TR 1157, 1953.
 """
 
 import numpy as np
 
-from templates.physics.arrays import Array, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require_film
 
 
 def load_Ocvirk_1952(eps: Array, ratio: Array) -> Array:
@@ -18,19 +20,26 @@ def load_Ocvirk_1952(eps: Array, ratio: Array) -> Array:
 
     .. math:: So = b^2 \frac{\epsilon}{2(1-\epsilon^2)^2}\sqrt{\pi^2(1-\epsilon^2) + 16\epsilon^2}
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter b = B/D [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter b = B/D [-].
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
 
-    Example:
-        >>> round(float(load_Ocvirk_1952(0.5, 1.0)), 6)
-        1.500762
+    Examples
+    --------
+    >>> round(float(load_Ocvirk_1952(0.5, 1.0)), 6)
+    1.500762
 
-    References:
-        NACA TN 2808, 1952, equation 27.
+    References
+    ----------
+    NACA TN 2808, 1952, equation 27.
     """
     require_film(eps, ratio)
     s2 = (1 - eps) * (1 + eps)
@@ -42,15 +51,19 @@ def attitude_Ocvirk_1952(eps: Array) -> Array:
 
     .. math:: \tan\beta = \frac{\pi\sqrt{1-\epsilon^2}}{4\epsilon}
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
 
-    Example:
-        >>> round(float(np.degrees(attitude_Ocvirk_1952(0.5))), 6)
-        53.680201
+    Examples
+    --------
+    >>> round(float(np.degrees(attitude_Ocvirk_1952(0.5))), 6)
+    53.680201
 
-    References:
-        NACA TN 2808, 1952, equation 28.
+    References
+    ----------
+    NACA TN 2808, 1952, equation 28.
     """
     require_film(eps, np.ones(()))
     return np.arctan2(np.pi * np.sqrt((1 - eps) * (1 + eps)), 4 * eps)
@@ -59,12 +72,16 @@ def attitude_Ocvirk_1952(eps: Array) -> Array:
 def side_flow_Ocvirk_1952(eps: Array, ratio: Array) -> Array:
     """Oil that leaves at both ends, Q/(R³ psi omega) = 2 b eps [-].
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter b = B/D [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter b = B/D [-].
 
-    References:
-        NACA TR 1157, 1953, equation 18.
+    References
+    ----------
+    NACA TR 1157, 1953, equation 18.
     """
     require_film(eps, ratio)
     return 2 * ratio * eps
@@ -77,11 +94,14 @@ def friction_Ocvirk_1952(eps: Array) -> Array:
 
     The pressure term eps So sin(beta)/2 is neglected, as published. f/psi is this over So.
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
 
-    References:
-        NACA TR 1157, 1953, equation 15.
+    References
+    ----------
+    NACA TR 1157, 1953, equation 15.
     """
     require_film(eps, np.ones(()))
     return np.pi / np.sqrt((1 - eps) * (1 + eps))
@@ -92,11 +112,14 @@ def peak_angle_Ocvirk_1952(eps: Array) -> Array:
 
     .. math:: \cos\theta_m = \frac{1-\sqrt{1+24\epsilon^2}}{4\epsilon}
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
 
-    References:
-        NACA TN 2808, 1952, equation 33.
+    References
+    ----------
+    NACA TN 2808, 1952, equation 33.
     """
     require_film(eps, np.ones(()))
     return np.arccos(-6 * eps / (1 + np.sqrt(1 + 24 * eps**2)))
@@ -107,12 +130,16 @@ def peak_pressure_Ocvirk_1952(eps: Array, ratio: Array) -> Array:
 
     .. math:: P_m = \frac{3 b^2 \epsilon \sin\theta_m}{(1+\epsilon\cos\theta_m)^3}
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter b = B/D [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter b = B/D [-].
 
-    References:
-        NACA TN 2808, 1952, equation 21.
+    References
+    ----------
+    NACA TN 2808, 1952, equation 21.
     """
     require_film(eps, ratio)
     cos = -6 * eps / (1 + np.sqrt(1 + 24 * eps**2))

@@ -1,13 +1,15 @@
 """Linear stiffness and damping of the short bearing with a half film, in closed form.
 
-References:
-    R. Holmes, J. Mech. Eng. Sci. 2, 1960, p. 337; E. Krämer, Dynamics of Rotors and Foundations, 1993,
-    section 3.4. There y is along the load; here x is, and y ahead of x in the sense of rotation.
+References
+----------
+R. Holmes, J. Mech. Eng. Sci. 2, 1960, p. 337; E. Krämer, Dynamics of Rotors and Foundations, 1993,
+section 3.4. There y is along the load; here x is, and y ahead of x in the sense of rotation.
 """
 
 import numpy as np
 
-from templates.physics.arrays import Array, require, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require, require_film
 
 
 def coefficients_Holmes_1960(eps: Array) -> tuple[Array, Array]:
@@ -16,16 +18,21 @@ def coefficients_Holmes_1960(eps: Array) -> tuple[Array, Array]:
     With :math:`A = 4/[\pi^2 + (16-\pi^2)\epsilon^2]^{3/2}` every entry is A times a polynomial in eps²
     over eps and :math:`\sqrt{1-\epsilon^2}`.
 
-    Args:
-        eps: relative eccentricity, above 0 to 1 − 1e-7 [-].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, above 0 to 1 − 1e-7 [-].
 
-    Raises:
-        ValueError: if eps lies outside its range.
+    Raises
+    ------
+    ValueError
+        If eps lies outside its range.
 
-    Example:
-        >>> K, B = coefficients_Holmes_1960(0.5)
-        >>> K.round(3).tolist(), B.round(3).tolist()
-        ([[2.923, 3.977], [-0.858, 2.21]], [[6.615, 2.245], [2.245, 3.054]])
+    Examples
+    --------
+    >>> K, B = coefficients_Holmes_1960(0.5)
+    >>> K.round(3).tolist(), B.round(3).tolist()
+    ([[2.923, 3.977], [-0.858, 2.21]], [[6.615, 2.245], [2.245, 3.054]])
     """
     require_film(eps, np.ones(()))
     require(np.asarray(eps) > 0, "eps must be above 0: without load, coefficients over load do not exist")

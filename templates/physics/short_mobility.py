@@ -4,13 +4,15 @@ Only axial flow, P = 0 at the ends and wherever the gap grows (half film). Angle
 `moving_film`: a load at an angle chi from the narrowest gap moves the journal's centre with
 d(eps)/dt = M F psi²/(B D eta), M given along the line of centres and ahead of it.
 
-References:
-    J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; J. Lubr. Technol. 93, 1971, p. 168.
+References
+----------
+J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; J. Lubr. Technol. 93, 1971, p. 168.
 """
 
 import numpy as np
 
-from templates.physics.arrays import Array, require, require_film
+from templates.core.arrays import Array
+from templates.physics.arrays import require, require_film
 from templates.physics.roots import bracketed_root
 
 _BLOCK = 4096
@@ -26,20 +28,28 @@ def squeeze_force_Booker_1965(eps: Array, ratio: Array, direction: Array) -> Arr
 
     integrated over Sommerfeld's angle, in which it is a trigonometric polynomial, to rounding.
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter b = B/D [-].
-        direction: angle alpha of the velocity from the narrowest gap, 0 … pi [rad].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter b = B/D [-].
+    direction
+        Angle alpha of the velocity from the narrowest gap, 0 … pi [rad].
 
-    Returns:
-        (2, ...) along the line of centres (towards the narrowest gap) and ahead of it.
+    Returns
+    -------
+    (2, ...) along the line of centres (towards the narrowest gap) and ahead of it.
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
 
-    Example:
-        >>> squeeze_force_Booker_1965(0.0, 0.5, 1.0).round(6)
-        array([0.424352, 0.66089 ])
+    Examples
+    --------
+    >>> squeeze_force_Booker_1965(0.0, 0.5, 1.0).round(6)
+    array([0.424352, 0.66089 ])
     """
     require_film(eps, ratio)
     eps, ratio, direction = np.broadcast_arrays(*(np.asarray(x, float) for x in (eps, ratio, direction)))
@@ -55,16 +65,23 @@ def squeeze_force_Booker_1965(eps: Array, ratio: Array, direction: Array) -> Arr
 def mobility_Booker_1965(eps: Array, ratio: Array, load_direction: Array) -> Array:
     """Mobility M of the short bearing's half film, by inversion of `squeeze_force_Booker_1965` [-].
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter B/D [-].
-        load_direction: angle chi of the load on the journal from the narrowest gap, −pi … pi [rad].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D [-].
+    load_direction
+        Angle chi of the load on the journal from the narrowest gap, −pi … pi [rad].
 
-    Returns:
-        (2, ...) along the line of centres and ahead of it.
+    Returns
+    -------
+    (2, ...) along the line of centres and ahead of it.
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
     """
     _require_direction(load_direction)
     eps, ratio, chi = np.broadcast_arrays(*(np.asarray(x, float) for x in (eps, ratio, load_direction)))
@@ -89,16 +106,23 @@ def mobility_Booker_1971(eps: Array, ratio: Array, load_direction: Array) -> Arr
     ahead of it. Its error over the size of M, at the worst direction, against `mobility_Booker_1965`:
     1.0 % up to eps 0.2, 2.6 % to 0.5, 5.7 % to 0.8, 7.5 % to 0.9, 10.4 % to 0.99, 11.6 % beyond.
 
-    Args:
-        eps: relative eccentricity, 0 … 1 − 1e-7 [-].
-        ratio: width over diameter b = B/D [-].
-        load_direction: angle chi of the load on the journal from the narrowest gap, −pi … pi [rad].
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter b = B/D [-].
+    load_direction
+        Angle chi of the load on the journal from the narrowest gap, −pi … pi [rad].
 
-    Returns:
-        (2, ...) along the line of centres and ahead of it.
+    Returns
+    -------
+    (2, ...) along the line of centres and ahead of it.
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
     """
     require_film(eps, ratio)
     _require_direction(load_direction)
@@ -116,14 +140,19 @@ def short_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
     .. math:: p_{max} = \tfrac32\frac{\eta B^2 v}{h^3}\cos(\varphi-\alpha) \text{ at its largest},\quad
         \sin(\varphi-\alpha)+\epsilon\sin(2\varphi-\alpha)+2\epsilon\sin\alpha = 0
 
-    Args:
-        xi: relative eccentricity along the load on the journal [-].
-        eta: the same ahead of the load [-].
-        ratio: width over diameter B/D [-].
+    Parameters
+    ----------
+    xi
+        Relative eccentricity along the load on the journal [-].
+    eta
+        The same ahead of the load [-].
+    ratio
+        Width over diameter B/D [-].
 
-    Returns:
-        (2, ...) as `mobility_map.mapped_film_under_load`: largest pressure p_max B D/F, and side flow
-        Q/(B D v), which is all that the journal displaces, 1.
+    Returns
+    -------
+    (2, ...) as `mobility_map.mapped_film_under_load`: largest pressure p_max B D/F, and side flow
+    Q/(B D v), which is all that the journal displaces, 1.
     """
     xi, eta, ratio = np.broadcast_arrays(*(np.asarray(x, float) for x in (xi, eta, ratio)))
     eps = np.hypot(xi, eta)

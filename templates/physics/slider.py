@@ -3,13 +3,15 @@
 The pad spans 0 ≤ x ≤ l with film h_i at the inlet and h_o at the outlet; ambient pressure at both ends.
 a = h_i/h_o is the film ratio; a = 1 is the parallel pad, which bears nothing.
 
-References:
-    Lord Rayleigh, Phil. Mag. 35, 1918, p. 1; A. Cameron, Basic Lubrication Theory, 1976, chapter 4.
+References
+----------
+Lord Rayleigh, Phil. Mag. 35, 1918, p. 1; A. Cameron, Basic Lubrication Theory, 1976, chapter 4.
 """
 
 import numpy as np
 
-from templates.physics.arrays import Array, Mask, require
+from templates.core.arrays import Array, Mask
+from templates.physics.arrays import require
 
 _NEAR = 0.1
 
@@ -48,12 +50,17 @@ def pressure_incline_Rayleigh_1918(x: Array, a: Array) -> Array:
 
     .. math:: p^* = \frac{(a-1)\,x(1-x)}{(a+1)\,(a-(a-1)x)^2}
 
-    Args:
-        x: place along the pad over its length, 0 (inlet) … 1 (outlet) [-].
-        a: film ratio h_i/h_o; below 1 the pressure is negative: the film would cavitate [-].
+    Parameters
+    ----------
+    x
+        Place along the pad over its length, 0 (inlet) … 1 (outlet) [-].
+    a
+        Film ratio h_i/h_o; below 1 the pressure is negative: the film would cavitate [-].
 
-    Raises:
-        ValueError: if a or x lies outside its range.
+    Raises
+    ------
+    ValueError
+        If a or x lies outside its range.
     """
     _require_ratio(a)
     require((np.asarray(x) >= 0) & (np.asarray(x) <= 1), "x/l must lie in [0, 1]")
@@ -65,12 +72,15 @@ def load_incline_Rayleigh_1918(a: Array) -> Array:
 
     .. math:: W^* = \frac{1}{(a-1)^2}\left[\ln a - \frac{2(a-1)}{a+1}\right]
 
-    Args:
-        a: film ratio h_i/h_o; 1 gives 0, the best is 2.1889 [-].
+    Parameters
+    ----------
+    a
+        Film ratio h_i/h_o; 1 gives 0, the best is 2.1889 [-].
 
-    Example:
-        >>> round(float(load_incline_Rayleigh_1918(2.0)), 8)
-        0.02648051
+    Examples
+    --------
+    >>> round(float(load_incline_Rayleigh_1918(2.0)), 8)
+    0.02648051
     """
     _require_ratio(a)
     b = _ratio_away_from_one(a)
@@ -83,8 +93,10 @@ def centre_of_pressure_Rayleigh_1918(a: Array) -> Array:
 
     .. math:: x_c = \frac{a(a+2)\ln a - \frac{1}{2}(a-1)(5a+1)}{(a-1)\left[(a+1)\ln a - 2(a-1)\right]}
 
-    Args:
-        a: film ratio h_i/h_o; 1 gives the limit 1/2 [-].
+    Parameters
+    ----------
+    a
+        Film ratio h_i/h_o; 1 gives the limit 1/2 [-].
     """
     _require_ratio(a)
     b = _ratio_away_from_one(a)
@@ -100,8 +112,10 @@ def friction_incline_Rayleigh_1918(a: Array) -> tuple[Array, Array]:
 
     The power loss per unit width is the moving face's friction times U.
 
-    Args:
-        a: film ratio h_i/h_o; 1 gives 1 on both faces [-].
+    Parameters
+    ----------
+    a
+        Film ratio h_i/h_o; 1 gives 1 on both faces [-].
     """
     _require_ratio(a)
     m = np.where(np.asarray(a) == 1, 1e-300, np.asarray(a) - 1)
@@ -117,12 +131,18 @@ def film_velocity(z: Array, h: Array, pressure_gradient: Array, eta: Array, u_a:
 
     Erratum: the course MEC 315 omits z in its last two terms.
 
-    Args:
-        z: height above the still face, 0 … h [m].
-        h: film thickness [m].
-        pressure_gradient: dp/dx [Pa/m].
-        eta: dynamic viscosity [Pa s].
-        u_a: velocity of the moving face [m/s].
+    Parameters
+    ----------
+    z
+        Height above the still face, 0 … h [m].
+    h
+        Film thickness [m].
+    pressure_gradient
+        dp/dx [Pa/m].
+    eta
+        Dynamic viscosity [Pa s].
+    u_a
+        Velocity of the moving face [m/s].
     """
     return pressure_gradient / (2 * eta) * (z**2 - z * h) + u_a * z / h
 
@@ -130,12 +150,18 @@ def film_velocity(z: Array, h: Array, pressure_gradient: Array, eta: Array, u_a:
 def reduced_Reynolds_number(density: Array, speed: Array, h: Array, eta: Array, length: Array) -> Array:
     """Inertia over viscous force of a thin film, rho u h²/(eta l); it must be well below 1 [-].
 
-    Args:
-        density: rho [kg/m³].
-        speed: u along that length [m/s].
-        h: film thickness [m].
-        eta: dynamic viscosity [Pa s].
-        length: l along the film, or h itself for the number across it [m].
+    Parameters
+    ----------
+    density
+        Rho [kg/m³].
+    speed
+        u along that length [m/s].
+    h
+        Film thickness [m].
+    eta
+        Dynamic viscosity [Pa s].
+    length
+        l along the film, or h itself for the number across it [m].
     """
     return density * speed * h**2 / (eta * length)
 
@@ -143,10 +169,15 @@ def reduced_Reynolds_number(density: Array, speed: Array, h: Array, eta: Array, 
 def squeeze_number(density: Array, h: Array, eta: Array, time: Array) -> Array:
     """Local inertia over viscous force, rho h²/(eta t); erratum: the course prints l² or b² for h² [-].
 
-    Args:
-        density: rho [kg/m³].
-        h: film thickness [m].
-        eta: dynamic viscosity [Pa s].
-        time: duration over which the film changes [s].
+    Parameters
+    ----------
+    density
+        Rho [kg/m³].
+    h
+        Film thickness [m].
+    eta
+        Dynamic viscosity [Pa s].
+    time
+        Duration over which the film changes [s].
     """
     return density * h**2 / (eta * time)

@@ -19,8 +19,8 @@ from functools import cached_property
 import numpy as np
 from scipy.special import ellipeinc
 
+from templates.core.arrays import Array
 from templates.core.declare import units
-from templates.physics.arrays import Array
 
 _ROUNDING = 1e-14
 """Sines and cosines below it are those of dead centres and right angles, known to no more digits."""

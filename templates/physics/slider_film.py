@@ -15,8 +15,9 @@ The finite width is solved by `pad_equations`, of second order, and extrapolated
 the flows are less smooth at the corners: that of the inlet errs by 2e-3, the little at the sides of wide
 pads by 1e-2.
 
-References:
-    Lord Rayleigh, Phil. Mag. 35, 1918, p. 1; A. G. M. Michell, Z. Math. Phys. 52, 1905, p. 123.
+References
+----------
+Lord Rayleigh, Phil. Mag. 35, 1918, p. 1; A. G. M. Michell, Z. Math. Phys. 52, 1905, p. 123.
 """
 
 from abc import ABC, abstractmethod
@@ -24,8 +25,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from templates.core.arrays import Array
 from templates.core.declare import units
-from templates.physics.arrays import Array, require
+from templates.physics.arrays import require
 from templates.physics.arrays import spread as spread
 from templates.physics.pad_equations import solved_pads
 from templates.physics.pad_mesh import Grading, grading
@@ -96,19 +98,26 @@ class PadFilm(ABC):
 def pad_film(level: str, a: Array, width: Array) -> PadFilm:
     """The film at a level of fidelity: `infinite`, without side leakage, or `finite`.
 
-    Args:
-        level: its name.
-        a: film ratio h_i/h_o, above 0 and if finite up to 1000; NaN gives NaN [-].
-        width: b/l, if finite 0.01 … 100; NaN gives NaN [-].
+    Parameters
+    ----------
+    level
+        Its name.
+    a
+        Film ratio h_i/h_o, above 0 and if finite up to 1000; NaN gives NaN [-].
+    width
+        b/l, if finite 0.01 … 100; NaN gives NaN [-].
 
-    Raises:
-        ValueError: if an argument lies outside its range.
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
 
-    Example:
-        >>> round(float(pad_film("infinite", 2.0, 1.0).load), 8)
-        0.02648051
-        >>> round(float(pad_film("finite", 2.0, 1.0).load), 6)
-        0.011546
+    Examples
+    --------
+    >>> round(float(pad_film("infinite", 2.0, 1.0).load), 8)
+    0.02648051
+    >>> round(float(pad_film("finite", 2.0, 1.0).load), 6)
+    0.011546
     """
     a, width = np.asarray(a, float), np.asarray(width, float)
     require(np.isnan(a) | (a > 0) & np.isfinite(a), "film ratio h_i/h_o must be positive and finite")
@@ -125,8 +134,10 @@ def shear_of_wedge(a: Array) -> Array:
 
     Streamers that carry the inlet's flow fill h_i/h of a diverging film: the mean of h_i h_o/h² is 1.
 
-    Args:
-        a: film ratio h_i/h_o; below 1 the film is ruptured [-].
+    Parameters
+    ----------
+    a
+        Film ratio h_i/h_o; below 1 the film is ruptured [-].
     """
     return sum(friction_incline_Rayleigh_1918(_bearing(a))) / 2 + 0 * a
 
@@ -135,11 +146,16 @@ def shear_of_wedge(a: Array) -> Array:
 def velocity_profile(h: Array, pressure_gradient: Array, eta: Array, u_a: Array) -> Array:
     """Velocity at `HEIGHTS` across the film, (..., 41): see `slider.film_velocity` [m/s].
 
-    Args:
-        h: film thickness [m].
-        pressure_gradient: dp/dx [Pa/m].
-        eta: dynamic viscosity [Pa s].
-        u_a: velocity of the moving face, at z = h [m/s].
+    Parameters
+    ----------
+    h
+        Film thickness [m].
+    pressure_gradient
+        dp/dx [Pa/m].
+    eta
+        Dynamic viscosity [Pa s].
+    u_a
+        Velocity of the moving face, at z = h [m/s].
     """
     h, gradient, eta, u_a = (value[..., None] for value in (h, pressure_gradient, eta, u_a))
     return film_velocity(HEIGHTS * h, h, gradient, eta, u_a)
@@ -202,9 +218,12 @@ class FinitePad(PadFilm):
 def interpolated(values: Array, t: Array) -> tuple[Array, Array]:
     """Values and slopes d/dt at t by the cubic through four of n + 1 nodes equally spaced in 0 … 1.
 
-    Args:
-        values: (..., n + 1) at the nodes.
-        t: (..., places) where they are wanted [-].
+    Parameters
+    ----------
+    values
+        (..., n + 1) at the nodes.
+    t
+        (..., places) where they are wanted [-].
     """
     n = values.shape[-1] - 1
     first = np.clip(np.nan_to_num(t * n).astype(int) - 1, 0, n - 3)
@@ -222,11 +241,16 @@ def interpolated(values: Array, t: Array) -> tuple[Array, Array]:
 def finite_pad(a: Array, width: Array, along: int = 64, across_half: int = 16) -> FinitePad:
     """The solutions for pads (...), extrapolated from the mesh given and one of half as many intervals.
 
-    Args:
-        a: film ratio h_i/h_o, above 0 to 1000; NaN gives NaN [-].
-        width: b/l, 0.01 … 100; NaN gives NaN [-].
-        along: intervals along the pad, even.
-        across_half: intervals across half the width, even.
+    Parameters
+    ----------
+    a
+        Film ratio h_i/h_o, above 0 to 1000; NaN gives NaN [-].
+    width
+        b/l, 0.01 … 100; NaN gives NaN [-].
+    along
+        Intervals along the pad, even.
+    across_half
+        Intervals across half the width, even.
     """
     a, width = np.broadcast_arrays(a, width)
     size = along, across_half

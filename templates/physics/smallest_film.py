@@ -15,7 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from templates.core.declare import Array, units
+from templates.core.arrays import Array
+from templates.core.declare import units
 
 _DATA = Path(__file__).parent / "data" / "smallest_film_iso_7902.csv"
 _WIDEST = 2.5  # m

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.uniform_spline import Axis
 
 _BLOCK = 4096
@@ -27,14 +27,20 @@ def surfaces_with_slopes(
 ) -> Array:
     """Evaluate all functions and their slopes at points.
 
-    Args:
-        coefficients: (surfaces, n + 2, m + 2, functions).
-        which: (N,) surface of each point.
-        first, second: the nodes along the two axes.
-        x, y: (N,) places.
+    Parameters
+    ----------
+    coefficients
+        (surfaces, n + 2, m + 2, functions).
+    which
+        (N,) surface of each point.
+    first, second
+        The nodes along the two axes.
+    x, y
+        (N,) places.
 
-    Returns:
-        (3, functions, N): values, slopes by x, slopes by y.
+    Returns
+    -------
+    (3, functions, N): values, slopes by x, slopes by y.
     """
     flat = coefficients.reshape(-1, coefficients.shape[-1])
     found = np.empty((3, flat.shape[1], x.size))

@@ -17,7 +17,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from templates.physics.arrays import Array, Mask
+from templates.core.arrays import Array, Mask
 from templates.physics.eccentricity import eccentricity
 from templates.physics.fed_film import Feed, fed_film
 from templates.physics.film_fit import attitude_ISO_7902, load_ISO_7902
@@ -111,17 +111,24 @@ def static_film_at(
 ) -> JournalFilm:
     """The film that bears So, at a level of fidelity.
 
-    Args:
-        level: a key of `WIDTHS`.
-        So: Sommerfeld number, 0 or more; any shape that broadcasts with the others [-].
-        ratio: width over diameter B/D [-].
-        pressure: supply pressure above ambient, P = p psi²/(eta omega_h); mass_conserving uses it [-].
-        grooves: (angle from the load, width) of each [rad]; mass_conserving uses them.
+    Parameters
+    ----------
+    level
+        a key of `WIDTHS`.
+    So
+        Sommerfeld number, 0 or more; any shape that broadcasts with the others [-].
+    ratio
+        Width over diameter B/D [-].
+    pressure
+        Supply pressure above ambient, P = p psi²/(eta omega_h); mass_conserving uses it [-].
+    grooves
+        (angle from the load, width) of each [rad]; mass_conserving uses them.
 
-    Example:
-        >>> film = static_film_at("map", 3.5718, 1.0)
-        >>> round(float(film.eps), 3), round(float(np.degrees(film.attitude)), 1)
-        (0.8, 36.2)
+    Examples
+    --------
+    >>> film = static_film_at("map", 3.5718, 1.0)
+    >>> round(float(film.eps), 3), round(float(np.degrees(film.attitude)), 1)
+    (0.8, 36.2)
     """
     So, ratio, pressure = np.broadcast_arrays(*(np.asarray(a, float) for a in (So, ratio, pressure)))
     low, high = WIDTHS[level]

@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.declare import Array, units
+from templates.core.arrays import Array
+from templates.core.declare import units
 
 TORSION, BENDING = "torsion", "bending"
 

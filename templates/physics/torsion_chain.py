@@ -22,7 +22,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.declare import Array, units
+from templates.core.arrays import Array
+from templates.core.declare import units
 
 FREE, FIXED = "free_free", "fixed_free"
 MOST_INERTIAS, MOST_ENTRIES = 500, 1_000_000  # of a chain; of the mode shapes of all chains

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.declare import Array, units
+from templates.core.arrays import Array
+from templates.core.declare import units
 
 PLACES = 21
 """Speeds at which the lines of the diagram are given."""

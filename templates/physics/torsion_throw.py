@@ -16,7 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.declare import Array, units
+from templates.core.arrays import Array
+from templates.core.declare import units
 
 CARTER, WILSON = "carter", "wilson"
 APART = "pin and journal do not overlap: the webs bend, which Carter's formula allows for"

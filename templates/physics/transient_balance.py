@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.film_equations import dual_widths
 from templates.physics.film_mesh import graded_across
 

@@ -11,16 +11,17 @@ on the complementarity (Fischer, Burmeister), as in `cavitation`, with two more 
 half the width, backward differences of second order in time, upwind in the cavities.
 Oil is fed at ambient pressure along the line of the widest gap, as by `cavitating_film` without grooves.
 
-References:
-    T. Woloszynski, P. Podsiadlo, G. W. Stachowiak, Tribology Letters 58:18, 2015;
-    H. G. Elrod, Trans. ASME J. Lubr. Technol. 103, 1981, p. 350.
+References
+----------
+T. Woloszynski, P. Podsiadlo, G. W. Stachowiak, Tribology Letters 58:18, 2015;
+H. G. Elrod, Trans. ASME J. Lubr. Technol. 103, 1981, p. 350.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.film_equations import dual_widths
 from templates.physics.transient_balance import Balance, Journal, balance
 
@@ -51,12 +52,18 @@ def stepped(
 ) -> State | None:
     """Film and journal at the next time, or None where Newton's method does not find them.
 
-    Args:
-        journal: mesh and bearing.
-        start: a guess.
-        load: (2,) S along the axes of the frame.
-        w: mean speed of journal and sleeve relative to the frame, over Omega.
-        rate, before: d(content)/d(theta) = rate · content + before, (n, m) [1/rad].
+    Parameters
+    ----------
+    journal
+        Mesh and bearing.
+    start
+        a guess.
+    load
+        (2,) S along the axes of the frame.
+    w
+        Mean speed of journal and sleeve relative to the frame, over Omega.
+    rate, before
+        d(content)/d(theta) = rate · content + before, (n, m) [1/rad].
     """
     eps, P, void = start.eps, start.P.copy(), start.void.copy()
     stored = 12 * before * 2 * np.pi / journal.phi.size * dual_widths(journal.zeta)[:-1]

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from templates.core.arrays import Array
 from templates.core.progress import report
-from templates.physics.arrays import Array
 from templates.physics.film_equations import dual_widths
 from templates.physics.journal_orbit import CyclicLoad
 from templates.physics.transient_balance import Journal, transient_mesh
@@ -60,11 +60,16 @@ def transient_orbit(
 ) -> TransientOrbit | None:
     """March one case until it repeats; None where the film is not found or does not repeat.
 
-    Args:
-        load: one case.
-        ratio: width over diameter B/D [-].
-        start: (2,) relative eccentricity at the first angle.
-        marching: mesh and step.
+    Parameters
+    ----------
+    load
+        One case.
+    ratio
+        Width over diameter B/D [-].
+    start
+        (2,) relative eccentricity at the first angle.
+    marching
+        Mesh and step.
     """
     count = min(MOST_NODES, int(np.ceil(load.period / marching.step - 1e-9)))
     place = load.angle[0] + load.period * np.arange(1, count + 1) / count

@@ -1,7 +1,8 @@
 """Cubic splines on equally spaced nodes in two dimensions, many functions at once.
 
-References:
-    C. de Boor, A Practical Guide to Splines, 1978, chapters IX and IV (not-a-knot ends).
+References
+----------
+C. de Boor, A Practical Guide to Splines, 1978, chapters IX and IV (not-a-knot ends).
 """
 
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 _BLOCK = 4096
 """Points evaluated at a time, so that their weights stay in the processor's cache."""
@@ -62,13 +63,18 @@ def surface_coefficients(values: Array) -> Array:
 def surface(coefficients: Array, first: Axis, second: Axis, x: Array, y: Array) -> Array:
     """Evaluate all functions at points.
 
-    Args:
-        coefficients: (n + 2, m + 2, functions).
-        first, second: the nodes along the two axes.
-        x, y: (N,) places.
+    Parameters
+    ----------
+    coefficients
+        (n + 2, m + 2, functions).
+    first, second
+        The nodes along the two axes.
+    x, y
+        (N,) places.
 
-    Returns:
-        (functions, N).
+    Returns
+    -------
+    (functions, N).
     """
     flat = coefficients.reshape(-1, coefficients.shape[-1])
     values = np.empty((flat.shape[1], x.size))

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse import csr_array
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.uniform_spline import Axis
 
 _BLOCK = 1024
@@ -16,13 +16,18 @@ Axes = tuple[Axis, Axis, Axis]
 def volume(coefficients: Array, axes: Axes, places: Array) -> Array:
     """Evaluate all functions at points.
 
-    Args:
-        coefficients: (n + 2, k + 2, m + 2, functions).
-        axes: the nodes along the three axes.
-        places: (3, N).
+    Parameters
+    ----------
+    coefficients
+        (n + 2, k + 2, m + 2, functions).
+    axes
+        The nodes along the three axes.
+    places
+        (3, N).
 
-    Returns:
-        (functions, N).
+    Returns
+    -------
+    (functions, N).
     """
     shape = coefficients.shape[:3]
     flat = coefficients.reshape(-1, coefficients.shape[-1])

@@ -1,12 +1,13 @@
 """Onset of whirl of a rigid rotor in journal films, from their eight linear coefficients.
 
-References:
-    J. W. Lund, Trans. ASME J. Appl. Mech. 87, 1965, p. 911; J. S. Rao, Rotor Dynamics, 1996, section 7.5.
+References
+----------
+J. W. Lund, Trans. ASME J. Appl. Mech. 87, 1965, p. 911; J. S. Rao, Rotor Dynamics, 1996, section 7.5.
 """
 
 import numpy as np
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 
 
 def whirl_stiffness(K: Array, B: Array) -> Array:
@@ -14,9 +15,12 @@ def whirl_stiffness(K: Array, B: Array) -> Array:
 
     .. math:: k_0 = \frac{K_{xx}B_{yy} + K_{yy}B_{xx} - K_{xy}B_{yx} - K_{yx}B_{xy}}{B_{xx} + B_{yy}}
 
-    Args:
-        K: (..., 2, 2) stiffness.
-        B: (..., 2, 2) damping.
+    Parameters
+    ----------
+    K
+        (..., 2, 2) stiffness.
+    B
+        (..., 2, 2) damping.
     """
     mixed = K[..., 0, 0] * B[..., 1, 1] + K[..., 1, 1] * B[..., 0, 0]
     cross = K[..., 0, 1] * B[..., 1, 0] + K[..., 1, 0] * B[..., 0, 1]
@@ -28,9 +32,12 @@ def whirl_ratio_squared(K: Array, B: Array) -> Array:
 
     .. math:: \gamma^2 = \frac{(K_{xx}-k_0)(K_{yy}-k_0) - K_{xy}K_{yx}}{B_{xx}B_{yy} - B_{xy}B_{yx}}
 
-    Args:
-        K: (..., 2, 2) stiffness k c/W.
-        B: (..., 2, 2) damping b c omega/W.
+    Parameters
+    ----------
+    K
+        (..., 2, 2) stiffness k c/W.
+    B
+        (..., 2, 2) damping b c omega/W.
     """
     reduced = K - whirl_stiffness(K, B)[..., None, None] * np.eye(2)
     return np.asarray(np.linalg.det(reduced) / np.linalg.det(B))
@@ -39,9 +46,12 @@ def whirl_ratio_squared(K: Array, B: Array) -> Array:
 def threshold_mass(K: Array, B: Array) -> Array:
     r"""Largest stable mass a film, M c omega²/W = k_0/gamma²; infinite where no mass whirls [-].
 
-    Args:
-        K: (..., 2, 2) stiffness k c/W.
-        B: (..., 2, 2) damping b c omega/W.
+    Parameters
+    ----------
+    K
+        (..., 2, 2) stiffness k c/W.
+    B
+        (..., 2, 2) damping b c omega/W.
     """
     ratio = whirl_ratio_squared(K, B)
     return np.where(ratio > 0, whirl_stiffness(K, B) / np.where(ratio > 0, ratio, 1.0), np.inf)

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.physics.arrays import Array, require
+from templates.core.arrays import Array
+from templates.physics.arrays import require
 from templates.physics.complementarity import rupture
 from templates.physics.film_equations import film_equations, midpoints, rotation
 from templates.physics.film_mesh import Mesh, graded_across, gregory

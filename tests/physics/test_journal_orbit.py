@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from templates.core.arrays import Array
 from templates.physics import journal_orbit
-from templates.physics.arrays import Array
 from templates.physics.journal_orbit import CyclicLoad, Orbit, periodic_orbit
 from templates.physics.mobility_law import MapLaw, MobilityLaw, ShortLaw
 from templates.physics.mobility_map import mapped_mobility_along_load

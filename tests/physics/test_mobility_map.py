@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 from test_film_literature import table
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.film_mobility import film_mobility
 from templates.physics.mobility_map import (
     LARGEST,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from templates.physics.arrays import Array
+from templates.core.arrays import Array
 from templates.physics.cavitating_film import cavitating_film
 from templates.physics.cavitating_network import Groove
 from templates.physics.journal_orbit import CyclicLoad, periodic_orbit

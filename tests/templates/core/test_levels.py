@@ -121,6 +121,15 @@ class TestLadder:
 
 
 class TestLimits:
+    def test_property_one_point_that_misses_the_tolerance_warns(self, measured):
+        """Two points at the finest level, errors 0.001 and 0.002: the good one does not excuse the other."""
+        at_both = metres(5, 50)
+        assert evaluated("size", tolerance=0.0025, length=at_both).warnings == []
+        for points in (at_both, metres(50, 5)):
+            (warning,) = evaluated("size", tolerance=0.0015, length=points).warnings
+            assert (warning.code, warning.name) == ("tolerance_unmet", "size")
+            assert "0.002" in warning.detail
+
     def test_property_limits_of_a_level(self):
         assert evaluated("size", level="fine", length="0.5 m").outputs["size"].value
         with pytest.raises(InvalidInputs, match="it must be ≥ 1 m and ≤ 50 m; take fine"):
