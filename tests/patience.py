@@ -10,6 +10,7 @@ import time
 FACTOR = float(os.environ.get("CRANKWRIGHT_TEST_PATIENCE", "1"))
 TEST = 300.0 * FACTOR  # for one test with its fixtures [s]
 SLOW_TEST = 3600.0 * FACTOR  # for one of the slow lane [s]
+BUDGET = float(os.environ.get("CRANKWRIGHT_TEST_BUDGET", "0"))  # to begin slow tests in, 0: no end [s]
 GLANCE = 0.02  # between two looks at a condition [s]
 
 
