@@ -19,7 +19,7 @@ from app.models.routes import BuildIn
 from app.paging import page_of
 from app.reports.cells import clean
 from app.reports.routes import REPORTS, _wanted
-from app.waiting import _seconds
+from app.waiting import patience
 from app.web import numbers
 from app.web.forms import kept, patch_of, text_of, value_of
 from cad.header import LONGEST_HEADER, read_header
@@ -351,7 +351,7 @@ def alike_names(count):
 class TestHeaders:
     @pytest.mark.parametrize("piece", ["wait=", "wait=9", "w", "wait=1 ", ",", "respond-async", "=9999"])
     def test_prefer(self, piece):
-        assert_linear(lambda text: _seconds(text, 2.0), lambda n: piece * n, 20_000)
+        assert_linear(lambda text: patience(text, 2.0), lambda n: piece * n, 20_000)
 
     @pytest.mark.parametrize("piece", ["/", ",", ";", "q=", ";q=0.5", "text/html,", "model/step;q=1,", " "])
     def test_accept(self, piece):
