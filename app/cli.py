@@ -25,14 +25,14 @@ from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.targets import WholeTarget
 from cad.catalogue import models as find_models
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.golden import freeze as freeze_template
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
-from templates.core.evaluate import Answer
-from templates.core.evaluate import evaluate as evaluate_template
-from templates.core.golden import freeze as freeze_template
-from templates.core.mathml import unit_symbol
-from templates.core.schema import describe
-from templates.core.template import Template
+from templates.core.language.evaluate import Answer
+from templates.core.language.evaluate import evaluate as evaluate_template
+from templates.core.language.template import Template
+from templates.core.paper.mathml import unit_symbol
+from templates.core.paper.schema import describe
 
 GOLDEN = Path("tests/golden")
 

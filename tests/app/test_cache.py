@@ -13,7 +13,7 @@ from app.designs.graph import Block
 from app.designs.memory import Memory
 from app.designs.worksheet import _written_out
 from app.sizes import size_of
-from templates.core.evaluate import evaluate
+from templates.core.language.evaluate import evaluate
 
 MIB = 2**20
 
