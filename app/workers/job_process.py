@@ -16,6 +16,7 @@ from typing import Any, NoReturn
 
 from app.workers.base import Limits
 from app.workers.errors import MemoryExceeded, RemoteError
+from app.workers.lifeline import hang_on, has_hung_up
 from app.workers.messages import Progress, Raised, Request, Returned
 from app.workers.progress import reporting
 
@@ -25,7 +26,9 @@ Rehearsal = Callable[[Callable[[], bool]], object]
 _PR_SET_PDEATHSIG = 1
 
 
-def serve_one_job(connection: Connection, parent: int, rehearsals: Iterable[Rehearsal] = ()) -> NoReturn:
+def serve_one_job(
+    connection: Connection, parent: int, lifeline: int, rehearsals: Iterable[Rehearsal] = ()
+) -> NoReturn:
     """Wait for one request, answer it, and end the process.
 
     Meanwhile it rehearses, so that the job finds ready what is made at first use. It ends without cleaning
@@ -34,11 +37,15 @@ def serve_one_job(connection: Connection, parent: int, rehearsals: Iterable[Rehe
     exit_code = 1
     try:
         _die_with(parent)
+        os.setpgid(0, 0)
+        hang_on(lifeline, group=os.getpid())  # also if the forkserver is stopped or was killed
         for rehearse in rehearsals:
             with suppress(Exception):  # the job will meet it again, and say so
                 rehearse(connection.poll)
-        connection.send_bytes(_answer(connection.recv_bytes(), connection))
-        exit_code = 0
+        request = connection.recv_bytes()
+        if not has_hung_up(connection.fileno()):  # else the job was cancelled before this process was born
+            connection.send_bytes(_answer(request, connection))
+            exit_code = 0
     finally:  # also when the server has closed its end, which is how it dismisses a process
         os._exit(exit_code)
 
