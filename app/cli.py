@@ -9,13 +9,13 @@ from typing import Any
 
 import click
 import numpy as np
-import uvicorn
 
 from app.calculations import rendering
 from app.catalogue.finding import find_templates
 from app.curves.arguments import argument
 from app.demo import demonstrate
 from app.main import create_app
+from app.server import run
 from app.settings import Settings
 from app.storage.errors import DataFolderInUse
 from app.storage.folder import DataFolder
@@ -72,7 +72,7 @@ def serve(host: str, port: int, data: Path | None) -> None:
             err=True,
         )
     click.echo(f"Crankwright at http://{host}:{port}/docs, data in {settings.data.absolute()}", err=True)
-    uvicorn.run(create_app(settings), host=host, port=port, log_level="warning")
+    run(create_app(settings), settings)
 
 
 def _is_loopback(host: str) -> bool:

@@ -2,31 +2,16 @@
 
 from __future__ import annotations
 
-import time
-from functools import cache
 from typing import Any
 
 from fastapi import APIRouter, Response
-from prometheus_client import (
-    CONTENT_TYPE_LATEST,
-    CollectorRegistry,
-    Counter,
-    Gauge,
-    Histogram,
-    generate_latest,
-)
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from prometheus_client import CONTENT_TYPE_LATEST
 
+from app import metrics
 from app.dependencies import TheDatabase, TheJobs
 from app.designs import repository
 
 router = APIRouter(tags=["health"])
-
-REGISTRY = CollectorRegistry()
-REQUESTS = Counter("crankwright_requests_total", "Requests answered", ["status"], registry=REGISTRY)
-SECONDS = Histogram("crankwright_request_seconds", "Time to answer [s]", registry=REGISTRY)
-QUEUED = Gauge("crankwright_jobs_queued", "Jobs that wait", registry=REGISTRY)
-DESIGNS = Gauge("crankwright_designs", "Designs in the lists", registry=REGISTRY)
 
 
 @router.get("/healthz")
@@ -42,38 +27,17 @@ def readyz(database: TheDatabase) -> dict[str, Any]:
         return {"status": "ready", "designs": repository.count(session)}
 
 
-@router.get("/metrics")
-def metrics(database: TheDatabase, jobs: TheJobs) -> Response:
+_TEXT: dict[int | str, dict[str, Any]] = {
+    200: {
+        "description": "figures in the text format of Prometheus",
+        "content": {"text/plain": {"schema": {"type": "string"}}},
+    }
+}
+
+
+@router.get("/metrics", name="metrics", response_class=Response, responses=_TEXT)
+def show_metrics(database: TheDatabase, jobs: TheJobs) -> Response:
     """Figures for Prometheus."""
     with database.read() as session:
-        DESIGNS.set(repository.count(session))
-        QUEUED.set(jobs.queued(session))
-    return Response(generate_latest(REGISTRY), media_type=CONTENT_TYPE_LATEST)
-
-
-@cache
-def answered(status: int) -> Counter:
-    """The counter of the answers of one status; to look it up by its label costs more than to count."""
-    return REQUESTS.labels(status)
-
-
-class Metrics:
-    """ASGI middleware that counts requests and their time."""
-
-    def __init__(self, app: ASGIApp) -> None:
-        self.app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, and count."""
-        if scope["type"] != "http":
-            await self.app(scope, receive, send)
-            return
-        start = time.perf_counter()
-
-        async def counted(message: Message) -> None:
-            if message["type"] == "http.response.start":
-                answered(message["status"]).inc()
-                SECONDS.observe(time.perf_counter() - start)
-            await send(message)
-
-        await self.app(scope, receive, counted)
+        census = jobs.census(session)
+    return Response(metrics.text(census), media_type=CONTENT_TYPE_LATEST)

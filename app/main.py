@@ -12,7 +12,7 @@ from typing import Any
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
-from app import health, problems
+from app import health, metrics, problems
 from app.analyses.finding import Analysing
 from app.analyses.routes import router as analyses
 from app.analyses.service import ANALYSIS, Analyses, ModelAnalysis
@@ -28,15 +28,15 @@ from app.designs.graph import Catalogues
 from app.designs.regeneration import Regeneration
 from app.designs.routes import router as designs
 from app.designs.service import REGENERATE, REGENERATE_SLOWLY, Designs
-from app.health import Metrics
 from app.http import BodyLimit, BodyTooLarge
 from app.idempotency import forget_old_keys
 from app.jobs.routes import router as jobs
 from app.jobs.service import Jobs
-from app.jobs.shutdown import streams_end_on_signal
+from app.jobs.shutdown import on_stop_signal
 from app.models.builds import Builds
 from app.models.routes import router as models
 from app.models.service import BUILD, ModelBuild, Models
+from app.observing import Observed
 from app.reports.paper import Press
 from app.reports.routes import router as reports
 from app.reports.service import Reports
@@ -45,6 +45,8 @@ from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.folder import DataFolder
 from app.storage.migrations import migrate
+from app.streams import Streams
+from app.timeouts import RequestLimits
 from app.web import assembly as pages
 from app.workers.base import Limits
 from app.workers.local import LocalProcesses
@@ -67,7 +69,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         with ExitStack() as stack:
             assemble(app, chosen, stack)
-            stack.enter_context(streams_end_on_signal(app.state.jobs.events))
+            stack.enter_context(on_stop_signal(app.state.jobs.drain))
             yield
 
     app: FastAPI = FastAPIOffline(
@@ -103,7 +105,14 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     problems.install(app)
     pages.install(app)
     app.add_middleware(BodyLimit, limit=chosen.body_limit, refuse=_too_large)
-    app.add_middleware(Metrics)
+    app.add_middleware(
+        RequestLimits,
+        seconds=chosen.body_seconds,
+        rate=chosen.slowest_rate,
+        address=chosen.address_limit,
+        refuse=problems.answer_to,
+    )
+    app.add_middleware(Observed)  # the outermost: it sees what the others refuse
     app.openapi = partial(_openapi_3_1, app)  # type: ignore[method-assign]
     return app
 
@@ -124,7 +133,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     stack.callback(folder.release)
     url = settings.database_url or folder.database_url
     migrate(url)
-    database = Database(url)
+    database = Database(url, on_commit=metrics.committed)
     stack.callback(database.close)
     database.write(forget_old_keys)
     store = ArtifactStore(folder.artifacts)
@@ -145,6 +154,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     stack.callback(queue.stop)
     app.state.database, app.state.store, app.state.jobs = database, store, queue
     app.state.catalogues, app.state.settings = catalogues, settings
+    app.state.streams = Streams(settings.streams, settings.streams_per_client)
     app.state.designs = Designs(database, queue, catalogues)
     app.state.models = Models(database, store, queue, catalogues.models)
     app.state.analyses = Analyses(database, store, queue)
@@ -154,7 +164,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
 
 
 def _too_large(told: str) -> Response:
-    return problems.answer(problems.describe(BodyTooLarge(told)))
+    return problems.answer_to(BodyTooLarge(told))
 
 
 PROBLEM: dict[str, Any] = {
@@ -165,6 +175,7 @@ PROBLEM: dict[str, Any] = {
         "title": {"type": "string"},
         "status": {"type": "integer"},
         "detail": {"type": "string"},
+        "request_id": {"type": "string", "description": "as in the header X-Request-ID and in the log"},
         "errors": {
             "type": "array",
             "items": {

@@ -15,11 +15,21 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
 
+from app import logs, metrics
 from app.designs import errors as designs
-from app.http import BodyTooLarge, NotCsv, NotJson, PreconditionRequired, TooIntricate, TooManyValues
+from app.http import (
+    BodyTooLarge,
+    NotCsv,
+    NotJson,
+    PreconditionRequired,
+    TooIntricate,
+    TooManyValues,
+)
 from app.jobs import errors as jobs
 from app.reports.errors import Unprintable
 from app.storage import errors as storage
+from app.streams import TooManyStreams
+from app.timeouts import AddressTooLong, BodyTooSlow
 from app.workers import errors as workers
 from cad.errors import AnalysisError, GeometryError, UnreadableStep
 from templates.core import errors as templates
@@ -58,6 +68,9 @@ TABLE: dict[type[Exception], Kind] = {
     BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
     TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),
+    BodyTooSlow: Kind("too-slow", 408, "The request comes too slowly", "send it faster, or in parts"),
+    AddressTooLong: Kind("address-too-long", 414, "The address is too long", "send a shorter query"),
+    TooManyStreams: Kind("too-many-streams", 429, "Too many streams are open", "close some, then retry"),
     jobs.JobNotFound: Kind("no-such-job", 404, "No such job", "GET /api/v1/jobs lists them"),
     jobs.JobFinished: Kind("job-finished", 409, "The job has ended", "nothing is left to cancel"),
     jobs.QueueFull: Kind("queue-full", 429, "Too much is waiting", "retry after the time in Retry-After"),
@@ -80,6 +93,14 @@ HTTP = {
     404: Kind("no-such-path", 404, "No such path", "GET /openapi.json lists all paths"),
     405: Kind("method-not-allowed", 405, "Method not allowed here", "see the header Allow"),
 }
+
+CROWDED = Kind("too-many-connections", 503, "Too many connections", "close some, then retry")
+BEFORE_HTTP = (
+    CROWDED,
+    Kind("header-too-large", 431, "The head of the request does not end", "send fewer or shorter headers"),
+    Kind("not-http", 400, "Not HTTP", "send HTTP/1.1"),
+)
+"""What `app.connections` answers before there is a request."""
 
 
 def kind_of(error: Exception) -> Kind:
@@ -157,15 +178,21 @@ router = APIRouter(tags=["problems"])
 @router.get("/problems/{slug}")
 def explain_problem(slug: str) -> dict[str, Any]:
     """What a kind of problem means, and how to mend it."""
-    kinds = {kind.slug: kind for kind in (*TABLE.values(), *HTTP.values(), INTERNAL)}
+    kinds = {kind.slug: kind for kind in (*TABLE.values(), *HTTP.values(), *BEFORE_HTTP, INTERNAL)}
     if slug not in kinds:
         raise HTTPException(404, f"there is no problem {slug[:60]!r}")
     return vars(kinds[slug])
 
 
 def answer(about: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
-    """A problem as a response."""
+    """A problem as a response; it carries the id of the request."""
+    about = {**about, "request_id": id_} if (id_ := logs.REQUEST_ID.get()) else about
     return JSONResponse(dict(about), about["status"], headers=dict(headers or {}), media_type=MEDIA_TYPE)
+
+
+def answer_to(error: Exception) -> Response:
+    """An error as a response, for a middleware that refuses."""
+    return answer(describe(error), getattr(error, "headers", {}))
 
 
 def install(app: FastAPI) -> None:
@@ -177,7 +204,9 @@ def install(app: FastAPI) -> None:
 
 
 async def _handle(request: Request, error: Exception) -> Response:
-    headers = {"Retry-After": str(error.retry_after)} if isinstance(error, jobs.QueueFull) else {}
+    headers = getattr(error, "headers", {})
+    if isinstance(error, jobs.QueueFull):
+        headers = {"Retry-After": str(error.retry_after)}
     return answer(describe(error), headers)
 
 
@@ -188,5 +217,6 @@ async def _handle_http(request: Request, error: Exception) -> Response:
 
 
 async def _handle_unexpected(request: Request, error: Exception) -> Response:
+    metrics.FAILURES.labels("internal").inc()
     logger.error("%s %s failed", request.method, request.url.path, exc_info=error)
     return answer(describe(error))

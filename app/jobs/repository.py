@@ -40,6 +40,13 @@ def count_queued(session: Session) -> int:
     return session.scalar(select(func.count()).where(JobRow.state == "queued")) or 0
 
 
+def census(session: Session) -> list[tuple[str, str, int, str]]:
+    """Return kind, state, number and oldest `created` of the jobs that have not ended, of which few exist."""
+    living = select(JobRow.kind, JobRow.state, func.count(), func.min(JobRow.created))
+    living = living.where(JobRow.state.in_(["queued", "running"])).group_by(JobRow.kind, JobRow.state)
+    return [(kind, state, count, oldest) for kind, state, count, oldest in session.execute(living)]
+
+
 def get(session: Session, id: str) -> Job | None:
     """Return a job, or None."""
     row = session.get(JobRow, id)

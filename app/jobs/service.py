@@ -6,6 +6,7 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
+from app import logs
 from app.jobs import repository
 from app.jobs.context import JobContext, publish
 from app.jobs.dispatcher import Completion, Dispatcher, FailureHook, Handler, Kind, Problem
@@ -63,10 +64,19 @@ class Jobs:
         self._database.write(repository.give_back_all)
         self._dispatcher.start(self.settings.workers)
 
+    def drain(self) -> None:
+        """End all subscriptions and begin no more jobs; those that run go on."""
+        self.events.close()
+        self._dispatcher.drain()
+
     def stop(self) -> None:
         """End all subscriptions and all running jobs; they stay in the queue for the next start."""
         self.events.close()
-        self._dispatcher.stop()
+        self._dispatcher.stop(self.settings.stop_seconds / 2)
+
+    def census(self, session: Session) -> list[tuple[str, str, int, str]]:
+        """Return kind, state, number and age of the oldest of the jobs that have not ended."""
+        return repository.census(session)
 
     def enqueue(
         self,
@@ -86,7 +96,9 @@ class Jobs:
         """
         if repository.count_queued(session) >= self.settings.queue_limit:
             raise QueueFull(RETRY_AFTER)
-        return repository.add(session, kind, payload, design, revision)
+        id = repository.add(session, kind, payload, design, revision)
+        logs.note_cause(id)
+        return id
 
     def waiting(self, session: Session, kind: str, payload: dict[str, Any]) -> str | None:
         """Return the id of a job that is to do just this and has not ended."""

@@ -11,6 +11,8 @@ from typing import Annotated, Any
 import httpx
 from fastapi import Depends, Request
 
+from app import logs
+
 BASE = "/api/v1"
 
 
@@ -70,7 +72,8 @@ class Api:
         Refused
             If the interface refuses.
         """
-        answer = await self._http.request(method, BASE + path, **more)
+        headers = {"X-Request-ID": logs.REQUEST_ID.get(), **(more.pop("headers", None) or {})}
+        answer = await self._http.request(method, BASE + path, headers=headers, **more)
         if answer.is_error:
             raise Refused(answer.status_code, answer.json())
         return answer

@@ -20,6 +20,7 @@ import uvicorn
 from app.client import Client
 from app.designs.schemas import PAPER
 from app.main import create_app
+from app.server import configuration
 from app.settings import Settings
 
 API = "/api/v1"
@@ -181,7 +182,7 @@ class Served:
 def serving(settings: Settings):
     """The real app under uvicorn in a thread, until the end."""
     app = create_app(settings)
-    server = uvicorn.Server(uvicorn.Config(app, host="127.0.0.1", port=0, log_level="error"))
+    server = uvicorn.Server(configuration(app, settings, port=0))
     thread = threading.Thread(target=server.run, name="uvicorn")
     thread.start()
     try:
