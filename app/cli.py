@@ -10,12 +10,12 @@ from typing import Any
 import click
 import numpy as np
 
+from app import server
 from app.calculations import rendering
 from app.catalogue.finding import find_templates
 from app.curves.arguments import argument
 from app.demo import demonstrate
 from app.main import create_app
-from app.server import run
 from app.settings import Settings
 from app.storage.errors import DataFolderInUse
 from app.storage.folder import DataFolder
@@ -72,7 +72,7 @@ def serve(host: str, port: int, data: Path | None) -> None:
             err=True,
         )
     click.echo(f"Crankwright at http://{host}:{port}/docs, data in {settings.data.absolute()}", err=True)
-    run(create_app(settings), settings)
+    server.run(create_app(settings), settings)
 
 
 def _is_loopback(host: str) -> bool:

@@ -109,6 +109,9 @@ class TimedProtocol(HttpToolsProtocol):
         elif self._head_timer is None:
             self._head_timer = self.loop.call_later(self.limits.header_seconds, self._head_is_late)
 
+    def _unsupported_upgrade_warning(self) -> None:
+        """Upgrades are ignored, which HTTP permits; uvicorn would advise to install something."""
+
     def on_message_begin(self) -> None:
         """Called by the parser at the first byte of a request."""
         self._in_head = True

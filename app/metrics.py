@@ -32,6 +32,7 @@ _histogram = partial(Histogram, registry=REGISTRY)
 
 REQUESTS = _counter("crankwright_requests_total", "Requests answered", ["route", "method", "status"])
 SECONDS = _histogram("crankwright_request_seconds", "Time to the first byte [s]", ["route", "method"])
+IN_FLIGHT = _gauge("crankwright_requests_in_flight", "Requests that are being answered")
 COMMIT = _histogram("crankwright_commit_seconds", "Time of a group of units of work [s]")
 GROUP = _histogram(
     "crankwright_commit_units", "Units of work in a group", buckets=[1, 2, 4, 8, 16, 32, 64, 128, 256]

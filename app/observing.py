@@ -34,6 +34,9 @@ in_flight: dict[int, InFlight] = {}
 """What is being answered, by the identity of its scope."""
 
 
+metrics.IN_FLIGHT.set_function(lambda: len(in_flight))
+
+
 class Observed:
     """ASGI middleware; the outermost, so that refusals are seen as well."""
 

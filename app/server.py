@@ -68,7 +68,10 @@ def run(app: FastAPI, settings: Settings) -> NoReturn:
     """Serve until a signal; does not return."""
     flush = logs.configure(settings.log_level, settings.log_format)
     server = Server(configuration(app, settings), settings.drain_seconds, flush)
-    server.run()
+    try:
+        server.run()
+    finally:  # it has left already, unless it could not start
+        flush()
     sys.exit(0 if server.started else STARTUP_FAILURE)
 
 

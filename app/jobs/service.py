@@ -1,6 +1,7 @@
 """What the rest of the server can do with jobs."""
 
 import asyncio
+import logging
 from collections.abc import Callable
 from typing import Any
 
@@ -19,6 +20,8 @@ from app.workers.base import Limits, Worker
 from app.workers.errors import JobCancelled
 
 __all__ = ["Completion", "Job", "JobContext", "JobFailed", "Jobs"]
+
+logger = logging.getLogger(__name__)
 
 RETRY_AFTER = 5  # what to advise when the queue is full [s]
 
@@ -98,6 +101,7 @@ class Jobs:
             raise QueueFull(RETRY_AFTER)
         id = repository.add(session, kind, payload, design, revision)
         logs.note_cause(id)
+        logger.info("job %s (%s) queued", id, kind, extra={"job": id})
         return id
 
     def waiting(self, session: Session, kind: str, payload: dict[str, Any]) -> str | None:

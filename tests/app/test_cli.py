@@ -166,8 +166,8 @@ class TestServe:
     )
     def test_a_warning_beyond_loopback(self, tmp_path, monkeypatch, host, warned):
         served = []
-        monkeypatch.setattr("app.cli.uvicorn.run", lambda app, **options: served.append(options))
+        monkeypatch.setattr("app.cli.server.run", lambda app, settings: served.append(settings))
         told = run("serve", "--host", host, "--port", "8123", "--data", str(tmp_path))
         assert told.exit_code == 0
         assert ("WARNING" in told.stderr and "without authentication" in told.stderr) is warned
-        assert (served[0]["host"], served[0]["port"]) == (host, 8123)
+        assert (served[0].host, served[0].port) == (host, 8123)
