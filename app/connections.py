@@ -76,7 +76,7 @@ class TimedProtocol(HttpToolsProtocol):
         """Have the kernel end the connection of a machine that is gone, as it notices by a stream's pings."""
         sock = self.transport.get_extra_info("socket")
         if sock is not None and sock.family in (socket.AF_INET, socket.AF_INET6) and _USER_TIMEOUT:
-            milliseconds = int(self.limits.write_seconds * 1000)
+            milliseconds = int(2 * self.limits.write_seconds * 1000)  # a slow reader is judged before
             sock.setsockopt(socket.IPPROTO_TCP, _USER_TIMEOUT, milliseconds)
 
     def connection_lost(self, exc: Exception | None) -> None:
