@@ -1,24 +1,28 @@
-"""The command line: `crankwright serve | demo | evaluate | template list | template show | freeze`."""
+"""The command line: `crankwright serve | demo | evaluate | template | freeze | check | backup | restore`"""
 
 from __future__ import annotations
 
-import ipaddress
 import json
 from pathlib import Path
 from typing import Any
 
 import click
 import numpy as np
+from pydantic import ValidationError
+from pydantic_settings import SettingsError
 
 from app import server
 from app.calculations import rendering
 from app.catalogue.finding import find_templates
 from app.curves.arguments import argument
 from app.demo import demonstrate
+from app.hosts import is_loopback
 from app.main import create_app
+from app.maintenance.commands import backup_command, check_command, restore_command
 from app.settings import Settings
-from app.storage.errors import DataFolderInUse
+from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
+from app.storage.integrity import refuse_damage
 from cad.catalogue import models as find_models
 from templates.core.catalogue import Catalogue
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
@@ -41,6 +45,15 @@ class Commands(click.Group):
             return super().invoke(ctx)
         except (UnknownTemplate, UnusableFile) as error:
             raise click.ClickException(str(error)) from None
+        except SettingsError as error:
+            told = f"{error}; a list is written as JSON, such as '[\"crank.example\"]'"
+            raise click.ClickException(told) from None
+        except ValidationError as error:
+            raise click.ClickException("\n".join(map(_wrong_setting, error.errors()))) from None
+
+
+def _wrong_setting(error: Any) -> str:
+    return f"CRANKWRIGHT_{str(error['loc'][0]).upper()}: {error['msg'].removeprefix('Value error, ')}"
 
 
 @click.group(cls=Commands)
@@ -50,38 +63,58 @@ def main() -> None:
 
 
 @main.command()
-@click.option("--host", default="127.0.0.1", show_default=True)
-@click.option("--port", default=8000, show_default=True, type=click.IntRange(0, 65535))
+@click.option(
+    "--host", default=None, help="address to listen on; 127.0.0.1 unless CRANKWRIGHT_HOST says else"
+)
+@click.option(
+    "--port", default=None, type=click.IntRange(0, 65535), help="8000 unless CRANKWRIGHT_PORT says else"
+)
 @click.option("--data", type=click.Path(path_type=Path), default=None, help="folder of designs and artifacts")
-def serve(host: str, port: int, data: Path | None) -> None:
+@click.option("--insecure", is_flag=True, help="listen beyond this machine although nothing asks for a key")
+def serve(host: str | None, port: int | None, data: Path | None, insecure: bool) -> None:
     """Serve the REST interface; its documentation is at /docs."""
-    settings = Settings(data=data, host=host, port=port) if data else Settings(host=host, port=port)
+    given: dict[str, Any] = {"data": data, "host": host, "port": port}
+    settings = Settings(**{name: value for name, value in given.items() if value is not None})
+    _check_reach(settings.host, insecure)
     try:
-        DataFolder(settings.data).release()
-    except DataFolderInUse as error:
+        folder = DataFolder(settings.data)
+        refuse_damage(settings.database_url or folder.database_url)
+        folder.release()
+    except (DataFolderInUse, DatabaseDamaged) as error:
         raise click.ClickException(str(error)) from None
     except OSError as error:
         told = f"{settings.data.absolute()} cannot hold the data: {error.strerror}"
         raise click.ClickException(f"{told}; name another folder by --data") from None
     _catalogue(), find_models(*settings.template_folders)  # a broken file is told before anything is served
-    if not _is_loopback(host):
-        click.secho(
-            f"WARNING: listening on {host} without authentication: whoever reaches this address can read and "
-            "change every design. Use 127.0.0.1, or put a proxy with authentication in front.",
-            fg="yellow",
-            err=True,
-        )
-    click.echo(f"Crankwright at http://{host}:{port}/docs, data in {settings.data.absolute()}", err=True)
+    place = f"[{settings.host}]" if ":" in settings.host else settings.host
+    click.echo(
+        f"Crankwright at http://{place}:{settings.port}/docs, data in {settings.data.absolute()}", err=True
+    )
     server.run(create_app(settings), settings)
 
 
-def _is_loopback(host: str) -> bool:
-    if host == "localhost":
-        return True
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
+def _check_reach(host: str, insecure: bool) -> None:
+    """Refuse to listen beyond this machine, unless the operator insists: nothing asks for a key yet.
+
+    Raises
+    ------
+    ClickException
+        If the host is not loopback and `insecure` is not set.
+    """
+    if is_loopback(host.lower()):
+        return
+    danger = "without authentication: whoever reaches this address can read and change every design"
+    remedy = "Listen on 127.0.0.1, and put a reverse proxy with authentication in front"
+    if not insecure:
+        raise click.ClickException(
+            f"refusing to listen on {host} {danger}. {remedy}; or add --insecure if all of them may."
+        )
+    click.secho(f"WARNING: listening on {host} {danger}. {remedy}.", fg="yellow", err=True)
+
+
+main.add_command(check_command)
+main.add_command(backup_command)
+main.add_command(restore_command)
 
 
 @main.command()

@@ -9,7 +9,10 @@ with Client("http://127.0.0.1:8000") as client:
 
 from __future__ import annotations
 
+import getpass
 import json
+import re
+import socket
 import uuid
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -20,6 +23,8 @@ import httpx
 Progress = Callable[[float, str], None]
 
 BASE = "/api/v1"
+CLIENT_HEADER = "Crankwright-Client"
+_NAME = re.compile("[!-~]([ -~]{0,98}[!-~])?")  # up to 100 printable ASCII characters, no blank at an end
 _RETRIES = 3  # of the transport, for a connection that is refused
 
 
@@ -48,12 +53,37 @@ class Design:
 
 
 class Client:
-    """A connection to a service."""
+    """A connection to a service.
 
-    def __init__(self, url: str, *, timeout: float = 60.0) -> None:
-        self.url = url
+    Parameters
+    ----------
+    url
+        Where the service listens, such as `http://127.0.0.1:8000`.
+    timeout
+        How long an answer may take [s].
+    name
+        Under which name the service counts this client's requests, and takes turns between clients: up to 100
+        printable ASCII characters. If not given, `user@host`.
+
+    Raises
+    ------
+    ValueError
+        If the name is no such text.
+    """
+
+    def __init__(self, url: str, *, timeout: float = 60.0, name: str | None = None) -> None:
+        self.url, self.name = url, user_at_host() if name is None else name
+        if not _NAME.fullmatch(self.name):
+            raise ValueError(
+                f"{self.name[:110]!r} is no client's name: use 1 to 100 printable ASCII characters, such as "
+                "design-office-7"
+            )
         self._http = httpx.Client(
-            base_url=url, timeout=timeout, transport=httpx.HTTPTransport(retries=_RETRIES), trust_env=False
+            base_url=url,
+            timeout=timeout,
+            headers={CLIENT_HEADER: self.name},
+            transport=httpx.HTTPTransport(retries=_RETRIES),
+            trust_env=False,
         )
 
     def __enter__(self) -> Self:
@@ -229,6 +259,15 @@ class Client:
                 body = {"title": answer.reason_phrase, "detail": answer.text[:500]}
             raise Problem(answer.status_code, body)
         return answer
+
+
+def user_at_host() -> str:
+    """The user and the machine, in printable ASCII: the same whenever this user calls from here."""
+    try:
+        user = getpass.getuser()
+    except (KeyError, OSError):  # a container may run under a number that has no name
+        user = "unknown"
+    return re.sub("[^!-~]", "_", f"{user}@{socket.gethostname()}")[:100]
 
 
 def _once(key: str | None) -> dict[str, str]:

@@ -10,12 +10,37 @@ import re
 from typing import Annotated
 
 from fastapi import Depends, Request
+from starlette.datastructures import Headers
+from starlette.types import ASGIApp, Receive, Scope, Send
 
 from templates.core.errors import Fault, InvalidInputs
 
 HEADER, COOKIE = "Crankwright-Client", "crankwright_session"
 _NAME = re.compile(r"[!-~][ -~]{0,98}[!-~]|[!-~]")  # up to 100 printable ASCII characters
 _SESSION = re.compile(r"[A-Za-z0-9_-]{16,64}")
+_IN_COOKIES = re.compile(rf"(?:^|;)[ ]*{COOKIE}=([A-Za-z0-9_-]{{16,64}})(?:;|$)")
+_MOST_COOKIES = 8192  # characters that are looked at
+_CALLER = "crankwright.caller"
+"""Key of an ASGI scope that only this process sets: for which client a page calls the interface."""
+
+
+def is_session(text: str) -> bool:
+    """Whether a cookie's value can be a session of a page."""
+    return _SESSION.fullmatch(text) is not None
+
+
+def from_inside(app: ASGIApp, client: str) -> ASGIApp:
+    """The app as the process itself calls it, for a client whose request has passed the guard."""
+
+    async def called(scope: Scope, receive: Receive, send: Send) -> None:
+        await app({**scope, _CALLER: client}, receive, send)
+
+    return called
+
+
+def is_inside(scope: Scope) -> bool:
+    """Whether this process sent a request itself. No header can make it so."""
+    return _CALLER in scope
 
 
 async def get_client(request: Request) -> str:
@@ -26,15 +51,30 @@ async def get_client(request: Request) -> str:
     InvalidInputs
         If the header is no name.
     """
+    if is_inside(request.scope):
+        return str(request.scope[_CALLER])
     if (named := request.headers.get(HEADER)) is not None:
         if not _NAME.fullmatch(named):
             told = "a client's name has 1 to 100 printable ASCII characters, such as design-office-7"
             raise InvalidInputs([Fault(HEADER, "client_name", told)])
         return f"name:{named}"
     session = request.cookies.get(COOKIE, "")
-    if _SESSION.fullmatch(session):
+    if is_session(session):
         return f"session:{session}"
     return f"address:{request.client.host if request.client else 'unknown'}"
+
+
+def from_whom(scope: Scope) -> str:
+    """The client of a request as `get_client` has it; a name that is none counts as none."""
+    if is_inside(scope):
+        return str(scope[_CALLER])
+    headers = Headers(scope=scope)
+    if _NAME.fullmatch(named := headers.get(HEADER, "")):
+        return f"name:{named}"
+    session = _IN_COOKIES.search(headers.get("cookie", "")[:_MOST_COOKIES])
+    if session:
+        return f"session:{session[1]}"
+    return f"address:{scope['client'][0] if scope.get('client') else 'unknown'}"
 
 
 TheClient = Annotated[str, Depends(get_client)]

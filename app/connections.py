@@ -1,7 +1,6 @@
 """Connections that nobody holds for ever: uvicorn's protocol, with limits on slow heads and slow readers.
 
-uvicorn waits without limit for the head of a request, keeps whatever arrives of it, and waits without limit
-until a client has read its answer.
+uvicorn waits without limit for the head of a request, and until a client has read its answer.
 """
 
 from __future__ import annotations
@@ -15,12 +14,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from starlette.types import ASGIApp
-from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
+from uvicorn.protocols.http.httptools_impl import STATUS_LINE
 
 from app import logs, metrics
+from app.heads import LONGEST_HEAD
+from app.targets import WholeTarget
 
 _RESERVE = 64  # connections beyond the limit that are still answered, with 503
 
+_DEAD = 60.0  # how much longer than a slow reader a silent machine is waited for [s]
 _USER_TIMEOUT = getattr(socket, "TCP_USER_TIMEOUT", 0)  # Linux
 
 
@@ -34,8 +36,6 @@ class ConnectionLimits:
         Connections at the same time.
     header_seconds
         Longest time from the first byte of a request to the end of its head [s].
-    header_bytes
-        Longest head of a request.
     write_seconds
         Longest time in which a client reads less than `rate` asks for [s].
     rate
@@ -44,12 +44,11 @@ class ConnectionLimits:
 
     count: int
     header_seconds: float
-    header_bytes: int
     write_seconds: float
     rate: float
 
 
-class TimedProtocol(HttpToolsProtocol):
+class TimedProtocol(WholeTarget):
     """One connection. `limits` and `busy`, which answers beyond their count, are set by `protocol`."""
 
     limits: ConnectionLimits
@@ -58,7 +57,6 @@ class TimedProtocol(HttpToolsProtocol):
     _head_timer: asyncio.TimerHandle | None = None
     _write_timer: asyncio.TimerHandle | None = None
     _in_head = False
-    _head_bytes = 0  # since there was something to answer
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         """Begin to wait for the first request."""
@@ -76,7 +74,7 @@ class TimedProtocol(HttpToolsProtocol):
         """Have the kernel end the connection of a machine that is gone, as it notices by a stream's pings."""
         sock = self.transport.get_extra_info("socket")
         if sock is not None and sock.family in (socket.AF_INET, socket.AF_INET6) and _USER_TIMEOUT:
-            milliseconds = int(2 * self.limits.write_seconds * 1000)  # a slow reader is judged before
+            milliseconds = int(1000 * (self.limits.write_seconds + _DEAD))  # a slow reader is judged before
             sock.setsockopt(socket.IPPROTO_TCP, _USER_TIMEOUT, milliseconds)
 
     def connection_lost(self, exc: Exception | None) -> None:
@@ -95,18 +93,10 @@ class TimedProtocol(HttpToolsProtocol):
         is_idle = before is None or before.response_complete
         super().data_received(data)
         if self.cycle is not before:
-            self._head_bytes = 0
             if self._head_timer is not None:
                 self._head_timer.cancel()
                 self._head_timer = None
-        elif is_idle and not self.transport.is_closing():
-            self._head_is_partial(len(data))
-
-    def _head_is_partial(self, size: int) -> None:
-        self._head_bytes += size
-        if self._in_head and self._head_bytes > self.limits.header_bytes:
-            self._refuse_head(431, "header-too-large", f"in at most {self.limits.header_bytes} bytes")
-        elif self._head_timer is None:
+        elif is_idle and self._head_timer is None and not self.transport.is_closing():
             self._head_timer = self.loop.call_later(self.limits.header_seconds, self._head_is_late)
 
     def _unsupported_upgrade_warning(self) -> None:
@@ -125,23 +115,23 @@ class TimedProtocol(HttpToolsProtocol):
     def _head_is_late(self) -> None:
         self._head_timer = None
         if self._in_head:
-            self._refuse_head(408, "too-slow", f"within {self.limits.header_seconds:g} s")
+            detail = f"send the request line and all headers within {self.limits.header_seconds:g} s"
+            self._refuse(408, "too-slow", "The request comes too slowly", detail)
         else:
             self._cut("silent")
 
-    def _refuse_head(self, status: int, slug: str, limit: str) -> None:
-        metrics.CUT.labels(slug).inc()
-        about = {
-            "type": f"/problems/{slug}",
-            "title": "The head of the request does not end",
-            "status": status,
-            "detail": f"send the request line and all headers {limit}",
-        }
-        self._write_problem(about)
+    def refuse_head(self) -> None:
+        """Answer a head that is too large."""
+        detail = f"send the request line and all headers in at most {LONGEST_HEAD} bytes"
+        self._refuse(431, "head-too-large", "The headers are too large", detail)
 
     def send_400_response(self, msg: str) -> None:
         """Answer what is no HTTP."""
-        about = {"type": "/problems/not-http", "title": "Not HTTP", "status": 400, "detail": msg}
+        self._refuse(400, "not-http", "Not HTTP", msg)
+
+    def _refuse(self, status: int, slug: str, title: str, detail: str) -> None:
+        metrics.CUT.labels(slug).inc()
+        about = {"type": f"/problems/{slug}", "title": title, "status": status, "detail": detail}
         self._write_problem(about)
 
     def _write_problem(self, about: Mapping[str, Any]) -> None:
@@ -187,6 +177,8 @@ class TimedProtocol(HttpToolsProtocol):
 
     def _cut(self, why: str) -> None:
         metrics.CUT.labels(why).inc()
+        if self.cycle is not None:  # else it might write before it learns of the loss
+            self.cycle.disconnected = True
         self.transport.abort()
 
 

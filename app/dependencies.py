@@ -16,6 +16,7 @@ from app.designs.service import Designs
 from app.http import fingerprint
 from app.idempotency import Once
 from app.jobs.service import Jobs
+from app.models.healing import Healing
 from app.models.service import Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
@@ -56,6 +57,11 @@ async def get_analyses(request: Request) -> Analyses:
     return request.app.state.analyses  # type: ignore[no-any-return]
 
 
+async def get_healing(request: Request) -> Healing:
+    """What makes lost files again."""
+    return request.app.state.healing  # type: ignore[no-any-return]
+
+
 async def get_once(
     request: Request,
     client: TheClient,
@@ -74,5 +80,6 @@ TheJobs = Annotated[Jobs, Depends(get_jobs)]
 TheDesigns = Annotated[Designs, Depends(get_designs)]
 TheModels = Annotated[Models, Depends(get_models)]
 TheAnalyses = Annotated[Analyses, Depends(get_analyses)]
+TheHealing = Annotated[Healing, Depends(get_healing)]
 TheOnce = Annotated[Once, Depends(get_once)]
 JobsDependency = TheJobs

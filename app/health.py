@@ -1,15 +1,13 @@
-"""`/healthz`, `/readyz` and `/metrics`, at the root."""
+"""`/healthz` and `/metrics`, at the root; `/readyz` is in `app.readiness`."""
 
 from __future__ import annotations
 
-from typing import Any
-
 from fastapi import APIRouter, Response
+from fastapi.responses import PlainTextResponse
 from prometheus_client import CONTENT_TYPE_LATEST
 
 from app import metrics
 from app.dependencies import TheDatabase, TheJobs
-from app.designs import repository
 
 router = APIRouter(tags=["health"])
 
@@ -20,24 +18,9 @@ async def healthz() -> dict[str, str]:
     return {"status": "ok"}
 
 
-@router.get("/readyz")
-def readyz(database: TheDatabase) -> dict[str, Any]:
-    """The database answers."""
-    with database.read() as session:
-        return {"status": "ready", "designs": repository.count(session)}
-
-
-_TEXT: dict[int | str, dict[str, Any]] = {
-    200: {
-        "description": "figures in the text format of Prometheus",
-        "content": {"text/plain": {"schema": {"type": "string"}}},
-    }
-}
-
-
-@router.get("/metrics", name="metrics", response_class=Response, responses=_TEXT)
+@router.get("/metrics", name="metrics", response_class=PlainTextResponse)
 def show_metrics(database: TheDatabase, jobs: TheJobs) -> Response:
     """Figures for Prometheus."""
     with database.read() as session:
-        census = jobs.census(session)
-    return Response(metrics.text(census), media_type=CONTENT_TYPE_LATEST)
+        text = metrics.text(jobs.census(session), jobs.oldest_queued_age(session))
+    return Response(text, media_type=CONTENT_TYPE_LATEST)

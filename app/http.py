@@ -18,6 +18,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 JSON_TYPES = {"application/json"}
 PATCH_TYPES = {"application/json", "application/merge-patch+json"}
+STEP_TYPES = ("model/step", "application/step", "application/p21")
+"""The registered name of STEP's clear text, and two that were in use before it."""
+FORM_TYPES = {"application/x-www-form-urlencoded"}
 MOST_BRACKETS, MOST_QUOTES = 250_000, 400_000
 """In one body. A list of numbers has one bracket; millions of them keep the parser, and the server, busy."""
 
@@ -28,6 +31,10 @@ class HttpError(Exception):
 
 class BodyTooLarge(HttpError):
     """The body is larger than the service takes."""
+
+
+class HeadTooLarge(HttpError):
+    """The address and the headers are longer than the service takes."""
 
 
 class TooManyValues(HttpError):
@@ -42,8 +49,16 @@ class NotJson(HttpError):
     """The content type is not one that the path takes."""
 
 
+class NotForm(HttpError):
+    """The content type is not that of a form."""
+
+
 class NotCsv(HttpError):
     """The content type is not that of a table."""
+
+
+class NotStep(HttpError):
+    """The content type is not that of a STEP file."""
 
 
 class PreconditionRequired(HttpError):
@@ -83,7 +98,7 @@ class StrictRoute(APIRoute):
                 raise PreconditionRequired('send If-Match with the ETag of the design you read, such as "3"')
             told = StrictRequest(request.scope, request.receive)
             if takes_json:
-                _check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
+                check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
                 # here, because FastAPI answers whatever is raised in its reading with 400
                 _check_intricacy(await told.body())
             return await self.shortcut(told) or await handler(told)
@@ -95,13 +110,35 @@ class StrictRoute(APIRoute):
         return None
 
 
-def _check_type(request: Request, allowed: set[str]) -> None:
+def check_type(request: Request, allowed: set[str], error: type[HttpError] = NotJson) -> None:
+    """Refuse a body that is of no allowed type.
+
+    Raises
+    ------
+    HttpError
+        The error given, if there is a body, and its type is another or is not named.
+    """
     given = request.headers.get("content-type", "")
     length = request.headers.get("content-length")
-    if length == "0" or (length is None and "transfer-encoding" not in request.headers):
+    if length in (None, "0") and "transfer-encoding" not in request.headers:
         return  # an empty body is judged by what the route needs
     if given.partition(";")[0].strip().lower() not in allowed:
-        raise NotJson(f"content type {given[:80]!r} is not taken here; send {' or '.join(sorted(allowed))}")
+        raise error(f"content type {given[:80]!r} is not taken here; send {' or '.join(sorted(allowed))}")
+
+
+def require_step(request: Request) -> None:
+    """Refuse a body that does not say that it is a STEP file; packed ones (`+zip`) are not understood.
+
+    Raises
+    ------
+    NotStep
+        If the content type is another, or missing.
+    """
+    given = request.headers.get("content-type", "")
+    if given.partition(";")[0].strip().lower() not in STEP_TYPES:
+        raise NotStep(
+            f"content type {given[:80]!r} is not taken here; send the STEP file itself as model/step"
+        )
 
 
 def _check_intricacy(body: bytes) -> None:

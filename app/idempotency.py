@@ -7,17 +7,16 @@ either the change or nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from sqlalchemy import delete
 from sqlalchemy.orm import Session
 
 from app.designs.errors import KeyReused
-from app.storage.identity import as_text, now
+from app.storage.clock import operated
+from app.storage.identity import now
 from app.storage.tables import IdempotencyRow
 
-KEPT = timedelta(days=7)
+BEFORE_CLIENTS = ""  # the client of keys that version 0.1 kept, which asked for none
 
 
 @dataclass(frozen=True)
@@ -37,7 +36,7 @@ class Once:
         KeyReused
             If the key came with another body.
         """
-        row = session.get(IdempotencyRow, (self.key, self.scope, self.client)) if self.key else None
+        row = self._row(session, self.client) or self._row(session, BEFORE_CLIENTS)
         if row is None:
             return None
         if row.fingerprint != self.fingerprint:
@@ -56,11 +55,9 @@ class Once:
                     status=status,
                     location=location,
                     created=now(),
+                    operated=operated(session),
                 )
             )
 
-
-def forget_old_keys(session: Session) -> None:
-    """Drop the keys that no client will send again."""
-    oldest = as_text(datetime.now(UTC) - KEPT)
-    session.execute(delete(IdempotencyRow).where(IdempotencyRow.created < oldest))
+    def _row(self, session: Session, client: str) -> IdempotencyRow | None:
+        return session.get(IdempotencyRow, (self.key, self.scope, client)) if self.key else None

@@ -51,14 +51,10 @@ def new_id() -> str:
     return f"{_process}-{next(_numbers):06x}"
 
 
-def client_of(headers: Iterable[tuple[bytes, bytes]], address: str) -> str:
-    """Return who sends a request, as `app.clients` has it; of a session the hash, because it is a secret."""
-    given = dict(headers)
-    if name := given.get(b"crankwright-client"):
-        return f"name:{name[:100].decode('latin-1')}"
-    if session := re.search(rb"crankwright_session=([^;]{1,64})", given.get(b"cookie", b"")[:8192]):
-        return f"session:{hashlib.sha256(session[1]).hexdigest()[:12]}"
-    return f"address:{address}"
+def without_secret(client: str) -> str:
+    """Return a client as the log may have it: of a session the hash, because who knows it is the client."""
+    kind, _, name = client.partition(":")
+    return f"session:{hashlib.sha256(name.encode()).hexdigest()[:12]}" if kind == "session" else client
 
 
 def note_cause(job: str) -> None:

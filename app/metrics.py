@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from datetime import UTC, datetime
 from functools import cache, partial
 
 from prometheus_client import (
@@ -22,8 +21,8 @@ from prometheus_client import (
 
 from app.workers import family
 
-Census = Sequence[tuple[str, str, int, str]]
-"""Kind, state, number and oldest `created` of jobs."""
+Census = Sequence[tuple[str, str, int]]
+"""Kind, state and number of jobs."""
 
 REGISTRY = CollectorRegistry()
 ProcessCollector(registry=REGISTRY)  # memory, processor time and open files of this process
@@ -99,9 +98,10 @@ def watch(name: str, look: Callable[[], Mapping[str, float]]) -> Callable[[], ob
     return lambda: _watched.pop(name, None) if _watched.get(name) is look else None
 
 
-def text(census: Census) -> bytes:
-    """Return all figures; `census` is of the jobs that have not ended."""
+def text(census: Census, oldest: float) -> bytes:
+    """Return all figures; of the jobs that have not ended, how many there are and the oldest's wait [s]."""
     _show_jobs(census)
+    OLDEST.set(oldest)
     for name, look in list(_watched.items()):
         for figure, value in look().items():
             POOL[figure].labels(name).set(value)
@@ -113,15 +113,8 @@ def text(census: Census) -> bytes:
 
 
 def _show_jobs(census: Census) -> None:
-    """Show how many jobs of which kind and state there are, and how long the oldest has waited."""
+    """Show how many jobs there are, of which kind and state."""
     JOBS.clear()
-    for kind, state, count, _ in census:
+    for kind, state, count in census:
         JOBS.labels(kind, state).set(count)
-    waiting = [(count, created) for _, state, count, created in census if state == "queued"]
-    QUEUED.set(sum(count for count, _ in waiting))
-    OLDEST.set(max((_age(created) for _, created in waiting), default=0.0))
-
-
-def _age(created: str) -> float:
-    """Return the time since a moment [s]; the wall clock may have jumped back meanwhile."""
-    return max(0.0, (datetime.now(UTC) - datetime.fromisoformat(created)).total_seconds())
+    QUEUED.set(sum(count for _, state, count in census if state == "queued"))

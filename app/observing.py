@@ -6,9 +6,11 @@ import logging
 import time
 from dataclasses import dataclass
 
+from fastapi import FastAPI
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app import logs, metrics
+from app.clients import from_whom, is_inside
 
 logger = logging.getLogger(__name__)
 
@@ -49,7 +51,7 @@ class Observed:
             await self.app(scope, receive, send)
             return
         start, status = time.perf_counter(), 0
-        id_ = logs.request_id(scope["headers"])
+        id_ = logs.REQUEST_ID.get() if is_inside(scope) else logs.request_id(scope["headers"])
         header = (b"x-request-id", id_.encode())
         token = logs.REQUEST_ID.set(id_)
 
@@ -71,6 +73,12 @@ class Observed:
             logs.REQUEST_ID.reset(token)
 
 
+def install(app: FastAPI) -> None:
+    """Put this around all of an app, its answer to an unexpected error included."""
+    build = app.build_middleware_stack  # `add_middleware` would leave Starlette's handler of those outside
+    app.build_middleware_stack = lambda: Observed(build())  # type: ignore[method-assign]
+
+
 def _route(scope: Scope) -> str:
     """The template of the path, of which there are few; never the path."""
     route = scope.get("route")
@@ -85,9 +93,9 @@ def _method(scope: Scope) -> str:
 
 def _log(scope: Scope, status: int, seconds: float) -> None:
     """One line; without a status, the client has gone before there was an answer."""
-    path, address = scope["path"][:_LONGEST], scope["client"][0] if scope.get("client") else "unknown"
-    told = {
-        "client": logs.client_of(scope["headers"], address),
+    path = scope["path"][:_LONGEST]
+    about = {
+        "client": logs.without_secret(from_whom(scope)),
         "method": scope["method"],
         "route": _route(scope),
         "path": path,
@@ -96,5 +104,5 @@ def _log(scope: Scope, status: int, seconds: float) -> None:
     }
     level = logging.WARNING if status >= 500 else logging.INFO
     logger.log(
-        level, "%s %s %d %.1f ms %s", scope["method"], path, status, told["ms"], told["client"], extra=told
+        level, "%s %s %d %.1f ms %s", scope["method"], path, status, about["ms"], about["client"], extra=about
     )

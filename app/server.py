@@ -41,7 +41,6 @@ def configuration(app: FastAPI, settings: Settings, **more: Any) -> uvicorn.Conf
     limits = ConnectionLimits(
         settings.connections,
         settings.header_seconds,
-        settings.header_limit,
         settings.write_seconds,
         settings.slowest_rate,
     )

@@ -1,12 +1,10 @@
-"""Limits on how slowly a body may come, and how long an address may be."""
+"""A limit on how slowly the body of a request may come."""
 
 from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Callable
 
-from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.http import HttpError
@@ -18,12 +16,8 @@ class BodyTooSlow(HttpError):
     headers = {"Connection": "close"}  # what is left of the body may never come
 
 
-class AddressTooLong(HttpError):
-    """Path and query are longer than any address of the service."""
-
-
-class RequestLimits:
-    """ASGI middleware that bounds the time in which a body comes, and the length of the address.
+class BodyTime:
+    """ASGI middleware that bounds the time in which a body comes.
 
     Parameters
     ----------
@@ -31,32 +25,15 @@ class RequestLimits:
         Longest wait for the next piece of a body [s], and what the whole may take beside its size.
     rate
         What a body must bring on average [bytes/s].
-    address
-        Longest path with its query [bytes].
-    refuse
-        Makes the answer to an error.
     """
 
-    def __init__(
-        self,
-        app: ASGIApp,
-        seconds: float,
-        rate: float,
-        address: int,
-        refuse: Callable[[Exception], Response],
-    ) -> None:
+    def __init__(self, app: ASGIApp, seconds: float, rate: float) -> None:
         self.app, self.seconds, self.rate = app, seconds, rate
-        self.address, self.refuse = address, refuse
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Refuse, or pass on."""
-        if scope["type"] != "http":
-            await self.app(scope, receive, send)
-        elif len(scope.get("raw_path") or b"") + len(scope["query_string"]) > self.address:
-            told = AddressTooLong(f"an address may have at most {self.address} bytes; send more in a body")
-            await self.refuse(told)(scope, receive, send)
-        else:
-            await self.app(scope, self._timed(receive) if _has_body(scope) else receive, send)
+        """Pass on, with a `receive` that raises BodyTooSlow."""
+        has_body = scope["type"] == "http" and _has_body(scope)
+        await self.app(scope, self._timed(receive) if has_body else receive, send)
 
     def _timed(self, receive: Receive) -> Receive:
         """Time only what is waited for: while the service does something else, the client may wait."""
@@ -72,7 +49,7 @@ class RequestLimits:
                 async with asyncio.timeout(min(left, self.seconds)):
                     message = await receive()
             except TimeoutError:
-                raise BodyTooSlow(self._told(size)) from None
+                raise BodyTooSlow(self._explained(size)) from None
             waited += time.monotonic() - start
             size += len(message.get("body", b""))
             whole = not message.get("more_body", False)
@@ -80,7 +57,7 @@ class RequestLimits:
 
         return timed
 
-    def _told(self, size: int) -> str:
+    def _explained(self, size: int) -> str:
         wanted = f"it may pause for {self.seconds:g} s and must bring {self.rate:g} bytes/s on average"
         return f"the body comes too slowly ({size} bytes came): {wanted}"
 

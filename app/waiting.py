@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from fastapi import Request
 from fastapi.responses import JSONResponse, Response
 
 from app.jobs.service import Jobs
@@ -15,23 +16,38 @@ LATER: dict[int | str, dict[str, Any]] = {
 }
 """What a route that may wait for a job says of its answers."""
 
+MOST_ACCEPTED = 50  # kinds in one Accept; browsers send up to ten
+
+
+def accepted_kinds(accept: str | None) -> list[tuple[str, str]]:
+    """The media types of an Accept header, each with its parameters."""
+    named = (part.partition(";") for part in (accept or "").lower().split(",", MOST_ACCEPTED)[:MOST_ACCEPTED])
+    return [(media.strip(), parameters) for media, _, parameters in named]
+
 
 async def finished(jobs: Jobs, job: str | None, prefer: str | None) -> bool:
     """Whether the job, if there is one, ended within the time that the client waits."""
     if job is None:
         return True
-    return await jobs.wait(job, _seconds(prefer, jobs.wait_seconds)) in (
+    return await jobs.wait(job, patience(prefer, jobs.wait_seconds)) in (
         "done",
         "failed",
         "cancelled",
     )
 
 
-def _seconds(prefer: str | None, default: float) -> float:
+def patience(prefer: str | None, default: float) -> float:
+    """How long the client waits for an answer [s]: as it prefers, else the default."""
     if prefer and "respond-async" in prefer:
         return 0.0
     asked = re.search(r"\bwait=([0-9]{1,4})\b", prefer or "")
     return min(float(asked[1]), LONGEST) if asked else default
+
+
+async def client_left(request: Request) -> None:
+    """Wait until the client has closed its connection; the body has been read."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
 
 
 def accepted(job: str | None, body: dict[str, Any] | None = None) -> Response:

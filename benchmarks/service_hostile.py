@@ -1,15 +1,35 @@
-"""The hostile inputs of the issue's list, each sent over a socket of its own, timed to the whole answer."""
+"""Hostile inputs, each sent over a socket of its own, timed to the whole answer.
+
+python -m benchmarks.service_hostile          texts that are hard to read, and /healthz meanwhile; two minutes
+python -m benchmarks.service_hostile quick    each of them three times
+
+`benchmarks.service` measures the list of issue 2. Writes `benchmarks/results/service_hostile.json`.
+"""
 
 import json
+import os
 import re
 import select
 import socket
+import sys
+import tempfile
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
 from typing import Any
 
+import httpx
+
 from app.calculations.schemas import OIL_FILM
+from benchmarks import service_process
+from benchmarks.hostile_texts import EVERY, Request
 from benchmarks.service_process import Server
+
+RESULTS = Path("benchmarks/results/service_hostile.json")
+SLOWEST_ANSWER, SLOWEST_PING = 250.0, 50.0  # the aims [ms]
 
 EVALUATE = "/api/v1/templates/oil_film/versions/1/evaluate"
 DESIGNS = "/api/v1/designs"
@@ -130,3 +150,94 @@ def measure(server: Server, cases: dict[str, Sender], repeats: int) -> dict[str,
             found[name]["ms"].append(1e3 * seconds)
             found[name]["statuses"].add(status)
     return found
+
+
+def texts(server: Server) -> dict[str, Sender]:
+    """The texts that are hard to read, as senders; some are about a design, which is made here."""
+    with httpx.Client(base_url=server.url, trust_env=False) as http:
+        made = http.post(DESIGNS, json={"name": "any", "parameters": {"a": "1"}}).raise_for_status().json()
+    return {name: _text(request, made["id"]) for name, request in EVERY.items()}
+
+
+def _text(request: Request, design: str) -> Sender:
+    method, path, headers, body = request
+    given = {"Host": "localhost", **headers, "Content-Length": str(len(body)), "Connection": "close"}
+    lines = [
+        f"{method} {path.format(design=design)} HTTP/1.1",
+        *(f"{n}: {v}" for n, v in given.items()),
+        "",
+        "",
+    ]
+    return lambda connection: connection.sendall("\r\n".join(lines).encode() + body)
+
+
+@contextmanager
+def pinging(server: Server) -> Iterator[list[float]]:
+    """Times of /healthz [ms], taken every few milliseconds until the end."""
+    times: list[float] = []
+    over = threading.Event()
+
+    def ping() -> None:
+        with httpx.Client(base_url=server.url, trust_env=False, timeout=LONGEST) as http:
+            while not over.wait(0.003):
+                start = time.perf_counter()
+                http.get("/healthz").raise_for_status()
+                times.append(1e3 * (time.perf_counter() - start))
+
+    thread = threading.Thread(target=ping)
+    thread.start()
+    try:
+        yield times
+    finally:
+        over.set()
+        thread.join()
+
+
+def measure_texts(server: Server, repeats: int) -> dict[str, dict[str, Any]]:
+    """Every text: processor time of the server, time of its answer, the slowest /healthz meanwhile [ms]."""
+    senders, rows = texts(server), {}
+    for name, send in senders.items():
+        answered(server, send)  # what is imported and compiled once is not the text's
+        used = server.processor_seconds()
+        runs = [answered(server, send) for _ in range(repeats)]
+        used = (server.processor_seconds() - used) / repeats
+        with pinging(server) as pings:
+            runs += [answered(server, send) for _ in range(repeats)]
+        row = _row([1e3 * seconds for seconds, _ in runs], {status for _, status in runs}, pings)
+        rows[name] = {"processor": round(1e3 * used, 1), **row}
+        print(_line(name, rows[name]), flush=True)
+    return rows
+
+
+def _row(times: list[float], statuses: set[int], pings: list[float]) -> dict[str, Any]:
+    ordered = sorted(times)
+    row = {"median": ordered[len(ordered) // 2], "slowest": ordered[-1], "healthz": max(pings, default=0.0)}
+    met = row["median"] < SLOWEST_ANSWER and row["healthz"] < SLOWEST_PING
+    return {**{n: round(ms, 1) for n, ms in row.items()}, "statuses": sorted(statuses), "met": met}
+
+
+def _line(name: str, row: dict[str, Any]) -> str:
+    cost = "{processor:6.1f} ms of the processor, {median:7.1f} ms, slowest {slowest:7.1f}".format(**row)
+    verdict = "" if row["met"] else "  MISSED"
+    return f"{name:38} {cost}, /healthz {row['healthz']:6.1f} ms  {row['statuses']}{verdict}"
+
+
+def main() -> None:
+    """Measure the texts, print a line for each, and write the results unless it is a quick run."""
+    quick = "quick" in sys.argv[1:]
+    with tempfile.TemporaryDirectory() as folder, service_process.crankwright(Path(folder)) as server:
+        rows = measure_texts(server, 3 if quick else 8)
+    missed = [name for name, row in rows.items() if not row["met"]]
+    print(f"{len(rows)} texts, {len(missed)} missed: {', '.join(missed) or 'none'}")
+    if not quick:
+        date = datetime.now(UTC).isoformat(timespec="seconds")
+        aims = {"answer, median [ms]": SLOWEST_ANSWER, "/healthz, slowest [ms]": SLOWEST_PING}
+        head = json.dumps({"date": date, "load_average": os.getloadavg(), "aims": aims})[:-1]
+        lines = ",\n".join(
+            f"  {json.dumps({'text': n, **row}, ensure_ascii=False)}" for n, row in rows.items()
+        )
+        RESULTS.write_text(f'{head}, "rows": [\n{lines}\n]}}\n')
+
+
+if __name__ == "__main__":
+    main()

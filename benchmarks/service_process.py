@@ -58,14 +58,15 @@ class Server:
 
 
 @contextmanager
-def crankwright(folder: Path) -> Iterator[Server]:
-    """The service, with a team's folder that holds a model whose build loops."""
+def crankwright(folder: Path, **settings: str) -> Iterator[Server]:
+    """The service, with a team's folder that holds a model whose build loops, and with further settings."""
     own = folder / "templates" / "own"
     own.mkdir(parents=True)
     (own / "loops_v1.py").write_text(LOOPS.lstrip())
     environment = {
         "CRANKWRIGHT_TEMPLATE_FOLDERS": f'["{folder / "templates"}"]',
         "CRANKWRIGHT_JOB_DEADLINE": "600",
+        **settings,
     }
     port = free_port()
     with _serving(

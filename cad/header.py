@@ -11,10 +11,13 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from cad.part21 import description, plain, quoted
+
+LONGEST_HEADER = 65536
+"""How much of a file is searched for its header [bytes]; what `write_header` writes is a few thousand."""
+
 _NO_TIME = "1970-01-01T00:00:00"
-_STRING = r"'((?:[^']|'')*)'"
-_TITLE = re.compile(r"Crankwright ([a-z][a-z0-9_]*) version ([1-9][0-9]*)")
-_WIDE = re.compile(r"\\X2\\((?:[0-9A-F]{4})*)\\X0\\")
+_TITLE = re.compile(r"Crankwright ([a-z][a-z0-9_]{0,63}) version ([1-9][0-9]{0,8})")
 
 
 @dataclass(frozen=True)
@@ -36,40 +39,21 @@ def write_header(header: Header, schema: str, kernel: str) -> str:
     """The HEADER section, from `HEADER;` to `ENDSEC;`."""
     described = [header.title, f"build: {header.build}"]
     described += [f"{name}: {value}" for name, value in header.parameters.items()]
-    lines = ",\n  ".join(map(_quoted, described))
-    name = _quoted(f"{header.model}_v{header.version}.step")
+    lines = ",\n  ".join(map(quoted, described))
+    name = quoted(f"{header.model}_v{header.version}.step")
     return (
         f"HEADER;\nFILE_DESCRIPTION((\n  {lines}),'2;1');\n"
-        f"FILE_NAME({name},'{_NO_TIME}',(''),(''),{_quoted(kernel)},'Crankwright','');\n"
-        f"FILE_SCHEMA(({_quoted(schema)}));\nENDSEC;"
+        f"FILE_NAME({name},'{_NO_TIME}',(''),(''),{quoted(kernel)},'Crankwright','');\n"
+        f"FILE_SCHEMA(({quoted(schema)}));\nENDSEC;"
     )
 
 
 def read_header(step: bytes) -> Header | None:
     """What a STEP file says of itself, or None if it is not one of ours."""
-    text = step[:65536].decode("latin-1").split("ENDSEC;")[0]
-    described = re.search(rf"FILE_DESCRIPTION\s*\(\s*\(((?:\s*{_STRING}\s*,?)*)\)", text)
-    strings = [_plain(s) for s in re.findall(_STRING, described[1])] if described else []
+    strings = [plain(string) for string in description(step[:LONGEST_HEADER].decode("latin-1"))]
     title = _TITLE.fullmatch(strings[0]) if strings else None
     pairs = dict(s.partition(": ")[::2] for s in strings[1:])
     if title is None or "build" not in pairs:
         return None
     build = pairs.pop("build")
     return Header(title[1], int(title[2]), pairs, build)
-
-
-def _quoted(text: str) -> str:
-    """A Part 21 string."""
-    doubled = text.replace("\\", "\\\\").replace("'", "''")
-    return (
-        "'"
-        + re.sub(r"[^ -~]+", lambda m: f"\\X2\\{m[0].encode('utf-16-be').hex().upper()}\\X0\\", doubled)
-        + "'"
-    )
-
-
-def _plain(text: str) -> str:
-    """What a Part 21 string says; line breaks within are layout."""
-    joined = text.replace("\n", "").replace("\r", "").replace("''", "'")
-    wide = _WIDE.sub(lambda m: bytes.fromhex(m[1]).decode("utf-16-be", "replace"), joined)
-    return wide.replace("\\\\", "\\")

@@ -31,6 +31,9 @@ Report = Callable[[float, str], None]
 RECIPE = 2
 """Raised whenever this package makes other bytes or other measures of the same parameters."""
 
+MADE_BY = f"{KERNEL}, recipe {RECIPE}"
+"""What a build's key holds beside its model and parameters, for people."""
+
 
 @dataclass(frozen=True)
 class Build:

@@ -8,10 +8,9 @@ from typing import Any
 from app.analyses import repository
 from app.analyses.questions import SURFACE, Question
 from app.designs import repository as builds
-from app.jobs.service import JobContext
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
-from app.workers.base import Limits
+from app.workers.base import Limits, Runner
 from app.workers.progress import report
 from cad.errors import AnalysisError
 from cad.model import CadModel
@@ -28,9 +27,7 @@ class Analysing:
     def __init__(self, database: Database, store: ArtifactStore, limits: Limits) -> None:
         self.database, self.store, self.limits = database, store, limits
 
-    def find(
-        self, shape: CadModel, question: Question, outputs: tuple[str, ...], context: JobContext
-    ) -> None:
+    def find(self, shape: CadModel, question: Question, outputs: tuple[str, ...], context: Runner) -> None:
         """Find those outputs of a built model that are not known yet.
 
         Raises
@@ -45,7 +42,7 @@ class Analysing:
             known = repository.found(session, question.key(build))
             elsewhere = repository.stresses(session, build, question)
             step = builds.artifact(session, build, "step")
-        missing = [name for name in outputs if name not in known]
+        missing = [name for name in outputs if not is_known(known, name, self.store)]
         if not missing:
             return
         found = {name: elsewhere[name] for name in missing if name in elsewhere}
@@ -64,6 +61,11 @@ class Analysing:
             return output
         rest = {name: part for name, part in output.items() if name != FILE}
         return {"sha256": self.store.put(output[FILE]), "size": len(output[FILE]), **rest}
+
+
+def is_known(found: repository.Found, output: str, store: ArtifactStore) -> bool:
+    """Whether an output has been found, and its file, if it is one, is good."""
+    return output in found and (output != SURFACE or store.exists(found[output]["sha256"]))
 
 
 def shaft_of(shape: CadModel) -> Shaft:

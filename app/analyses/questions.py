@@ -13,8 +13,9 @@ from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from typing import Any, Literal, get_args
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
+from app.bounded import Bounded
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText
 from templates.core.quantity import read
@@ -46,7 +47,7 @@ RECIPE = 3
 _MADE_BY = f"recipe {RECIPE}, ngsolve {version('ngsolve')}"
 
 
-class Options(BaseModel):
+class Options(Bounded):
     """How a solid is held in an analysis, and how accurate the answer shall be."""
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from sqlalchemy import select
+from sqlalchemy import Text, select, type_coerce
 from sqlalchemy.orm import Session
 
-from app.analyses.questions import STRESSES, Question, in_order
+from app.analyses.questions import STRESSES, SURFACE, Question, in_order
 from app.designs.errors import NotFound
 from app.storage.identity import now
 from app.storage.tables import AnalysisRow
@@ -48,6 +48,12 @@ def asked(session: Session, key: str) -> tuple[str, Question, Found]:
     if not rows:
         raise NotFound(f"there is no analysis {key[:80]!r}")
     return (rows[0].build_key, *_together(rows))
+
+
+def key_of_surface(session: Session, sha256: str) -> str | None:
+    """The analysis whose surface has this hash; rare, so no index serves it."""
+    named = type_coerce(AnalysisRow.found, Text).contains(f'"sha256":"{sha256}"', autoescape=True)
+    return session.scalar(select(AnalysisRow.key).where(AnalysisRow.output == SURFACE, named).limit(1))
 
 
 def of_build(session: Session, build: str) -> list[tuple[Question, Found]]:

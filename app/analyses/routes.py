@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Query, Response
-from fastapi.responses import FileResponse, JSONResponse
+from fastapi.responses import JSONResponse
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
@@ -22,10 +23,12 @@ from app.analyses.questions import (
     question,
 )
 from app.analyses.schemas import AnalysisIn, SurfaceOut
-from app.calculations.display import Units, converted
+from app.calculations.display import System, Units, converted
 from app.catalogue.routes import Number
-from app.dependencies import TheAnalyses, TheCatalogues, TheJobs
+from app.clients import TheClient
+from app.dependencies import TheAnalyses, TheCatalogues, TheHealing, TheJobs, TheStore
 from app.designs.errors import NotFound
+from app.healing import UNAVAILABLE, StoredFile, lost
 from app.http import StrictRoute
 from app.models.routes import FOR_EVER
 from app.waiting import LATER, accepted, finished
@@ -47,6 +50,7 @@ async def analyse(
     catalogues: TheCatalogues,
     analyses: TheAnalyses,
     jobs: TheJobs,
+    client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
     units: Units = "si",
 ) -> Response:
@@ -61,7 +65,7 @@ async def analyse(
     cls = catalogues.models.get(id, number)
     outputs = _checked(cls, kind, body)
     shape, asked = cls.from_quantities(body.parameters), question(kind, body)
-    job = await run_in_threadpool(analyses.request, shape, asked, outputs)
+    job = await run_in_threadpool(analyses.request, shape, asked, outputs, client)
     if not await finished(jobs, job, prefer):
         return accepted(job, await run_in_threadpool(analyses.show, shape, asked, ()))
     if failed := await run_in_threadpool(jobs.problem, job):
@@ -77,10 +81,12 @@ def show_analysis(
     units: Units = "si",
 ) -> dict[str, Any]:
     """All that was found for one question about one solid. It was found once for all loads."""
-    if wrong := load_faults(load):
+    wrong = load_faults(load)
+    told: dict[str, Any] = analyses.show_all(key, 1.0 if wrong else load_of(load))  # 404 comes first
+    if wrong:
         raise InvalidInputs(wrong)
-    told: dict[str, Any] = converted(analyses.show_all(key, load_of(load)), units)
-    return told
+    shown: dict[str, Any] = converted(told, units)
+    return shown
 
 
 @router.get("/builds/{key}/analyses")
@@ -93,27 +99,39 @@ def analyses_of_build(key: str, analyses: TheAnalyses, units: Units = "si") -> d
 @router.get(
     "/analyses/{key}/surface",
     response_model=SurfaceOut,
-    responses={304: {"description": "as it was when the ETag of If-None-Match was sent"}},
+    responses={304: {"description": "as it was when the ETag of If-None-Match was sent"}, **UNAVAILABLE},
 )
-def show_surface(
+async def show_surface(
     key: str,
     analyses: TheAnalyses,
+    store: TheStore,
+    healing: TheHealing,
+    jobs: TheJobs,
     units: Units = "si",
     if_none_match: Annotated[str | None, Header(description="the ETag of a surface that is at hand")] = None,
+    prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
     """The solid's surface under a load of 1 N·m: how far every point moves, how it turns, how it is stressed.
 
     For a picture: the corners of plane triangles, with a value at each. It never changes. It is there once an
     analysis was asked for `"outputs": ["surface"]`, whose answer links to it.
     """
-    file = analyses.surface(key)
+    file = await run_in_threadpool(analyses.surface, key)
     shown = "" if units == "si" else f"-{units}"
     headers = {"ETag": f'"{file.sha256}{shown}"', "Cache-Control": FOR_EVER}
     if if_none_match and headers["ETag"] in if_none_match:
         return Response(status_code=304, headers=headers)
+    if answer := await lost(file.sha256, healing, jobs, prefer):
+        return answer
+    file = await run_in_threadpool(analyses.surface, key)
+    headers["ETag"] = f'"{file.sha256}{shown}"'
     if shown:
-        return JSONResponse(converted(json.loads(file.path.read_bytes()), units), headers=headers)
-    return FileResponse(file.path, media_type="application/json", headers=headers)
+        return await run_in_threadpool(_converted, store.read, file.sha256, units, headers)
+    return StoredFile(store, file.sha256, "application/json", headers)
+
+
+def _converted(read: Callable[[str], bytes], sha256: str, units: System, headers: dict[str, str]) -> Response:
+    return JSONResponse(converted(json.loads(read(sha256)), units), headers=headers)
 
 
 def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...]:

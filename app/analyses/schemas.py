@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
-from app.analyses.questions import Options
+from app.analyses.questions import KINDS, Options, offered
+from app.values import Parameters
 
 THROW: dict[str, Any] = {
     "journal_diameter": "50 mm",
@@ -32,6 +33,12 @@ EXAMPLE: dict[str, Any] = {
 """One triangle."""
 
 
+Output = Annotated[
+    str,
+    WithJsonSchema({"type": "string", "enum": sorted({name for kind in KINDS for name in offered(kind)})}),
+]
+
+
 class AnalysisIn(Options):
     """Analyse a model's solid by finite elements."""
 
@@ -44,8 +51,8 @@ class AnalysisIn(Options):
         }
     )
 
-    parameters: dict[str, Any] = Field(description='quantities by name: `"48 mm"`; the others have defaults')
-    outputs: list[str] | None = Field(
+    parameters: Parameters = Field(description='quantities by name: `"48 mm"`; the others have defaults')
+    outputs: list[Output] | None = Field(
         None,
         max_length=10,
         description="what to find; without it all but `maximum_stress`, which is dear, and `surface`",

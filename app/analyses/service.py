@@ -8,14 +8,17 @@ from typing import Any
 from sqlalchemy.orm import Session
 
 from app.analyses import repository
-from app.analyses.finding import Analysing, shaft_of
+from app.analyses.finding import Analysing, is_known, shaft_of
 from app.analyses.questions import SURFACE, Question, under_load
 from app.analyses.views import shown
 from app.designs import repository as builds
 from app.designs.errors import NotFound
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.models.ages import is_fresh, renew
 from app.models.builds import Builds
+from app.models.errors import CannotRebuild
 from app.models.service import FAILURES, File
+from app.models.shapes import shape_of
 from app.problems import describe
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
@@ -33,7 +36,9 @@ class Analyses:
     def __init__(self, database: Database, store: ArtifactStore, jobs: Jobs) -> None:
         self.database, self.store, self.jobs = database, store, jobs
 
-    def request(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> str | None:
+    def request(
+        self, shape: CadModel, question: Question, outputs: tuple[str, ...], client: str = ""
+    ) -> str | None:
         """The job that builds and analyses a model, or None if all outputs are known.
 
         Raises
@@ -42,9 +47,45 @@ class Analyses:
             If the model is no shaft.
         """
         shaft_of(shape)
+        build = build_key(shape)
         with self.database.read() as session:
-            if set(outputs) <= repository.found(session, question.key(build_key(shape))).keys():
-                return None
+            found = repository.found(session, question.key(build))
+            fresh = is_fresh(session, [build])
+        there = all(is_known(found, name, self.store) for name in outputs)
+        return None if there and fresh else self._enqueued(shape, question, outputs, client, there=there)
+
+    def request_surface(self, key: str, catalogue: Catalogue[CadModel]) -> str:
+        """The job that finds the lost surface of an analysis again.
+
+        Raises
+        ------
+        CannotRebuild
+            If this program keeps the answer to the same question under another key; that one is on its way.
+        """
+        with self.database.read() as session:
+            build, question, _ = repository.asked(session, key)
+            shape = shape_of(session, catalogue, build)
+        job, now = self._enqueued(shape, question, (SURFACE,), ""), question.key(build_key(shape))
+        assert job is not None, "nothing is said to be there"
+        if now == key:
+            return job
+        links = {"analysis": f"/api/v1/analyses/{now}", "job": f"/api/v1/jobs/{job}"}
+        detail = (
+            f"the surface of analysis {key} was found by another version of the kernel, the solver or the "
+            "recipe. Restore the file from a backup, or take the new analysis"
+        )
+        raise CannotRebuild("other_recipe", detail, links)
+
+    def _enqueued(
+        self,
+        shape: CadModel,
+        question: Question,
+        outputs: tuple[str, ...],
+        client: str,
+        *,
+        there: bool = False,
+    ) -> str | None:
+        """The job; None if all outputs were there, and their build was not purged meanwhile."""
         payload = {
             "model": shape.id,
             "version": shape.version,
@@ -53,9 +94,10 @@ class Analyses:
             "outputs": [*outputs],
         }
 
-        def unit(session: Session) -> str:
-            alike = self.jobs.waiting(session, ANALYSIS, payload)
-            return alike or self.jobs.enqueue(session, ANALYSIS, payload)
+        def unit(session: Session) -> str | None:
+            if renew(session, [build_key(shape)]) and there:
+                return None
+            return self.jobs.request(session, ANALYSIS, payload, client)
 
         job = self.database.write(unit)
         self.jobs.wake()
@@ -107,8 +149,7 @@ class Analyses:
         if SURFACE not in known:
             detail = f"this analysis has no {SURFACE} yet: ask for it by name in `outputs` of {question.kind}"
             raise NotFound(detail)
-        sha = known[SURFACE]["sha256"]
-        return File(self.store.path(sha), "json", sha)
+        return File("json", known[SURFACE]["sha256"])
 
 
 def _model_of(session: Session, build: str) -> dict[str, Any]:

@@ -11,11 +11,13 @@ from typing import Any
 
 import numpy as np
 from fastapi import APIRouter
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
+from app.bounded import Bounded
 from app.calculations.display import Units, converted
 from app.http import StrictRoute
+from app.values import GIVEN
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.template import Array, Template, given
 from templates.physics.film_measures import measure
@@ -47,14 +49,22 @@ class FilmPressure(Template):
     eta: Array = given("mPa*s", "dynamic viscosity", gt=0)
 
 
-class FilmPressureIn(BaseModel):
+class FilmPressureIn(Bounded):
     """A journal at rest in its film."""
 
     model_config = ConfigDict(
         strict=True, extra="forbid", json_schema_extra={"examples": [{"inputs": TYPICAL}]}
     )
 
-    inputs: dict[str, Any] = Field(max_length=20, description="one value each, as in `evaluate`")
+    inputs: dict[str, Any] = Field(
+        max_length=20,
+        description="one value each, as in `evaluate`",
+        json_schema_extra={
+            "properties": dict.fromkeys(TYPICAL, GIVEN),
+            "required": list(TYPICAL),
+            "additionalProperties": False,
+        },
+    )
 
 
 @router.post("/film-pressure")

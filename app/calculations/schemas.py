@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import ConfigDict, Field, StringConstraints
+
+from app.bounded import Bounded, at_most
+from app.values import Given
 
 Text = Annotated[str, StringConstraints(max_length=100)]
-MOST_NAMES = 2000  # in one request: every unknown one is compared with all that are known
+MOST_NAMES = 2000  # in one request
 
 OIL_FILM: dict[str, Any] = {
     "radial_load": "25 kN",
@@ -20,12 +23,12 @@ OIL_FILM: dict[str, Any] = {
 }
 
 
-class Asked(BaseModel):
+class Asked(Bounded):
     """Inputs and what is wanted of them."""
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
-    inputs: dict[str, Any] = Field(
+    inputs: Annotated[dict[str, Given], at_most(MOST_NAMES)] = Field(
         max_length=MOST_NAMES,
         description='quantities by name: `"25 kN"` or `{"value": 25, "unit": "kN"}`',
     )
@@ -34,7 +37,9 @@ class Asked(BaseModel):
     )
     level: Text | None = Field(None, description="a fidelity by name")
     tolerance: float | None = Field(None, gt=0, lt=1, description="largest relative error wanted")
-    units: dict[str, Text] = Field({}, max_length=200, description="units in which outputs are wanted")
+    units: Annotated[dict[str, Text], at_most(200)] = Field(
+        {}, max_length=200, description="units in which outputs are wanted"
+    )
 
 
 class EvaluateIn(Asked):
@@ -62,5 +67,12 @@ class SolveIn(Asked):
     )
 
     unknown: Text = Field(description="the input to find")
-    bounds: list[Any] = Field(description="the lowest and the highest value to try")
-    target: dict[str, Any] = Field(max_length=200, description="one output and its wanted value")
+    bounds: list[Given] = Field(
+        description="the lowest and the highest value to try",
+        json_schema_extra={"minItems": 2, "maxItems": 2},
+    )
+    target: dict[str, Given] = Field(
+        max_length=200,
+        description="one output and its wanted value",
+        json_schema_extra={"minProperties": 1, "maxProperties": 1},
+    )

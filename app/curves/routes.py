@@ -13,7 +13,10 @@ from app.http import NotCsv, StrictRoute
 router = APIRouter(prefix="/api/v1", tags=["curves"], route_class=StrictRoute)
 
 EXAMPLE = "crank angle [deg], pressure [bar]\n0, 1.0\n180, 1.0\n360, 60.0\n540, 3.5\n"
-BODY = {"content": {"text/csv": {"schema": {"type": "string", "examples": [EXAMPLE]}}}, "required": True}
+BODY = {
+    "content": {"text/csv": {"schema": {"type": "string", "minLength": 1, "examples": [EXAMPLE]}}},
+    "required": True,
+}
 
 
 @router.post("/curves", openapi_extra={"requestBody": BODY})

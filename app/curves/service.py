@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import csv
 import re
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -19,11 +20,15 @@ from templates.core.meaning import api_name
 from templates.core.units import unit
 
 MOST_ROWS, MOST_COLUMNS, MOST_FAULTS, LONGEST_LINE = 20_000, 32, 20, 4000
+MOST_LINES = 5 * MOST_ROWS
+"""With blank lines and comments."""
+
+_LINE_ENDS = "\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"  # of `str.splitlines`
 SUFFIXES = ("deg", "rad", "bar", "Pa", "kPa", "MPa", "psi", "N", "kN", "lbf", "s", "ms", "mm", "m", "rpm")
 """Units that may end a name without brackets."""
 
 _IN_BRACKETS = re.compile(r"(?P<words>[^\[(]*)[\[(](?P<unit>[^\])]*)[\])]")
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]{1,3})?")
 
 
@@ -76,6 +81,8 @@ def _lines(body: bytes) -> Iterator[tuple[int, str]]:
     except UnicodeDecodeError as error:
         at = body[: error.start].count(b"\n") + 1
         raise _wrong(f"line {at}", "not_utf_8", "this is no UTF-8; save the file as CSV in UTF-8") from None
+    if sum(map(text.count, _LINE_ENDS)) > 2 * MOST_LINES:  # a line may end by two signs
+        raise _wrong("rows", "too_many_lines", f"a file has at most {MOST_LINES} lines, blank ones included")
     count = 0
     for number, line in enumerate(text.splitlines(), start=1):
         if not line.strip() or line.lstrip().startswith("#"):
@@ -109,7 +116,7 @@ def _columns(header: list[str], number: int) -> list[Column]:
             columns.append(_column(text))
         except FaultyText as error:
             faults.append(error.fault(name))
-    twice = sorted({c.name for c in columns if sum(c.name == other.name for other in columns) > 1})
+    twice = sorted(name for name, count in Counter(c.name for c in columns).items() if count > 1)
     faults += (Fault(name, "named_twice", f"two columns are named {n}; name them apart") for n in twice)
     if faults:
         raise InvalidInputs(faults)

@@ -58,7 +58,7 @@ def remedy(name: str, models: Mapping[str, Mapping[str, Question]]) -> str | Non
     return f"{model}.{kind} tells {', '.join(KINDS[kind])}, no {output[:60]}"
 
 
-def used(model: str, kind: str, names: Iterable[str]) -> tuple[str, ...]:
-    """The outputs of a model's analysis that are among names in relations."""
-    prefix = f"{model}.{kind}."
+def used(kind: str, names: Iterable[str]) -> tuple[str, ...]:
+    """The outputs of an analysis that are among the names which relations use of its model."""
+    prefix = f"{kind}."
     return in_order(kind, {name.removeprefix(prefix) for name in names if name.startswith(prefix)})

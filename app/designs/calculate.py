@@ -16,6 +16,7 @@ from app.calculations.size import points, spanned
 from app.designs.analyses import measured_unit
 from app.designs.graph import SOLID, Block, Cell, Graph
 from app.designs.memory import memory
+from app.designs.size import limit_operations, limit_values
 from cad.model import CadModel
 from templates.core.declare import Choice
 from templates.core.errors import Fault, FaultyText, InvalidInputs
@@ -29,8 +30,6 @@ Measures = Mapping[str, float]  # in the units of MEASURES
 Measured = Callable[[CadModel], Measures | None]
 Found = Mapping[str, Mapping[str, Any]]  # outputs of an analysis
 Analysed = Callable[[CadModel, Question, tuple[str, ...]], Found | None]
-
-MOST_VALUES = 100_000  # of a relation, or of all outputs of a step
 
 
 @dataclass
@@ -47,6 +46,7 @@ class Calculation:
     pending: set[str] = field(default_factory=set)  # nodes that wait for a solid
     broken: set[str] = field(default_factory=set)  # nodes that follow from a fault
     faults: list[Fault] = field(default_factory=list)
+    operations: int = 0  # on single values, of the relations so far
 
     def value(self, name: str, assumed: Mapping[str, float] | None = None) -> Value:
         """The value [SI] of a name, once its node is calculated."""
@@ -158,7 +158,9 @@ def _literal(graph: Graph, cell: Cell) -> Value | None:
 def _joined(result: Calculation, cell: Cell, assumed: Mapping[str, float]) -> Value:
     """The value of a relation, or of a list that mixes relations and quantities."""
     names = {name: result.value(name, assumed) for name in cell.uses}
-    _limit(spanned(np.shape(value) for value in names.values()))
+    limit_values(count := spanned(np.shape(value) for value in names.values()))
+    result.operations += count * sum(relation.parts for relation in cell.relations)
+    limit_operations(result.operations)
     if not isinstance(cell.raw, list):
         return _finite(cell.relations[0].value(names))
     declared = result.graph.unit_of(cell.name) if "." in cell.name else None
@@ -174,12 +176,6 @@ def _item(item: Any, names: Mapping[str, Value], declared: str | None) -> Value:
     if is_relation(item):
         return parse(item).value(names)
     return read(item, declared).si if declared else read_any(item).si
-
-
-def _limit(values: int) -> None:
-    if values > MOST_VALUES:
-        told = f"this makes {values} values, more than the {MOST_VALUES} that a design takes in one place"
-        raise FaultyText("too_many_values", told)
 
 
 def _finite(value: Value) -> Value:
@@ -231,9 +227,9 @@ def _attempt(result: Calculation, block: Block, raw: dict[str, Any], waiting: se
             result.shapes[block.name] = shape
         else:
             wanted = _wanted(result.graph, block)
-            _limit(points(raw) * len(block.cls.formulas if wanted is None else wanted))
+            limit_values(points(raw) * len(block.cls.formulas if wanted is None else wanted))
             made = memory.evaluation(block, raw, wanted)
-            _limit(made.count())  # curves are longer than their inputs tell
+            limit_values(made.count())  # curves are longer than their inputs tell
             result.evaluations[block.name] = made
     except InvalidInputs as error:
         return list(error.faults)
@@ -254,8 +250,7 @@ def _wanted(graph: Graph, block: Block) -> tuple[str, ...] | None:
     """The outputs to compute: all, or those the step names and those that relations use."""
     if block.outputs is None:
         return None
-    used = (name.partition(".") for cell in graph.cells() for name in cell.uses)
-    linked = [tail for head, _, tail in used if head == block.name and tail in block.cls.formulas]
+    linked = [tail for tail in graph.used.get(block.name, ()) if tail in block.cls.formulas]
     return tuple(dict.fromkeys([*block.outputs, *linked]))
 
 

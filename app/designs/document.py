@@ -5,11 +5,12 @@ Values stay as typed: a quantity, a relation that begins with `=`, or a list of 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
+from itertools import chain
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
-    BaseModel,
     ConfigDict,
     Field,
     SerializerFunctionWrapHandler,
@@ -19,16 +20,21 @@ from pydantic import (
 )
 
 from app.analyses.questions import Options
+from app.bounded import Bounded, at_most
+from app.values import Given
 
-Word = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
-Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f]+$")]
+WORD = r"^[A-Za-z][A-Za-z0-9_]{0,63}$"
+Word = Annotated[str, StringConstraints(pattern=WORD)]
+NAME = r"^[^\x00-\x1f\x7f]+$"  # no control characters
+Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=NAME)]
 Version = Annotated[int, Field(ge=1, le=10**6)] | Literal["latest"] | None
-Values = Annotated[dict[Word, Any], Field(max_length=500)]
+Values = Annotated[dict[Word, Given], Field(max_length=500), at_most(500)]
+MOST_VALUES = 10_000  # that all steps and models of a design set together
 
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
 
-class Step(BaseModel):
+class Step(Bounded):
     """A template at work in a design; without a version the latest is taken, once and for all."""
 
     model_config = _STRICT
@@ -38,10 +44,12 @@ class Step(BaseModel):
     level: str | None = None
     tolerance: float | None = Field(None, gt=0, lt=1)
     inputs: Values = {}
-    outputs: list[Word] | None = Field(None, description="compute these only; all, if not given")
+    outputs: Annotated[list[Word], Field(max_length=200)] | None = Field(
+        None, description="compute these only; all, if not given"
+    )
 
 
-class Model(BaseModel):
+class Model(Bounded):
     """A CAD model in a design."""
 
     model_config = _STRICT
@@ -49,7 +57,7 @@ class Model(BaseModel):
     id: Word
     version: Version = None
     parameters: Values = {}
-    analyses: Annotated[dict[Word, Options], Field(max_length=10)] = Field(
+    analyses: Annotated[dict[Word, Options], Field(max_length=10), at_most(10)] = Field(
         {}, description="what relations may use of finite elements on its solid", examples=[{"torsion": {}}]
     )
 
@@ -60,26 +68,28 @@ class Model(BaseModel):
         return {name: value for name, value in told.items() if name != "analyses" or value}
 
 
-class Iteration(BaseModel):
+class Iteration(Bounded):
     """A loop that its user allows: through a measure or analysis of a solid, from a start, to a tolerance."""
 
     model_config = _STRICT
 
-    through: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*(\.[a-z_]+){1,2}$", examples=["model.mass"])
-    start: Any = Field(examples=["3 kg"])
+    through: str = Field(
+        max_length=200, pattern=r"^[A-Za-z][A-Za-z0-9_]*(\.[a-z_]+){1,2}$", examples=["model.mass"]
+    )
+    start: Given = Field(examples=["3 kg"])
     tolerance: float = Field(1e-4, ge=1e-9, lt=1, description="relative")
     limit: int = Field(20, ge=1, le=100, description="rounds")
 
 
-class Document(BaseModel):
+class Document(Bounded):
     """All that a revision keeps of its user's words."""
 
     model_config = _STRICT
 
     name: Name
     parameters: Values = {}
-    steps: Annotated[dict[Word, Step], Field(max_length=100)] = {}
-    models: Annotated[dict[Word, Model], Field(max_length=20)] = {}
+    steps: Annotated[dict[Word, Step], Field(max_length=100), at_most(100)] = {}
+    models: Annotated[dict[Word, Model], Field(max_length=20), at_most(20)] = {}
     iterations: Annotated[list[Iteration], Field(max_length=10)] = []
 
     @model_validator(mode="before")
@@ -90,17 +100,32 @@ class Document(BaseModel):
             return raw
         if "model" in raw and "models" in raw:
             raise ValueError("give either model or models, not both")
-        return _in_models(raw)
+        whole = _in_models(raw)
+        if _values_set(whole) > MOST_VALUES:
+            raise ValueError(f"the steps and models of a design set at most {MOST_VALUES} values together")
+        return whole
 
     @model_validator(mode="after")
     def names_differ(self) -> Self:
         """Parameters, steps and models share one space of names."""
-        groups = (self.parameters, self.steps, self.models)
-        names = [name for group in groups for name in group]
-        twice = sorted({name for name in names if names.count(name) > 1})
+        count = Counter(chain(self.parameters, self.steps, self.models))
+        twice = sorted(name for name, times in count.items() if times > 1)
         if twice:
             raise ValueError(f"{', '.join(twice)} names more than one parameter, step or model")
         return self
+
+
+def _values_set(raw: Mapping[str, Any]) -> int:
+    """How many values the steps and models of a document set, as far as it has the shape of one."""
+    places = (("steps", "inputs"), ("models", "parameters"))
+    blocks = [
+        (block, part)
+        for group, part in places
+        if isinstance(raw.get(group), Mapping)
+        for block in raw[group].values()
+    ]
+    inside = [block.get(part) for block, part in blocks if isinstance(block, Mapping)]
+    return sum(len(values) for values in inside if isinstance(values, Mapping))
 
 
 def _in_models(raw: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -16,9 +16,13 @@ from templates.core.errors import FaultyText
 from templates.core.schema import formula_on_paper
 from templates.core.units import unit
 
+DEEPEST = 50  # links; JSON that nests deeper is refused by many readers, and by our own writer
+
 
 def explain(calculation: Calculation, name: str) -> dict[str, Any]:
     """The chain behind a model parameter, as nested `because`; what was told once is named only.
+
+    A chain is followed over 50 links; what lies `deeper` has its value only.
 
     Raises
     ------
@@ -44,13 +48,19 @@ class _Telling:
     def __init__(self, calculation: Calculation) -> None:
         self.calculation, self.graph = calculation, calculation.graph
         self.told: set[str] = set()
+        self.depth = 0
 
     def of(self, name: str) -> dict[str, Any]:
         """What a name is, and what it follows from."""
         if name in self.told:
             return {"name": name, "kind": "told_above"}
+        if self.depth == DEEPEST:
+            return {"name": name, "value": self._value(name), "kind": "deeper"}
         self.told.add(name)
-        return {"name": name, "value": self._value(name), **self._origin(name)}
+        self.depth += 1
+        origin = self._origin(name)
+        self.depth -= 1
+        return {"name": name, "value": self._value(name), **origin}
 
     def _origin(self, name: str) -> dict[str, Any]:
         if name in self.graph.assumed:

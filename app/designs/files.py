@@ -10,20 +10,22 @@ from fastapi.responses import FileResponse
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
-from app.dependencies import TheDatabase, TheJobs, TheModels, TheStore
+from app.clients import TheClient
+from app.dependencies import TheDatabase, TheHealing, TheJobs, TheModels, TheStore
 from app.designs import views
 from app.designs.errors import NotFound
 from app.designs.routes import Id, Number, Prefer
+from app.healing import UNAVAILABLE, lost
 from app.http import StrictRoute
 from app.models.routes import send_file
-from app.waiting import LATER, accepted, finished
+from app.waiting import LATER, accepted, accepted_kinds, finished
 from cad.export import MEDIA_TYPES
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
 FILES: dict[str, Any] = {
     "response_class": FileResponse,
-    "responses": {200: {"content": {media: {} for media in MEDIA_TYPES.values()}}, **LATER},
+    "responses": {200: {"content": {media: {} for media in MEDIA_TYPES.values()}}, **LATER, **UNAVAILABLE},
 }
 
 Accept = Annotated[str | None, Header(description=", ".join(MEDIA_TYPES.values()))]
@@ -43,6 +45,8 @@ async def model_file(
     store: TheStore,
     models: TheModels,
     jobs: TheJobs,
+    client: TheClient,
+    healing: TheHealing,
     name: Id | None = None,
     kind: Id | None = None,
     number: Number | None = None,
@@ -57,25 +61,28 @@ async def model_file(
     def find() -> tuple[Any, str, Any]:
         with database.read() as session:
             model = views.good_model(session, id, name, number)
-            return model, model.build_key or "", views.file(session, store, model, wanted)
+            return model, model.build_key or "", views.file(session, model, wanted)
 
     model, key, file = await run_in_threadpool(find)
     if file is None:
-        job = await run_in_threadpool(lambda: models.request_file(key, wanted))
+        job = await run_in_threadpool(lambda: models.request_file(key, wanted, client))
         if not await finished(jobs, job, prefer):
             return accepted(job)
         if failed := await run_in_threadpool(lambda: jobs.get(job).problem):
             return problems.answer(failed)
         file = await run_in_threadpool(models.file, key, wanted)
+    elif answer := await lost(file.sha256, healing, jobs, prefer):
+        return answer
+    else:
+        file = await run_in_threadpool(models.file, key, wanted)
     headers = {"Design-Revision": str(model.number), "Vary": "Accept"}
-    return send_file(file, headers, f"{model.model}_v{model.model_version}.{wanted}")
+    return send_file(store, file, headers, f"{model.model}_v{model.model_version}.{wanted}")
 
 
 def _accepted(accept: str | None) -> str:
     """The kind that the client likes best, of those it likes equally the first; STEP by default."""
     kinds = {media: kind for kind, media in MEDIA_TYPES.items()}
-    named = (part.partition(";") for part in (accept or "").lower().split(","))
-    liked = [(_weight(more), kinds[media.strip()]) for media, _, more in named if media.strip() in kinds]
+    liked = [(_weight(more), kinds[media]) for media, more in accepted_kinds(accept) if media in kinds]
     return max(liked, key=lambda pair: pair[0], default=(1.0, "step"))[1]
 
 

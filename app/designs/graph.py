@@ -9,7 +9,8 @@ analysis of it, `model!torsion`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 from typing import Any
@@ -17,10 +18,11 @@ from typing import Any
 from app.analyses.questions import Question
 from app.designs.analyses import is_measured, measured_names, measured_unit, questions, remedy, used
 from app.designs.document import Document
+from app.designs.size import too_many_relations
 from cad.model import CadModel
 from templates.core.catalogue import Catalogue
 from templates.core.declare import Choice
-from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_name
+from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_names
 from templates.core.quantity import read_any
 from templates.core.relation import Kind, Relation, is_relation, parse
 from templates.core.template import Template
@@ -37,7 +39,7 @@ class Cell:
     raw: Any
     relations: tuple[Relation, ...]
 
-    @property
+    @cached_property
     def uses(self) -> frozenset[str]:
         """The names that its relations use."""
         return frozenset().union(*(relation.names for relation in self.relations))
@@ -130,9 +132,18 @@ class Graph:
         measured = (f"{model.name}.{n}" for model in models for n in measured_names(model.analyses))
         return [*self.parameters, *inside, *measured]
 
+    @cached_property
+    def used(self) -> Mapping[str, tuple[str, ...]]:
+        """What relations and iterations use of each block: the names behind its own."""
+        heads: dict[str, list[str]] = {}
+        for name in sorted(self.assumed.union(*(cell.uses for cell in self.cells()))):
+            head, _, tail = name.partition(".")
+            heads.setdefault(head, []).append(tail)
+        return {head: tuple(tails) for head, tails in heads.items()}
+
     def wanted(self, model: str, kind: str) -> tuple[str, ...]:
         """The outputs of an analysis that relations or iterations use."""
-        return used(model, kind, self.assumed.union(*(cell.uses for cell in self.cells())))
+        return used(kind, self.used.get(model, ()))
 
     def unit_of(self, name: str) -> str:
         """The declared unit of a name inside a block."""
@@ -147,7 +158,9 @@ def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list
 
     A graph with faults is good for a preview of what is right, not for a save.
     """
-    faults: list[Fault] = []
+    faults: list[Fault] = list(too_many_relations(document))
+    if faults:
+        return Graph({}, {}, frozenset()), faults
     parameters = {name: _cell(name, raw, faults) for name, raw in document.parameters.items()}
     blocks = dict(_blocks(document, catalogues, faults))
     graph = Graph(parameters, blocks, frozenset(i.through for i in document.iterations))
@@ -193,19 +206,24 @@ def _class(catalogue: Catalogue[Any], place: str, id: str, version: Any, faults:
 def _cells(
     block: str, values: Mapping[str, Any], cls: type[Template], faults: list[Fault]
 ) -> dict[str, Cell]:
-    unknown = (name for name in values if name not in cls.inputs)
-    faults += (unknown_name(name, cls.inputs, "input").within(block) for name in unknown)
+    unknown = unknown_names((name for name in values if name not in cls.inputs), cls.inputs, "input")
+    faults += (fault.within(block) for fault in unknown)
     known = {name: raw for name, raw in values.items() if name in cls.inputs}
     return {name: _cell(f"{block}.{name}", raw, faults) for name, raw in known.items()}
 
 
 def _unknown(graph: Graph) -> Iterator[Fault]:
     models = {block.name: block.analyses for block in graph.blocks.values() if block.is_model}
+    unknown: list[tuple[str, str]] = []  # where, and what
     for cell in graph.cells():
         for name in sorted(cell.uses):
-            if graph.node(name) is None:
-                detail = remedy(name, models) or unknown_name(name, graph.names(), "name").detail
+            if graph.node(name) is None and (detail := remedy(name, models)):
                 yield Fault(cell.name, "unknown_name", detail)
+            elif graph.node(name) is None:
+                unknown.append((cell.name, name))
+    if unknown:
+        faults = unknown_names((name for _, name in unknown), graph.names(), "name")
+        yield from (replace(f, name=cell) for (cell, _), f in zip(unknown, faults, strict=True))
     for through in sorted(graph.assumed):
         head, _, measure = through.partition(".")
         if head not in models or not is_measured(measure, models[head]):

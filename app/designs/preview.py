@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from sqlalchemy.orm import Session
 
 from app.calculations.display import System, converted
 from app.designs import repository, results
@@ -15,11 +14,12 @@ from app.designs.document import Document, merge
 from app.designs.graph import Catalogues, build_graph, raise_if
 from app.designs.service import analysed, built, read_document, resolved, starts
 from app.designs.worksheet import previewed
+from app.storage.database import Database
 from templates.core.errors import Fault
 
 
 def preview(
-    session: Session,
+    database: Database,
     catalogues: Catalogues,
     id: str,
     patch: Mapping[str, Any],
@@ -37,10 +37,11 @@ def preview(
         With everything that is wrong, except relations of model parameters with wrong units: these are told
         by their status.
     """
-    head = repository.head(session, id)
-    old, _ = _calculated(session, catalogues, Document.model_validate(head.document))
+    with database.read() as session:
+        head = repository.head(session, id)
+    old, _ = _calculated(database, catalogues, Document.model_validate(head.document))
     changed = resolved(read_document(merge(head.document, patch)), catalogues)
-    new, mismatched = _calculated(session, catalogues, changed)
+    new, mismatched = _calculated(database, catalogues, changed)
     raise_if(new.faults)  # not those of the old one: the change may be to mend it
     steps = results.steps(new)
     told = {
@@ -57,7 +58,7 @@ def preview(
 
 
 def _calculated(
-    session: Session, catalogues: Catalogues, document: Document
+    database: Database, catalogues: Catalogues, document: Document
 ) -> tuple[Calculation, dict[str, Fault]]:
     graph, faults = build_graph(document, catalogues)
     models = {name for name, block in graph.blocks.items() if block.is_model}
@@ -65,7 +66,7 @@ def _calculated(
         f.name: f for f in faults if f.code == "unit_mismatch" and f.name.partition(".")[0] in models
     }
     raise_if([fault for fault in faults if fault.name not in mismatched])
-    known = built(session), analysed(session)
+    known = built(database), analysed(database)
     return calculate(graph, *known, starts(document), broken=mismatched), mismatched
 
 

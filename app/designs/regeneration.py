@@ -9,6 +9,7 @@ from typing import Any
 from sqlalchemy.orm import Session
 
 from app.analyses.finding import Analysing
+from app.calculations.steps import Steps, calling
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
 from app.designs.calculate import Calculation, calculate
@@ -18,6 +19,7 @@ from app.designs.graph import SOLID, Catalogues, Graph, build_graph, raise_if
 from app.designs.service import analysed, built, starts
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.models.builds import Builds
+from app.models.errors import CannotRebuild
 from app.problems import describe
 from app.storage.database import Database
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
@@ -27,6 +29,7 @@ from templates.core.units import unit
 
 FAILURES = (
     NotConverged, TemplateError, GeometryError, AnalysisError, DeadlineExceeded, MemoryExceeded,
+    CannotRebuild,
 )  # fmt: skip
 """What a design itself brings about."""
 
@@ -35,10 +38,15 @@ class Regeneration:
     """The handler of jobs of the kind `regenerate`."""
 
     def __init__(
-        self, database: Database, builds: Builds, analysing: Analysing, catalogues: Catalogues
+        self,
+        database: Database,
+        builds: Builds,
+        analysing: Analysing,
+        catalogues: Catalogues,
+        steps: Steps | None = None,
     ) -> None:
         self.database, self.builds, self.catalogues = database, builds, catalogues
-        self.analysing = analysing
+        self.analysing, self.steps = analysing, steps
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Regenerate the revision of a job; the completion attaches what was found.
@@ -54,7 +62,8 @@ class Regeneration:
         with self.database.read() as session:
             document = Document.model_validate(repository.revision(session, id, number).document)
         try:
-            calculation, rounds = self._settled(document, context)
+            with calling(self.steps, f"design:{id}"):
+                calculation, rounds = self._settled(document, context)
         except FAILURES as error:
             raise JobFailed(describe(error)) from error
         told = results.told(calculation, rounds)
@@ -98,9 +107,10 @@ class Regeneration:
         Models may wait for each other's measures, so each round makes what can be made.
         """
         while True:
-            with self.database.read() as session:
-                calculation = calculate(graph, built(session), analysed(session), assumed)
+            calculation = calculate(graph, built(self.database), analysed(self.database), assumed)
             raise_if(calculation.faults)
+            if not self.builds.keep(calculation.shapes[name] for name in calculation.measures):
+                continue  # one was deleted just now: it is built again
             waiting = sorted(calculation.shapes.keys() - calculation.measures.keys())
             for name in waiting:
                 with _named(name):
@@ -115,6 +125,7 @@ class Regeneration:
         for name, kind in waiting:
             question = calculation.graph.blocks[name].analyses[kind]
             with _named(name, kind):
+                self.builds.make(calculation.shapes[name], context)  # its file may be lost
                 self.analysing.find(
                     calculation.shapes[name], question, calculation.graph.wanted(name, kind), context
                 )

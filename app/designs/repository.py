@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import func, select
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.designs.errors import NotFound
 from app.designs.results import ModelState
+from app.storage.clock import operated
 from app.storage.identity import new_id, now
 from app.storage.tables import ArtifactRow, BuildRow, DesignRow, RevisionModelRow, RevisionRow
 
@@ -156,6 +157,11 @@ def artifact(session: Session, key: str, kind: str) -> ArtifactRow | None:
     return session.get(ArtifactRow, (key, kind))
 
 
+def artifact_named(session: Session, sha256: str) -> ArtifactRow | None:
+    """An artifact by the hash of its bytes; several builds may have files of equal bytes."""
+    return session.scalar(select(ArtifactRow).where(ArtifactRow.sha256 == sha256).limit(1))
+
+
 def artifacts(session: Session, key: str | None) -> dict[str, str]:
     """The SHA-256 of every artifact of a build, by kind."""
     rows = session.scalars(select(ArtifactRow).where(ArtifactRow.build_key == key))
@@ -163,11 +169,24 @@ def artifacts(session: Session, key: str | None) -> dict[str, str]:
 
 
 def add_build(
-    session: Session, key: str, model: str, version: int, parameters: dict[str, Any], measured: dict[str, Any]
+    session: Session,
+    key: str,
+    model: str,
+    version: int,
+    parameters: dict[str, Any],
+    measured: dict[str, Any],
+    made_by: str,
 ) -> None:
     """Record a build; the same build made twice is one."""
     row = BuildRow(
-        key=key, model=model, version=version, parameters=parameters, measurements=measured, created=now()
+        key=key,
+        model=model,
+        version=version,
+        parameters=parameters,
+        measurements=measured,
+        created=now(),
+        operated=operated(session),
+        made_by=made_by,
     )
     session.merge(row)
     session.flush()
@@ -215,8 +234,3 @@ def users_of(session: Session, key: str) -> list[Mapping[str, Any]]:
     )
     rows = session.execute(query).all()
     return [{"design": id, "revision": number, "current": number == head} for id, number, head in rows]
-
-
-def count(session: Session) -> int:
-    """How many designs there are."""
-    return session.scalar(select(func.count()).select_from(DesignRow).where(DesignRow.deleted.is_(None))) or 0

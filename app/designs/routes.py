@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Body, Header, Path, Query, Response
+from fastapi import APIRouter, Body, Header, Path, Query, Request, Response
 from fastapi.responses import JSONResponse
+from pydantic import WithJsonSchema
 from starlette.concurrency import run_in_threadpool
 
 from app.calculations.display import Units, converted
+from app.calculations.steps import ExpensiveSteps, TheThreads
 from app.dependencies import TheCatalogues, TheDatabase, TheDesigns, TheJobs, TheOnce
 from app.designs import repository, views
 from app.designs.explain import explain
 from app.designs.preview import preview
-from app.designs.schemas import LONGEST_NOTE, CopyIn, DesignIn, RestoreIn
+from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn, RestoreIn
 from app.designs.service import Designs, Saved
 from app.http import StrictRoute
 from app.jobs.service import Jobs
@@ -21,7 +23,9 @@ from app.paging import Cursor, Limit, page
 from app.waiting import LATER, finished
 from templates.core.errors import Fault, InvalidInputs
 
-router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
+router = APIRouter(
+    prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
+)
 
 Id = Annotated[str, Path(max_length=64)]
 Number = Annotated[int, Path(ge=1, le=10**9)]
@@ -29,25 +33,28 @@ Prefer = Annotated[str | None, Header(description="`wait=5` or `respond-async`")
 IfMatch = Annotated[str | None, Header(description='the ETag of the design that was read, such as `"3"`')]
 Patch = Annotated[
     dict[str, Any],
-    Body(
-        description="a merge patch of the design, with an optional `note`; null removes",
-        examples=[{"parameters": {"scale": "1.01"}, "note": "next size"}],
-    ),
+    Body(description="a merge patch of the design, with an optional `note`; null removes"),
+    WithJsonSchema(PATCH),
 ]
 MERGE_PATCH: dict[str, Any] = {
-    "requestBody": {"content": {"application/merge-patch+json": {"schema": {"type": "object"}}}}
+    "requestBody": {"content": {"application/merge-patch+json": {"schema": PATCH}}}
 }
 
 
 @router.post("", status_code=201, responses=LATER)
 async def create_design(
-    body: DesignIn, designs: TheDesigns, jobs: TheJobs, once: TheOnce, prefer: Prefer = None
+    body: DesignIn,
+    designs: TheDesigns,
+    threads: TheThreads,
+    jobs: TheJobs,
+    once: TheOnce,
+    prefer: Prefer = None,
 ) -> Response:
     """A new design; its models are built. 201 when they are ready, 202 while they are being built."""
     raw = body.model_dump()  # not in JSON's mode, which hides a NaN as null
     note = raw.pop("note")
     raw.pop("model")
-    saved = await run_in_threadpool(designs.create, raw, note, once)
+    saved = await threads.run(designs.create, raw, note, once)
     return await _answer(designs, jobs, saved, prefer)
 
 
@@ -75,6 +82,7 @@ async def change_design(
     id: Id,
     body: Patch,
     designs: TheDesigns,
+    threads: TheThreads,
     jobs: TheJobs,
     once: TheOnce,
     if_match: IfMatch = None,
@@ -82,7 +90,7 @@ async def change_design(
 ) -> Response:
     """A new revision; models are rebuilt only where one of their parameters changed."""
     patch, note = _noted(body)
-    saved = await run_in_threadpool(designs.change, id, patch, note, if_match, once)
+    saved = await threads.run(designs.change, id, patch, note, if_match, once)
     return await _answer(designs, jobs, saved, prefer)
 
 
@@ -94,24 +102,28 @@ def delete_design(id: Id, designs: TheDesigns) -> Response:
 
 
 @router.post("/{id}/preview")
-def preview_design(
+async def preview_design(
     id: Id,
     body: Patch,
     database: TheDatabase,
     catalogues: TheCatalogues,
+    threads: TheThreads,
+    request: Request,
     worksheet: Annotated[bool, Query(description="also every step, its formulas written out")] = False,
     units: Units = "si",
 ) -> dict[str, Any]:
     """What a change would do to outputs and model parameters; nothing is saved."""
     patch, _ = _noted(body)
-    with database.read() as session:
-        return preview(session, catalogues, id, patch, worksheet=worksheet, system=units)
+    return await threads.run_for(
+        request, preview, database, catalogues, id, patch, worksheet=worksheet, system=units
+    )
 
 
 @router.post("/{id}/auto-map", responses=LATER)
 async def auto_map(
     id: Id,
     designs: TheDesigns,
+    threads: TheThreads,
     jobs: TheJobs,
     once: TheOnce,
     apply: Annotated[bool, Query(description="save the proposals as a new revision")] = False,
@@ -119,7 +131,7 @@ async def auto_map(
     prefer: Prefer = None,
 ) -> Response:
     """Proposals for model parameters that are not set, by name and unit."""
-    found, saved = await run_in_threadpool(designs.auto_map, id, apply, if_match, once)
+    found, saved = await threads.run(designs.auto_map, id, apply, if_match, once)
     told = {"proposals": [vars(proposal) for proposal in found]}
     return await _answer(designs, jobs, saved, prefer, told) if saved else JSONResponse(told)
 
@@ -128,13 +140,14 @@ async def auto_map(
 async def copy_design(
     id: Id,
     designs: TheDesigns,
+    threads: TheThreads,
     jobs: TheJobs,
     once: TheOnce,
     body: CopyIn | None = None,
     prefer: Prefer = None,
 ) -> Response:
     """A new design with the newest document of this one."""
-    saved = await run_in_threadpool(designs.copy, id, body.name if body else None, once)
+    saved = await threads.run(designs.copy, id, body.name if body else None, once)
     return await _answer(designs, jobs, saved, prefer)
 
 
@@ -143,6 +156,7 @@ async def restore_revision(
     id: Id,
     number: Number,
     designs: TheDesigns,
+    threads: TheThreads,
     jobs: TheJobs,
     once: TheOnce,
     body: RestoreIn | None = None,
@@ -151,7 +165,7 @@ async def restore_revision(
 ) -> Response:
     """A new revision equal to an old one."""
     note = body.note if body else None
-    saved = await run_in_threadpool(designs.restore, id, number, note, if_match, once)
+    saved = await threads.run(designs.restore, id, number, note, if_match, once)
     return await _answer(designs, jobs, saved, prefer)
 
 
@@ -185,11 +199,17 @@ def measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str
 
 
 @router.get("/{id}/explain/{parameter}")
-def explain_parameter(id: Id, parameter: Id, designs: TheDesigns) -> dict[str, Any]:
+async def explain_parameter(
+    id: Id, parameter: Id, designs: TheDesigns, threads: TheThreads, request: Request
+) -> dict[str, Any]:
     """Where a model parameter comes from: dimension ← relation ← output ← formula ← inputs."""
-    with designs.database.read() as session:
-        document = repository.head(session, id).document
-    return explain(designs.prepare(document)[1], parameter)
+
+    def told() -> dict[str, Any]:
+        with designs.database.read() as session:
+            document = repository.head(session, id).document
+        return explain(designs.prepare(document)[1], parameter)
+
+    return await threads.run_for(request, told)
 
 
 def _noted(body: dict[str, Any]) -> tuple[dict[str, Any], str | None]:

@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
+from pydantic.json_schema import SkipJsonSchema
 
+from app.bounded import Bounded
 from app.calculations.schemas import OIL_FILM
-from app.designs.document import Document, Model, Name
+from app.designs.document import NAME, WORD, Document, Iteration, Model, Name, Step
+from app.values import GIVEN
 
 PAPER: dict[str, Any] = {
     "name": "435 cc main bearing",
@@ -35,22 +38,53 @@ class DesignIn(Document):
     """A new design."""
 
     model_config = ConfigDict(
-        strict=True, extra="forbid", allow_inf_nan=False, json_schema_extra={"examples": [PAPER]}
+        strict=True,
+        extra="forbid",
+        allow_inf_nan=False,
+        json_schema_extra={"examples": [PAPER], "not": {"required": ["model", "models"]}},
     )
 
-    model: Model | None = Field(None, description="short for `models` with one entry named `model`")
+    model: Model | SkipJsonSchema[None] = Field(
+        None, description="short for `models` with one entry named `model`"
+    )
     note: str | None = Note
 
 
-class RestoreIn(BaseModel):
+class RestoreIn(Bounded):
     """A note for the revision that a restore makes."""
 
     model_config = ConfigDict(strict=True, extra="forbid")
     note: str | None = Note
 
 
-class CopyIn(BaseModel):
+class CopyIn(Bounded):
     """A name for the copy."""
 
     model_config = ConfigDict(strict=True, extra="forbid")
     name: Name | None = None
+
+
+def _named(values: dict[str, Any]) -> dict[str, Any]:
+    return {"type": ["object", "null"], "propertyNames": {"pattern": WORD}, "additionalProperties": values}
+
+
+def _part(cls: type[BaseModel]) -> dict[str, Any]:
+    names: dict[str, Any] = {name: {} for name in cls.model_fields}
+    return {"type": ["object", "null"], "properties": names, "additionalProperties": False}
+
+
+PATCH: dict[str, Any] = {
+    "type": "object",
+    "examples": [{"parameters": {"scale": "1.01"}, "note": "next size"}],
+    "additionalProperties": False,
+    "properties": {
+        "name": {"type": "string", "minLength": 1, "maxLength": 200, "pattern": NAME},
+        "parameters": _named({"anyOf": [{"type": "null"}, GIVEN]}),
+        "steps": _named(_part(Step)),
+        "model": {**_part(Model), "description": "short for `models` with one entry named `model`"},
+        "models": _named(_part(Model)),
+        "iterations": {"type": ["array", "null"], "maxItems": 10, "items": _part(Iteration)},
+        "note": {"type": ["string", "null"], "maxLength": LONGEST_NOTE},
+    },
+}
+"""What a merge patch of a design may name; null removes. What it leads to is checked as a whole design."""

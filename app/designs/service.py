@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from pydantic import ValidationError
@@ -21,14 +21,17 @@ from app.designs.graph import Catalogues, Graph, build_graph, raise_if
 from app.designs.repository import Written
 from app.idempotency import Once
 from app.jobs.service import Jobs
+from app.models.ages import renew
 from app.storage.database import Database
 from cad.model import CadModel
 from cad.regenerate import build_key
-from templates.core.errors import Fault, FaultyText, InvalidInputs
+from templates.core.errors import Fault, FaultyText, InvalidInputs, plain
 from templates.core.quantity import Value, read
 
 REGENERATE, REGENERATE_SLOWLY = "regenerate", "regenerate_and_analyse"
 """Kinds of jobs: the second is that of designs whose relations use finite elements."""
+
+LONGEST_PLACE = 200  # characters of where in a document something is wrong
 
 
 @dataclass(frozen=True)
@@ -58,13 +61,14 @@ class Designs:
         """
         if found := self._repeated(once):
             return found
-        written, work = self._written(raw, note)
+        written, kind = self._written(raw, note)
 
         def unit(session: Session) -> Saved:
             if found := _found(session, once):
                 return found
-            design, revision = repository.create(session, written.document["name"], written)
-            return self._enqueued(session, design, revision, work, once, created=True)
+            certain = _with_builds(session, written)
+            design, revision = repository.create(session, certain.document["name"], certain)
+            return self._enqueued(session, design, revision, _work(certain, kind), once, created=True)
 
         return self._saved(unit)
 
@@ -137,11 +141,11 @@ class Designs:
         document = resolved(read_document(raw), self.catalogues)
         graph, faults = build_graph(document, self.catalogues)
         raise_if(faults)
-        with self.database.read() as session:
-            return document, calculate(graph, built(session), analysed(session), starts(document))
+        known = built(self.database), analysed(self.database)
+        return document, calculate(graph, *known, starts(document))
 
     def _append(self, id: str, base: int, raw: Mapping[str, Any], note: str | None, once: Once) -> Saved:
-        written, work = self._written(raw, note)
+        written, kind = self._written(raw, note)
 
         def unit(session: Session) -> Saved:
             if found := _found(session, once):
@@ -153,27 +157,30 @@ class Designs:
                 unchanged = Saved(id, base, None, created=False, fresh=False)
                 once.keep(session, 200, vars(unchanged))
                 return unchanged
-            revision = repository.append(session, row, written)
-            return self._enqueued(session, id, revision, work, once, created=False)
+            certain = _with_builds(session, written)
+            revision = repository.append(session, row, certain)
+            return self._enqueued(session, id, revision, _work(certain, kind), once, created=False)
 
         return self._saved(unit)
 
-    def _written(self, raw: Mapping[str, Any], note: str | None) -> tuple[Written, str | None]:
-        """What to write for a document, and the kind of job that has to run first, if one has."""
+    def _written(self, raw: Mapping[str, Any], note: str | None) -> tuple[Written, str]:
+        """What to write for a document, and the kind of job that regenerates it, should one have to."""
         document, calculation = self.prepare(raw)
         raise_if(calculation.faults)
         pending = bool(document.iterations) or bool(calculation.pending)
         told = None if pending else results.told(calculation, [])
         state = "regenerating" if pending else "current"
         plain = document.model_dump(mode="json")
-        work = (REGENERATE_SLOWLY if analyses_wanted(calculation.graph) else REGENERATE) if pending else None
-        return Written(plain, told, results.models(calculation), state, note), work
+        kind = REGENERATE_SLOWLY if analyses_wanted(calculation.graph) else REGENERATE
+        return Written(plain, told, results.models(calculation), state, note), kind
 
     def _enqueued(
         self, session: Session, design: str, revision: int, work: str | None, once: Once, *, created: bool
     ) -> Saved:
         """The job of a revision, if it needs one, and the record of the request; in one transaction."""
-        job = self.jobs.enqueue(session, work, {}, design=design, revision=revision) if work else None
+        job = None
+        if work:
+            job = self.jobs.enqueue(session, work, {}, design=design, revision=revision, client=once.client)
         saved = Saved(design, revision, job, created)
         once.keep(session, 201 if created else 200, vars(saved))
         return saved
@@ -191,6 +198,17 @@ class Designs:
     def _repeated(self, once: Once) -> Saved | None:
         with self.database.read() as session:
             return _found(session, once)
+
+
+def _with_builds(session: Session, written: Written) -> Written:
+    """What to write, its builds renewed; if one was deleted since they were looked up, it has to be built."""
+    if renew(session, [model.build for model in written.models if model.build]):
+        return written
+    return replace(written, results=None, state="regenerating")
+
+
+def _work(written: Written, kind: str) -> str | None:
+    return kind if written.state == "regenerating" else None
 
 
 def _found(session: Session, once: Once) -> Saved | None:
@@ -214,10 +232,12 @@ def read_document(raw: Mapping[str, Any]) -> Document:
     try:
         return Document.model_validate(raw)
     except ValidationError as error:
-        faults = (
-            Fault(".".join(map(str, e["loc"])) or "design", e["type"], e["msg"]) for e in error.errors()
-        )
-        raise InvalidInputs(faults) from None
+        raise InvalidInputs(map(_fault, error.errors(include_url=False, include_input=False))) from None
+
+
+def _fault(found: Mapping[str, Any]) -> Fault:
+    place = ".".join(str(part)[:LONGEST_PLACE] for part in found["loc"])
+    return Fault(plain(place, LONGEST_PLACE) or "design", found["type"], found["msg"])
 
 
 def resolved(document: Document, catalogues: Catalogues) -> Document:
@@ -232,12 +252,16 @@ def resolved(document: Document, catalogues: Catalogues) -> Document:
     return plain
 
 
-def built(session: Session) -> Measured:
-    """What models measure, for those that have been built."""
+def built(database: Database) -> Measured:
+    """What models measure, for those that have been built.
+
+    It is looked up when asked for: a step may take minutes, and no connection is held meanwhile.
+    """
 
     def measured(shape: CadModel) -> Measures | None:
-        row = repository.build(session, build_key(shape))
-        return row.measurements["measures"] if row else None
+        with database.read() as session:
+            row = repository.build(session, build_key(shape))
+            return row.measurements["measures"] if row else None
 
     return measured
 
@@ -247,11 +271,12 @@ def analyses_wanted(graph: Graph) -> bool:
     return any(graph.wanted(block.name, kind) for block in graph.blocks.values() for kind in block.analyses)
 
 
-def analysed(session: Session) -> Analysed:
-    """What finite elements found on models, where all that is wanted has been found."""
+def analysed(database: Database) -> Analysed:
+    """What finite elements found on models, where all that is wanted has been found; likewise."""
 
     def known(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Found | None:
-        found = analyses.found(session, question.key(build_key(shape)))
+        with database.read() as session:
+            found = analyses.found(session, question.key(build_key(shape)))
         if not set(wanted) <= found.keys():
             return None
         return under_load(question, {name: found[name] for name in wanted})

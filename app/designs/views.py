@@ -9,7 +9,6 @@ from sqlalchemy.orm import Session
 from app.designs import repository, results
 from app.designs.errors import NotFound
 from app.models.service import File
-from app.storage.artifacts import ArtifactStore
 from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow
 
 STEP = "step"
@@ -143,7 +142,7 @@ def _why(row: RevisionRow) -> str:
     return "set or map its parameters first"
 
 
-def file(session: Session, store: ArtifactStore, model: RevisionModelRow, kind: str) -> File | None:
+def file(session: Session, model: RevisionModelRow, kind: str) -> File | None:
     """A file of a model's build, or None if it is not made yet."""
     row = repository.artifact(session, model.build_key or "", kind)
-    return File(store.path(row.sha256), kind, row.sha256) if row else None
+    return File(kind, row.sha256) if row else None

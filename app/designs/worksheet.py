@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import lru_cache
+from hashlib import sha256
 from typing import Any
 
 from pydantic_core import from_json, to_json
 
+from app.cache import results as kept
 from app.calculations.display import System, converted
+from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
 from app.designs.calculate import Calculation
 from templates.core.catalogue import Catalogue
 from templates.core.errors import TemplateError
-from templates.core.evaluate import evaluate
 from templates.core.template import Template
 from templates.core.verdicts import Check, checks
-
-REMEMBERED = 256  # steps; a revision never changes
 
 
 def worksheets(steps: Mapping[str, Any], catalogue: Catalogue[Template], system: System) -> dict[str, Any]:
@@ -78,9 +77,14 @@ def _retyped(echo: Mapping[str, Any]) -> Any:
     return {name: part for name, part in echo.items() if name != "from"} if "unit" in echo else echo["value"]
 
 
-@lru_cache(maxsize=REMEMBERED)
 def _written_out(
     cls: Any, inputs: bytes, outputs: tuple[str, ...], level: str | None, system: System
 ) -> tuple[list[dict[str, Any]], list[Check]]:
-    made = evaluate(cls, from_json(inputs), outputs=outputs, level=level)
-    return formulas(made.template, system, made.outputs), list(checks(made.template))
+    """Formulas and checks, kept because a revision never changes."""
+    key = (_written_out, cls, sha256(inputs).digest(), outputs, level, system)
+    written: tuple[list[dict[str, Any]], list[Check]] | None = kept.get(key)
+    if written is None:
+        evaluation = evaluated_step(cls, from_json(inputs), outputs, level, None)
+        written = formulas(evaluation.template, system, evaluation.outputs), list(checks(evaluation.template))
+        kept.keep(key, written)
+    return written

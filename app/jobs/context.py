@@ -43,6 +43,11 @@ class JobContext:
         self._cancelled = cancelled
         self._stored = time.monotonic()
 
+    @property
+    def is_cancelled(self) -> bool:
+        """Whether somebody cancelled the job, or the server stops."""
+        return self._cancelled.is_set()
+
     def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
         """Run a function in the worker, within the limits of jobs or others; it tells progress by `report`.
 

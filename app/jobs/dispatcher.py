@@ -3,7 +3,7 @@
 import logging
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -12,10 +12,12 @@ from sqlalchemy.orm import Session
 
 from app import logs
 from app.jobs import repository
+from app.jobs.admission import Durations
 from app.jobs.context import JobContext, publish
 from app.jobs.errors import JobFailed
 from app.jobs.events import Events
 from app.jobs.job import Job
+from app.jobs.turns import Lane
 from app.storage.database import Database
 from app.storage.errors import DatabaseClosed
 from app.workers.base import Limits, Worker
@@ -28,21 +30,22 @@ Completion = Callable[[Session], str | None]
 Handler = Callable[[Job, JobContext], Completion]
 FailureHook = Callable[[Session, Job, Problem], None]
 
+FAST, SLOW = "fast", "slow"
 MAX_CRASHES = 2
 _PAUSE = 1.0  # before the queue is looked at again after the database has failed [s]
 
 
 @dataclass(frozen=True)
 class Kind:
-    """What to do with jobs of a kind, and whether they take minutes."""
+    """What to do with jobs of a kind, and in which lane."""
 
     handler: Handler
     on_failure: FailureHook
-    is_slow: bool = False
+    lane: str = FAST
 
 
 class Dispatcher:
-    """Runs the queued jobs, as many at a time as there are threads; slow ones in a thread of their own.
+    """Runs the queued jobs, as many at a time as there are threads; every lane has threads of its own.
 
     So whoever changes a bearing does not wait until somebody's analysis is done.
     """
@@ -56,24 +59,35 @@ class Dispatcher:
         describe: Callable[[Exception], Problem],
     ) -> None:
         self.kinds: dict[str, Kind] = {}
+        self.durations = Durations()
         self._database = database
         self._worker = worker
         self._limits = limits
         self._events = events
         self._describe = describe
-        self._awake = {False: threading.Semaphore(0), True: threading.Semaphore(0)}  # by whether slow
+        self._counts = {FAST: 1, SLOW: 1}  # threads of each lane
+        self._awake = {FAST: threading.Semaphore(0), SLOW: threading.Semaphore(0)}
         self._stopping = threading.Event()
         self._running: dict[str, threading.Event] = {}  # job id -> set to stop it
         self._threads: list[threading.Thread] = []
 
-    def start(self, threads: int) -> None:
-        """Begin to take jobs from the queue."""
-        lanes = [*(False for _ in range(threads)), True]
-        for number, slow in enumerate(lanes):
-            thread = threading.Thread(target=self._work, args=[slow], name=f"jobs-{number}", daemon=True)
+    def start(self, threads: int, beside: Mapping[str, int]) -> None:
+        """Begin to take jobs from the queue, with so many threads for fast ones and for lanes `beside`."""
+        self._counts = {FAST: threads, SLOW: 1, **beside}
+        self._awake = {lane: threading.Semaphore(0) for lane in self._counts}
+        for number, lane in enumerate(lane for lane, count in self._counts.items() for _ in range(count)):
+            thread = threading.Thread(target=self._work, args=[lane], name=f"jobs-{number}", daemon=True)
             self._threads.append(thread)
             thread.start()
             self.wake()
+
+    def lane(self, kind: str) -> Lane:
+        """The lane in which jobs of a kind wait."""
+        return self._lane(self._lane_name(kind))
+
+    def threads(self, kind: str) -> int:
+        """How many threads run the jobs of a kind's lane."""
+        return self._counts[self._lane_name(kind)]
 
     def wake(self) -> None:
         """Have a thread of each lane look at the queue."""
@@ -105,11 +119,11 @@ class Dispatcher:
         if busy := [thread.name for thread in self._threads if thread.is_alive()]:
             logger.warning("still busy, and left behind: %s", ", ".join(busy))
 
-    def _work(self, slow: bool) -> None:
+    def _work(self, lane: str) -> None:
         while not self._stopping.is_set():
-            self._awake[slow].acquire()
+            self._awake[lane].acquire()
             try:
-                self._empty_queue(slow)
+                self._empty_queue(lane)
             except DatabaseClosed:
                 return  # this thread was left behind when the server stopped
             except Exception:
@@ -117,23 +131,33 @@ class Dispatcher:
                 self._stopping.wait(_PAUSE)
                 self.wake()
 
-    def _empty_queue(self, slow: bool) -> None:
-        while not self._stopping.is_set() and (job := self._database.write(partial(self._claim, slow=slow))):
-            mine = self._running[job.id]
+    def _empty_queue(self, lane: str) -> None:
+        while not self._stopping.is_set() and (job := self._database.write(partial(self._claim, lane=lane))):
+            mine, start = self._running[job.id], time.monotonic()
             try:
                 with logs.caused(job.id):
                     self._execute(job)
             finally:
+                self.durations.note(self.lane(job.kind), time.monotonic() - start)
                 if self._running.get(job.id) is mine:  # given back, it may run again in another thread by now
                     del self._running[job.id]
 
-    def _claim(self, session: Session, *, slow: bool) -> Job | None:
+    def _claim(self, session: Session, *, lane: str) -> Job | None:
         """Claim a job and register it still in the writer thread: who sees it running can interrupt it."""
-        kinds = [name for name, kind in self.kinds.items() if kind.is_slow]
-        job = repository.claim(session, kinds, take_slow=slow)
+        job = repository.claim(session, self._lane(lane))
         if job is not None:
             self._running[job.id] = threading.Event()
         return job
+
+    def _lane_name(self, kind: str) -> str:
+        return self.kinds[kind].lane if kind in self.kinds else FAST
+
+    def _lane(self, lane: str) -> Lane:
+        """A lane by its name; a kind that nobody registered waits in the fast one."""
+        beside = {name: kind.lane for name, kind in self.kinds.items() if kind.lane != FAST}
+        if lane == FAST:
+            return Lane(tuple(beside))
+        return Lane(tuple(name for name, its in beside.items() if its == lane), is_common=False)
 
     def _execute(self, job: Job) -> None:
         """Run a claimed job to whatever end."""

@@ -3,6 +3,7 @@
 JobError
  ├── JobNotFound    there is no such job
  ├── JobFinished    the job has ended, so it cannot be cancelled
+ ├── JobShared      several clients wait for the job, so a further one cannot cancel it
  ├── QueueFull      too many jobs are waiting
  └── JobFailed      raised by a handler: the job ends with this problem
 """
@@ -34,11 +35,22 @@ class JobFinished(JobError):
         self.state = state
 
 
-class QueueFull(JobError):
-    """Too many jobs are waiting; it may be worth another try after some time [s]."""
+class JobShared(JobError):
+    """Several clients wait for the job."""
 
-    def __init__(self, retry_after: int) -> None:
-        super().__init__(f"Too many jobs are waiting. Try again in {retry_after} s.")
+    def __init__(self, id: str) -> None:
+        super().__init__(f"Several clients wait for job {id}; it ends when each of them has cancelled it.")
+        self.id = id
+
+
+class QueueFull(JobError):
+    """Too many jobs are waiting, of the client (`own`) or of all; a try is worthwhile after some time [s]."""
+
+    def __init__(self, retry_after: int, own: int | None = None) -> None:
+        whose = (
+            "Too many jobs are" if own is None else f"{own} jobs of yours, as many as a client may have, are"
+        )
+        super().__init__(f"{whose} waiting. Try again in {retry_after} s.")
         self.retry_after = retry_after
 
 

@@ -4,13 +4,14 @@ What a claimed job writes is fenced: it takes effect only while the row is runni
 claimed, so a job which was cancelled or claimed again cannot write any more.
 """
 
-from collections.abc import Collection
 from typing import Any, cast
 
 from sqlalchemy import ColumnElement, and_, func, select, update
 from sqlalchemy.orm import Session
 
 from app.jobs.job import Job, State
+from app.jobs.turns import ALL_KINDS, UNFINISHED, Lane
+from app.storage.clock import operated
 from app.storage.identity import new_id, now
 from app.storage.tables import JobRow
 
@@ -22,29 +23,25 @@ def add(
     design: str | None,
     revision: int | None,
     client: str = "",
+    turn: int = 0,
 ) -> str:
-    """Queue a job of a client and return its id."""
+    """Queue a job of a client, in its turn, and return its id."""
     session.flush()  # the revision it belongs to comes first
     row = JobRow(
         id=new_id(session), kind=kind, state="queued", design_id=design, revision=revision, payload=payload,
         attempt=0, crashes=0, progress=0.0, log=[], created=now(), updated=now(),
-        client=client,
+        client=client, others=[], turn=turn, operated=operated(session),
     )  # fmt: skip
     session.add(row)
     session.flush()
     return row.id
 
 
-def count_queued(session: Session) -> int:
-    """Return how many jobs wait."""
-    return session.scalar(select(func.count()).where(JobRow.state == "queued")) or 0
-
-
-def census(session: Session) -> list[tuple[str, str, int, str]]:
-    """Return kind, state, number and oldest `created` of the jobs that have not ended, of which few exist."""
-    living = select(JobRow.kind, JobRow.state, func.count(), func.min(JobRow.created))
-    living = living.where(JobRow.state.in_(["queued", "running"])).group_by(JobRow.kind, JobRow.state)
-    return [(kind, state, count, oldest) for kind, state, count, oldest in session.execute(living)]
+def census(session: Session) -> list[tuple[str, str, int]]:
+    """Return kind, state and number of the jobs that have not ended, of which there are few."""
+    living = select(JobRow.kind, JobRow.state, func.count()).group_by(JobRow.kind, JobRow.state)
+    living = living.where(JobRow.state.in_(["queued", "running"]))
+    return [(kind, state, count) for kind, state, count in session.execute(living)]
 
 
 def get(session: Session, id: str) -> Job | None:
@@ -63,14 +60,13 @@ def page(session: Session, limit: int, before: str | None) -> list[Job]:
 def find_waiting(session: Session, kind: str, payload: dict[str, Any]) -> str | None:
     """Return the id of the job of this kind and payload that has not ended."""
     same = select(JobRow.id).where(JobRow.kind == kind, JobRow.payload == payload)
-    return session.scalar(same.where(JobRow.state.in_(["queued", "running"])).limit(1))
+    return session.scalar(same.where(JobRow.state.in_(UNFINISHED)).limit(1))
 
 
-def claim(session: Session, slow: Collection[str] = (), *, take_slow: bool = False) -> Job | None:
-    """Make the oldest queued job, of the slow kinds or of the others, a running one and return it."""
-    lane = JobRow.kind.in_(slow) if take_slow else JobRow.kind.not_in(slow)
-    oldest = select(JobRow.id).where(JobRow.state == "queued", lane).order_by(JobRow.id).limit(1)
-    claimed = update(JobRow).where(JobRow.id == oldest.scalar_subquery())
+def claim(session: Session, lane: Lane = ALL_KINDS) -> Job | None:
+    """Make the queued job of a lane whose turn it is a running one, and return it."""
+    queue = select(JobRow.id).where(JobRow.state == "queued", lane.holds()).order_by(JobRow.turn, JobRow.id)
+    claimed = update(JobRow).where(JobRow.id == queue.limit(1).scalar_subquery())
     values = {"state": "running", "attempt": JobRow.attempt + 1, "progress": 0.0, "log": [], "updated": now()}
     row = session.scalar(claimed.values(values).returning(JobRow))
     return _job(row) if row else None
@@ -83,7 +79,7 @@ def note_progress(session: Session, job: Job, progress: float, log: list[str]) -
 
 def end(session: Session, job: Job, state: State, log: list[str], **more: Any) -> bool:
     """Give a claimed job its final state; return False, with nothing written, if it is no longer held."""
-    return _write(session, _held(job), state=state, log=log, **more) == 1
+    return _write(session, _held(job), state=state, log=log, operated=operated(session), **more) == 1
 
 
 def set_result(session: Session, job: Job, link: str | None) -> None:
@@ -103,7 +99,7 @@ def give_back_all(session: Session) -> int:
 
 def cancel(session: Session, job: Job, problem: dict[str, Any]) -> None:
     """Mark a job as cancelled."""
-    _write(session, JobRow.id == job.id, state="cancelled", problem=problem)
+    _write(session, JobRow.id == job.id, state="cancelled", problem=problem, operated=operated(session))
 
 
 def _held(job: Job) -> ColumnElement[bool]:

@@ -7,6 +7,7 @@ from typing import Any
 from fastapi import APIRouter, Depends
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
+from app.clients import TheClient
 from app.dependencies import TheJobs
 from app.jobs.job import Job
 from app.jobs.schemas import JobList, JobOut
@@ -29,9 +30,9 @@ def read_job(id: str, jobs: TheJobs) -> Job:
 
 
 @router.delete("/{id}", response_model=JobOut)
-def cancel_job(id: str, jobs: TheJobs) -> Job:
-    """Cancel a job that is queued or running."""
-    return jobs.cancel(id)
+def cancel_job(id: str, jobs: TheJobs, client: TheClient) -> Job:
+    """Cancel a job that is queued or running; one that another client asked for too goes on for that."""
+    return jobs.cancel(id, client)
 
 
 @router.get("/{id}/events", response_class=EventSourceResponse, dependencies=[Depends(read_job)])

@@ -2,19 +2,21 @@
 
 import asyncio
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from sqlalchemy.orm import Session
 
 from app import logs
-from app.jobs import repository
+from app.jobs import repository, turns
+from app.jobs.admission import admit
 from app.jobs.context import JobContext, publish
-from app.jobs.dispatcher import Completion, Dispatcher, FailureHook, Handler, Kind, Problem
-from app.jobs.errors import JobFailed, JobFinished, JobNotFound, QueueFull
+from app.jobs.dispatcher import FAST, SLOW, Completion, Dispatcher, FailureHook, Handler, Kind, Problem
+from app.jobs.errors import JobFailed, JobFinished, JobNotFound
 from app.jobs.events import Events
 from app.jobs.job import FINAL, Job, State
 from app.settings import Settings
+from app.storage.clock import operated
 from app.storage.database import Database
 from app.workers.base import Limits, Worker
 from app.workers.errors import JobCancelled
@@ -22,8 +24,6 @@ from app.workers.errors import JobCancelled
 __all__ = ["Completion", "Job", "JobContext", "JobFailed", "Jobs"]
 
 logger = logging.getLogger(__name__)
-
-RETRY_AFTER = 5  # what to advise when the queue is full [s]
 
 
 def _ignore(session: Session, job: Job, problem: Problem) -> None:
@@ -52,20 +52,31 @@ class Jobs:
         self._dispatcher = Dispatcher(database, worker, limits, self.events, describe)
 
     def register(
-        self, kind: str, handler: Handler, on_failure: FailureHook = _ignore, *, is_slow: bool = False
+        self,
+        kind: str,
+        handler: Handler,
+        on_failure: FailureHook = _ignore,
+        *,
+        is_slow: bool = False,
+        lane: str | None = None,
     ) -> None:
         """Say what runs jobs of a kind; slow ones run beside the others, one at a time.
+
+        A kind may have a lane of its own, whose threads `start` is asked for.
 
         The handler runs in a thread of the queue and returns a completion. That stores what the job has made
         and returns a link to it, in the transaction that marks the job as done. `on_failure` runs in the one
         that marks it as failed or cancelled.
         """
-        self._dispatcher.kinds[kind] = Kind(handler, on_failure, is_slow)
+        self._dispatcher.kinds[kind] = Kind(handler, on_failure, lane or (SLOW if is_slow else FAST))
 
-    def start(self) -> None:
-        """Queue again what a killed server left running, and begin to work. Register the kinds first."""
+    def start(self, lanes: Mapping[str, int] | None = None) -> None:
+        """Queue again what a killed server left running, and begin to work. Register the kinds first.
+
+        `lanes` gives the number of threads of lanes beside the usual two.
+        """
         self._database.write(repository.give_back_all)
-        self._dispatcher.start(self.settings.workers)
+        self._dispatcher.start(self.settings.workers, lanes or {})
 
     def drain(self) -> None:
         """End all subscriptions and begin no more jobs; those that run go on."""
@@ -77,8 +88,8 @@ class Jobs:
         self.events.close()
         self._dispatcher.stop(self.settings.stop_seconds / 2)
 
-    def census(self, session: Session) -> list[tuple[str, str, int, str]]:
-        """Return kind, state, number and age of the oldest of the jobs that have not ended."""
+    def census(self, session: Session) -> list[tuple[str, str, int]]:
+        """Return kind, state and number of the jobs that have not ended."""
         return repository.census(session)
 
     def enqueue(
@@ -89,19 +100,36 @@ class Jobs:
         *,
         design: str | None = None,
         revision: int | None = None,
+        client: str = "",
     ) -> str:
-        """Queue a job in a unit of work and return its id; call `wake` when that is committed.
+        """Queue a job of a client in a unit of work and return its id; call `wake` when that is committed.
 
         Raises
         ------
         QueueFull
-            Too many jobs are waiting.
+            Too many jobs are waiting, of this client or of all.
         """
-        if repository.count_queued(session) >= self.settings.queue_limit:
-            raise QueueFull(RETRY_AFTER)
-        id = repository.add(session, kind, payload, design, revision)
+        lane = self._dispatcher.lane(kind)
+        threads = self._dispatcher.threads(kind)
+        admit(session, client, lane, threads, self.settings, self._dispatcher.durations)
+        turn = turns.next_turn(session, client, lane)
+        id = repository.add(session, kind, payload, design, revision, client, turn)
         logs.note_cause(id)
         logger.info("job %s (%s) queued", id, kind, extra={"job": id})
+        return id
+
+    def request(self, session: Session, kind: str, payload: dict[str, Any], client: str = "") -> str:
+        """Return the id of the job that is to do just this, in the earlier turn of its clients; or queue it.
+
+        Raises
+        ------
+        QueueFull
+            There is no such job, and too many others are waiting.
+        """
+        id = self.waiting(session, kind, payload)
+        if id is None:
+            return self.enqueue(session, kind, payload, client=client)
+        turns.join(session, id, client, self._dispatcher.lane(kind), self.settings.client_queue_limit)
         return id
 
     def waiting(self, session: Session, kind: str, payload: dict[str, Any]) -> str | None:
@@ -110,7 +138,12 @@ class Jobs:
 
     def queued(self, session: Session) -> int:
         """Return how many jobs wait."""
-        return repository.count_queued(session)
+        return turns.count_queued(session)
+
+    def oldest_queued_age(self, session: Session) -> int:
+        """Return how long the oldest job has waited [s of operation]; 0 if none waits."""
+        since = turns.oldest_queued(session)
+        return 0 if since is None else operated(session) + self._database.clock.elapsed - since
 
     def wake(self) -> None:
         """Have the queue looked at."""
@@ -130,11 +163,15 @@ class Jobs:
         with self._database.read() as session:
             return repository.page(session, limit, before)
 
-    def cancel(self, id: str) -> Job:
+    def cancel(self, id: str, client: str | None = None) -> Job:
         """Cancel a job, kill its process if it has one, and return the job.
+
+        For a client, a job that other clients wait for too goes on: it ends when the last of them cancels it.
 
         Raises
         ------
+        JobShared
+            Several clients wait for the job, and this one does not.
         JobNotFound
             There is no such job.
         JobFinished
@@ -142,18 +179,20 @@ class Jobs:
         """
         problem = self._describe(JobCancelled())
 
-        def unit(session: Session) -> Job:
+        def unit(session: Session) -> Job | None:
             job = _existing(session, id)
             if job.finished:
                 raise JobFinished(id, job.state)
+            if client is not None and turns.leave(session, id, client):
+                return None
             repository.cancel(session, job, problem)
             if kind := self._dispatcher.kinds.get(job.kind):
                 kind.on_failure(session, job, problem)
             return job
 
-        job = self._database.write(unit)
-        self._dispatcher.interrupt(id)
-        publish(self.events, job, "cancelled")
+        if job := self._database.write(unit):
+            self._dispatcher.interrupt(id)
+            publish(self.events, job, "cancelled")
         return self.get(id)
 
     async def wait(self, id: str, seconds: float) -> State:

@@ -1,21 +1,34 @@
-"""Builds, made in a worker process and recorded with their STEP files; other files only when asked for."""
+"""Builds, made in a worker process and recorded with their STEP files; other files only when asked for.
+
+A file that a row names and that is missing or damaged is made again: equal rows give equal bytes, so the hash
+in the row proves it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import hashlib
+import logging
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from sqlalchemy.orm import Session
 
 from app.designs import repository, results
-from app.jobs.service import JobContext
+from app.models.ages import is_fresh, renew
+from app.models.errors import CannotRebuild
+from app.models.shapes import made_otherwise, shape_of
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.storage.tables import ArtifactRow
+from app.workers.base import Runner
 from app.workers.progress import report
 from cad.export import derive
 from cad.model import CadModel
-from cad.regenerate import Build, build_key, regenerate
+from cad.regenerate import MADE_BY, Build, build_key, regenerate
+from templates.core.catalogue import Catalogue
+
+logger = logging.getLogger(__name__)
 
 STEP = "step"
 
@@ -26,41 +39,84 @@ class Builds:
     def __init__(self, database: Database, store: ArtifactStore, folders: tuple[Path, ...]) -> None:
         self.database, self.store, self.folders = database, store, folders
 
-    def make(self, shape: CadModel, context: JobContext) -> None:
-        """Build a model unless it is built already.
+    def make(self, shape: CadModel, context: Runner) -> None:
+        """Build a model unless it is built already and its STEP file is good.
 
         Raises
         ------
         GeometryError
             If the kernel fails, or makes anything but what was asked for.
+        CannotRebuild
+            If the build is recorded, its file is lost, and what comes out now is another one.
         DeadlineExceeded, MemoryExceeded, JobCrashed, JobCancelled
             If the process was stopped, or stopped itself.
         """
-        with self.database.read() as session:
-            if repository.artifact(session, build_key(shape), STEP):
-                return
+        row = self._row(build_key(shape), STEP)
+        if row and self.store.exists(row.sha256) and self.keep([shape]):
+            return
         made = context.run(build_in_worker, shape.id, shape.version, shape.inputs_si(), self.folders)
+        if row and hashlib.sha256(made.step).hexdigest() != row.sha256:
+            raise _changed(shape, row)
         sha = self.store.put(made.step)
-        self.database.write(lambda session: self._record(session, shape, made, sha))
+        if row is None:
+            self.database.write(lambda session: self._record(session, shape, made, sha))
 
-    def derive(self, key: str, kind: str, context: JobContext) -> None:
-        """Make a file of another kind from the STEP file of a build, unless it is made already."""
+    def keep(self, shapes: Iterable[CadModel]) -> bool:
+        """Keep builds for as long as the job that counts on them runs; return whether all are there."""
+        keys = [build_key(shape) for shape in shapes]
         with self.database.read() as session:
-            if repository.artifact(session, key, kind):
-                return
-            step = repository.artifact(session, key, STEP)
+            if is_fresh(session, keys):
+                return True
+        return self.database.write(lambda session: renew(session, keys))
+
+    def restore(self, key: str, catalogue: Catalogue[CadModel], context: Runner) -> None:
+        """Have the STEP file of a recorded build good; raises as `make` does."""
+        row = self._row(key, STEP)
+        if row and self.store.exists(row.sha256):
+            return
+        with self.database.read() as session:
+            shape = shape_of(session, catalogue, key)
+            if build_key(shape) != key:
+                raise made_otherwise(session, key, shape)
+        self.make(shape, context)
+
+    def derive(self, key: str, kind: str, context: Runner) -> None:
+        """Make a file of another kind from the good STEP file of a build, unless it is there and good.
+
+        A derived file depends on libraries that the build's key does not name. If its bytes come out
+        otherwise than before, it is another artifact, and the row names that one.
+        """
+        row, step = self._row(key, kind), self._row(key, STEP)
+        if row and self.store.exists(row.sha256):
+            return
         assert step is not None, "a build has its STEP file from its first moment"
         made = context.run(derive, self.store.read(step.sha256), kind)
         sha = self.store.put(made)
-        self.database.write(lambda session: repository.add_artifact(session, key, kind, sha, len(made)))
+        if row and row.sha256 != sha:
+            logger.warning("%s of build %s: artifact %s is lost, now it is %s", kind, key, row.sha256, sha)
+        if row is None or row.sha256 != sha:
+            self.database.write(lambda session: repository.add_artifact(session, key, kind, sha, len(made)))
+
+    def _row(self, key: str, kind: str) -> ArtifactRow | None:
+        with self.database.read() as session:
+            return repository.artifact(session, key, kind)
 
     def _record(self, session: Session, shape: CadModel, made: Build, sha: str) -> None:
         parameters = results.parameters(shape)
         units = {name: declared.meaning.unit for name, declared in shape.inputs.items()}
         dimensions = {n: {"value": value, "unit": units[n]} for n, value in made.dimensions.items()}
         measured = {"measures": made.measures, "dimensions": dimensions}
-        repository.add_build(session, made.key, made.model, made.version, parameters, measured)
+        repository.add_build(session, made.key, made.model, made.version, parameters, measured, MADE_BY)
         repository.add_artifact(session, made.key, STEP, sha, len(made.step))
+
+
+def _changed(shape: CadModel, row: ArtifactRow) -> CannotRebuild:
+    detail = (
+        f"the STEP file of build {row.build_key} is lost, and model {shape.id} version {shape.version} makes "
+        "other bytes now: its file has been changed since. Put the old file back, or restore artifact "
+        f"{row.sha256} from a backup"
+    )
+    return CannotRebuild("model_changed", detail)
 
 
 def build_in_worker(id: str, version: int, parameters: Mapping[str, Any], folders: tuple[Path, ...]) -> Build:

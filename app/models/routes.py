@@ -6,15 +6,20 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Request, Response
 from fastapi.responses import FileResponse, JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field, WithJsonSchema
 from starlette.concurrency import run_in_threadpool
 
 from app import problems
 from app.analyses.questions import what_can_be_asked
+from app.bounded import Bounded
 from app.catalogue.routes import Number, summary
-from app.dependencies import TheCatalogues, TheJobs, TheModels, TheStore
-from app.http import NotJson, StrictRoute
+from app.clients import TheClient
+from app.dependencies import TheCatalogues, TheHealing, TheJobs, TheModels, TheStore
+from app.healing import UNAVAILABLE, StoredFile, lost
+from app.http import StrictRoute, require_step
 from app.paging import Cursor, Limit, page_of
+from app.storage.artifacts import ArtifactStore
+from app.values import Parameters
 from app.waiting import LATER, accepted, finished
 from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.inspect import MEASURES
@@ -28,7 +33,10 @@ Id = Annotated[str, Path(max_length=64, examples=["ball_bearing"])]
 FOR_EVER = "public, max-age=31536000, immutable"
 
 
-class BuildIn(BaseModel):
+FileKind = Annotated[str, WithJsonSchema({"type": "string", "enum": list(MEDIA_TYPES)})]
+
+
+class BuildIn(Bounded):
     """Build a model from parameters."""
 
     model_config = ConfigDict(
@@ -39,9 +47,10 @@ class BuildIn(BaseModel):
         },
     )
 
-    parameters: dict[str, Any] = Field(description='quantities by name: `"48 mm"`; the others have defaults')
-    artifacts: list[str] = Field(
+    parameters: Parameters = Field(description='quantities by name: `"48 mm"`; the others have defaults')
+    artifacts: list[FileKind] = Field(
         [kind for kind in MEDIA_TYPES if kind not in DRAWINGS],
+        max_length=50,
         description="the kinds of files wanted; without it all but dimensioned drawings",
     )
 
@@ -80,23 +89,27 @@ def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, A
 @router.get(
     "/models/{id}/versions/{number}/picture",
     response_class=FileResponse,
-    responses={200: {"content": {"image/png": {}}}, **LATER},
+    responses={200: {"content": {"image/png": {}}}, **LATER, **UNAVAILABLE},
 )
 async def picture(
     id: Id,
     number: Number,
     catalogues: TheCatalogues,
     models: TheModels,
+    store: TheStore,
     jobs: TheJobs,
+    client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
     """A picture (PNG) of the model's example."""
     cls = catalogues.models.get(id, number)
     shape = cls.from_quantities(cls.example)
-    job = await run_in_threadpool(models.request, shape, ("step", "png"))
+    job = await run_in_threadpool(models.request, shape, ("step", "png"), client)
     if not await finished(jobs, job, prefer):
         return accepted(job)
-    return send_file(await run_in_threadpool(models.file, build_key(shape), "png"))
+    if failed := await run_in_threadpool(jobs.problem, job):
+        return problems.answer(failed)
+    return send_file(store, await run_in_threadpool(models.file, build_key(shape), "png"))
 
 
 @router.post("/models/{id}/versions/{number}/build", responses=LATER)
@@ -107,6 +120,7 @@ async def build(
     catalogues: TheCatalogues,
     models: TheModels,
     jobs: TheJobs,
+    client: TheClient,
     prefer: Annotated[str | None, Header()] = None,
 ) -> Response:
     """Build a model, check it, measure it on the finished STEP file. Equal parameters are built once."""
@@ -118,7 +132,7 @@ async def build(
         )
     shape = catalogues.models.get(id, number).from_quantities(body.parameters)
     kinds = tuple(dict.fromkeys(("step", *body.artifacts)))
-    job = await run_in_threadpool(models.request, shape, kinds)
+    job = await run_in_threadpool(models.request, shape, kinds, client)
     if not await finished(jobs, job, prefer):
         return accepted(job, {"build": build_key(shape), "artifacts": {}, "measurements": None})
     if job and (failed := await run_in_threadpool(lambda: jobs.get(job).problem)):
@@ -135,25 +149,40 @@ def show_build(key: str, models: TheModels) -> dict[str, Any]:
 @router.get(
     "/artifacts/{sha256}",
     response_class=FileResponse,
-    responses={200: {"content": {"application/octet-stream": {}}}},
+    responses={200: {"content": {"application/octet-stream": {}}}, **UNAVAILABLE},
 )
-def artifact(sha256: str, store: TheStore) -> Response:
-    """The bytes of this hash; they never change."""
+async def artifact(
+    sha256: str,
+    store: TheStore,
+    healing: TheHealing,
+    jobs: TheJobs,
+    prefer: Annotated[str | None, Header()] = None,
+) -> Response:
+    """The bytes of this hash; they never change. A file that was lost is made again from its row."""
+    if answer := await lost(sha256, healing, jobs, prefer, same=True):
+        return answer
     headers = {"ETag": f'"{sha256}"', "Cache-Control": FOR_EVER}
-    return FileResponse(store.path(sha256), media_type="application/octet-stream", headers=headers)
+    return StoredFile(store, sha256, "application/octet-stream", headers)
 
 
-@router.post(
-    "/verify", openapi_extra={"requestBody": {"content": {"model/step": {"schema": {"type": "string"}}}}}
-)
+STEP_FILE: dict[str, Any] = {"type": "string", "format": "binary"}
+STEP_BODY: dict[str, Any] = {"content": {"model/step": {"schema": STEP_FILE}}, "required": True}
+
+
+@router.post("/verify", openapi_extra={"requestBody": STEP_BODY})
 async def verify(request: Request, models: TheModels) -> dict[str, Any]:
-    """From which build a STEP file is, and which revisions use it."""
-    if request.headers.get("content-type", "").partition(";")[0].strip() not in ("model/step", ""):
-        raise NotJson("send the STEP file itself as model/step")
+    """From which build a STEP file is, and which revisions use it.
+
+    The body is the file itself, sent as `model/step`; `application/step` and `application/p21` mean the same.
+    Which build it is stands in its header, within the first 64 KiB.
+    """
+    require_step(request)
     return await run_in_threadpool(models.verify, await request.body())
 
 
-def send_file(file: Any, headers: dict[str, str] | None = None, name: str | None = None) -> Response:
+def send_file(
+    store: ArtifactStore, file: Any, headers: dict[str, str] | None = None, name: str | None = None
+) -> Response:
     """A stored file with its hash as ETag."""
     sent = {"ETag": f'"{file.sha256}"', **(headers or {})}
-    return FileResponse(file.path, media_type=MEDIA_TYPES[file.kind], headers=sent, filename=name)
+    return StoredFile(store, file.sha256, MEDIA_TYPES[file.kind], sent, name)

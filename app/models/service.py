@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from sqlalchemy.orm import Session
@@ -12,7 +12,9 @@ from sqlalchemy.orm import Session
 from app.designs import repository, results
 from app.designs.errors import NotFound
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.models.ages import is_fresh, renew
 from app.models.builds import Builds
+from app.models.errors import CannotRebuild
 from app.problems import describe
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
@@ -26,14 +28,14 @@ from templates.core.catalogue import Catalogue
 from templates.core.errors import TemplateError
 
 BUILD = "build"
-FAILURES = (TemplateError, GeometryError, DeadlineExceeded, MemoryExceeded)  # that the model brings about
+FAILURES = (TemplateError, GeometryError, DeadlineExceeded, MemoryExceeded, CannotRebuild)
+"""What a model brings about."""
 
 
 @dataclass(frozen=True)
 class File:
     """A stored file of a build."""
 
-    path: Path
     kind: str
     sha256: str
 
@@ -46,31 +48,42 @@ class Models:
     ) -> None:
         self.database, self.store, self.jobs, self.catalogue = database, store, jobs, catalogue
 
-    def request(self, shape: CadModel, kinds: tuple[str, ...]) -> str | None:
+    def request(self, shape: CadModel, kinds: tuple[str, ...], client: str = "") -> str | None:
         """The job that makes a build and its files, or None if all are there."""
         key = build_key(shape)
         with self.database.read() as session:
-            if set(kinds) <= repository.artifacts(session, key).keys():
-                return None
+            there = repository.artifacts(session, key)
+            fresh = is_fresh(session, [key])
+        is_there = all(kind in there and self.store.exists(there[kind]) for kind in kinds)
+        if is_there and fresh:
+            return None
         payload = {
             "model": shape.id,
             "version": shape.version,
             "parameters": as_text(shape),
             "kinds": [*kinds],
         }
-        return self._enqueued(payload)
 
-    def request_file(self, key: str, kind: str) -> str:
+        def unit(session: Session) -> str | None:
+            if renew(session, [key]) and is_there:  # it did not go meanwhile
+                return None
+            return self.jobs.request(session, BUILD, payload, client)
+
+        job = self.database.write(unit)
+        self.jobs.wake()
+        return job
+
+    def request_file(self, key: str, kind: str, client: str = "") -> str:
         """The job that makes a file of a finished build, whichever recipe it was made by."""
-        return self.request_files(key, (kind,))
+        return self.request_files(key, (kind,), client)
 
-    def request_files(self, key: str, kinds: tuple[str, ...]) -> str:
+    def request_files(self, key: str, kinds: tuple[str, ...], client: str = "") -> str:
         """The job that makes several files of a finished build."""
-        return self._enqueued({"build": key, "kinds": [*kinds]})
+        payload = {"build": key, "kinds": [*kinds]}
 
-    def _enqueued(self, payload: dict[str, Any]) -> str:
         def unit(session: Session) -> str:
-            return self.jobs.waiting(session, BUILD, payload) or self.jobs.enqueue(session, BUILD, payload)
+            renew(session, [key])
+            return self.jobs.request(session, BUILD, payload, client)
 
         job = self.database.write(unit)
         self.jobs.wake()
@@ -101,21 +114,7 @@ class Models:
         """A file of a build, or None if it is not made yet."""
         with self.database.read() as session:
             row = repository.artifact(session, key, kind)
-        return File(self.store.path(row.sha256), kind, row.sha256) if row else None
-
-    def shape_of(self, key: str) -> CadModel:
-        """The model of a build, with its parameters.
-
-        Raises
-        ------
-        NotFound
-            If it was not made.
-        """
-        told = self.show(key)
-        cls = self.catalogue.get(told["model"]["id"], told["model"]["version"])
-        return cls.from_quantities(
-            {n: p if "unit" in p else p["value"] for n, p in told["parameters"].items()}
-        )
+        return File(kind, row.sha256) if row else None
 
     def verify(self, step: bytes) -> dict[str, Any]:
         """From which build a STEP file is, which revisions use it, and whether its bytes are still those.
@@ -131,7 +130,7 @@ class Models:
         told = self.show(header.build)
         with self.database.read() as session:
             users = repository.users_of(session, header.build)
-        intact = step == self.store.read(told["artifacts"]["step"])
+        intact = hashlib.sha256(step).hexdigest() == told["artifacts"]["step"]
         return {"build": header.build, "model": told["model"], "revisions": users, "intact": intact}
 
 
@@ -162,6 +161,7 @@ class ModelBuild:
 
     def _derived(self, key: str, kinds: Iterable[str], context: JobContext) -> Completion:
         try:
+            self.builds.restore(key, self.catalogue, context)
             for kind in kinds:
                 if kind in DERIVED:
                     self.builds.derive(key, kind, context)

@@ -12,6 +12,8 @@ from fastapi.responses import JSONResponse
 from starlette.concurrency import run_in_threadpool
 
 from app.calculations.display import Units
+from app.calculations.steps import ExpensiveSteps, TheThreads
+from app.clients import TheClient
 from app.dependencies import TheJobs
 from app.designs.errors import NotFound
 from app.designs.routes import Id, Number, Prefer
@@ -22,10 +24,12 @@ from app.reports.content import Report
 from app.reports.paper import Press
 from app.reports.screen import page
 from app.reports.service import Reports, tag
-from app.waiting import finished
+from app.waiting import accepted_kinds, finished
 from app.web.rendering import POLICY
 
-router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
+router = APIRouter(
+    prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
+)
 
 REPORTS = {"html": "text/html", "pdf": "application/pdf"}
 TABLES = {
@@ -70,6 +74,9 @@ async def report(
     reports: TheReports,
     press: ThePress,
     jobs: TheJobs,
+    client: TheClient,
+    threads: TheThreads,
+    request: Request,
     number: Number | None = None,
     kind: Id | None = None,
     units: Units = "si",
@@ -80,8 +87,8 @@ async def report(
     """The calculation report of a revision, the newest if none is named: on the screen or on paper."""
     wanted = _wanted("report", kind, accept, REPORTS)
     revision = await run_in_threadpool(reports.number, id, number)
-    job = await _waited(reports, jobs, id, revision, prefer)
-    told = await run_in_threadpool(lambda: reports.gather(id, revision, units, pending=job is not None))
+    job = await _waited(reports, jobs, id, revision, prefer, client)
+    told = await threads.run_for(request, reports.gather, id, revision, units, pending=job is not None)
     headers = _headers(told, wanted, job)
     if job is None and if_none_match and headers["ETag"] in if_none_match:
         return Response(status_code=304, headers=headers)
@@ -97,9 +104,11 @@ async def report(
 @router.get("/{id}/worksheet.{kind}", **_described(TABLES))
 @router.get("/{id}/revisions/{number}/worksheet", **_described(TABLES))
 @router.get("/{id}/revisions/{number}/worksheet.{kind}", **_described(TABLES))
-def worksheet(
+async def worksheet(
     id: Id,
     reports: TheReports,
+    threads: TheThreads,
+    request: Request,
     number: Number | None = None,
     kind: Id | None = None,
     units: Units = "si",
@@ -111,19 +120,22 @@ def worksheet(
     table.
     """
     wanted = _wanted("worksheet", kind, accept, TABLES)
-    revision = reports.number(id, number)
-    told = reports.told(id, revision, units)
+    revision = await run_in_threadpool(reports.number, id, number)
+    told = await threads.run_for(request, reports.told, id, revision, units)
     headers = {"Vary": "Accept", "Design-Revision": str(revision)}
     if wanted == "json":
         return JSONResponse(told, headers=headers)
     write = tables.write_csv if wanted == "csv" else tables.write_xlsx
     headers["Content-Disposition"] = f'attachment; filename="design_{_plain(id)}_r{revision}.{wanted}"'
-    return Response(write(tables.of(told)), headers=headers, media_type=TABLES[wanted])
+    table = await run_in_threadpool(lambda: write(tables.of(told)))
+    return Response(table, headers=headers, media_type=TABLES[wanted])
 
 
-async def _waited(reports: Reports, jobs: Jobs, id: str, number: int, prefer: str | None) -> str | None:
+async def _waited(
+    reports: Reports, jobs: Jobs, id: str, number: int, prefer: str | None, client: str
+) -> str | None:
     """The job that still makes pictures of this revision when the client's patience ends, if any does."""
-    for job in await run_in_threadpool(reports.request_pictures, id, number):
+    for job in await run_in_threadpool(reports.request_pictures, id, number, client):
         if not await finished(jobs, job, prefer or f"wait={PATIENCE:g}"):
             return job
     return None
@@ -154,8 +166,7 @@ def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str,
         if kind not in kinds:
             raise NotFound(f"there is no {what}.{kind[:20]}; there are {', '.join(kinds)}")
         return kind
-    named = [part.partition(";") for part in (accept or "").lower().split(",")]
-    weights = {media.strip(): _weight(more) for media, _, more in named}
+    weights = {media: _weight(more) for media, more in accepted_kinds(accept)}
     return max(kinds, key=lambda name: weights.get(kinds[name], 0.0))
 
 

@@ -64,13 +64,14 @@ class Reports:
             "steps": worksheets(told["steps"], self.catalogues.templates, system),
         }
 
-    def request_pictures(self, id: str, number: int) -> list[str]:
+    def request_pictures(self, id: str, number: int, client: str = "") -> list[str]:
         """The jobs that make what a report shows of every built model; none if all is there."""
         with self.database.read() as session:
             row = repository.revision(session, id, number)
             keys = {m.build_key for m in row.models if m.build_key and repository.build(session, m.build_key)}
-            missing = {key: _missing(session, key) for key in sorted(keys)}
-        return [self.models.request_files(key, kinds) for key, kinds in missing.items() if kinds]
+            there = {key: repository.artifacts(session, key) for key in sorted(keys)}
+        missing = {key: self._missing(files) for key, files in there.items()}
+        return [self.models.request_files(key, kinds, client) for key, kinds in missing.items() if kinds]
 
     def gather(self, id: str, number: int, system: System, *, pending: bool) -> Report:
         """All that the report says; `pending` if its pictures are still being made."""
@@ -113,11 +114,17 @@ class Reports:
             for name, shas in files.items()
         }
 
+    def _missing(self, there: Mapping[str, str]) -> tuple[str, ...]:
+        """The pictures of a build that are not made yet, or lost."""
+        shown = (PICTURE, DRAWING)
+        return tuple(kind for kind in shown if kind not in there or not self.store.exists(there[kind]))
+
     def _model(
         self, session: Session, id: str, number: int, name: str, told: Any, system: System, pending: bool
     ) -> Model:
-        has_all = not told["build"] or not repository.build(session, told["build"])
-        has_all = has_all or {PICTURE, DRAWING} <= told["artifacts"].keys()
+        missing = self._missing(told["artifacts"])
+        has_all = not told["build"] or not repository.build(session, told["build"]) or not missing
+        told = {**told, "artifacts": {k: sha for k, sha in told["artifacts"].items() if k not in missing}}
         remark = "" if has_all else (PENDING if pending else NO_PICTURE)
         return model_of(session, id, number, name, told, self.catalogues.models, system, remark)
 
@@ -125,11 +132,6 @@ class Reports:
 def tag(report: Report, kind: str) -> str:
     """A strong ETag: equal reports have equal tags."""
     return f'"{hashlib.sha256(to_json([asdict(report), kind])).hexdigest()[:32]}"'
-
-
-def _missing(session: Session, key: str) -> tuple[str, ...]:
-    there = repository.artifacts(session, key)
-    return tuple(kind for kind in (PICTURE, DRAWING) if kind not in there)
 
 
 def _round(told: Mapping[str, Any]) -> Round:

@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from itertools import zip_longest
+from itertools import chain, count, zip_longest
 from typing import Any
 
 from openpyxl import Workbook  # type: ignore[import-untyped]
@@ -206,6 +206,6 @@ def _clean(text: str) -> str:
 def _sheet_name(block: str, taken: Sequence[str]) -> str:
     """A name that spreadsheets allow, and that no other sheet has; they do not tell capitals apart."""
     there = {name.lower() for name in taken}
-    plain = _NO_SHEET_NAME.sub("", block)[: _LONGEST_SHEET_NAME - 3]
-    numbered = (plain, *(f"{plain} {i}" for i in range(2, 99)))
+    plain = _NO_SHEET_NAME.sub("", block)[: _LONGEST_SHEET_NAME - 4]
+    numbered = chain([plain], (f"{plain} {i}" for i in count(2)))
     return next(name for name in numbered if name.lower() not in there)

@@ -16,6 +16,8 @@ from typing import Any
 
 import typst
 
+from app.bidi import bare_everywhere
+
 PICTURE, DRAWING = "png", "drawing.svg"  # kinds of files that a report shows
 
 Pictures = Mapping[str, Mapping[str, bytes]]  # by model and kind
@@ -26,7 +28,7 @@ DOCUMENT = Path(__file__).with_name("report.typ")
 def typeset(report: Mapping[str, Any], pictures: Pictures) -> bytes:
     """A report as PDF; equal reports give equal bytes."""
     models = [{**model, "pictures": _as_svg(pictures.get(model["name"], {}))} for model in report["models"]]
-    data = json.dumps({**report, "models": models}, ensure_ascii=True).encode()
+    data = json.dumps(bare_everywhere({**report, "models": models}), ensure_ascii=True).encode()
     files: Any = {"main": DOCUMENT.read_bytes(), "data.json": data}
     date = datetime.fromisoformat(report["date"]).replace(microsecond=0)
     made = typst.compile(files, format="pdf", timestamp=date)

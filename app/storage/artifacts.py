@@ -1,71 +1,220 @@
-"""Files named by the SHA-256 of their bytes: written once, whole or not at all, never changed."""
+"""Files named by the SHA-256 of their bytes: written whole or not at all, verified when they are read."""
 
+from __future__ import annotations
+
+import errno
 import hashlib
 import os
 import re
+import stat
 import tempfile
+import threading
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from io import BufferedReader
 from pathlib import Path
+from typing import Protocol
 
-from app.storage.errors import ArtifactMissing
+from app.storage.errors import ArtifactDamaged, ArtifactMissing
+from app.storage.verified import Opened, Stamp, Verified, stamp_of
 
-_SHA256 = re.compile(r"[0-9a-f]{64}")
+QUARANTINE = "quarantine"
+SHA256 = re.compile(r"[0-9a-f]{64}")
 _TEMPORARY = ".tmp-"
+_FAILING_DISK = {errno.EIO, errno.EBADMSG, getattr(errno, "EUCLEAN", errno.EIO)}
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A file in the store: its name, its size [bytes] and when it was last put [s since 1970]."""
+
+    sha: str
+    size: int
+    modified: float
+
+
+class Artifacts(Protocol):
+    """What every store of artifacts can do."""
+
+    def put(self, data: bytes) -> str:
+        """Store bytes; they are durable when it returns."""
+        ...
+
+    def fetch(self, sha: str) -> Path:
+        """Return where the verified bytes lie; raises ArtifactMissing, ArtifactDamaged."""
+        ...
+
+    def exists(self, sha: str) -> bool:
+        """Whether the bytes are there and good."""
+        ...
+
+    def delete(self, sha: str) -> None:
+        """Remove the bytes, if they are there."""
+        ...
+
+    def list(self) -> Iterator[Stored]:
+        """Every file in the store, verified or not."""
+        ...
 
 
 class ArtifactStore:
     """Artifacts in a local folder, spread over 256 folders by the first two digits of their names.
 
     One process writes at a time (see `DataFolder`), so temporary files found at the start are left-overs.
+    A file whose bytes no longer have its hash goes into the folder `quarantine` and is never served.
     """
 
     def __init__(self, folder: Path) -> None:
-        self._folder = folder
+        self.folder = folder
+        self._verified = Verified()
+        self._changing = threading.Lock()  # nobody deletes, replaces or sets aside a file that is put
         folder.mkdir(parents=True, exist_ok=True)
         for stale in folder.glob(f"*/{_TEMPORARY}*"):
             stale.unlink()
 
     def put(self, data: bytes) -> str:
-        """Store the bytes durably and return their SHA-256; the same bytes are stored once."""
+        """Store the bytes durably and return their SHA-256; the same bytes are stored once.
+
+        A file that is there keeps its bytes, if they are good, and is as young as if it were new.
+        """
         sha = hashlib.sha256(data).hexdigest()
         target = self._location(sha)
-        # A file of another size was torn by a failing disk: the good bytes in hand replace it.
-        if not target.is_file() or target.stat().st_size != len(data):
-            target.parent.mkdir(exist_ok=True)
-            _write_whole(target, data)
+        if not (self.exists(sha) and self._renewed(target)):
+            with self._changing:
+                target.parent.mkdir(exist_ok=True)
+                _write_whole(target, data)
         # Even for a file found: the writer that renamed it may not have synced its folder yet.
         _sync_folder(target.parent)
-        _sync_folder(self._folder)
+        _sync_folder(self.folder)
         return sha
 
-    def path(self, sha: str) -> Path:
-        """Where an artifact lies.
+    def fetch(self, sha: str) -> Path:
+        """Where a verified artifact lies.
 
         Raises
         ------
         ArtifactMissing
             Nothing is stored under this name, or it is no SHA-256.
+        ArtifactDamaged
+            The bytes had another hash; the file has been set aside.
         """
-        location = self._location(sha)
-        if not location.is_file():
-            raise ArtifactMissing(sha)
-        return location
+        with self.open(sha):
+            return self._location(sha)
 
     def read(self, sha: str) -> bytes:
-        """Return the bytes of an artifact; raises ArtifactMissing as `path` does."""
-        return self.path(sha).read_bytes()
+        """Return the bytes of an artifact, verified by themselves; raises as `fetch` does."""
+        with self._opened(sha) as file:
+            try:
+                data = file.read()
+            except OSError as error:
+                raise self._unreadable(sha, file, error) from error
+            if hashlib.sha256(data).hexdigest() != sha:
+                raise self._set_aside(sha, stamp_of(file), f"its {len(data)} bytes have another hash")
+        return data
 
-    def check(self, sha: str) -> bool:
-        """Whether the artifact exists and its bytes still have this hash."""
+    def open(self, sha: str) -> Opened:
+        """Open a verified artifact for reading; raises as `fetch` does.
+
+        The file stays the verified one even if another takes its name. Its bytes are hashed once for every
+        inode, size and times that it shows.
+        """
+        file = self._opened(sha)
         try:
-            return hashlib.sha256(self.read(sha)).hexdigest() == sha
-        except ArtifactMissing:
+            return Opened(file, self._verify(sha, file))
+        except BaseException:
+            file.close()
+            raise
+
+    def exists(self, sha: str) -> bool:
+        """Whether the artifact is there and its bytes still have this hash; a damaged one is set aside."""
+        try:
+            self.open(sha).file.close()
+        except (ArtifactMissing, ArtifactDamaged):
             return False
+        return True
+
+    def delete(self, sha: str) -> None:
+        """Remove an artifact, if it is there."""
+        with self._changing:
+            self._location(sha).unlink(missing_ok=True)
+        self._verified.forget(sha)
+
+    def delete_unchanged(self, seen: Stored) -> bool:
+        """Delete a file unless it was put again since it was listed; return whether it is deleted."""
+        location = self._location(seen.sha)
+        with self._changing, suppress(FileNotFoundError):
+            if location.stat().st_mtime == seen.modified:
+                location.unlink()
+                self._verified.forget(seen.sha)
+                return True
+        return False
+
+    def list(self) -> Iterator[Stored]:
+        """Every artifact in the folder, verified or not, without those that were set aside."""
+        for path in self.folder.glob("[0-9a-f][0-9a-f]/*"):
+            if SHA256.fullmatch(path.name):
+                with suppress(FileNotFoundError):  # deleted meanwhile
+                    seen = path.lstat()
+                    yield Stored(path.name, seen.st_size, seen.st_mtime)
+
+    def _verify(self, sha: str, file: BufferedReader) -> Stamp:
+        stamp = stamp_of(file)
+        if self._verified.has(sha, stamp):
+            return stamp
+        try:
+            found = hashlib.file_digest(file, "sha256").hexdigest()
+        except OSError as error:
+            raise self._unreadable(sha, file, error) from error
+        if found != sha:
+            raise self._set_aside(sha, stamp, f"its {stamp.size} bytes have another hash")
+        file.seek(0)
+        self._verified.add(sha, stamp)
+        return stamp
+
+    def _opened(self, sha: str) -> BufferedReader:
+        location = self._location(sha)
+        try:
+            if not stat.S_ISREG(location.lstat().st_mode):  # a pipe, a link, a folder
+                raise ArtifactMissing(sha)
+            return location.open("rb")
+        except FileNotFoundError:
+            raise ArtifactMissing(sha) from None
+
+    def _unreadable(self, sha: str, file: BufferedReader, error: OSError) -> Exception:
+        """A disk that cannot give the bytes back has damaged them; any other error is none of the file's."""
+        if error.errno not in _FAILING_DISK:
+            return error
+        return self._set_aside(sha, stamp_of(file), f"the disk cannot read it ({error.strerror})")
+
+    def _set_aside(self, sha: str, stamp: Stamp, reason: str) -> ArtifactDamaged:
+        """Move the damaged file away, unless good bytes have taken its place meanwhile."""
+        self._verified.forget(sha)
+        location, aside = self._location(sha), self.folder / QUARANTINE / f"{sha}.damaged-{_moment()}"
+        with self._changing, suppress(FileNotFoundError):
+            seen = location.stat()
+            if seen.st_ino == stamp.inode:
+                aside.parent.mkdir(exist_ok=True)
+                os.replace(location, aside)
+        return ArtifactDamaged(sha, reason)
+
+    def _renewed(self, path: Path) -> bool:
+        """Make a file as young as a new one, for `delete_unchanged`; return whether it was still there."""
+        with self._changing, suppress(FileNotFoundError):
+            os.utime(path)
+            return True
+        return False
 
     def _location(self, sha: str) -> Path:
         # A name comes from a URL: anything but a hash could lead out of the folder.
-        if not _SHA256.fullmatch(sha):
+        if not SHA256.fullmatch(sha):
             raise ArtifactMissing(sha)
-        return self._folder / sha[:2] / sha
+        return self.folder / sha[:2] / sha
+
+
+def _moment() -> str:
+    return datetime.now(UTC).strftime("%Y%m%dT%H%M%S.%f")
 
 
 def _write_whole(target: Path, data: bytes) -> None:

@@ -17,8 +17,10 @@ from typing import Any, TypeVar
 from sqlalchemy import Connection
 from sqlalchemy.orm import Session
 
+from app.storage.clock import OperationClock
+from app.storage.damage import Watch
 from app.storage.engines import reading_engine, writing_engine
-from app.storage.errors import CommitFailed, DatabaseClosed
+from app.storage.errors import CommitFailed, DatabaseClosed, DatabaseDamaged
 
 T = TypeVar("T")
 Unit = Callable[[Session], T]
@@ -27,7 +29,7 @@ GROUP = 256  # units in one transaction: bounds how long the first of them waits
 
 
 class Database:
-    """Reads in snapshots, writes by units of work.
+    """Reads in snapshots, writes by units of work; once damage has shown, it only reads.
 
     `on_commit` is called with each group's number of units, its time [s], and whether it failed. A unit
     runs in the context (`contextvars`) of its caller.
@@ -37,8 +39,10 @@ class Database:
 
     def __init__(self, url: str, on_commit: Callable[[int, float, bool], object] | None = None) -> None:
         self._on_commit = on_commit or (lambda units, seconds, failed: None)
+        self.watch = Watch(url)
         self._reader = reading_engine(url)
         self._writer = writing_engine(url)
+        self.clock = OperationClock()
         self._waiting: queue.SimpleQueue[_Pending | None] = queue.SimpleQueue()
         self._closing = threading.Lock()
         self._closed = False
@@ -47,8 +51,14 @@ class Database:
 
     @contextmanager
     def read(self) -> Iterator[Session]:
-        """Open a session on a snapshot of the database; it cannot write."""
-        with Session(self._reader, expire_on_commit=False) as session:
+        """Open a session on a snapshot of the database; it cannot write.
+
+        Raises
+        ------
+        DatabaseDamaged
+            What was to be read cannot be read.
+        """
+        with self.watch, Session(self._reader, expire_on_commit=False) as session:
             yield session
 
     def write(self, unit: Unit[T]) -> T:
@@ -60,16 +70,18 @@ class Database:
             The unit ran, but its group could not be committed; nothing of it is stored.
         DatabaseClosed
             The database has been closed.
+        DatabaseDamaged
+            The database is damaged; nothing is stored.
         Exception
             Whatever the unit raises; its changes, and no others, are undone.
         """
         if threading.current_thread() is self._thread:
             raise RuntimeError("A unit of work may not wait for another: use its session.")
-        return self._submit(unit).result()
+        return self.submit(unit).result()
 
     async def awrite(self, unit: Unit[T]) -> T:
         """Like `write`, for a caller in an event loop."""
-        return await asyncio.wrap_future(self._submit(unit))
+        return await asyncio.wrap_future(self.submit(unit))
 
     def close(self) -> None:
         """Commit what waits, then close all connections. A second call does nothing."""
@@ -81,7 +93,9 @@ class Database:
         self._reader.dispose()
         self._writer.dispose()
 
-    def _submit(self, unit: Unit[T]) -> "Future[T]":
+    def submit(self, unit: Unit[T]) -> "Future[T]":
+        """Queue a unit of work; its future raises as `write` does."""
+        self.watch.refuse()
         pending = _Pending(unit)
         with self._closing:  # nothing may enter the queue behind its end
             if self._closed:
@@ -96,6 +110,8 @@ class Database:
             wanted = [pending for pending in group if pending.future.set_running_or_notify_cancel()]
             if wanted:
                 self._commit(wanted)
+        if self.clock.elapsed:
+            self._commit([])
 
     def _next_group(self) -> "tuple[list[_Pending], bool]":
         """Wait for a unit, then take those that came meanwhile; also tell whether more may come."""
@@ -110,15 +126,19 @@ class Database:
     def _commit(self, group: "list[_Pending]") -> None:
         start = time.perf_counter()
         try:
-            with self._writer.begin() as connection:
+            with self.watch, self._writer.begin() as connection:
+                self.watch.refuse()  # damage may have shown while the group was waiting
+                seconds = self.clock.advance(connection)
                 for pending in group:
                     pending.run(connection)
+                    self.watch.raise_if_damage(pending.error)
         except Exception as error:
             self._on_commit(len(group), time.perf_counter() - start, True)
             for pending in group:
                 pending.refuse(error)
         else:
             self._on_commit(len(group), time.perf_counter() - start, False)
+            self.clock.commit(seconds)
             for pending in group:
                 pending.settle()
 
@@ -131,7 +151,7 @@ class _Pending:
         self._unit = unit
         self._context = contextvars.copy_context()
         self._result: Any = None
-        self._error: BaseException | None = None
+        self.error: BaseException | None = None
 
     def run(self, connection: Connection) -> None:
         """Run the unit in a savepoint of its own; what it raises is kept for its caller."""
@@ -141,17 +161,20 @@ class _Pending:
                 self._result = self._context.run(self._unit, session)
                 session.commit()  # releases the savepoint; raises if the unit has hidden a failed statement
         except BaseException as error:  # even SystemExit belongs to the caller, not to the writer thread
-            self._error = error
+            self.error = error
 
     def settle(self) -> None:
         """Hand the outcome to the caller: the group is durable."""
-        if self._error is None:
+        if self.error is None:
             self.future.set_result(self._result)
         else:
-            self.future.set_exception(self._error)
+            self.future.set_exception(self.error)
 
     def refuse(self, cause: Exception) -> None:
         """Tell the caller that the group is lost."""
+        if isinstance(cause, DatabaseDamaged):
+            self.future.set_exception(cause)
+            return
         lost = CommitFailed("The changes could not be committed; nothing was stored.")
         lost.__cause__ = cause
-        self.future.set_exception(self._error or lost)
+        self.future.set_exception(self.error or lost)

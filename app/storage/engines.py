@@ -1,6 +1,7 @@
 """Where the kinds of database differ: engines that read and engines that write, for SQLite and PostgreSQL."""
 
 import sqlite3
+from pathlib import Path
 from typing import Any
 
 from sqlalchemy import Connection, Engine, create_engine, event, make_url
@@ -29,6 +30,12 @@ def reading_engine(url: str) -> Engine:
         return _sqlite_engine(url, _READER, "BEGIN")
     options = {"postgresql_readonly": True, "isolation_level": "REPEATABLE READ"}
     return create_engine(url, execution_options=options)
+
+
+def sqlite_file(url: str) -> Path | None:
+    """The file of a SQLite database; None for any other database."""
+    chosen = make_url(url)
+    return Path(chosen.database) if _is_sqlite(url) and chosen.database else None
 
 
 def _is_sqlite(url: str) -> bool:

@@ -5,9 +5,12 @@ StorageError
  ├── DatabaseNewer       the database was written by a newer program
  ├── DatabaseClosed      a unit of work came after `close`
  ├── CommitFailed        a unit of work ran, but its group could not be made durable
- └── ArtifactMissing     no artifact has this hash
+ ├── DatabaseDamaged     pages or rows of the database cannot be read as they were written
+ ├── ArtifactMissing     no artifact has this hash
+ └── ArtifactDamaged     the bytes of an artifact no longer have its hash
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 
 
@@ -51,6 +54,23 @@ class CommitFailed(StorageError):
     """The group of a unit of work could not be committed: nothing of it is stored. Raised from the cause."""
 
 
+class DatabaseDamaged(StorageError):
+    """Pages or rows of the database cannot be read as they were written."""
+
+    def __init__(self, database: str, faults: Sequence[str]) -> None:
+        super().__init__(database, faults)
+        self.database = database
+        self.faults = tuple(faults)
+
+    def __str__(self) -> str:
+        return (
+            f"The database {self.database} is damaged: {'; '.join(self.faults)}. Nothing is written to it. "
+            "Stop the service, keep a copy of the data folder, then restore the last backup with "
+            "`crankwright restore FILE --data NEW_FOLDER`, or save what is readable with "
+            "`sqlite3 crankwright.sqlite .recover | sqlite3 recovered.sqlite`."
+        )
+
+
 class ArtifactMissing(StorageError):
     """No artifact has this hash."""
 
@@ -60,3 +80,15 @@ class ArtifactMissing(StorageError):
 
     def __str__(self) -> str:
         return f"There is no artifact {self.sha}."
+
+
+class ArtifactDamaged(StorageError):
+    """The bytes of an artifact no longer have its hash; the file has been set aside."""
+
+    def __init__(self, sha: str, reason: str) -> None:
+        super().__init__(sha, reason)
+        self.sha = sha
+        self.reason = reason
+
+    def __str__(self) -> str:
+        return f"Artifact {self.sha} is damaged: {self.reason}. The file has been set aside."

@@ -6,6 +6,8 @@ from pathlib import Path
 
 from app.storage.errors import DataFolderInUse
 
+LOCK = "crankwright.lock"
+
 
 class DataFolder:
     """A folder that this process alone may use until it ends or calls `release`.
@@ -22,7 +24,7 @@ class DataFolder:
     def __init__(self, path: Path) -> None:
         self.path = path.absolute()
         self.path.mkdir(parents=True, exist_ok=True)
-        self._lock = os.open(self.path / "crankwright.lock", os.O_RDWR | os.O_CREAT, 0o644)
+        self._lock = os.open(self.path / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
         self._acquire()
 
     @property

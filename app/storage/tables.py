@@ -35,6 +35,10 @@ def canonical_json(value: Any) -> str:
     return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 
 
+class NotWritten(ValueError):
+    """A column holds what this program has never written there."""
+
+
 class Json(TypeDecorator[Any]):
     """A JSON value in a text column; None is NULL. Replace a value whole: a change inside it is not seen."""
 
@@ -46,8 +50,11 @@ class Json(TypeDecorator[Any]):
         return None if value is None else canonical_json(value)
 
     def process_result_value(self, value: str | None, dialect: Dialect) -> Any:
-        """From the column to Python."""
-        return None if value is None else json.loads(value)
+        """From the column to Python; text that is no JSON was not written by this program."""
+        try:
+            return None if value is None else json.loads(value)
+        except ValueError as error:
+            raise NotWritten(f"a stored text is no JSON: {error}") from error
 
 
 class Base(DeclarativeBase):
@@ -128,6 +135,7 @@ class BuildRow(Base):
     measurements: Mapped[dict[str, Any]] = mapped_column(Json)
     created: Mapped[str]
     operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when last wanted [s of operation]
+    made_by: Mapped[str] = mapped_column(default="")  # kernel and recipe; empty in builds of version 0.1
 
     artifacts: Mapped[list["ArtifactRow"]] = relationship(order_by="ArtifactRow.kind")
 
@@ -166,6 +174,7 @@ class JobRow(Base):
         Index(None, "state", "turn", "id"),
         Index(None, "client", "state"),
         Index(None, "design_id", "revision"),
+        Index(None, "operated"),
     )
 
     id: Mapped[str] = mapped_column(primary_key=True)
@@ -182,15 +191,17 @@ class JobRow(Base):
     result: Mapped[str | None]  # a link
     created: Mapped[str]
     updated: Mapped[str]
-    client: Mapped[str] = mapped_column(default="")  # who asked for it first; see `app.clients`
+    client: Mapped[str] = mapped_column(default="")  # whose turn it takes; see `app.clients`
+    others: Mapped[list[str]] = mapped_column(Json, default=list)  # clients that wait for it as well
     turn: Mapped[int] = mapped_column(BigInteger, default=0)
-    operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when it ended [s of operation]
+    operated: Mapped[int] = mapped_column(BigInteger, default=0)  # queued, then ended [s of operation]
 
 
 class IdempotencyRow(Base):
     """What was answered to a request that may be sent again."""
 
     __tablename__ = "idempotency"
+    __table_args__ = (Index(None, "operated"),)
 
     key: Mapped[str] = mapped_column(primary_key=True)
     scope: Mapped[str] = mapped_column(primary_key=True)  # method and path

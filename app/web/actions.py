@@ -1,17 +1,19 @@
 """What forms do: each is a call of the REST interface, then the page that shows what came of it.
 
 Without a script in the browser these are all actions there are; with one, `static/design.js` saves by itself.
-A form from another site is refused: a browser would send it without asking anyone.
+`app.guard` refuses a form of another site: a browser would send it without asking anyone.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import quote
 
-from fastapi import APIRouter, Depends, HTTPException, Request, Response
+from fastapi import APIRouter, Depends, Request, Response
 
+from app.http import FORM_TYPES, NotForm, check_type
 from app.web.api import Api, Refused, TheApi
 from app.web.design_page import design_page
 from app.web.forms import fields, kept, patch_of, value_of
@@ -20,19 +22,17 @@ from app.web.rendering import go
 from app.web.routes import Id, Number
 
 AT_ONCE = {"Prefer": "wait=1"}  # the page shows how the rest goes on
+_NUMBER = re.compile(r"[0-9]{1,6}")
 STALE = 412
 ILL_NAMED = 422
 
 
-async def same_site(request: Request) -> None:
-    """Let forms of our own pages through only."""
-    kind, origin = request.headers.get("sec-fetch-site"), request.headers.get("origin")
-    foreign = kind not in (None, "same-origin", "none")
-    if foreign or (origin and urlsplit(origin).netloc != request.headers.get("host")):
-        raise HTTPException(403, "this form was sent from another site")
+async def forms_only(request: Request) -> None:
+    """Let bodies through only if they are forms."""
+    check_type(request, FORM_TYPES, NotForm)
 
 
-router = APIRouter(include_in_schema=False, dependencies=[Depends(same_site)])
+router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 
 @router.post("/designs")
@@ -81,7 +81,7 @@ async def add(id: Id, request: Request, api: TheApi) -> Response:
 async def auto_map(id: Id, request: Request, api: TheApi) -> Response:
     """Save the proposals."""
     typed = await fields(request)
-    headers = {**AT_ONCE, "If-Match": f'"{typed.get("revision", "")}"'}
+    headers = {**AT_ONCE, "If-Match": _tag(typed.get("revision", ""))}
     await api.send("POST", f"/designs/{id}/auto-map", params={"apply": True}, headers=headers)
     return go(f"/designs/{id}")
 
@@ -120,8 +120,13 @@ async def cancel(id: Id, job: Id, api: TheApi) -> Response:
 
 async def _change(api: Api, id: str, revision: str, patch: Mapping[str, Any], note: str) -> None:
     noted = {**patch, "note": note} if note.strip() else patch
-    headers = {**AT_ONCE, "If-Match": f'"{revision}"'}
+    headers = {**AT_ONCE, "If-Match": _tag(revision)}
     await api.send("PATCH", f"/designs/{id}", json=noted, headers=headers)
+
+
+def _tag(revision: str) -> str:
+    """The ETag of a revision as a form names it; of what is no number, one that matches nothing."""
+    return f'"{revision if _NUMBER.fullmatch(revision) else 0}"'
 
 
 async def _again(request: Request, api: Api, id: str, typed: Mapping[str, str], refused: Refused) -> Response:
@@ -168,14 +173,14 @@ async def _blank(api: Api, typed: Mapping[str, str]) -> dict[str, Any]:
 
 async def _step(api: Api, chosen: str) -> tuple[str, dict[str, Any]]:
     step = _versioned("template", chosen)
-    told = await api.get(f"/templates/{step['template']}/versions/{step['version']}")
+    told = await api.get(f"/templates/{quote(step['template'], safe='')}/versions/{step['version']}")
     return step["template"], {**step, "inputs": told["example"]}
 
 
 def _versioned(key: str, chosen: str) -> dict[str, Any]:
     """`oil_film/2` as the id and version that the interface takes."""
     id, _, version = chosen.partition("/")
-    return {key: id, "version": int(version) if version.isdecimal() else "latest"}
+    return {key: id, "version": int(version) if _NUMBER.fullmatch(version) else "latest"}
 
 
 async def _block(api: Api, typed: Mapping[str, str]) -> dict[str, Any]:

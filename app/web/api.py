@@ -9,11 +9,13 @@ from collections.abc import Mapping
 from typing import Annotated, Any
 
 import httpx
-from fastapi import Depends, Request
+from fastapi import Depends, FastAPI, Request
 
-from app import logs
+from app.clients import TheClient, from_inside
 
 BASE = "/api/v1"
+_CLIENT = "crankwright.client"
+"""Extension of a request within the process: the client of the page's request."""
 
 
 class Refused(Exception):
@@ -30,10 +32,10 @@ class Refused(Exception):
 
 
 class Api:
-    """Calls of the interface by one request of a page."""
+    """Calls of the interface by one request of a page, for the client who sent that."""
 
-    def __init__(self, http: httpx.AsyncClient) -> None:
-        self._http = http
+    def __init__(self, http: httpx.AsyncClient, client: str) -> None:
+        self._http, self._client = http, client
 
     async def get(self, path: str, **query: Any) -> dict[str, Any]:
         """What a GET answers.
@@ -72,20 +74,36 @@ class Api:
         Refused
             If the interface refuses.
         """
-        headers = {"X-Request-ID": logs.REQUEST_ID.get(), **(more.pop("headers", None) or {})}
-        answer = await self._http.request(method, BASE + path, headers=headers, **more)
+        extensions = {_CLIENT: self._client}
+        try:
+            answer = await self._http.request(method, BASE + path, extensions=extensions, **more)
+        except httpx.InvalidURL:  # made from what a client typed
+            raise Refused(404, {"title": "Not found", "detail": "there is nothing at this address"}) from None
         if answer.is_error:
             raise Refused(answer.status_code, answer.json())
         return answer
 
 
-async def get_api(request: Request) -> Api:
-    """The interface of the app that serves this request; its client is made once."""
+class Inside(httpx.AsyncBaseTransport):
+    """Hands requests to the app itself, each with its client."""
+
+    def __init__(self, app: FastAPI) -> None:
+        self._app = app
+
+    async def handle_async_request(self, request: httpx.Request) -> httpx.Response:
+        """Call the app below its guard, which let the page's request pass."""
+        app = from_inside(self._app, request.extensions[_CLIENT])
+        return await httpx.ASGITransport(app, raise_app_exceptions=False).handle_async_request(request)
+
+
+async def get_api(request: Request, client: TheClient) -> Api:
+    """The interface of the app that serves this request; its HTTP client is made once."""
     state = request.app.state
     if not hasattr(state, "web_client"):
-        transport = httpx.ASGITransport(app=request.app, raise_app_exceptions=False)
-        state.web_client = httpx.AsyncClient(transport=transport, base_url="http://crankwright", timeout=None)
-    return Api(state.web_client)
+        # The host is a placeholder: the guard does not answer to it, and does not see these calls.
+        inside = Inside(request.app)
+        state.web_client = httpx.AsyncClient(transport=inside, base_url="http://crankwright", timeout=None)
+    return Api(state.web_client, client)
 
 
 TheApi = Annotated[Api, Depends(get_api)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,10 @@ PLAIN = ("/events", "/evaluate", ".png", ".step")
 
 class Files(StaticFiles):
     """Files that a browser keeps, and asks about before it uses them: after an update it has the new ones."""
+
+    def lookup_path(self, path: str) -> tuple[str, os.stat_result | None]:
+        """The file of a path; the system's calls raise on a null byte instead of finding nothing."""
+        return ("", None) if "\0" in path else super().lookup_path(path)
 
     def file_response(self, *given: Any, **named: Any) -> Response:
         """The file, or that it is still the same."""

@@ -8,6 +8,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from app.bidi import balanced, bare
 from app.web import numbers
 from templates.core.mathml import mathml
 
@@ -29,6 +30,11 @@ def capital(words: str) -> str:
     return words[:1].upper() + words[1:]
 
 
+def isolated(text: object) -> Markup:
+    """A text of a user, escaped, in an element of its own that turns nothing beside it."""
+    return Markup("<bdi>{}</bdi>").format(balanced(str(text)))
+
+
 def pages(*more: Path) -> Environment:
     """The environment of the pages; `more` folders hold pages of other parts."""
     made = Environment(
@@ -42,6 +48,8 @@ def pages(*more: Path) -> Environment:
         "formula": formula,
         "inline": inline,
         "capital": capital,
+        "bare": bare,
+        "isolated": isolated,
         "aligned": numbers.aligned,
         "plain": numbers.plain,
         "unit": numbers.unit,

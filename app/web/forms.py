@@ -10,20 +10,33 @@ the form itself (`note`) or a property of HTML's forms (`length`).
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from math import isfinite
 from typing import Any
 from urllib.parse import parse_qsl
 
 from fastapi import Request
+from pydantic_core import from_json
+
+from app.http import BodyTooLarge
 
 OPTIONS = ("level", "tolerance")  # of a step, beside its inputs
+MOST_FIELDS = 20_000
 
 
 async def fields(request: Request) -> dict[str, str]:
-    """The fields of a form that was sent."""
+    """The fields of a form that was sent.
+
+    Raises
+    ------
+    BodyTooLarge
+        If there are more than any of our forms has.
+    """
     body = (await request.body()).decode(errors="replace")
-    return dict(parse_qsl(body, keep_blank_values=True))
+    try:
+        return dict(parse_qsl(body, keep_blank_values=True, max_num_fields=MOST_FIELDS))
+    except ValueError:
+        raise BodyTooLarge(f"a form has at most {MOST_FIELDS} fields") from None
 
 
 def value_of(text: str) -> Any:
@@ -33,7 +46,9 @@ def value_of(text: str) -> Any:
         return stripped
     end = stripped.rfind("]" if stripped[0] == "[" else "}") + 1
     try:
-        inside, unit = json.loads(stripped[:end]), stripped[end:].strip()
+        # Not json.loads, which takes NaN for a number and does not survive deep nesting.
+        inside = from_json(stripped[:end], allow_inf_nan=False)
+        unit = stripped[end:].strip()
     except ValueError:
         return stripped  # the interface says what is wrong with it
     return {"value": inside, "unit": unit} if unit else inside
@@ -54,8 +69,9 @@ def text_of(value: Any) -> str:
 def patch_of(design: Mapping[str, Any], typed: Mapping[str, str]) -> dict[str, Any]:
     """The merge patch with what a form's user changed."""
     patch: dict[str, Any] = {}
+    blocks = {*design["steps"], *design["models"]}
     for name, text in kept(typed).items():
-        if _is_field(design, name):
+        if _is_field(design, blocks, name):
             _put(patch, design, name, value_of(text))
     return patch
 
@@ -63,27 +79,23 @@ def patch_of(design: Mapping[str, Any], typed: Mapping[str, str]) -> dict[str, A
 def kept(typed: Mapping[str, str]) -> dict[str, str]:
     """What differs from what the form said at first, which its hidden field `was` holds."""
     try:
-        was = json.loads(typed.get("was", "{}"))
+        was = from_json(typed.get("was", "{}"))
     except ValueError:
         was = {}
     old = was if isinstance(was, dict) else {}
     return {name: text for name, text in typed.items() if text.strip() != str(old.get(name, "")).strip()}
 
 
-def _is_field(design: Mapping[str, Any], name: str) -> bool:
+def _is_field(design: Mapping[str, Any], blocks: Set[str], name: str) -> bool:
     block, kind, tail = _parts(name)
     if kind == "@":
         return block in design["steps"] and tail in OPTIONS
-    return tail in design["parameters"] if not block else bool(tail) and block in _blocks(design)
+    return tail in design["parameters"] if not block else bool(tail) and block in blocks
 
 
 def _parts(name: str) -> tuple[str, str, str]:
     """Block, `.` or `@`, and the rest of a control's name."""
     return name.partition("@" if "@" in name else ".")
-
-
-def _blocks(design: Mapping[str, Any]) -> set[str]:
-    return {*design["steps"], *design["models"]}
 
 
 def texts(design: Mapping[str, Any]) -> dict[str, str]:

@@ -11,6 +11,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from app.calculations.display import System
 from app.web import plotly
 from app.web.environment import pages
+from app.web.session import keep_session
 
 POLICY = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
 """No inline script or style, no eval, no outside address: on every page, without an exception."""
@@ -42,6 +43,7 @@ def show(request: Request, name: str, status: int = 200, **context: Any) -> Resp
     answer = HTMLResponse(told, status, headers=HEADERS)
     if "units" in request.query_params:
         answer.set_cookie("units", units, max_age=YEAR, samesite="lax", httponly=True)
+    keep_session(request, answer)
     return answer
 
 

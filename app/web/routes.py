@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from typing import Annotated, Any
+from urllib.parse import quote
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
@@ -98,7 +99,7 @@ async def explanation(
 ) -> Response:
     """Where a model parameter comes from."""
     design, chain = await asyncio.gather(
-        api.get(f"/designs/{id}"), api.get(f"/designs/{id}/explain/{parameter}")
+        api.get(f"/designs/{id}"), api.get(f"/designs/{id}/explain/{quote(parameter, safe='')}")
     )
     return show(request, "explain.html", design=design, chain=chain)
 

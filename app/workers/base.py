@@ -19,6 +19,14 @@ class Limits:
     memory_mb: int = 3072
 
 
+class Runner(Protocol):
+    """Runs functions one after another on behalf of one piece of work, within that one's limits or others."""
+
+    def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
+        """Return what the function returns, or raise what it raises; see `Worker.run`."""
+        ...
+
+
 class Worker(Protocol):
     """Runs functions one by one, each on its own, from any number of threads."""
 
@@ -40,6 +48,10 @@ class Worker(Protocol):
         WorkerError
             The function did not come to its end; the kind of error says why.
         """
+        ...
+
+    def answers(self) -> bool:
+        """Whether a function would find a process that is alive; if none is, one is started. Never blocks."""
         ...
 
     def close(self) -> None:

@@ -21,7 +21,7 @@ from multiprocessing.connection import Connection
 from types import ModuleType
 from typing import NoReturn
 
-from app.workers.job_process import Rehearsal, serve_one_job
+from app.workers.job_process import Rehearsal, serve_jobs
 from app.workers.lifeline import hang_on
 
 Nursery = dict[int, Connection]  # process id of a living job -> where its exit code is told
@@ -114,7 +114,7 @@ def _become_job(
     for other in foreign:  # a copy left open here would hide the end of its owner
         other.close()
     os.set_inheritable(job.fileno(), False)
-    serve_one_job(job, parent, lifeline, rehearsals)
+    serve_jobs(job, parent, lifeline, rehearsals)
 
 
 def _bury(nursery: Nursery) -> None:

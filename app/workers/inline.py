@@ -29,5 +29,9 @@ class Inline:
         with reporting(on_progress):
             return function(*args)
 
+    def answers(self) -> bool:
+        """Its thread is that of the caller."""
+        return True
+
     def close(self) -> None:
         """Nothing to end."""

@@ -8,11 +8,12 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any
 
 from app.workers.base import Limits
@@ -30,11 +31,12 @@ _PATIENCE = 1.0  # how long the forkserver may take to end [s]
 
 
 class JobProcess:
-    """A process that waits for one job, runs it, and is gone."""
+    """A process that waits for one job, runs it, and is gone, unless it is `reusable` after that."""
 
     def __init__(self, connection: Connection, status: Connection) -> None:
         self._connection = connection
         self._status = status
+        self.reusable = False
 
     def start(self, request: Request) -> None:
         """Send the process its job.
@@ -44,6 +46,7 @@ class JobProcess:
         OSError
             The process died while it was waiting.
         """
+        self.reusable = False
         self._connection.send(request)
 
     def finish(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event | None) -> Any:
@@ -53,28 +56,32 @@ class JobProcess:
             self._await_birth(cancelled)
             return self._converse(limits, on_progress, cancelled)
         finally:
-            self.kill()
+            if not self.reusable:
+                self.kill()
 
     def kill(self) -> None:
         """End the process, and those which it has started; one not born yet ends by itself when it is."""
         if self._status.closed:
             return
         with suppress(ProcessLookupError, JobCrashed):
-            if self._is_born:
+            if self.is_born():
                 os.killpg(self._pid, signal.SIGKILL)
         self._connection.close()
         self._status.close()
 
     def _await_birth(self, cancelled: threading.Event) -> None:
         """Wait for the process: its clock starts then, not while the forkserver is importing, or hangs."""
-        while not (self._is_born or self._status.poll(_GLANCE)):
+        while not ("_pid" in vars(self) or self._status.poll(_GLANCE)):
             if cancelled.is_set():
                 raise JobCancelled
         _ = self._pid
 
-    @property
-    def _is_born(self) -> bool:
-        return "_pid" in vars(self) or self._status.poll()
+    def is_born(self) -> bool:
+        """Whether the forkserver has made the process; reads nothing, so its owner may use it meanwhile."""
+        try:
+            return "_pid" in self.__dict__ or self._status.poll()
+        except OSError:  # it has got a job and is gone
+            return False
 
     @cached_property
     def _pid(self) -> int:
@@ -91,9 +98,11 @@ class JobProcess:
                 case Progress(fraction, text):
                     if on_progress is not None:
                         on_progress(fraction, text)
-                case Returned(value):
+                case Returned(value, reusable):
+                    self.reusable = reusable
                     return value
-                case Raised(error):
+                case Raised(error, reusable):
+                    self.reusable = reusable
                     raise error
 
     def _await_message(self, end: float, limits: Limits, cancelled: threading.Event) -> None:
@@ -122,8 +131,9 @@ class JobProcess:
 class ForkServer:
     """Starts the forkserver, starts it anew if it has died, and asks it for processes."""
 
-    def __init__(self, preload: Sequence[str]) -> None:
+    def __init__(self, preload: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
         self._preload = preload
+        self._environment = environment or {}
         self._lock = threading.Lock()
         self._closed = False
         self._start()
@@ -141,6 +151,18 @@ class ForkServer:
         with theirs, told:
             self._send([theirs.fileno(), told.fileno()])
         return JobProcess(connection, status)
+
+    def is_alive(self) -> bool:
+        """Whether the forkserver runs; neither ended nor stopped by a signal."""
+        return self._process.poll() is None and not self.is_stopped()
+
+    def is_stopped(self) -> bool:
+        """Whether a signal has stopped the forkserver: it lives and answers nobody. Linux only."""
+        try:
+            state = Path(f"/proc/{self._process.pid}/stat").read_text().rpartition(")")[2].split()[0]
+        except OSError:
+            return False
+        return state in "Tt"
 
     def close(self) -> None:
         """End the forkserver and all its processes, whatever they are doing."""
@@ -169,6 +191,7 @@ class ForkServer:
                 [sys.executable, "-c", _BOOT, json.dumps(sys.path), *map(str, ends), *self._preload],
                 pass_fds=ends,
                 stdin=subprocess.DEVNULL,
+                env={**os.environ, **self._environment},
                 start_new_session=True,  # Ctrl-C in a terminal is for the server, which ends its jobs itself
             )
         self._lifeline.close_reader()

@@ -1,6 +1,7 @@
 """What happens inside a job process, from the fork to its end."""
 
 import ctypes
+import gc
 import math
 import os
 import pickle
@@ -10,12 +11,13 @@ import sys
 import traceback
 from collections.abc import Callable, Iterable
 from contextlib import suppress
+from functools import cache
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
 from app.workers.base import Limits
-from app.workers.errors import MemoryExceeded, RemoteError
+from app.workers.errors import MemoryExceeded, RemoteError, WorkerError
 from app.workers.lifeline import hang_on, has_hung_up
 from app.workers.messages import Progress, Raised, Request, Returned
 from app.workers.progress import reporting
@@ -24,12 +26,13 @@ Rehearsal = Callable[[Callable[[], bool]], object]
 """Does some work like a job's; it is given what tells whether the job has come, and then ends soon."""
 
 _PR_SET_PDEATHSIG = 1
+_GROWTH = 4  # a process that keeps more than this part of its allowance takes no other request
 
 
-def serve_one_job(
+def serve_jobs(
     connection: Connection, parent: int, lifeline: int, rehearsals: Iterable[Rehearsal] = ()
 ) -> NoReturn:
-    """Wait for one request, answer it, and end the process.
+    """Wait for a request, answer it, and end the process, unless another request may follow.
 
     Meanwhile it rehearses, so that the job finds ready what is made at first use. It ends without cleaning
     up: destructors of geometry kernels may crash when the work is long done.
@@ -43,9 +46,15 @@ def serve_one_job(
             with suppress(Exception):  # the job will meet it again, and say so
                 rehearse(connection.poll)
         request = connection.recv_bytes()
-        if not has_hung_up(connection.fileno()):  # else the job was cancelled before this process was born
-            connection.send_bytes(_answer(request, connection))
-            exit_code = 0
+        reusable = not has_hung_up(connection.fileno())  # else cancelled before this process was born
+        while reusable:
+            answer, reusable = _answer(request, connection)
+            connection.send_bytes(answer)
+            del answer
+            if reusable:
+                gc.collect()  # what a calculation leaves in cycles may be large
+                request = connection.recv_bytes()
+        exit_code = 0
     finally:  # also when the server has closed its end, which is how it dismisses a process
         os._exit(exit_code)
 
@@ -58,28 +67,35 @@ def _die_with(parent: int) -> None:
         raise ProcessLookupError(parent)
 
 
-def _answer(packed: bytes, connection: Connection) -> bytes:
-    """Run a pickled request and return the pickled message that tells how it ended."""
+def _answer(packed: bytes, connection: Connection) -> tuple[bytes, bool]:
+    """Run a pickled request; the pickled message that says how it ended, and whether another may follow."""
+    reusable = False
     try:
-        return _run(pickle.loads(packed), connection)
+        request: Request = pickle.loads(packed)
+        _limit(request.limits)
+        reusable = request.reusable
+        return _run(request, connection)
     except BaseException as error:  # whatever it is belongs to the caller
-        return pickle.dumps(Raised(_portable(error)))
+        reusable = reusable and isinstance(error, Exception) and not isinstance(error, WorkerError)
+        return pickle.dumps(Raised(_portable(error), reusable)), reusable
 
 
-def _run(request: Request, connection: Connection) -> bytes:
-    _limit(request.limits)
+def _run(request: Request, connection: Connection) -> tuple[bytes, bool]:
     try:
         with reporting(lambda fraction, text: connection.send(Progress(fraction, text))):
-            return _packed_result(request.function(*request.args))
+            result = request.function(*request.args)
+        reusable = request.reusable and not _has_grown(request.limits)
+        return _packed_result(Returned(result, reusable)), reusable
     except MemoryError:
         raise MemoryExceeded(request.limits.memory_mb) from None
 
 
-def _packed_result(value: Any) -> bytes:
+def _packed_result(message: Returned) -> bytes:
     try:
-        return pickle.dumps(Returned(value))
+        return pickle.dumps(message)
     except (pickle.PicklingError, TypeError, AttributeError) as error:
-        raise RemoteError(type(value).__qualname__, f"the result cannot be pickled: {error}") from None
+        kind = type(message.value).__qualname__
+        raise RemoteError(kind, f"the result cannot be pickled: {error}") from None
 
 
 def _portable(error: BaseException) -> BaseException:
@@ -94,16 +110,39 @@ def _portable(error: BaseException) -> BaseException:
 
 
 def _limit(limits: Limits) -> None:
-    """Let the kernel hold this process to its limits, even if the server can no longer do so."""
-    processor_seconds = math.ceil(limits.deadline) * (os.cpu_count() or 1) + 1
-    resource.setrlimit(resource.RLIMIT_CPU, (processor_seconds, processor_seconds + 5))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    """Let the kernel hold this process to its limits, even if the server can no longer do so.
+
+    These are soft limits: a process that takes another request raises them. The kernel counts the processor
+    time of all its requests together, and ends it at the soft limit too.
+    """
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    seconds = math.ceil(used.ru_utime + used.ru_stime + limits.deadline * (os.cpu_count() or 1)) + 1
+    _set_soft(resource.RLIMIT_CPU, seconds)
+    _set_soft(resource.RLIMIT_CORE, 0)
     if sys.platform == "linux":
-        memory = _mapped_bytes() + limits.memory_mb * 2**20
-        resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+        _set_soft(resource.RLIMIT_AS, _mapped_at_start() + limits.memory_mb * 2**20)
+
+
+def _set_soft(kind: int, wanted: int) -> None:
+    hard = resource.getrlimit(kind)[1]
+    soft = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
+    resource.setrlimit(kind, (soft, hard))
+
+
+def _has_grown(limits: Limits) -> bool:
+    """Whether the process has kept so much memory that the next request could lack it."""
+    if sys.platform != "linux":
+        return False
+    return _mapped_bytes() - _mapped_at_start() > limits.memory_mb * 2**20 / _GROWTH
+
+
+@cache
+def _mapped_at_start() -> int:
+    """The address space before the first request [bytes]."""
+    return _mapped_bytes()
 
 
 def _mapped_bytes() -> int:
-    """Return the address space that the preloaded program takes already [bytes]."""
+    """The address space that the process takes [bytes]."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     return pages * resource.getpagesize()

@@ -41,6 +41,17 @@ class LocalProcesses:
         process = self._start(Request(function, args, limits))
         return cast(T, process.finish(limits, on_progress, cancelled))
 
+    def answers(self) -> bool:
+        """Whether the forkserver is alive, and has made the process that waits for the next job."""
+        if not self._forkserver.is_alive():
+            if not self._forkserver.is_stopped() and self._lock.acquire(blocking=False):
+                try:
+                    self._spare = self._forkserver.fork()  # starts it again
+                finally:
+                    self._lock.release()
+            return False
+        return self._spare.is_born()
+
     def close(self) -> None:
         """Kill all processes; jobs that still run end with JobCrashed."""
         self._forkserver.close()  # before the lock, which who waits for a stopped forkserver may hold

@@ -9,11 +9,12 @@ from app.workers.base import Limits
 
 @dataclass(frozen=True)
 class Request:
-    """To the process: what to run, and within what limits."""
+    """To the process: what to run, within what limits, and whether another request may follow."""
 
     function: Callable[..., Any]
     args: tuple[Any, ...]
     limits: Limits
+    reusable: bool = False
 
 
 @dataclass(frozen=True)
@@ -26,13 +27,15 @@ class Progress:
 
 @dataclass(frozen=True)
 class Returned:
-    """From the process: the result."""
+    """From the process: the result, and whether it waits for another request."""
 
     value: Any
+    reusable: bool = False
 
 
 @dataclass(frozen=True)
 class Raised:
-    """From the process: the exception."""
+    """From the process: the exception, and whether it waits for another request."""
 
     error: BaseException
+    reusable: bool = False

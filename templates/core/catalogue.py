@@ -26,6 +26,9 @@ from templates.core.template import VERSIONED, Template
 
 T = TypeVar("T", bound=Template)
 
+OUTSIDE = "_outside"
+"""The package to which files belong that are in none."""
+
 
 @dataclass(frozen=True)
 class Catalogue(Generic[T]):
@@ -98,13 +101,25 @@ def find(folders: Iterable[Path], base: type[T], kind: str = "template") -> Cata
     return Catalogue(dict(sorted(versions.items())), kind)
 
 
+def declared_in_file(path: Path) -> type[Template]:
+    """The template, or model, that one versioned file declares.
+
+    Raises
+    ------
+    UnusableFile
+        If it cannot be imported, or declares none or several.
+    """
+    return _declared_in(_usable(path), path)
+
+
 def _imported(path: Path) -> ModuleType:
     """The module of a file: by its package's name where it has one, else by its path."""
     package = _package(path.parent)
     if package:
         return importlib.import_module(f"{package}.{path.stem}")
     path = path.resolve()
-    name = f"_outside.{hashlib.sha256(bytes(path.parent)).hexdigest()[:12]}.{path.stem}"
+    sys.modules.setdefault(OUTSIDE, ModuleType(OUTSIDE))  # else nothing of such a file could be pickled
+    name = f"{OUTSIDE}.{hashlib.sha256(bytes(path.parent)).hexdigest()[:12]}.{path.stem}"
     if name in sys.modules:
         return sys.modules[name]
     spec = importlib.util.spec_from_file_location(name, path)

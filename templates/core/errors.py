@@ -10,11 +10,19 @@ TemplateError
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
+from itertools import islice
 from reprlib import Repr
 from typing import Any
+
+from templates.core.nearest import nearest
+
+MOST_SUGGESTED = 10
+"""Unknown names of one request that get a suggestion; a thousand typing errors are no typing errors."""
+
+MOST_LISTED = 100
+"""Names that one sentence lists."""
 
 
 @dataclass(frozen=True)
@@ -91,9 +99,22 @@ class FaultyText(TemplateError):
 
 def unknown_name(name: str, known: Iterable[str], kind: str) -> Fault:
     """A fault for a name that nobody declared, with the nearest that somebody did."""
-    near = get_close_matches(name[:80], known := list(known), n=3)
-    remedy = f"did you mean {', '.join(near)}?" if near else f"known are {', '.join(known)}"
+    near = nearest(name, known := list(known))
+    remedy = f"did you mean {', '.join(near)}?" if near else f"known are {listed(known)}"
     return Fault(plain(name), "unknown_name", f"{kind} {plain(name)!r} is unknown; {remedy}")
+
+
+def unknown_names(names: Iterable[str], known: Iterable[str], kind: str) -> list[Fault]:
+    """A fault for each name that nobody declared, the first of them with the nearest declared ones."""
+    declared, each = list(known), iter(names)
+    faults = [unknown_name(name, declared, kind) for name in islice(each, MOST_SUGGESTED)]
+    return faults + [Fault(plain(n), "unknown_name", f"{kind} {plain(n)!r} is unknown") for n in each]
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names in a sentence, however many there are."""
+    more = f" and {len(names) - MOST_LISTED} more" if len(names) > MOST_LISTED else ""
+    return ", ".join(names[:MOST_LISTED]) + more
 
 
 _brief = Repr()
@@ -107,6 +128,6 @@ def excerpt(raw: Any) -> str:
     return ascii(_brief.repr(raw))[1:-1][:80] if not isinstance(raw, str) else ascii(raw[:60])
 
 
-def plain(name: str) -> str:
+def plain(name: str, most: int = 80) -> str:
     """A name that was sent, short and fit for JSON: lone surrogates are escaped, other letters kept."""
-    return name[:80].encode("utf-8", "backslashreplace").decode("utf-8")
+    return name[:most].encode("utf-8", "backslashreplace").decode("utf-8")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from templates.core.admission import absence
 from templates.core.declare import Choice, Derived, Formula, Given, Profile, Text
-from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
+from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name, unknown_names
 from templates.core.intake import Input, remarks
 from templates.core.ledger import Notice
 from templates.core.levels import Rung, accuracy, at_level, climb
@@ -82,7 +82,7 @@ def evaluate(
     """
     start = time.perf_counter()
     names = list(cls.formulas) if outputs is None else list(outputs)
-    faults = [unknown_name(name, cls.formulas, "output") for name in names if name not in cls.formulas]
+    faults = unknown_names((name for name in names if name not in cls.formulas), cls.formulas, "output")
     shown_in = _units(cls, units or {}, faults)
     faults += _level_faults(cls, level)
     try:
@@ -166,9 +166,10 @@ def _scattered(
 
 def _units(cls: type[Template], units: Mapping[str, str], faults: list[Fault]) -> dict[str, Unit]:
     shown: dict[str, Unit] = {}
+    unknown = unknown_names((name for name in units if name not in cls.formulas), cls.formulas, "output")
+    faults += [fault.within("units") for fault in unknown]
     for name, text in units.items():
         if name not in cls.formulas:
-            faults.append(unknown_name(name, cls.formulas, "output").within("units"))
             continue
         try:
             shown[name] = require_same_kind(text, cls.formulas[name].meaning.unit)

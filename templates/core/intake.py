@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from templates.core.admission import warn_if_outside
 from templates.core.declare import Array, Choice, Curve, Declaration, Derived, Given, Requirement, Table
-from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_name
+from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_names
 from templates.core.ledger import Ledger, Mask, Notice
 from templates.core.quantity import Typed, read, unit
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def read_inputs(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, Typed | str], list[Fault]]:
     """Every input that was given, read in its unit, and what is wrong with the others."""
     typed: dict[str, Typed | str] = {}
-    faults = [unknown_name(name, cls.inputs, "input") for name in raw if name not in cls.inputs]
+    faults = unknown_names((name for name in raw if name not in cls.inputs), cls.inputs, "input")
     for name, declared in cls.inputs.items():
         if name in raw:
             try:

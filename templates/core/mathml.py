@@ -9,10 +9,12 @@ import ast
 import math
 import re
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from sys import getsizeof
+from threading import Lock
 from typing import Any
 
 import latex2mathml.converter
+from cachetools import LRUCache, cached
 
 from templates.core.declare import Declaration, Formula
 from templates.core.syntax import returned, syntax
@@ -31,6 +33,7 @@ _OPERATOR = re.compile(
     r"\\operatorname\{([^{}]*)\}"
 )  # which latex2mathml would set in italics, letter by letter
 _NAMES = re.compile(r"(<mi>(?:lg|ln|exp|sin|cos|tan)</mi>)(?=<m(?!o[ >]))")  # but for before a bracket
+_KEPT = 16 * 2**20  # formulas that were converted already [bytes]
 _LESS, _MORE = "\ue000", "\ue001"  # private letters, which no formula has
 _SPECIAL = {"eps": r"\varepsilon"}
 _FUNCTIONS = {"log10": r"\lg", "log": r"\ln", "exp": r"\exp", "sin": r"\sin", "cos": r"\cos", "tan": r"\tan"}
@@ -96,7 +99,7 @@ def symbols(cls: type[Template]) -> dict[str, str]:
     return {attribute: symbol(declared) for attribute, declared in cls.declarations.items()}
 
 
-@lru_cache(maxsize=4096)
+@cached(LRUCache(_KEPT, getsizeof=getsizeof), lock=Lock())
 def mathml(latex: str) -> str:
     """LaTeX as MathML that browsers draw themselves; what it quotes of a user's words is escaped."""
     # latex2mathml copies texts as they are: signs of its own stand for the brackets of markup meanwhile.

@@ -24,7 +24,7 @@ __all__ = [
 ]  # fmt: skip
 
 _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?"
-_PATTERN = re.compile(rf"\s*({_NUMBER})\s*(\S.*?)?\s*", re.DOTALL)
+_PATTERN = re.compile(rf"({_NUMBER})\s*(.*)", re.DOTALL)  # of a text without blanks at its ends
 _LONGEST_TEXT = 200
 _DEEPEST = 4  # axes of an array
 _TOLERANCES = ("plus", "minus")
@@ -84,8 +84,8 @@ def _own_unit(raw: Any) -> str:
             break
         raw = raw[0]
     match raw:
-        case str() if len(raw) <= _LONGEST_TEXT and (match := _PATTERN.fullmatch(raw)):
-            return match[2] or "1"
+        case str() if parts := _parted(raw):
+            return parts[1] or "1"
         case {"unit": str() as name}:
             return name
     return "1"
@@ -93,13 +93,18 @@ def _own_unit(raw: Any) -> str:
 
 @lru_cache(maxsize=4096)  # who varies one input sends the others again
 def _read_text(text: str, declared: str) -> Typed:
-    match = _PATTERN.fullmatch(text) if len(text) <= _LONGEST_TEXT else None
-    if match is None:
+    if not (parts := _parted(text)):
         raise _no_quantity(text, declared)
-    number, name = match.groups()
-    if name is None:
+    number, name = parts
+    if not name:
         return _read_bare(float(number), declared)
     return _quantity(_finite(float(number)), name, declared)
+
+
+def _parted(text: str) -> tuple[str, str] | None:
+    """Number and unit of a text; None if it does not begin with a number, or is too long."""
+    match = _PATTERN.fullmatch(text.strip()) if len(text) <= _LONGEST_TEXT else None
+    return (match[1], match[2]) if match else None
 
 
 def _read_object(raw: dict[str, Any], declared: str) -> Typed:

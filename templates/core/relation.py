@@ -19,11 +19,12 @@ import numpy as np
 
 from templates.core.errors import FaultyText, excerpt
 from templates.core.operations import CONSTANTS, FUNCTIONS, OPERATORS, Apply, Constant, Kind, Name
-from templates.core.units import Unit, Value, unit
+from templates.core.units import Unit, Value, forget_units, unit
 
 __all__ = ["Kind", "Relation", "is_relation", "parse"]
 
 MAX_LENGTH, MAX_DEPTH, MAX_PARTS = 2000, 100, 400
+REMEMBERED = 1024  # trees of up to 50 kB
 
 _GRAMMAR = files(__package__).joinpath("relation.lark").read_text(encoding="utf-8")
 _parser = lark.Lark(_GRAMMAR, parser="lalr")
@@ -36,6 +37,7 @@ class Relation:
     text: str
     names: frozenset[str]
     tree: Any
+    parts: int = 1
 
     def kind(self, kinds: Mapping[str, Kind]) -> Kind:
         """What the relation gives, from what its names are.
@@ -45,6 +47,7 @@ class Relation:
         FaultyText
             With code `unit_mismatch`, where units do not go together.
         """
+        forget_units()
         return _kind(self.tree, kinds)
 
     def value(self, values: Mapping[str, Value]) -> Value:
@@ -67,7 +70,7 @@ def is_relation(raw: Any) -> bool:
     return isinstance(raw, str) and raw.lstrip().startswith("=")
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=REMEMBERED)
 def parse(text: str) -> Relation:
     """Read a relation.
 
@@ -83,10 +86,11 @@ def parse(text: str) -> Relation:
         parsed = _parser.parse(body)
     except lark.exceptions.UnexpectedInput as error:
         raise FaultyText("syntax", _where(body, error)) from None
-    if sum(1 for _ in parsed.iter_subtrees()) > MAX_PARTS or _height(parsed) > MAX_DEPTH:
+    parts = sum(1 for _ in parsed.iter_subtrees())
+    if parts > MAX_PARTS or _height(parsed) > MAX_DEPTH:
         raise FaultyText("syntax", f"a relation has at most {MAX_PARTS} parts, {MAX_DEPTH} deep")
     names = frozenset(str(t.children[0]) for t in parsed.find_data("name"))
-    return Relation(text.strip(), names - CONSTANTS.keys(), _build(parsed))
+    return Relation(text.strip(), names - CONSTANTS.keys(), _build(parsed), parts)
 
 
 def _height(tree: lark.Tree[Any]) -> int:

@@ -60,6 +60,20 @@ class Unit:
         return shifted if self.factor == 1 else shifted / self.factor
 
 
+MOST_REMEMBERED = 20_000
+
+
+def forget_units() -> None:
+    """Keep what Pint remembers of units bounded: it keeps everything that it was ever asked for.
+
+    Call it where units come in that a user made up. What was forgotten is calculated again.
+    """
+    kept = registry._cache
+    for remembered in (kept.root_units, kept.dimensionality, kept.parse_unit, kept.conversion_factor):
+        if len(remembered) > MOST_REMEMBERED:
+            remembered.clear()
+
+
 @lru_cache(maxsize=4096)
 def unit(text: str) -> Unit:
     """Read a unit such as `kN`, `mm²/s`, `N*m`, `rpm` or `degC`; `1` is a pure number.
@@ -71,6 +85,7 @@ def unit(text: str) -> Unit:
     """
     if len(text) > LONGEST_UNIT or not _PATTERN.fullmatch(text):
         raise FaultyText("unknown_unit", f"{text[:60]!a} is no unit; write it as in kN, mm**2/s, W/(m*K)")
+    forget_units()
     try:
         named = registry.Unit("" if text == "1" else text)
         size, base = registry.get_base_units(named)

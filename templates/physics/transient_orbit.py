@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from templates.core.progress import report
 from templates.physics.arrays import Array
 from templates.physics.film_equations import dual_widths
 from templates.physics.journal_orbit import CyclicLoad
@@ -24,6 +25,7 @@ MOST_NODES = 2000
 """Steps of a cycle that are taken at most."""
 
 _SUBSTEPS = 4
+_REPORTED = 30  # steps between two reports of progress
 
 
 @dataclass(frozen=True)
@@ -69,18 +71,29 @@ def transient_orbit(
     S = np.stack([np.interp(place, load.angle, s, period=load.period) for s in load.S[:, 0]], axis=-1)
     w = np.interp(place, load.angle, load.w[0], period=load.period)
     journal = transient_mesh(ratio, marching.around, marching.across)
-    states, before = [_full(journal, start)], None
+    states, before, difference = [_full(journal, start)], None, np.inf
     for cycle in range(1, MOST_CYCLES + 1):
         for k in range(count):
+            if k % _REPORTED == 0:
+                _report(cycle, k / count, difference)
             after = _next(journal, states, S[k], float(w[k]), load.period / count)
             if after is None:
                 return None
             states.append(after)
         eps = np.stack([state.eps for state in states[-count:]], axis=-1)
-        if before is not None and (np.hypot(*(eps - before)) < REPEATS * (1 - np.hypot(*eps))).all():
-            return _measured(journal, place, states[-count:], cycle)
+        if before is not None:
+            change, gap = np.hypot(*(eps - before)), 1 - np.hypot(*eps)
+            if (change < REPEATS * gap).all():
+                return _measured(journal, place, states[-count:], cycle)
+            difference = float((change / gap).max())
         before, states = eps, states[-2:]
     return None
+
+
+def _report(cycle: int, part: float, difference: float) -> None:
+    """Say in which cycle the orbit is, and how far the last two were apart, over the gap."""
+    apart = "" if difference == np.inf else f", difference {difference:.1g} of at most {REPEATS:g}"
+    report((cycle - 1 + part) / MOST_CYCLES, f"cycle {cycle} of at most {MOST_CYCLES}{apart}")
 
 
 def _full(journal: Journal, eps: Array) -> State:

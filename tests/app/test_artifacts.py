@@ -16,14 +16,14 @@ def store(tmp_path):
 
 
 def files(store):
-    return [path for path in store._folder.rglob("*") if path.is_file()]
+    return [path for path in store.folder.rglob("*") if path.is_file()]
 
 
 def test_bytes_come_back_under_their_hash(store):
     sha = store.put(BYTES)
     assert sha == hashlib.sha256(BYTES).hexdigest()
     assert store.read(sha) == BYTES
-    assert store.path(sha).name == sha
+    assert store.fetch(sha).name == sha
 
 
 def test_the_same_bytes_are_stored_once(store):
@@ -33,16 +33,16 @@ def test_the_same_bytes_are_stored_once(store):
 
 def test_a_torn_file_is_found_and_mended(store):
     sha = store.put(BYTES)
-    store.path(sha).write_bytes(BYTES[:100])
-    assert not store.check(sha)
+    store.fetch(sha).write_bytes(BYTES[:100])
+    assert not store.exists(sha)
     store.put(BYTES)
-    assert store.check(sha)
+    assert store.exists(sha)
 
 
 def test_changed_bytes_are_found(store):
     sha = store.put(BYTES)
-    store.path(sha).write_bytes(BYTES.replace(b"3", b"4"))
-    assert not store.check(sha)
+    store.fetch(sha).write_bytes(BYTES.replace(b"3", b"4"))
+    assert not store.exists(sha)
 
 
 def test_a_failed_write_leaves_nothing(store, monkeypatch):
@@ -66,18 +66,18 @@ def test_a_file_is_synced_before_it_is_renamed(store, monkeypatch):
 
 def test_a_half_written_file_is_removed_at_the_start(store):
     sha = store.put(BYTES)
-    torn = store.path(sha).parent / ".tmp-torn"
+    torn = store.fetch(sha).parent / ".tmp-torn"
     torn.write_bytes(BYTES[:10])
-    ArtifactStore(store._folder)
+    ArtifactStore(store.folder)
     assert not torn.exists()
-    assert store.check(sha)
+    assert store.exists(sha)
 
 
 @pytest.mark.parametrize("name", ["", "../../etc/passwd", "a" * 63, "A" * 64, "g" * 64, "a" * 64 + "\n"])
 def test_only_a_hash_is_a_name(store, name):
     with pytest.raises(ArtifactMissing):
-        store.path(name)
-    assert not store.check(name)
+        store.fetch(name)
+    assert not store.exists(name)
 
 
 def test_an_unknown_hash_is_missing(store):

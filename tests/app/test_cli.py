@@ -9,7 +9,7 @@ from pathlib import Path
 import httpx
 import pytest
 from click.testing import CliRunner
-from serving import PATIENCE, ServerProcess
+from serving import API, PATIENCE, ServerProcess
 
 from app.calculations.schemas import OIL_FILM
 from app.cli import main
@@ -120,7 +120,7 @@ class TestServe:
         (data / "artifacts" / "also mine").write_bytes(b"\x00")
         server = ServerProcess(data)
         with server, httpx.Client(base_url=server.url, trust_env=False) as http:
-            assert http.get("/readyz").json() == {"status": "ready", "designs": 0}
+            assert http.get(f"{API}/designs").json()["items"] == []
             assert http.post("/api/v1/designs", json={"name": "kept"}).status_code == 201
             refused = run("serve", "--data", str(data))
         assert (data / "notes.txt").read_text() == "mine"
@@ -152,22 +152,57 @@ class TestServe:
         assert b"address already in use" in ended.stderr
         assert b"Traceback" not in ended.stderr
 
-    @pytest.mark.parametrize(
-        ("host", "warned"),
-        [
-            ("0.0.0.0", True),
-            ("::", True),
-            ("192.168.1.5", True),
-            ("crank.example", True),
-            ("127.0.0.1", False),
-            ("::1", False),
-            ("localhost", False),
-        ],
-    )
-    def test_a_warning_beyond_loopback(self, tmp_path, monkeypatch, host, warned):
+    @pytest.fixture
+    def served_with(self, monkeypatch):
+        """The options of each server that would have started."""
         served = []
         monkeypatch.setattr("app.cli.server.run", lambda app, settings: served.append(settings))
-        told = run("serve", "--host", host, "--port", "8123", "--data", str(tmp_path))
-        assert told.exit_code == 0
-        assert ("WARNING" in told.stderr and "without authentication" in told.stderr) is warned
-        assert (served[0].host, served[0].port) == (host, 8123)
+        return served
+
+    @pytest.mark.parametrize("host", ["127.0.0.1", "127.3.2.1", "::1", "localhost"])
+    def test_loopback_needs_no_word(self, tmp_path, served_with, host):
+        result = run("serve", "--host", host, "--port", "8123", "--data", str(tmp_path))
+        assert result.exit_code == 0
+        assert "WARNING" not in result.stderr
+        assert (served_with[0].host, served_with[0].port) == (host, 8123)
+
+    @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.5", "crank.example", "localhost.example"])
+    def test_beyond_loopback_the_operator_must_insist(self, tmp_path, served_with, host):
+        arguments = ("serve", "--host", host, "--port", "8123", "--data", str(tmp_path / "data"))
+        refused = run(*arguments)
+        assert refused.exit_code == 1
+        for part in (
+            "Error: refusing to listen on",
+            host,
+            "without authentication",
+            "127.0.0.1",
+            "--insecure",
+        ):
+            assert part in refused.output
+        assert (served_with, (tmp_path / "data").exists()) == ([], False)
+        allowed = run(*arguments, "--insecure")
+        assert allowed.exit_code == 0
+        assert "WARNING" in allowed.stderr
+        assert "without authentication" in allowed.stderr
+        assert (served_with[0].host, served_with[0].port) == (host, 8123)
+
+    def test_the_environment_says_where_to_listen(self, tmp_path, monkeypatch, served_with):
+        monkeypatch.setenv("CRANKWRIGHT_DATA", str(tmp_path))
+        monkeypatch.setenv("CRANKWRIGHT_PORT", "8124")
+        assert run("serve").exit_code == 0
+        assert (served_with[0].host, served_with[0].port) == ("127.0.0.1", 8124)
+        monkeypatch.setenv("CRANKWRIGHT_HOST", "0.0.0.0")
+        assert "--insecure" in run("serve").output
+        assert len(served_with) == 1
+
+    @pytest.mark.parametrize(
+        ("value", "said"),
+        [("crank.example", "'[\"crank.example\"]'"), ('["http://crank.example"]', "is not a host")],
+    )
+    def test_a_wrong_setting_is_told_in_one_line(self, monkeypatch, value, said):
+        monkeypatch.setenv("CRANKWRIGHT_ALLOWED_HOSTS", value)
+        refused = run("serve")
+        assert refused.exit_code == 1
+        assert "allowed_hosts" in refused.output.lower()
+        assert said in refused.output
+        assert "Traceback" not in refused.output

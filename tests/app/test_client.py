@@ -1,10 +1,13 @@
 """The typed client: what it gives back, and the problems that it raises."""
 
+import httpx
 import pytest
+from fastapi import Request
 from serving import free_port, moody, paper
 
 from app.calculations.schemas import OIL_FILM
-from app.client import Client, Problem
+from app.client import Client, Problem, user_at_host
+from app.clients import HEADER, get_client
 
 
 def test_templates_evaluate_and_solve(client):
@@ -71,6 +74,56 @@ def test_a_change_that_is_followed_to_its_end(served, monkeypatch):
         )
     assert design.state == "current"
     assert all(0 <= fraction <= 1 and text for fraction, text in told)
+
+
+@pytest.mark.parametrize(
+    ("user", "host", "name"),
+    [
+        ("ada", "lab-3", "ada@lab-3"),
+        ("Jürgen Müller", "büro 7", "J_rgen_M_ller@b_ro_7"),
+        ("", "", "@"),
+        ("a" * 90, "b" * 90, f"{'a' * 90}@{'b' * 9}"),
+    ],
+)
+def test_a_client_has_the_name_of_its_user_and_machine(monkeypatch, user, host, name):
+    monkeypatch.setattr("app.client.getpass.getuser", lambda: user)
+    monkeypatch.setattr("app.client.socket.gethostname", lambda: host)
+    assert user_at_host() == name
+    with Client("http://localhost") as client:
+        assert client.name == name
+
+
+def test_a_user_without_a_name(monkeypatch):
+    def nobody():
+        raise KeyError("getpwuid(): uid not found: 4711")
+
+    monkeypatch.setattr("app.client.getpass.getuser", nobody)
+    assert user_at_host().startswith("unknown@")
+
+
+@pytest.mark.parametrize("name", ["", " office", "office ", "a" * 101, "Büro", "a\nb"])
+def test_a_name_that_the_service_refuses_is_refused_here(name):
+    with pytest.raises(ValueError, match="1 to 100 printable ASCII characters"):
+        Client("http://localhost", name=name)
+
+
+def test_the_name_is_sent_as_the_service_reads_it(served, monkeypatch):
+    heard = []
+
+    async def listen(request: Request):
+        heard.append(await get_client(request))
+        return heard[-1]
+
+    monkeypatch.setitem(served.app.dependency_overrides, get_client, listen)
+    with Client(served.url, name="design office 7") as client:
+        client.auto_map(client.create({"name": "named"}).id)
+        assert set(heard) == {"name:design office 7"}
+    with Client(served.url) as client:
+        client.create({"name": "named too"})
+    assert heard[-1] == f"name:{user_at_host()}"
+    with httpx.Client(base_url=served.url, trust_env=False) as plain:
+        answer = plain.post("/api/v1/designs", json={"name": "x"}, headers={HEADER: "a" * 101})
+    assert answer.status_code == 422
 
 
 def test_a_service_that_is_not_there():

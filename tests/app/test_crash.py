@@ -78,6 +78,7 @@ def battle(data, kills: int, seed: int, changes: int) -> None:
     chance = random.Random(seed)
     environment = {
         "CRANKWRIGHT_TEMPLATE_FOLDERS": f'["{folder_of_models(data.parent)}"]',
+        "CRANKWRIGHT_CLIENT_QUEUE_LIMIT": "90000",  # all writers come from one address
         "CRANKWRIGHT_QUEUE_LIMIT": "100000",  # a server that is killed all the time gets behind
     }
     server = ServerProcess(data, **environment)

@@ -192,7 +192,7 @@ def test_a_closed_database_refuses_work(url):
 
 def test_closing_commits_what_waits(url, tmp_path):
     database = Database(url)
-    future = database._submit(adding("a"))
+    future = database.submit(adding("a"))
     database.close()
     assert future.done()
     reopened = Database(url)

@@ -1,22 +1,68 @@
-"""Keys of requests that may be sent again are kept for a week."""
+"""A key belongs to the client that sent it, and to nobody else's request."""
 
-from datetime import UTC, datetime, timedelta
+import pytest
+from serving import API, moody, problem
+from sqlalchemy import update
 
-from app.idempotency import Once, forget_old_keys
-from app.storage.identity import as_text
+from app.designs.errors import KeyReused
+from app.idempotency import BEFORE_CLIENTS, Once
 from app.storage.tables import IdempotencyRow
 
+SCOPE = "POST /designs"
+ANNA, BEN = "name:anna", "name:ben"
 
-def test_keys_older_than_a_week_are_forgotten(database):
-    def aged(session):
-        for key, days in (("old", 8), ("young", 6)):
-            Once(key, "POST /designs", "body").keep(session, 201, {"id": key})
-            session.flush()
-            row = session.get(IdempotencyRow, (key, "POST /designs", ""))
-            row.created = as_text(datetime.now(UTC) - timedelta(days=days))
 
-    database.write(aged)
-    database.write(forget_old_keys)
+def kept(database, once, **location):
+    database.write(lambda session: once.keep(session, 201, location))
+
+
+def looked_up(database, once):
     with database.read() as session:
-        assert Once("old", "POST /designs", "body").find(session) is None
-        assert Once("young", "POST /designs", "body").find(session) == {"id": "young"}
+        return once.find(session)
+
+
+def test_two_clients_may_choose_the_same_key(database):
+    anna, ben = (Once("key", SCOPE, f"body of {client}", client) for client in (ANNA, BEN))
+    kept(database, anna, id="anna's")
+    assert looked_up(database, ben) is None
+    kept(database, ben, id="ben's")
+    assert [looked_up(database, once)["id"] for once in (anna, ben)] == ["anna's", "ben's"]
+
+
+def test_a_key_of_before_there_were_clients_is_honoured(database):
+    kept(database, Once("key", SCOPE, "body", BEFORE_CLIENTS), id="old")
+    assert looked_up(database, Once("key", SCOPE, "body", ANNA)) == {"id": "old"}
+    with pytest.raises(KeyReused):
+        looked_up(database, Once("key", SCOPE, "another body", ANNA))
+
+
+def test_a_clients_own_key_comes_before_an_old_one(database):
+    kept(database, Once("key", SCOPE, "body", BEFORE_CLIENTS), id="old")
+    kept(database, Once("key", SCOPE, "another body", ANNA), id="own")
+    assert looked_up(database, Once("key", SCOPE, "another body", ANNA)) == {"id": "own"}
+
+
+def test_no_key_finds_nothing(database):
+    once = Once(None, SCOPE, "body", ANNA)
+    kept(database, once, id="not kept")
+    assert looked_up(database, once) is None
+
+
+class TestOverHttp:
+    def post(self, http, client, key="same-key", **more):
+        headers = {"Crankwright-Client": client, "Idempotency-Key": key, "Prefer": "wait=60"}
+        return http.post(f"{API}/designs", json=moody("33 mm", **more), headers=headers)
+
+    def test_two_clients_make_two_designs(self, http):
+        anna, ben = self.post(http, "anna"), self.post(http, "ben")
+        assert (anna.status_code, ben.status_code) == (201, 201)
+        assert anna.json()["id"] != ben.json()["id"]
+        again = self.post(http, "anna")
+        assert again.json()["id"] == anna.json()["id"]
+        problem(self.post(http, "anna", name="another"), 422, "idempotency-key-reused")
+
+    def test_a_request_of_before_the_upgrade_is_repeated_after_it(self, http, served):
+        first = self.post(http, "cara", key="old-key")
+        old = update(IdempotencyRow).where(IdempotencyRow.key == "old-key").values(client=BEFORE_CLIENTS)
+        served.app.state.database.write(lambda session: session.execute(old).rowcount)
+        assert self.post(http, "cara", key="old-key").json()["id"] == first.json()["id"]

@@ -184,7 +184,7 @@ def test_an_unknown_kind_fails(jobs, database):
 
 
 def test_the_queue_has_a_limit(make, database):
-    jobs = make(queue_limit=2)
+    jobs = make(queue_limit=3)
     put(jobs, database), put(jobs, database)
     with pytest.raises(QueueFull) as caught:
         put(jobs, database)

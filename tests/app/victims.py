@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import resource
 import subprocess
 import sys
 import time
@@ -93,3 +94,28 @@ def with_grandchild(file):
 def tell_and_sleep(file):
     file.write_text(str(os.getpid()))
     time.sleep(60)
+
+
+def hoard(megabytes):
+    """Keep memory beyond the end of the request."""
+    _HOARD.append(bytearray(megabytes * 2**20))
+    return os.getpid()
+
+
+_HOARD = []
+
+
+def spend(seconds):
+    """Use processor time."""
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
+    return os.getpid()
+
+
+def environment(name):
+    return os.environ.get(name)
+
+
+def processor_limit():
+    return os.getpid(), resource.getrlimit(resource.RLIMIT_CPU)[0]

@@ -1,11 +1,18 @@
 """What tests of the pages share: a page that is watched, designs of the gallery, a template of its own."""
 
+import shutil
 import sys
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[1] / "app"))
 
 from serving import API
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+FLAGS = (
+    "--no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
+    "--disable-component-update --disable-sync"
+).split()
 
 THIRD = '''
 """A third of a length, for tests of the pages."""
@@ -92,7 +99,7 @@ class Watched:
 
 def created(http, example: str) -> str:
     """The address of a design from the gallery, once its part is built."""
-    answer = http.post("/designs", content=f"example={example}")
+    answer = http.post("/designs", data={"example": example})
     assert answer.status_code == 303, answer.text
     place = answer.headers["location"]
     settled(http, place)

@@ -1,19 +1,11 @@
 """One server for all tests of the pages, and Chromium where it is installed."""
 
-import shutil
-
 import httpx
 import pytest
-from browsing import AWKWARD, THIRD, Watched, created
+from browsing import AWKWARD, CHROMIUM, FLAGS, THIRD, Watched, created
 from serving import folder_of_models, serving
 
 from app.settings import Settings
-
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-FLAGS = (
-    "--no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
-    "--disable-component-update --disable-sync"
-).split()
 
 
 @pytest.fixture(scope="session")

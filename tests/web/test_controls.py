@@ -83,7 +83,7 @@ def test_options_of_a_template_are_kept_apart_from_its_inputs(http):
     assert 'name="@level"' in page
     refused = http.get("/templates/oil_film/2", params={"@level": "none such", "@tolerance": "[1]"})
     assert refused.status_code == 422
-    assert re.search(r'id="@(level|tolerance)-error">[^<]', refused.text)
+    assert re.search(r'id="@(level|tolerance)-error"><bdi>[^<]', refused.text)
 
 
 def test_options_of_a_step_are_saved_and_their_faults_told_beside_them(http):
@@ -91,10 +91,10 @@ def test_options_of_a_step_are_saved_and_their_faults_told_beside_them(http):
     for typed in ("inf", "[1]", "small"):
         wrong = http.post(place, data={"revision": "1", "was": "{}", "oil_film@tolerance": typed})
         assert wrong.status_code == 422
-        assert re.search(r'id="oil_film@tolerance-error">[^<]', wrong.text), typed
+        assert re.search(r'id="oil_film@tolerance-error"><bdi>[^<]', wrong.text), typed
         assert f'value="{typed}"' in wrong.text
     wrong = http.post(place, data={"revision": "1", "was": "{}", "oil_film@level": "fast"})
-    assert re.search(r'id="oil_film@level-error">[^<]', wrong.text)
+    assert re.search(r'id="oil_film@level-error"><bdi>[^<]', wrong.text)
     http.post(place, data={"revision": "1", "was": "{}", "oil_film@tolerance": "0.05"})
     assert http.get(f"/api/v1{place}").json()["steps"]["oil_film"]["tolerance"] == 0.05
 

@@ -25,15 +25,25 @@ def migrate(url: str) -> None:
     engine = migrating_engine(url)
     try:
         with engine.begin() as connection:
-            _refuse_newer(connection, config)
+            _refuse_newer(connection)
             config.attributes["connection"] = connection
             command.upgrade(config, "head")
     finally:
         engine.dispose()
 
 
-def _refuse_newer(connection: Connection, config: Config) -> None:
-    current = MigrationContext.configure(connection).get_current_revision()
-    known = {script.revision for script in ScriptDirectory.from_config(config).walk_revisions()}
-    if current is not None and current not in known:
+def schema_of(connection: Connection) -> str | None:
+    """The version of a database's schema; None of an empty database."""
+    return MigrationContext.configure(connection).get_current_revision()
+
+
+def known_schemas() -> list[str]:
+    """The versions that this program can bring up to date, newest first; the first is its own."""
+    scripts = ScriptDirectory(str(Path(__file__).parent)).walk_revisions()
+    return [script.revision for script in scripts]
+
+
+def _refuse_newer(connection: Connection) -> None:
+    current = schema_of(connection)
+    if current is not None and current not in known_schemas():
         raise DatabaseNewer(current)

@@ -1,9 +1,10 @@
 // The design page while it is used: previews, the draft, saving, progress. Every action is a call of the API.
 import { Refused, call, units } from "./api.js";
 import { Draft } from "./draft.js";
+import { isolated } from "./isolated.js";
 import { live } from "./live.js";
-import { drawPictures } from "./pictures.js";
 import { showParameters, showValues } from "./parameters.js";
+import { drawPictures } from "./pictures.js";
 import { follow } from "./progress.js";
 import { OUTDATED, markOutdated, showFaults, showResults } from "./results.js";
 import { startSolids } from "./solids.js";
@@ -61,7 +62,7 @@ function refuse(error) {
 }
 
 function tell(words) {
-  trouble.textContent = words;
+  trouble.replaceChildren(isolated(words));
   trouble.hidden = false;
 }
 

@@ -1,6 +1,7 @@
 // The panel "Finite elements": asks for an analysis, follows its job, shows its answers, paints the solid.
 import { showAnalysis } from "./analyses.js";
 import { Refused, call, units } from "./api.js";
+import { isolated } from "./isolated.js";
 import { told as written } from "./numbers.js";
 import { follow } from "./progress.js";
 
@@ -43,7 +44,7 @@ function asDeclared(place) {
 
 function tell(place, words) {
   const notice = place.querySelector("[data-refused]");
-  notice.textContent = words;
+  notice.replaceChildren(...(words ? [isolated(words)] : []));
   notice.hidden = !words;
 }
 

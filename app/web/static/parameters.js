@@ -1,4 +1,5 @@
 // Values beside the fields: what a relation comes to, and model parameters old → new with their status.
+import { isolated } from "./isolated.js";
 import { told, unit } from "./numbers.js";
 
 const TO_DO = "set it, or map it to an output"; // as app/web/pages/parts.html says it
@@ -40,7 +41,13 @@ function tag(status, detail) {
   if (status === "ok" || status === "unchanged") return [];
   const made = span(`tag status ${status === "missing" || status === "unit_mismatch" ? "failed" : "pending"}`, status.replaceAll("_", " "));
   const words = status === "missing" ? TO_DO : detail;
-  return words ? [" ", made, " ", span("field-error", words)] : [" ", made];
+  return words ? [" ", made, " ", explained(words)] : [" ", made];
+}
+
+function explained(words) {
+  const made = span("field-error", "");
+  made.append(isolated(words));
+  return made;
 }
 
 const span = (className, textContent) => Object.assign(document.createElement("span"), { className, textContent });

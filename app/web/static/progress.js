@@ -1,5 +1,6 @@
 // How a job goes on: its events in a bar of the page; it can be cancelled there.
 import { call } from "./api.js";
+import { isolated } from "./isolated.js";
 
 const ENDED = ["done", "failed", "cancelled"];
 
@@ -18,7 +19,7 @@ export function follow(path, place = document.querySelector("[data-progress]"), 
     events.addEventListener("progress", ({ data }) => {
       const { progress, text } = JSON.parse(data);
       bar.value = progress;
-      words.textContent = text;
+      words.replaceChildren(isolated(text));
     });
     const end = () => {
       events.close();

@@ -1,4 +1,5 @@
 // Writes an evaluation into the page: formulas with their numbers, results, errors, warnings.
+import { isolated } from "./isolated.js";
 import { aligned, percent, told, unit } from "./numbers.js";
 import { reveal } from "./reveal.js";
 import { isOf } from "./typed.js";
@@ -62,7 +63,7 @@ export function showWarnings(scope, warnings) {
 
 export function warning({ name, detail }) {
   const item = Object.assign(document.createElement("li"), { className: "warning" });
-  item.append(Object.assign(document.createElement("strong"), { textContent: name.replaceAll("_", " ") }), ` ${detail}`);
+  item.append(Object.assign(document.createElement("strong"), { textContent: name.replaceAll("_", " ") }), " ", isolated(detail));
   return item;
 }
 
@@ -83,7 +84,7 @@ export function showFaults(form, faults) {
     const detail = faults.get(name);
     loose.delete(name);
     message.hidden = !detail;
-    message.textContent = detail ?? "";
+    message.replaceChildren(...(detail ? [isolated(detail)] : []));
     field.toggleAttribute("aria-invalid", Boolean(detail));
     if (detail) field.setAttribute("aria-invalid", "true");
     if (detail) field.setAttribute("aria-describedby", message.id);

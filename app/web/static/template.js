@@ -1,6 +1,7 @@
 // A template's page while it is used: results follow what is typed; the address keeps it.
-import { Refused, call, units } from "./api.js";
 import { drawAccuracy } from "./accuracy.js";
+import { Refused, call, units } from "./api.js";
+import { isolated } from "./isolated.js";
 import { live } from "./live.js";
 import { drawPictures, whenSeen } from "./pictures.js";
 import { OUTDATED, markOutdated, showFaults, showResults } from "./results.js";
@@ -35,7 +36,7 @@ function refuse(error) {
   const words = [...loose.values()].join("; ") || (error.faults?.size ? "see the message beside the field" : error.message);
   const hasResults = document.querySelector("[data-output]");
   markOutdated(true);
-  state.textContent = hasResults ? `${words}; ${OUTDATED}` : words;
+  state.replaceChildren(isolated(hasResults ? `${words}; ${OUTDATED}` : words));
 }
 
 function keepInAddress(filled) {

@@ -1,0 +1,43 @@
+"""Names that users gave, beside words of the program: signs that turn the direction of reading stay inside.
+
+U+202E and its kin are legal in names. Shown raw they turn round what follows. `balanced` is for text in an
+element that isolates (`<bdi>`), `bare` for where no element can stand: titles, and paper.
+"""
+
+from __future__ import annotations
+
+EMBEDDINGS = "\u202a\u202b\u202d\u202e"  # left, right, and both overrides; ended by POP_EMBEDDING
+ISOLATES = "\u2066\u2067\u2068"  # ended by POP_ISOLATE
+POP_EMBEDDING, POP_ISOLATE = "\u202c", "\u2069"
+MARKS = "\u200e\u200f\u061c"
+BREAKS = "\u2028\u2029\x85"  # a new paragraph ends every isolation
+
+_WITHOUT_BREAKS = dict.fromkeys(map(ord, BREAKS), " ")
+_WITHOUT_CONTROLS = dict.fromkeys(map(ord, EMBEDDINGS + ISOLATES + POP_EMBEDDING + POP_ISOLATE + MARKS))
+
+
+def bare(text: str) -> str:
+    """Return a text without any sign that only turns the direction of reading."""
+    return text.translate(_WITHOUT_CONTROLS | _WITHOUT_BREAKS)
+
+
+def balanced(text: str) -> str:
+    """Return a text that ends no isolation that it has not begun."""
+    kept, isolates = [], 0
+    for sign in text.translate(_WITHOUT_BREAKS):
+        if sign == POP_ISOLATE and isolates == 0:
+            continue
+        isolates += (sign in ISOLATES) - (sign == POP_ISOLATE)
+        kept.append(sign)
+    return "".join(kept)
+
+
+def bare_everywhere(data: object) -> object:
+    """Return plain data, as from JSON, with every text and name in it bare."""
+    if isinstance(data, str):
+        return bare(data)
+    if isinstance(data, dict):
+        return {bare_everywhere(name): bare_everywhere(value) for name, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [bare_everywhere(item) for item in data]
+    return data

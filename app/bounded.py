@@ -1,0 +1,42 @@
+"""Objects of JSON with a bounded number of names: of a million wrong ones nobody wants a million errors.
+
+Pydantic looks at every entry of an object before it counts them, and describes each that is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel, BeforeValidator, model_validator
+from pydantic_core import PydanticCustomError
+
+MOST_FIELDS = 100
+
+
+class Bounded(BaseModel):
+    """A model that refuses an object with far more names than any of ours has, before it looks at them."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def few_fields(cls, raw: Any) -> Any:
+        """The object as it is.
+
+        Raises
+        ------
+        PydanticCustomError
+            If it has too many names.
+        """
+        return _few(raw, MOST_FIELDS)
+
+
+def at_most(count: int) -> BeforeValidator:
+    """An annotation of a dictionary: it has at most so many entries, counted before they are looked at."""
+    return BeforeValidator(lambda raw: _few(raw, count))
+
+
+def _few(raw: Any, most: int) -> Any:
+    if isinstance(raw, Mapping) and len(raw) > most:
+        told = "an object here has at most {most} names, not {count}"
+        raise PydanticCustomError("too_long", told, {"most": most, "count": len(raw)})
+    return raw

@@ -1,0 +1,172 @@
+"""How long a calculation will take, from what the levels were measured to cost and from the points asked for.
+
+An order of magnitude, known before anything is calculated, and rather too high than too low: what is
+expensive leaves the server's process (see `app.calculations.pool`). `benchmarks/service_flood.py` holds the
+estimates against measured times.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from app.calculations.size import shape, spanned
+from templates.core.declare import Curve, Table
+from templates.core.errors import InvalidInputs
+from templates.core.levels import SINGLE, accuracy
+from templates.core.quantity import Typed
+from templates.core.solve import POLISHES, SAMPLES
+from templates.core.template import Template
+
+EXPENSIVE = 0.05  # beyond this a calculation leaves the server's process [s]
+
+QUICK = 1e-4  # at one point [s]
+
+PER_CALL, PER_OUTPUT = 2e-4, 5e-5  # of one point, without levels [s]
+PER_VALUE = 1e-6  # each number of an answer, calculated and written as JSON [s]
+PER_NUMBER = 5e-7  # each number of a request, read and checked [s]
+PER_FORMULA = 3e-4  # written out in a worksheet [s]
+ALLOWANCE = 3.0
+"""The tables of the levels leave out stiffness and damping, which take twice as long as all the rest."""
+SCANS, CLOSINGS = 8, 60
+"""Of `solve`: how often the samples of its scan are evaluated, in all, and single points after that."""
+MOST_POINTS = 10**12  # a request may claim more than a float can hold
+PROBED = 1000  # numbers in a request beyond which only the first of each array is looked at
+
+
+def estimated_seconds(
+    cls: type[Template],
+    inputs: Mapping[str, Any],
+    level: str | None = None,
+    tolerance: float | None = None,
+    outputs: Collection[str] | None = None,
+) -> float:
+    """How long `evaluate` will take, reading and writing included [s]; for wrong inputs, anything."""
+    shapes = _shapes(cls, inputs)
+    numbers = min(MOST_POINTS, sum(map(math.prod, shapes.values())))
+    levels = _levels(cls, inputs, level, tolerance, numbers)
+    points = min(MOST_POINTS, spanned(_points(cls, shapes)))
+    return numbers * PER_NUMBER + _evaluating(cls, levels, points, outputs) + _profiles(cls, shapes, outputs)
+
+
+def solving_seconds(
+    cls: type[Template],
+    inputs: Mapping[str, Any],
+    level: str | None = None,
+    tolerance: float | None = None,
+    outputs: Collection[str] | None = None,
+    target: Iterable[str] = (),
+) -> float:
+    """How long `solve` will take [s]: a scan at a level that takes many points, then closing in."""
+    levels = _levels(cls, inputs, level, tolerance, 0)
+    aimed = list(target)
+    cheap = levels if not any(name in cls.most_points for name in levels) else (cls.default_level,)
+    scan = _evaluating(cls, cheap, SCANS * SAMPLES, aimed)
+    closing = CLOSINGS * _evaluating(cls, cheap, 1, aimed)
+    polishing = 0.0 if cheap == levels else POLISHES * _evaluating(cls, levels, 1, aimed)
+    return scan + closing + polishing + _evaluating(cls, levels, 1, outputs)
+
+
+def writing_seconds(cls: type[Template], outputs: Collection[str] | None = None) -> float:
+    """How long it takes to write the formulas out [s]."""
+    return PER_FORMULA * len(_wanted(cls, outputs))
+
+
+def is_quick(cls: type[Template]) -> bool:
+    """Whether a few points take, at every level, no longer than a thread needs to begin."""
+    if cls not in _quick:
+        levels = cls.levels or (SINGLE,)
+        _quick[cls] = not cls.most_points and all(_level_seconds(cls, n, 1) <= QUICK for n in levels)
+    return _quick[cls]
+
+
+_quick: dict[Any, bool] = {}
+
+
+def _shapes(cls: type[Template], inputs: Mapping[str, Any]) -> dict[str, tuple[int, ...]]:
+    """The shapes of all arrays among the inputs, as typed."""
+    shapes = {name: shape(raw) for name, raw in inputs.items() if not isinstance(raw, str)}
+    return {name: found for name, found in shapes.items() if found}
+
+
+def _points(cls: type[Template], shapes: Mapping[str, tuple[int, ...]]) -> Iterable[tuple[int, ...]]:
+    """The axes that are points: a curve is one thing along its last, a table is one as a whole."""
+    for name, found in shapes.items():
+        declared = cls.inputs.get(name)
+        if not isinstance(declared, Table):
+            yield found[:-1] if isinstance(declared, Curve) else found
+
+
+def _profiles(
+    cls: type[Template], shapes: Mapping[str, tuple[int, ...]], outputs: Collection[str] | None
+) -> float:
+    """What outputs along curves take beside those of the points [s]."""
+    curves = (math.prod(s) for name, s in shapes.items() if isinstance(cls.inputs.get(name), Curve))
+    return min(MOST_POINTS, max(curves, default=0)) * len(_wanted(cls, outputs)) * PER_VALUE
+
+
+def _levels(
+    cls: type[Template],
+    inputs: Mapping[str, Any],
+    level: str | None,
+    tolerance: float | None,
+    numbers: int,
+) -> tuple[str, ...]:
+    """The levels that will be calculated: one, or with a tolerance perhaps all, up to the finest."""
+    if not cls.levels:
+        return (SINGLE,)
+    if level in cls.levels:
+        return (level,)
+    ladder = _ladder(cls, inputs, numbers)
+    if tolerance is not None:
+        return ladder
+    return (cls.default_level if cls.default_level in ladder else ladder[-1],)
+
+
+def _ladder(cls: type[Template], inputs: Mapping[str, Any], numbers: int) -> tuple[str, ...]:
+    """The levels that answer the question these inputs ask."""
+    if cls.ladder is Template.ladder:
+        return cls.levels
+    probe = inputs if numbers <= PROBED else {name: _first(cls, name, raw) for name, raw in inputs.items()}
+    try:
+        with np.errstate(all="ignore"):
+            return cls.from_quantities(probe).ladder()
+    except InvalidInputs:
+        return (cls.default_level,)
+
+
+def _first(cls: type[Template], name: str, raw: Any) -> Any:
+    """An array's first value, in its unit; anything else as it is."""
+    if isinstance(raw, Typed) or isinstance(cls.inputs.get(name), (Curve, Table)):
+        return raw
+    value = raw.get("value") if isinstance(raw, Mapping) else raw
+    while isinstance(value, list) and value:
+        value = value[0]
+    return {**raw, "value": value} if isinstance(raw, Mapping) else value
+
+
+def _wanted(cls: type[Template], outputs: Collection[str] | None) -> list[str]:
+    return list(cls.formulas) if outputs is None else [name for name in outputs if name in cls.formulas]
+
+
+def _evaluating(
+    cls: type[Template], levels: Iterable[str], points: int, outputs: Collection[str] | None
+) -> float:
+    """How long one evaluation of so many points takes at these levels together [s]."""
+    wanted = _wanted(cls, outputs)
+    plain = PER_CALL + PER_OUTPUT * len(wanted) + PER_VALUE * points * len(wanted)
+    fine = (n for n in wanted if not cls.levels or "level" in cls.ancestors(cls.formulas[n].attribute))
+    if next(fine, None) is None:
+        return plain
+    return plain + ALLOWANCE * sum(_level_seconds(cls, level, points) for level in levels)
+
+
+def _level_seconds(cls: type[Template], level: str, points: int) -> float:
+    """What a level was measured to take for so many points [s]; nothing, if it was not measured."""
+    measured = accuracy(cls)
+    cost = measured.told["levels"].get(level, {}).get("cost", {}) if measured else {}
+    single = float(cost.get("single", 0.0))
+    return single if points <= 1 else single + points * float(cost.get("vectorised", single))

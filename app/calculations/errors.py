@@ -1,0 +1,45 @@
+"""What can go wrong with calculations beside what templates refuse.
+
+QueueFull
+ └── TooManyCalculations   as many wait as may
+InvalidBody                a body that was read in a calculation process is not what the operation takes
+"""
+
+from __future__ import annotations
+
+from typing import Any, Self
+
+from pydantic import ValidationError
+
+from app.jobs.errors import QueueFull
+
+
+class TooManyCalculations(QueueFull):
+    """As many calculations wait as may; it may be worth another try after some time [s]."""
+
+    def __str__(self) -> str:
+        return f"Too many calculations are waiting. Try again in {self.retry_after} s."
+
+
+class InvalidBody(Exception):
+    """A body that is not what the operation takes; `errors()` are in pydantic's form."""
+
+    def __init__(self, listed: list[dict[str, Any]]) -> None:
+        super().__init__(listed)
+        self._listed = listed
+
+    @classmethod
+    def of(cls, error: ValidationError) -> Self:
+        """From pydantic's own error, as FastAPI locates it, without the values that may be large."""
+        listed = error.errors(include_url=False, include_input=False, include_context=False)
+        return cls([{**found, "loc": ("body", *found["loc"])} for found in listed])
+
+    @classmethod
+    def not_json(cls, reason: str) -> Self:
+        """For a body that cannot be parsed, in the words of FastAPI."""
+        found = {"type": "json_invalid", "loc": ("body", 0), "msg": "JSON decode error"}
+        return cls([{**found, "ctx": {"error": reason}}])
+
+    def errors(self) -> list[dict[str, Any]]:
+        """What is wrong, one by one."""
+        return self._listed

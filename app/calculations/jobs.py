@@ -1,0 +1,111 @@
+"""Calculations as jobs: what is still running when nobody waits for it any longer, or was never waited for.
+
+The body and the answer are artifacts; the row names them by their hashes. A calculation that runs when it
+becomes a job goes on in its process, if the lane of jobs has room; else it is calculated again in its turn.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import wait
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from app.calculations.errors import InvalidBody
+from app.calculations.operations import Question, answered
+from app.calculations.pool import Calculation, CalculationPool
+from app.calculations.sources import Source
+from app.http import HttpError
+from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.problems import describe
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from templates.core.catalogue import Catalogue
+from templates.core.errors import TemplateError
+from templates.core.template import Template
+
+CALCULATION = "calculation"
+THREADS = 8  # that follow jobs; calculations that were adopted while they ran do not wait behind others
+GLANCE = 0.1  # how often a thread looks whether its job was cancelled [s]
+FAILURES = (TemplateError, HttpError, InvalidBody)
+"""What the request itself brings about."""
+
+
+class CalculationJobs:
+    """Makes jobs of calculations, and is the handler of such jobs."""
+
+    def __init__(
+        self,
+        pool: CalculationPool,
+        catalogue: Catalogue[Template],
+        sources: dict[type[Template], Source],
+        database: Database,
+        store: ArtifactStore,
+        jobs: Jobs,
+    ) -> None:
+        self.pool, self.catalogue, self.sources = pool, catalogue, sources
+        self.database, self.store, self.jobs = database, store, jobs
+        self._adopted: dict[str, Calculation] = {}  # by job
+
+    def create(self, question: Question, client: str, running: Calculation | None = None) -> str:
+        """Queue a job for a question, which adopts the calculation that runs already, if there is one.
+
+        Raises
+        ------
+        QueueFull
+            Too many jobs are waiting; the calculation is ended.
+        """
+        is_kept = running is not None and self.pool.keep(running)
+        if running is not None and not is_kept:
+            self.pool.cancel(running)
+        payload = {**vars(question), "body": self.store.put(question.body)}
+
+        def unit(session: Session) -> str:
+            id = self.jobs.enqueue(session, CALCULATION, payload, client=client)
+            if running is not None and is_kept:
+                self._adopted[id] = running  # before the job can be claimed
+            return id
+
+        try:
+            job = self.database.write(unit)
+        except BaseException:
+            if running is not None:
+                self.pool.cancel(running)
+            raise
+        self.jobs.wake()
+        return job
+
+    def __call__(self, job: Job, context: JobContext) -> Completion:
+        """Follow the calculation of a job to its end, and keep its answer.
+
+        Raises
+        ------
+        JobFailed
+            With the problem, for anything that the request itself brings about.
+        """
+        try:
+            calculation = self._adopted.pop(job.id, None) or self._submitted(job)
+            calculation.listen(context.progress)
+            answer = self._outcome(calculation, context)
+        except FAILURES as error:
+            raise JobFailed(describe(error)) from error
+        link = f"/api/v1/evaluations/{job.id}?sha256={self.store.put(answer)}"
+        return lambda session: link
+
+    def failed(self, session: Session, job: Job, problem: dict[str, Any]) -> None:
+        """End the calculation of a job that was cancelled before anybody followed it."""
+        if calculation := self._adopted.pop(job.id, None):
+            self.pool.cancel(calculation)
+
+    def _submitted(self, job: Job) -> Calculation:
+        """The calculation of a job from its row, as after a start of the server."""
+        question = Question(**{**job.payload, "body": self.store.read(job.payload["body"])})
+        cls = self.catalogue.get(question.template, question.version)
+        return self.pool.submit(f"job:{job.id}", answered, self.sources[cls], question, lane="jobs")
+
+    def _outcome(self, calculation: Calculation, context: JobContext) -> bytes:
+        while not wait([calculation.future], GLANCE).done:
+            if context.is_cancelled:
+                self.pool.cancel(calculation)
+        answer: bytes = calculation.future.result()
+        return answer

@@ -1,0 +1,77 @@
+"""What can be asked of a template, by name: from the bytes of a request to the bytes of an answer.
+
+`answered` runs in a calculation process. Reading a large body and writing a large answer hold the interpreter
+as long as the calculation itself, so both are done there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import from_json, to_json
+
+from app.calculations.display import System
+from app.calculations.errors import InvalidBody
+from app.calculations.schemas import Asked, EvaluateIn, SolveIn
+from app.calculations.service import run_evaluate, run_solve
+from app.calculations.sources import Source, loaded
+from app.calculations.worksheet import run_worksheet
+from app.workers.progress import report
+from templates.core.progress import reporting
+from templates.core.template import Template
+
+
+@dataclass(frozen=True)
+class Operation:
+    """What is asked, and the model of the body that asks it."""
+
+    body: type[Asked]
+    run: Callable[[type[Template], Any, System], dict[str, Any]]
+
+
+OPERATIONS = {
+    "evaluate": Operation(EvaluateIn, lambda cls, body, system: run_evaluate(cls, body)),
+    "solve": Operation(SolveIn, lambda cls, body, system: run_solve(cls, body)),
+    "worksheet": Operation(EvaluateIn, run_worksheet),
+}
+
+
+@dataclass(frozen=True)
+class Question:
+    """A request to calculate, as it is sent to a process and kept in a job."""
+
+    template: str
+    version: int
+    operation: str
+    body: bytes
+    system: System = "si"
+
+
+def answered(source: Source, question: Question) -> bytes:
+    """The answer as JSON.
+
+    Raises
+    ------
+    InvalidBody
+        If the body is no JSON, or not what the operation takes.
+    TemplateError, TooManyValues
+        As the operation itself.
+    """
+    operation = OPERATIONS[question.operation]
+    body = _read(operation.body, question.body)
+    with reporting(report):
+        return to_json(operation.run(loaded(source), body, question.system))
+
+
+def _read(model: type[Asked], body: bytes) -> Asked:
+    try:
+        raw = from_json(body)
+    except ValueError as error:
+        raise InvalidBody.not_json(str(error)[:200]) from None
+    try:
+        return model.model_validate(raw, from_attributes=True)  # as FastAPI, whose words are used
+    except ValidationError as error:
+        raise InvalidBody.of(error) from None

@@ -1,0 +1,203 @@
+"""The bounded pool in which expensive calculations run: a queue with admission, turns by client, lanes.
+
+Threads of its own wait for the processes. So neither the event loop nor a thread of a route does: a route
+awaits `Calculation.future`, and a thread that needs the result blocks on it.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import Counter
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any, Literal, TypeVarTuple
+
+from app.calculations.errors import TooManyCalculations
+from app.calculations.turns import Turns, first, last_of_the_greediest
+from app.workers.base import Limits, Worker
+from app.workers.errors import JobCancelled
+from app.workers.progress import Reporter
+
+Ts = TypeVarTuple("Ts")
+Lane = Literal["answers", "jobs"]
+
+RETRY_AFTER = 5  # what to advise when too many wait [s]
+
+
+class Calculation:
+    """A calculation that waits or runs; its `future` holds what comes out."""
+
+    def __init__(
+        self, function: Callable[..., Any], args: tuple[Any, ...], client: str, turn: int, lane: Lane
+    ) -> None:
+        self.function, self.args = function, args
+        self.client, self.turn, self.lane = client, turn, lane
+        self.future: Future[Any] = Future()
+        self.cancelled = threading.Event()
+        self._listener: Reporter | None = None
+        self._latest: tuple[float, str] | None = None
+
+    def listen(self, listener: Reporter) -> None:
+        """Have progress reported from now on, beginning with the latest; in a thread of the pool."""
+        self._listener = listener
+        if self._latest is not None:
+            listener(*self._latest)
+
+    def progress(self, fraction: float, text: str) -> None:
+        """Note how far the calculation is."""
+        self._latest = fraction, text
+        if self._listener is not None:
+            self._listener(fraction, text)
+
+
+class CalculationPool:
+    """As many calculations at a time as there are cores, and beside them the long ones that became jobs.
+
+    Args:
+        worker: runs them; it is the pool's own.
+        size: calculations that run at the same time while somebody waits for the answer.
+        waiting: calculations that may wait.
+        limits: of one calculation.
+    """
+
+    def __init__(self, worker: Worker, size: int, waiting: int, limits: Limits) -> None:
+        self.size, self.most_waiting = size, waiting
+        self._worker, self._limits = worker, limits
+        self._capacity: dict[Lane, int] = {"answers": size, "jobs": max(1, size // 2)}
+        self._changed = threading.Condition()
+        self._queue: list[Calculation] = []
+        self._active: list[Calculation] = []
+        self._turns = Turns()
+        self._closed = False
+        self._threads = [
+            threading.Thread(target=self._work, name=f"calculations-{number}", daemon=True)
+            for number in range(sum(self._capacity.values()))
+        ]
+        for thread in self._threads:
+            thread.start()
+
+    @property
+    def running(self) -> int:
+        """Calculations that run."""
+        return len(self._active)
+
+    @property
+    def waiting(self) -> int:
+        """Calculations that wait."""
+        return len(self._queue)
+
+    def occupancy(self) -> dict[str, float]:
+        """The figures of the pool for `app.metrics`."""
+        return {"running": self.running, "waiting": self.waiting, "size": self.size}
+
+    def answers(self) -> bool:
+        """Whether a calculation would find a process that is alive; see `Worker.answers`."""
+        return self._worker.answers()
+
+    def submit(
+        self, client: str, function: Callable[[*Ts], Any], *args: *Ts, lane: Lane = "answers"
+    ) -> Calculation:
+        """Have a function calculated when it is the client's turn.
+
+        Raises
+        ------
+        TooManyCalculations
+            As many wait as may. If another client has more waiting than this one, its latest gives way.
+        """
+        with self._changed:
+            if self._closed:
+                raise JobCancelled
+            loser = self._admitted(client) if lane == "answers" else None
+            calculation = Calculation(function, args, client, self._turns.next(client), lane)
+            self._queue.append(calculation)
+            self._changed.notify_all()
+        if loser is not None:
+            loser.future.set_exception(TooManyCalculations(RETRY_AFTER))
+        return calculation
+
+    def cancel(self, calculation: Calculation) -> None:
+        """End a calculation: one that waits at once, one that runs with its process."""
+        calculation.cancelled.set()
+        with self._changed:
+            is_waiting = calculation in self._queue
+            if is_waiting:
+                self._queue.remove(calculation)
+        if is_waiting:
+            calculation.future.set_exception(JobCancelled())
+
+    def keep(self, calculation: Calculation) -> bool:
+        """Let a running calculation go on as a job, if there is room; whether there was."""
+        with self._changed:
+            if calculation not in self._active or not self._has_room("jobs"):
+                return False
+            calculation.lane = "jobs"
+            self._changed.notify_all()  # its place is free for another answer
+            return True
+
+    def close(self) -> None:
+        """End everything; call it before the worker is closed."""
+        with self._changed:
+            self._closed = True
+            ending = [*self._queue, *self._active]
+            self._changed.notify_all()
+        for calculation in ending:
+            self.cancel(calculation)
+        for thread in self._threads:
+            thread.join()
+
+    def _admitted(self, client: str) -> Calculation | None:
+        """Make room in the queue if it is full; who gives way, if anybody does."""
+        queue = [calculation for calculation in self._queue if calculation.lane == "answers"]
+        if len(queue) - self._room("answers") < self.most_waiting:
+            return None
+        loser = last_of_the_greediest(queue, client)
+        if loser is None:
+            raise TooManyCalculations(RETRY_AFTER)
+        self._queue.remove(loser)
+        return loser
+
+    def _work(self) -> None:
+        while (calculation := self._next()) is not None:
+            self._run(calculation)
+
+    def _next(self) -> Calculation | None:
+        """Wait for a calculation whose turn it is; None once the pool is closed."""
+        with self._changed:
+            while not self._closed:
+                ready = [c for c in self._queue if self._has_room(c.lane)]
+                running = Counter(c.client for c in self._active)
+                if (calculation := first(ready, running)) is not None:
+                    self._queue.remove(calculation)
+                    self._active.append(calculation)
+                    self._turns.taken(calculation.turn)
+                    return calculation
+                self._changed.wait()
+        return None
+
+    def _run(self, calculation: Calculation) -> None:
+        try:
+            result = self._worker.run(
+                calculation.function,
+                *calculation.args,
+                limits=self._limits,
+                on_progress=calculation.progress,
+                cancelled=calculation.cancelled,
+            )
+        except BaseException as error:  # whatever it is belongs to who waits for the result
+            self._ended(calculation)
+            calculation.future.set_exception(error)
+        else:
+            self._ended(calculation)
+            calculation.future.set_result(result)
+
+    def _ended(self, calculation: Calculation) -> None:
+        with self._changed:
+            self._active.remove(calculation)
+            self._turns.forget({c.client for c in (*self._queue, *self._active)})
+            self._changed.notify_all()
+
+    def _has_room(self, lane: Lane) -> bool:
+        return self._room(lane) > 0
+
+    def _room(self, lane: Lane) -> int:
+        return self._capacity[lane] - sum(c.lane == lane for c in self._active)

@@ -1,0 +1,61 @@
+"""How much a design asks for, counted before anything of it is read or calculated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+from typing import Any
+
+from app.designs.document import Document
+from templates.core.errors import Fault, FaultyText
+from templates.core.relation import is_relation
+
+MOST_RELATION_TEXT = (
+    50_000  # characters of all relations of a design; reading them takes a quarter of a second
+)
+MOST_VALUES = 100_000  # of a relation, or of all outputs of a step
+MOST_OPERATIONS = 20_000_000  # on single values, of all relations of a design
+
+
+def too_many_relations(document: Document) -> Iterator[Fault]:
+    """A fault if the relations of a design are longer together than is read."""
+    length = sum(len(item) for item in _items(document) if is_relation(item))
+    if length > MOST_RELATION_TEXT:
+        told = (
+            f"the relations of a design have at most {MOST_RELATION_TEXT} characters together, not {length}"
+        )
+        yield Fault("design", "too_long", told)
+
+
+def _items(document: Document) -> Iterator[Any]:
+    """Every value of a document, and every item of those that are lists."""
+    groups = [document.parameters, *(step.inputs for step in document.steps.values())]
+    groups += [model.parameters for model in document.models.values()]
+    values = chain.from_iterable(group.values() for group in groups)
+    return chain.from_iterable(value if isinstance(value, list) else (value,) for value in values)
+
+
+def limit_values(values: int) -> None:
+    """Refuse more values in one place than a design takes.
+
+    Raises
+    ------
+    FaultyText
+        With code `too_many_values`.
+    """
+    if values > MOST_VALUES:
+        told = f"this makes {values} values, more than the {MOST_VALUES} that a design takes in one place"
+        raise FaultyText("too_many_values", told)
+
+
+def limit_operations(operations: int) -> None:
+    """Refuse relations that calculate more, all together, than a design does.
+
+    Raises
+    ------
+    FaultyText
+        With code `too_many_values`.
+    """
+    if operations > MOST_OPERATIONS:
+        told = f"the relations up to here make {operations} operations on single values"
+        raise FaultyText("too_many_values", f"{told}; use shorter arrays, at most {MOST_OPERATIONS} are made")

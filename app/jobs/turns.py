@@ -1,0 +1,108 @@
+"""Whose job comes next: clients take turns, so nobody's many jobs delay another's one. All SQL about that.
+
+A client's new job takes the turn after its own last one, but none before the turn that the queue is at; jobs
+run by turn, those of one turn by age. So a newcomer comes second, however many jobs of another client wait.
+Every lane has turns of its own. Every function runs in the transaction of its
+caller.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy import ColumnElement, and_, func, select
+from sqlalchemy.orm import Session
+
+from app.jobs.errors import JobShared
+from app.storage.tables import JobRow
+
+UNFINISHED = ("queued", "running")
+MOST_OTHERS = 20  # clients that are remembered to wait for a job, beside the one whose turn it takes
+
+
+@dataclass(frozen=True)
+class Lane:
+    """The jobs that wait for the same threads: those of some kinds, or in the common lane all others."""
+
+    kinds: tuple[str, ...] = ()
+    is_common: bool = True
+
+    def holds(self) -> ColumnElement[bool]:
+        """The condition that a job is in this lane."""
+        return JobRow.kind.not_in(self.kinds) if self.is_common else JobRow.kind.in_(self.kinds)
+
+
+ALL_KINDS = Lane()
+
+
+def next_turn(session: Session, client: str, lane: Lane) -> int:
+    """The turn of a client's next job."""
+    mine = and_(JobRow.client == client, JobRow.state.in_(UNFINISHED), lane.holds())
+    last = session.scalar(select(func.max(JobRow.turn)).where(mine))
+    return max(_present_turn(session, lane), -1 if last is None else last + 1)
+
+
+def _present_turn(session: Session, lane: Lane) -> int:
+    """The turn that a lane is at: the lowest that waits, else the highest that runs."""
+    waiting = select(JobRow.turn).where(JobRow.state == "queued", lane.holds()).order_by(JobRow.turn)
+    running = select(JobRow.turn).where(JobRow.state == "running", lane.holds()).order_by(JobRow.turn.desc())
+    turns = (session.scalar(query.limit(1)) for query in (waiting, running))
+    return next((turn for turn in turns if turn is not None), 0)
+
+
+def count_queued(session: Session, client: str | None = None) -> int:
+    """How many jobs wait, of one client or of all."""
+    waiting = select(func.count()).select_from(JobRow).where(JobRow.state == "queued")
+    return session.scalar(waiting if client is None else waiting.where(JobRow.client == client)) or 0
+
+
+def count_until_next(session: Session, client: str, lane: Lane) -> int:
+    """How many jobs of a lane start until one of the client's does; 1 if it has none there."""
+    waiting = and_(JobRow.state == "queued", lane.holds())
+    next_one = select(func.min(JobRow.turn)).where(waiting, JobRow.client == client)
+    until = select(func.count()).select_from(JobRow).where(waiting, JobRow.turn <= next_one.scalar_subquery())
+    return max(1, session.scalar(until) or 0)
+
+
+def join(session: Session, id: str, client: str, lane: Lane, share: int) -> None:
+    """Let a client wait for a job that another asked for.
+
+    If the client's own turn comes first and its share of the queue allows it, the job takes that turn and
+    counts as this client's: else two clients together could have more turns than each has alone.
+    """
+    row = session.get_one(JobRow, id)
+    if client != row.client and client not in row.others and len(row.others) < MOST_OTHERS:
+        row.others = [*row.others, client]
+    turn = next_turn(session, client, lane)
+    if row.state == "queued" and turn < row.turn and count_queued(session, client) < share:
+        row.others = [other for other in (row.client, *row.others) if other != client]
+        row.client, row.turn = client, turn
+    session.flush()
+
+
+def leave(session: Session, id: str, client: str) -> bool:
+    """Let a client no longer wait for a job; whether another still does.
+
+    Raises
+    ------
+    JobShared
+        Several clients wait for it, and this is none of them.
+    """
+    row = session.get_one(JobRow, id)
+    if not row.others:
+        return False
+    everyone = [row.client, *row.others]
+    if client not in everyone:
+        raise JobShared(id)
+    row.client, *row.others = [other for other in everyone if other != client]
+    session.flush()
+    return True
+
+
+def oldest_queued(session: Session) -> int | None:
+    """When the job that waits longest was queued [s of operation], or None if none waits."""
+    # The sum keeps SQLite from walking the index of ages through all jobs that ended earlier.
+    since: Any = func.min(JobRow.operated + 0)
+    age: int | None = session.scalar(select(since).where(JobRow.state == "queued"))
+    return age

@@ -1,0 +1,24 @@
+"""What a backup holds, in this order: `manifest.json`, the database, the artifacts, `end.json`.
+
+A tar file, compressed by gzip if its name ends with gz. An artifact is named by the hash of its bytes, the
+manifest holds that of the database, and the last entry says that the archive is whole.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+FORMAT = 1
+MANIFEST, DATABASE, END = "manifest.json", "crankwright.sqlite", "end.json"
+ARTIFACT = re.compile(r"artifacts/([0-9a-f]{2})/(\1[0-9a-f]{62})")
+
+
+def is_compressed(name: Path) -> bool:
+    """Whether a backup of this name is compressed."""
+    return name.suffix in (".gz", ".tgz")
+
+
+def artifact_entry(sha: str) -> str:
+    """The name of an artifact in the archive, and in the data folder."""
+    return f"artifacts/{sha[:2]}/{sha}"

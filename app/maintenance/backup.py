@@ -1,0 +1,175 @@
+"""Back up a data folder while the service runs: a snapshot of the database first, then the files it names.
+
+The bytes of an artifact are synced before the row that names it is committed. So every file of the snapshot
+is there, unless it is damaged, or the service has deleted it with its row meanwhile.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+import sqlite3
+import tarfile
+import tempfile
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from app.maintenance.archive import DATABASE, END, FORMAT, MANIFEST, artifact_entry, is_compressed
+from app.maintenance.check import Say, fault_of, is_still_named
+from app.maintenance.errors import CannotRun
+from app.maintenance.folder import database_file, reading, refuse_other_schema
+from app.maintenance.rows import Named, named_files
+from app.storage.identity import now
+from app.storage.integrity import faults
+
+EVERY = 500  # artifacts between two lines of progress
+
+
+@dataclass
+class Contents:
+    """What went into a backup: how many artifacts and bytes, and which files could not be taken along."""
+
+    artifacts: int = 0
+    size: int = 0  # bytes
+    damaged: dict[str, str] = field(default_factory=dict)  # by hash, what is wrong
+    deleted: list[str] = field(default_factory=list)  # with their rows, after the snapshot
+
+
+def back_up(data: Path, url: str | None, target: Path, say: Say) -> Contents:
+    """Write a backup; it appears under its name once it is whole and synced.
+
+    Raises
+    ------
+    CannotRun
+        There is no SQLite database, it is damaged, or the target exists.
+    OSError
+        The archive cannot be written.
+    """
+    source = database_file(data, url)
+    if target.exists():
+        raise CannotRun(f"{target} exists: a backup never replaces another; choose a new name.")
+    if not target.absolute().parent.is_dir():
+        raise CannotRun(f"There is no folder {target.absolute().parent} for the backup.")
+    with _temporary(target, "database") as snapshot, _temporary(target, "archive") as archive:
+        schema = _snapshot(source, snapshot)
+        say(f"database: {snapshot.stat().st_size / 2**20:.1f} MiB, schema {schema}")
+        contents = _write(archive, snapshot, schema, source, data, is_compressed(target), say)
+        _publish(archive, target)
+    return contents
+
+
+def _snapshot(source: Path, snapshot: Path) -> str:
+    """Copy the database as it is at one moment into a single file, and return its schema."""
+    try:
+        with reading(source) as connection, closing(sqlite3.connect(snapshot)) as copy:
+            schema = refuse_other_schema(connection, older_too=False)
+            connection.backup(copy)  # all pages in one step: writers go on, and are not part of it
+            copy.execute("PRAGMA journal_mode = delete")
+    except sqlite3.DatabaseError as error:
+        raise CannotRun(f"The database cannot be read: {error}. Run `crankwright check`.") from error
+    if found := faults(snapshot):
+        raise CannotRun(f"The database is damaged, so it is not backed up: {'; '.join(found)}.")
+    return schema
+
+
+def _write(
+    archive: Path, snapshot: Path, schema: str, source: Path, data: Path, compressed: bool, say: Say
+) -> Contents:
+    contents = Contents()
+    with reading(snapshot) as connection:
+        rows = {row.sha: row for row in named_files(connection)}
+    with archive.open("wb") as file:
+        with tarfile.open(fileobj=file, mode="w:gz" if compressed else "w") as tar:
+            _add(tar, MANIFEST, _json(_manifest(snapshot, schema, len(rows))))
+            tar.add(snapshot, DATABASE, filter=_plain)
+            for number, row in enumerate(rows.values(), 1):
+                _add_artifact(tar, row, source, data, contents)
+                if number % EVERY == 0:
+                    say(f"artifacts: {number} of {len(rows)}")
+            _add(tar, END, _json({"artifacts": contents.artifacts, "missing": _missing(contents)}))
+        file.flush()
+        os.fsync(file.fileno())
+    return contents
+
+
+def _add_artifact(tar: tarfile.TarFile, row: Named, source: Path, data: Path, contents: Contents) -> None:
+    """Add one artifact if its bytes, as they go into the archive, have its hash."""
+    path = data / artifact_entry(row.sha)
+    try:
+        read = path.read_bytes()
+    except OSError:
+        read = b""
+    if hashlib.sha256(read).hexdigest() == row.sha:
+        _add(tar, artifact_entry(row.sha), read)
+        contents.artifacts += 1
+        contents.size += len(read)
+    elif is_still_named(source, row):
+        contents.damaged[row.sha] = fault_of(path, row) or "the file was replaced while it was read"
+    else:
+        contents.deleted.append(row.sha)
+
+
+def _manifest(snapshot: Path, schema: str, artifacts: int) -> dict[str, Any]:
+    with snapshot.open("rb") as file:
+        sha = hashlib.file_digest(file, "sha256").hexdigest()
+    size = snapshot.stat().st_size
+    return {
+        "format": FORMAT,
+        "program": version("crankwright"),
+        "created": now(),
+        "schema": schema,
+        "database": {"sha256": sha, "size": size},
+        "artifacts": artifacts,
+    }
+
+
+def _missing(contents: Contents) -> list[str]:
+    return sorted([*contents.damaged, *contents.deleted])
+
+
+def _json(value: Any) -> bytes:
+    return json.dumps(value, indent=1).encode()
+
+
+def _add(tar: tarfile.TarFile, name: str, data: bytes) -> None:
+    entry = tarfile.TarInfo(name)
+    entry.size, entry.mode = len(data), 0o644
+    tar.addfile(entry, io.BytesIO(data))
+
+
+def _plain(entry: tarfile.TarInfo) -> tarfile.TarInfo:
+    """Without the owner and the mode that the file happens to have."""
+    entry.uid = entry.gid = 0
+    entry.uname = entry.gname = ""
+    entry.mode = 0o644
+    return entry
+
+
+@contextmanager
+def _temporary(target: Path, what: str) -> Iterator[Path]:
+    """A file beside the target that is gone in the end, unless it took the target's name."""
+    folder = target.absolute().parent
+    descriptor, name = tempfile.mkstemp(dir=folder, prefix=f".{target.name}.", suffix=f".{what}")
+    os.close(descriptor)
+    try:
+        yield Path(name)
+    finally:
+        for suffix in ("", "-wal", "-shm", "-journal"):
+            Path(f"{name}{suffix}").unlink(missing_ok=True)
+
+
+def _publish(archive: Path, target: Path) -> None:
+    if target.exists():
+        raise CannotRun(f"{target} has appeared meanwhile: a backup never replaces another.")
+    os.rename(archive, target)
+    descriptor = os.open(target.absolute().parent, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,87 @@
+"""A data folder as maintenance sees it: perhaps in use by a running service, so it is only read."""
+
+from __future__ import annotations
+
+import fcntl
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from app.maintenance.errors import CannotRun
+from app.storage.engines import sqlite_file
+from app.storage.folder import LOCK
+from app.storage.integrity import is_damage
+from app.storage.migrations import known_schemas
+
+PG_DUMP = (
+    "The database is not SQLite. Back it up with `pg_dump -Fc`, restore it with `pg_restore`, and copy the "
+    "folder `artifacts` of the data folder after the dump, never before it."
+)
+
+
+def database_file(data: Path, url: str | None) -> Path:
+    """The SQLite file of a data folder.
+
+    Raises
+    ------
+    CannotRun
+        There is none.
+    """
+    path = sqlite_file(url) if url else data / "crankwright.sqlite"
+    if path is None:
+        raise CannotRun(PG_DUMP)
+    if not path.is_file():
+        raise CannotRun(f"There is no database {path.absolute()}: name the data folder by --data.")
+    return path
+
+
+def is_in_use(data: Path) -> bool:
+    """Whether a service holds the folder; unlike `DataFolder` it creates nothing and takes nothing."""
+    try:
+        with (data / LOCK).open("rb") as lock:
+            fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except FileNotFoundError:
+        return False
+    except BlockingIOError:
+        return True
+    return False
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[sqlite3.Connection]:
+    """A connection that reads one snapshot and cannot write; a service may use the file meanwhile."""
+    connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True, isolation_level=None)
+    try:
+        for pragma in ("busy_timeout = 10000", "query_only = on"):
+            connection.execute(f"PRAGMA {pragma}")
+        connection.execute("BEGIN")
+        yield connection
+    finally:
+        connection.close()
+
+
+def refuse_other_schema(connection: sqlite3.Connection, *, older_too: bool) -> str:
+    """Return the version of the schema.
+
+    Raises
+    ------
+    CannotRun
+        It is one that this program does not know, or an older one if that is refused as well.
+    """
+    try:
+        rows = connection.execute("SELECT version_num FROM alembic_version").fetchall()
+    except sqlite3.OperationalError as error:
+        if is_damage(error):
+            raise
+        raise CannotRun("The file is not a database of Crankwright.") from None
+    schema = str(rows[0][0]) if rows else "none"
+    known = known_schemas()
+    if schema not in known:
+        raise CannotRun(f"The database has schema {schema}, newer than this program's {known[0]}: upgrade.")
+    if older_too and schema != known[0]:
+        raise CannotRun(
+            f"The database has schema {schema}, older than this program's {known[0]}: start the service "
+            "once, which brings it up to date."
+        )
+    return schema

@@ -1,0 +1,111 @@
+"""Repair a data folder that no service uses: make lost files again from rows, set unnamed ones aside."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TypeVar, TypeVarTuple
+
+from app.analyses import repository as analyses
+from app.analyses.finding import Analysing
+from app.analyses.questions import SURFACE
+from app.maintenance.check import Findings, Say
+from app.maintenance.rows import Named
+from app.models.builds import Builds
+from app.models.errors import CannotRebuild
+from app.models.shapes import shape_of
+from app.settings import Settings
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.workers.base import Limits
+from app.workers.errors import WorkerError
+from app.workers.local import LocalProcesses
+from cad.catalogue import models as find_models
+from cad.errors import AnalysisError, GeometryError
+from cad.export import DERIVED
+from cad.regenerate import build_key
+from templates.core.errors import TemplateError
+
+T = TypeVar("T")
+Ts = TypeVarTuple("Ts")
+
+FAILURES = (CannotRebuild, TemplateError, GeometryError, AnalysisError, WorkerError)
+
+
+class Direct:
+    """Runs functions in job processes, for no job of the queue."""
+
+    def __init__(self, worker: LocalProcesses, limits: Limits) -> None:
+        self._worker, self._limits = worker, limits
+
+    def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
+        """See `Worker.run`."""
+        return self._worker.run(function, *args, limits=limits or self._limits)
+
+
+class Repair:
+    """Makes files again with the machinery of the service, in processes of its own."""
+
+    def __init__(
+        self, database: Database, store: ArtifactStore, settings: Settings, worker: LocalProcesses
+    ) -> None:
+        self.database, self.store = database, store
+        self.catalogue = find_models(*settings.template_folders)
+        self.builds = Builds(database, store, settings.template_folders)
+        longest = Limits(settings.analysis_deadline, settings.analysis_memory_mb)
+        self.analysing = Analysing(database, store, longest)
+        self.runner = Direct(worker, Limits(settings.job_deadline, settings.job_memory_mb))
+
+    def row(self, row: Named) -> str | None:
+        """Have the file of a row good; return why it is not, if it is not."""
+        try:
+            if row.kind == SURFACE:
+                self._surface(row.owner)
+            else:
+                self.builds.restore(row.owner, self.catalogue, self.runner)
+                if row.kind in DERIVED:
+                    self.builds.derive(row.owner, row.kind, self.runner)
+        except FAILURES as error:
+            return str(error)
+        return None
+
+    def _surface(self, key: str) -> None:
+        with self.database.read() as session:
+            build, question, _ = analyses.asked(session, key)
+            shape = shape_of(session, self.catalogue, build)
+        if question.key(build_key(shape)) != key:
+            raise CannotRebuild("other_recipe", "another version of kernel, solver or recipe found it")
+        self.builds.make(shape, self.runner)
+        self.analysing.find(shape, question, (SURFACE,), self.runner)
+
+
+def repair(data: Path, url: str, findings: Findings, settings: Settings, say: Say) -> None:
+    """Repair what can be repaired, and say what was done; the caller holds the data folder."""
+    if findings.damaged:
+        _rebuild(data, url, findings, settings, say)
+    if findings.unnamed:
+        say(_moved_aside(data, findings.unnamed))
+
+
+def _rebuild(data: Path, url: str, findings: Findings, settings: Settings, say: Say) -> None:
+    database, worker = Database(url), LocalProcesses()
+    try:
+        repairing = Repair(database, ArtifactStore(data / "artifacts"), settings, worker)
+        for row in findings.damaged:
+            why = repairing.row(row)
+            name = f"{row.kind} of {row.owner}"
+            say(f"not repaired: {name}: {why}" if why else f"repaired: {name}")
+    finally:
+        worker.close()
+        database.close()
+
+
+def _moved_aside(data: Path, files: list[Path]) -> str:
+    """Move files that no row names into a folder of their own; nothing is deleted."""
+    aside = data / f"unreferenced-{datetime.now(UTC):%Y%m%dT%H%M%S}"
+    aside.mkdir()
+    for file in files:
+        os.rename(file, aside / file.name)
+    return f"{len(files)} files that no row names moved into {aside}; nothing was deleted"

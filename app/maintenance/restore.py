@@ -1,0 +1,191 @@
+"""Restore a backup into a new data folder, which appears only when everything in it is verified.
+
+Nothing in the archive decides where a byte goes: only entries of known names and plain files are taken.
+"""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import json
+import os
+import shutil
+import sqlite3
+import tarfile
+import tempfile
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, Any
+
+from app.maintenance.archive import ARTIFACT, DATABASE, END, FORMAT, MANIFEST
+from app.maintenance.check import Say
+from app.maintenance.errors import CannotRun
+from app.maintenance.folder import reading, refuse_other_schema
+from app.maintenance.rows import broken_references, named_files
+from app.storage.integrity import faults
+
+LARGEST_NOTE = 64 * 2**20  # of the manifest and the end [bytes]; the end names every missing file
+_CHUNK = 2**20
+_BROKEN = (tarfile.TarError, gzip.BadGzipFile, EOFError, zlib.error, ValueError, KeyError, TypeError)
+
+
+@dataclass
+class Restored:
+    """What came out of a backup."""
+
+    manifest: dict[str, Any] = field(default_factory=dict)
+    end: dict[str, Any] | None = None
+    database: str = ""  # SHA-256
+    artifacts: set[str] = field(default_factory=set)
+
+
+def restore(archive: Path, data: Path, say: Say) -> Restored:
+    """Restore a backup into an empty or absent folder.
+
+    Raises
+    ------
+    CannotRun
+        The folder is in use, or the archive is damaged, incomplete, newer than this program, or none of ours.
+    """
+    if not archive.is_file():
+        raise CannotRun(f"There is no backup {archive}.")
+    _refuse_content(data)
+    with _sibling(data) as folder:
+        try:
+            restored = _unpacked(archive, folder)
+            _verify(folder, restored)
+        except _BROKEN as error:
+            raise CannotRun(f"{archive} is damaged or no backup of Crankwright: {error}.") from error
+        say(f"verified: the database and {len(restored.artifacts)} artifacts")
+        _sync_all(folder)
+        os.rename(folder, data)
+        _sync(data.absolute().parent)
+    return restored
+
+
+def _refuse_content(data: Path) -> None:
+    if data.exists() and (not data.is_dir() or any(data.iterdir())):
+        raise CannotRun(
+            f"{data.absolute()} is not empty, and a restore never overwrites. Name a new folder by --data, "
+            f"or stop the service and move the old one aside: mv {data.absolute()} {data.absolute()}.old"
+        )
+
+
+@contextmanager
+def _sibling(data: Path) -> Iterator[Path]:
+    """A folder beside the wanted one, gone in the end unless it took that one's name."""
+    parent = data.absolute().parent
+    parent.mkdir(parents=True, exist_ok=True)
+    folder = Path(tempfile.mkdtemp(dir=parent, prefix=f".{data.name}.restoring-"))
+    folder.chmod(0o755)
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _unpacked(archive: Path, folder: Path) -> Restored:
+    restored = Restored()
+    with tarfile.open(archive, "r|*") as tar:
+        for entry in tar:
+            if restored.end is not None:
+                raise CannotRun(f"The archive goes on behind its end, with {entry.name[:100]!r}.")
+            file = tar.extractfile(entry) if entry.isreg() else None
+            if file is None:
+                raise CannotRun(f"The archive holds {entry.name[:100]!r}, which is no plain file.")
+            _take(entry, file, folder, restored)
+    if restored.end is None:
+        raise CannotRun("The archive is not complete: its end is missing.")
+    return restored
+
+
+def _take(entry: tarfile.TarInfo, file: IO[bytes], folder: Path, restored: Restored) -> None:
+    """Put one entry where it belongs; the order of the entries is part of the format."""
+    if not restored.manifest:
+        restored.manifest = _manifest(entry, file)
+    elif entry.name == DATABASE and not restored.database:
+        restored.database = _written(file, folder / DATABASE)
+    elif entry.name == END and restored.database:
+        restored.end = _note(entry, file)
+    elif (artifact := ARTIFACT.fullmatch(entry.name)) and restored.database:
+        _take_artifact(artifact[2], file, folder / entry.name, restored)
+    else:
+        raise CannotRun(f"The archive holds {entry.name[:100]!r}, which no backup of ours holds there.")
+
+
+def _take_artifact(sha: str, file: IO[bytes], place: Path, restored: Restored) -> None:
+    if sha in restored.artifacts:
+        raise CannotRun(f"The archive holds artifact {sha} twice.")
+    place.parent.mkdir(parents=True, exist_ok=True)
+    if _written(file, place) != sha:
+        raise CannotRun(f"Artifact {sha} in the archive is damaged: its bytes have another hash.")
+    restored.artifacts.add(sha)
+
+
+def _manifest(entry: tarfile.TarInfo, file: IO[bytes]) -> dict[str, Any]:
+    if entry.name != MANIFEST:
+        raise CannotRun(f"This is no backup of Crankwright: it begins with {entry.name[:100]!r}.")
+    manifest = _note(entry, file)
+    if manifest["format"] != FORMAT:
+        raise CannotRun(f"The backup has format {manifest['format']}; this program reads {FORMAT}: upgrade.")
+    return manifest
+
+
+def _note(entry: tarfile.TarInfo, file: IO[bytes]) -> dict[str, Any]:
+    if entry.size > LARGEST_NOTE:
+        raise CannotRun(f"{entry.name} in the archive has {entry.size} bytes, more than any backup's.")
+    note = json.loads(file.read())
+    if not isinstance(note, dict):
+        raise CannotRun(f"{entry.name} in the archive is not what this program writes.")
+    return note
+
+
+def _written(file: IO[bytes], place: Path) -> str:
+    """Write an entry to its place, synced, and return the hash of its bytes."""
+    digest = hashlib.sha256()
+    with place.open("xb") as out:
+        while chunk := file.read(_CHUNK):
+            digest.update(chunk)
+            out.write(chunk)
+        out.flush()
+        os.fsync(out.fileno())
+    return digest.hexdigest()
+
+
+def _verify(folder: Path, restored: Restored) -> None:
+    """Hold the database against its hash and this program, and the artifacts against the rows."""
+    assert restored.end is not None
+    if restored.database != restored.manifest["database"]["sha256"]:
+        raise CannotRun("The database in the archive is damaged: its bytes have another hash.")
+    if restored.end["artifacts"] != len(restored.artifacts):
+        raise CannotRun("The archive is not complete: artifacts are missing.")
+    path = folder / DATABASE
+    if found := faults(path):
+        raise CannotRun(f"The database in the archive is damaged: {'; '.join(found)}.")
+    try:
+        with reading(path) as connection:
+            refuse_other_schema(connection, older_too=False)
+            wrong = list(broken_references(connection))
+            named = {row.sha for row in named_files(connection)}
+    except sqlite3.DatabaseError as error:
+        raise CannotRun(f"The database in the archive cannot be read: {error}.") from error
+    if wrong:
+        raise CannotRun(f"The database in the archive contradicts itself: {'; '.join(wrong[:5])}.")
+    if lacking := named - restored.artifacts - set(restored.end["missing"]):
+        raise CannotRun(f"The archive lacks {len(lacking)} artifacts, such as {min(lacking)}.")
+
+
+def _sync_all(folder: Path) -> None:
+    for place in (folder, *(path for path in folder.rglob("*") if path.is_dir())):
+        _sync(place)
+
+
+def _sync(folder: Path) -> None:
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

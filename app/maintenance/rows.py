@@ -1,0 +1,67 @@
+"""Which files the rows of a database name, and which rows lead nowhere. Plain SQL over a snapshot."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Named:
+    """A file that a row names: a file of a build, or the surface of an analysis."""
+
+    sha: str
+    size: int
+    owner: str  # the key of the build or the analysis
+    kind: str  # step, png, …; or surface
+
+
+def named_files(connection: sqlite3.Connection) -> Iterator[Named]:
+    """Every file that a row names; the same file as often as it is named."""
+    for sha, size, key, kind in connection.execute("SELECT sha256, size, build_key, kind FROM artifact"):
+        yield Named(sha, size, key, kind)
+    if _has_table(connection, "analysis"):
+        surfaces = "SELECT key, found FROM analysis WHERE output = 'surface'"
+        for key, found in connection.execute(surfaces):
+            told = json.loads(found)
+            yield Named(told["sha256"], told["size"], key, "surface")
+
+
+LEADING_NOWHERE = {
+    "job {} belongs to a revision that does not exist": """
+        SELECT job.id FROM job LEFT JOIN revision
+        ON revision.design_id = job.design_id AND revision.number = job.revision
+        WHERE job.design_id IS NOT NULL AND job.revision IS NOT NULL AND revision.number IS NULL""",
+    "design {} has no revision of the number of its newest one": """
+        SELECT design.id FROM design LEFT JOIN revision
+        ON revision.design_id = design.id AND revision.number = design.head
+        WHERE revision.number IS NULL""",
+    "revision {} belongs to a design that does not exist": """
+        SELECT revision.design_id || '/' || revision.number FROM revision LEFT JOIN design
+        ON design.id = revision.design_id WHERE design.id IS NULL""",
+    "revision {} is current, and the build of its model is not recorded": """
+        SELECT m.design_id || '/' || m.number || ' ' || m.name FROM revision_model AS m
+        JOIN revision ON revision.design_id = m.design_id AND revision.number = m.number
+        LEFT JOIN build ON build.key = m.build_key
+        WHERE revision.state = 'current' AND m.build_key IS NOT NULL AND build.key IS NULL""",
+    "build {} has no STEP file recorded": """
+        SELECT build.key FROM build LEFT JOIN artifact
+        ON artifact.build_key = build.key AND artifact.kind = 'step' WHERE artifact.kind IS NULL""",
+}
+"""Sentences about rows that refer to what is not there, each with the query that finds them."""
+
+
+def broken_references(connection: sqlite3.Connection) -> Iterator[str]:
+    """Rows that refer to rows that do not exist, a sentence each."""
+    for table, row, parent, _ in connection.execute("PRAGMA foreign_key_check"):
+        yield f"row {row} of table {table} refers to a row of {parent} that does not exist"
+    for sentence, query in LEADING_NOWHERE.items():
+        for (name,) in connection.execute(query):
+            yield sentence.format(name)
+
+
+def _has_table(connection: sqlite3.Connection, name: str) -> bool:
+    query = "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?"
+    return connection.execute(query, (name,)).fetchone() is not None

@@ -1,0 +1,33 @@
+"""How long nobody has wanted a build: one that no revision uses is deleted after a time, see `app.retention`.
+
+Whoever wants a build renews its age in the unit of work that counts on it, or learns there that it is gone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from sqlalchemy import update
+from sqlalchemy.orm import Session
+
+from app.storage.clock import operated
+from app.storage.tables import BuildRow
+
+FRESH = (
+    3600  # a build wanted this recently need not be renewed: it is kept for a day or longer [s of operation]
+)
+
+
+def is_fresh(session: Session, keys: Collection[str]) -> bool:
+    """Whether all of these builds are there, and sure to stay for as long as any request or job takes."""
+    present = operated(session)
+    rows = (session.get(BuildRow, key) for key in keys)
+    return all(row is not None and present - row.operated <= FRESH for row in rows)
+
+
+def renew(session: Session, keys: Collection[str]) -> bool:
+    """Renew the age of builds in a unit of work; return whether all of them are there."""
+    if not keys:
+        return True
+    wanted = update(BuildRow).where(BuildRow.key.in_(set(keys))).values(operated=operated(session))
+    return len(session.scalars(wanted.returning(BuildRow.key)).all()) == len(set(keys))

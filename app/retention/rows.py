@@ -1,0 +1,91 @@
+"""All SQL of retention. Ages are in seconds of operation; every function runs in its caller's transaction."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from typing import Any
+
+from sqlalchemy import ColumnElement, CursorResult, Text, and_, cast, delete, exists, select
+from sqlalchemy.orm import Session
+
+from app.jobs.turns import UNFINISHED
+from app.storage.clock import operated
+from app.storage.tables import (
+    AnalysisRow,
+    ArtifactRow,
+    BuildRow,
+    IdempotencyRow,
+    JobRow,
+    RevisionModelRow,
+)
+
+_SHA256 = re.compile(r"(?<![0-9a-f])[0-9a-f]{64}(?![0-9a-f])")
+
+
+def delete_keys(session: Session, kept: float, most: int) -> int:
+    """Delete some of the idempotency keys that are older than this [s]; return how many."""
+    row = IdempotencyRow
+    old = select(row.key, row.scope, row.client).where(row.operated < operated(session) - kept)
+    some = session.execute(old.order_by(row.operated).limit(most)).all()
+    for key, scope, client in some:
+        same = and_(row.key == key, row.scope == scope, row.client == client)
+        session.execute(delete(row).where(same))
+    return len(some)
+
+
+def delete_jobs(session: Session, kept: float, most: int) -> int:
+    """Delete some of the jobs that ended longer ago than this [s]; return how many."""
+    # Not "state in (…)": SQLite would collect and sort all ended jobs instead of walking the index of ages.
+    old = select(JobRow.id).where(JobRow.operated < operated(session) - kept, JobRow.state.not_in(UNFINISHED))
+    some = old.order_by(JobRow.operated).limit(most)
+    return _count(session.execute(delete(JobRow).where(JobRow.id.in_(some))))
+
+
+def unwanted_builds(session: Session, kept: float, after: str, most: int) -> list[str]:
+    """Some of the builds that no revision uses and nobody has wanted for this long [s], by key."""
+    unwanted = select(BuildRow.key).where(BuildRow.key > after, _is_unwanted(session, kept))
+    return list(session.scalars(unwanted.order_by(BuildRow.key).limit(most)))
+
+
+def delete_builds(session: Session, keys: Collection[str], kept: float) -> int:
+    """Delete those of these builds that are unwanted still, with their analyses; return how many.
+
+    Their files stay in the store, where nothing refers to them any more.
+    """
+    still = select(BuildRow.key).where(BuildRow.key.in_(keys), _is_unwanted(session, kept))
+    gone = set(session.scalars(still)) - _awaited(session)
+    for table in (AnalysisRow, ArtifactRow):
+        session.execute(delete(table).where(table.build_key.in_(gone)))
+    session.execute(delete(BuildRow).where(BuildRow.key.in_(gone)))
+    return len(gone)
+
+
+def referenced_files(session: Session) -> set[str]:
+    """The SHA-256 of every file that a row refers to, and some hashes more, such as keys of builds.
+
+    Files belong to artifacts, to outputs of analyses that are files, and to whatever a job was given or made.
+    Whoever lets another column refer to files adds it here.
+    """
+    files = set(session.scalars(select(ArtifactRow.sha256)))
+    for column in (AnalysisRow.found, JobRow.payload, JobRow.result):
+        text = cast(column, Text)
+        for part in session.execute(select(text).where(text.like("%" + 64 * "_" + "%"))).scalars():
+            files.update(_SHA256.findall(part))
+    return files
+
+
+def _is_unwanted(session: Session, kept: float) -> ColumnElement[bool]:
+    used = exists().where(RevisionModelRow.build_key == BuildRow.key)
+    return and_(BuildRow.operated < operated(session) - kept, ~used)
+
+
+def _awaited(session: Session) -> set[str]:
+    """The builds of which unfinished jobs make further files."""
+    payloads = session.scalars(select(JobRow.payload).where(JobRow.state.in_(UNFINISHED)))
+    return {payload["build"] for payload in payloads if "build" in payload}
+
+
+def _count(result: Any) -> int:
+    assert isinstance(result, CursorResult)
+    return result.rowcount

@@ -1,0 +1,95 @@
+"""The thread that deletes what nobody has wanted for long, in small units of work, while the service runs."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from functools import partial
+
+from sqlalchemy.orm import Session
+
+from app.retention import rows
+from app.retention.files import Sweep
+from app.settings import Settings
+from app.storage.artifacts import ArtifactStore
+from app.storage.clock import DAY, operated
+from app.storage.database import Database
+
+logger = logging.getLogger(__name__)
+
+PAUSE = 900.0  # between two rounds [s]
+GRACE = 3600  # between two sweeps of the files [s of operation]
+SOME_ROWS = 200  # that one unit deletes: others' writes wait a few milliseconds for it
+SOME_BUILDS = 10  # likewise; each has its artifacts and analyses
+
+
+class Retention:
+    """Deletes old rows and files as the settings say, at the start and then every quarter of an hour."""
+
+    def __init__(self, database: Database, store: ArtifactStore, settings: Settings) -> None:
+        self._database = database
+        self._sweep = Sweep(database, store)
+        self._swept: int | None = None  # when [s of operation]
+        # The record of a request names its job, which must not be missed when the request is repeated.
+        self._keys = settings.keep_keys_days * DAY
+        self._jobs = max(settings.keep_jobs_days, settings.keep_keys_days) * DAY
+        self._builds = settings.keep_builds_days * DAY
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._work, name="retention", daemon=True)
+
+    def start(self) -> None:
+        """Begin; the first round comes at once."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End after the unit of work that runs."""
+        self._stopping.set()
+        self._thread.join()
+
+    def run(self) -> dict[str, int]:
+        """One round; return how many of each were deleted."""
+        counts = {
+            "keys": self._repeat(partial(rows.delete_keys, kept=self._keys, most=SOME_ROWS)),
+            "jobs": self._repeat(partial(rows.delete_jobs, kept=self._jobs, most=SOME_ROWS)),
+            "builds": self._delete_builds(),
+            "files": self._sweep_files(),
+        }
+        if any(counts.values()):
+            logger.info("Deleted what nobody wanted any more: %s", counts)
+        return counts
+
+    def _work(self) -> None:
+        while not self._stopping.is_set():
+            try:
+                self.run()
+            except Exception:
+                logger.exception("Old rows and files could not be deleted; trying again in %g s", PAUSE)
+            self._stopping.wait(PAUSE)
+
+    def _repeat(self, unit: Callable[[Session], int]) -> int:
+        """Run a unit until it finds no more; between two of them others' units have their turn."""
+        total = 0
+        while not self._stopping.is_set() and (count := self._database.write(unit)):
+            total += count
+        return total
+
+    def _delete_builds(self) -> int:
+        """Read builds without the writer, page by page; the unit that deletes a page looks at it again."""
+        total, last = 0, ""
+        while not self._stopping.is_set():
+            with self._database.read() as session:
+                page = rows.unwanted_builds(session, self._builds, last, SOME_BUILDS)
+            if not page:
+                break
+            total += self._database.write(partial(rows.delete_builds, keys=page, kept=self._builds))
+            last = page[-1]
+        return total
+
+    def _sweep_files(self) -> int:
+        with self._database.read() as session:
+            present = operated(session)
+        if self._swept is not None and present - self._swept < GRACE:
+            return 0
+        self._swept = present
+        return self._sweep.run(self._stopping.is_set)

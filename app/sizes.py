@@ -1,0 +1,43 @@
+"""How much memory a value holds, arrays and long lists included."""
+
+from __future__ import annotations
+
+import sys
+from gc import get_referents
+from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
+from typing import Any
+
+import numpy as np
+import pint
+
+from templates.core.declare import Declaration, Requirement, Shared
+from templates.core.units import Unit
+
+_SHARED = (
+    type, ModuleType, FunctionType, BuiltinFunctionType, MethodType,
+    Declaration, Shared, Requirement, Unit, pint.UnitRegistry, pint.Unit,
+)  # fmt: skip
+"""What belongs to the program, not to the values that refer to it."""
+_ATOMS = (float, int, bool, str, bytes, complex, type(None))
+
+
+def size_of(value: Any) -> int:
+    """The memory of a value and of all that it refers to [bytes]; what equal parts share may count twice."""
+    total, seen, waiting = sys.getsizeof(value), {id(value)}, [value]
+    while waiting:
+        for part in _parts(waiting.pop()):
+            if type(part) in _ATOMS:
+                total += sys.getsizeof(part)
+            elif id(part) not in seen and not isinstance(part, _SHARED):
+                seen.add(id(part))
+                total += sys.getsizeof(part)
+                waiting.append(part)
+    return total
+
+
+def _parts(value: Any) -> list[Any]:
+    """What a value refers to; of a view of an array the array that owns the numbers."""
+    if isinstance(value, np.ndarray):
+        items = value.ravel().tolist() if value.dtype == object else []
+        return items if value.base is None else [*items, value.base]
+    return get_referents(value)

@@ -1,0 +1,125 @@
+"""Whether a SQLite file is whole: its pages, its indexes, and the JSON in its rows.
+
+SQLite keeps no checksums. A page that was overwritten shows by a broken tree, an index that disagrees with
+its table, or a text that is no JSON; a changed digit inside a text does not show.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+import threading
+from collections.abc import Iterator
+from contextlib import closing
+from itertools import islice
+from pathlib import Path
+
+from sqlalchemy.exc import DBAPIError
+
+from app.storage.engines import sqlite_file
+from app.storage.errors import DatabaseDamaged
+from app.storage.tables import Base, Json, NotWritten
+
+MOST = 5  # faults that a message names
+_CORRUPT = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
+
+_sound: dict[Path, tuple[tuple[int, int, int], ...]] = {}  # what this process has found without faults
+_one_at_a_time = threading.Lock()
+
+
+def refuse_damage(url: str) -> None:
+    """Return if a database is whole, or new, or none of SQLite's.
+
+    The time is proportional to its size, some seconds for a gigabyte; an unchanged file is read once.
+
+    Raises
+    ------
+    DatabaseDamaged
+        With the pages and tables that are not.
+    """
+    path = sqlite_file(url)
+    if path is None or not path.is_file() or not path.stat().st_size:
+        return
+    with _one_at_a_time:
+        seen = _seen(path)
+        if _sound.get(path) == seen:
+            return
+        if found := faults(path):
+            raise DatabaseDamaged(str(path), found)
+        _sound[path] = seen
+
+
+def faults(path: Path, most: int = MOST) -> list[str]:
+    """What is wrong with a SQLite file, at most this many lines."""
+    with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True)) as connection:
+        connection.execute("PRAGMA busy_timeout = 10000")
+        # A page on which SQLite stops takes the lines before it along, unless only one was wanted.
+        one = _collected(_of_pages(connection, 1), path)
+        if one and most > 1:
+            more = _collected(_of_pages(connection, most), path)
+            return more if len(more) > 1 else one
+        return one or _collected(islice(_of_texts(connection), most), path)
+
+
+def is_damage(error: BaseException) -> bool:
+    """Whether an error says that the database is not as it was written."""
+    cause = error.orig if isinstance(error, DBAPIError) else error
+    if isinstance(cause, sqlite3.Error):
+        code = getattr(cause, "sqlite_errorcode", 0) or 0
+        return code & 0xFF in _CORRUPT or "Could not decode to UTF-8" in str(cause)
+    return isinstance(cause, (DatabaseDamaged, NotWritten))
+
+
+def _seen(path: Path) -> tuple[tuple[int, int, int], ...]:
+    log = path.with_name(f"{path.name}-wal")
+    stats = [file.stat() for file in (path, log) if file.exists()]
+    return tuple((seen.st_ino, seen.st_size, seen.st_mtime_ns) for seen in stats)
+
+
+def _collected(lines: Iterator[str], path: Path) -> list[str]:
+    """The lines, or the error in place of the first."""
+    collected: list[str] = []
+    try:
+        collected.extend(lines)
+    except sqlite3.DatabaseError as error:
+        if error.sqlite_errorcode & 0xFF not in _CORRUPT:
+            raise
+        return collected or [f"{_unreadable_schema(path)}: {error}"]
+    return collected
+
+
+def _unreadable_schema(path: Path) -> str:
+    """Which page keeps SQLite from reading the schema: the first one, or one of those that it refers to.
+
+    The layout is that of SQLite's file format: a tree of tables has pages of type 5 (inner) and 13 (leaf).
+    """
+    with path.open("rb") as file:
+        first = file.read(65536)
+        size = int.from_bytes(first[16:18]) if first[16:18] != b"\0\1" else 65536
+        if first[:16] != b"SQLite format 3\0" or first[100] != 5:
+            return "page 1, the header"
+        cells = (int.from_bytes(first[112 + 2 * n :][:2]) for n in range(int.from_bytes(first[103:105])))
+        for page in [
+            *(int.from_bytes(first[cell : cell + 4]) for cell in cells),
+            int.from_bytes(first[108:112]),
+        ]:
+            file.seek((page - 1) * size)
+            if file.read(1) not in (b"\x05", b"\x0d"):
+                return f"page {page}, of the schema"
+    return "some page"
+
+
+def _of_pages(connection: sqlite3.Connection, most: int) -> Iterator[str]:
+    """Faults of trees, free pages and indexes, as SQLite words them."""
+    for (text,) in connection.execute(f"PRAGMA integrity_check({most})"):
+        lines = (line.strip() for line in text.splitlines())
+        yield from (line for line in lines if line not in ("", "ok", "*** in database main ***"))
+
+
+def _of_texts(connection: sqlite3.Connection) -> Iterator[str]:
+    """Rows with texts that should be JSON and are not; a database of an older program may lack columns."""
+    for table in Base.metadata.sorted_tables:
+        there = {row[1] for row in connection.execute(f"PRAGMA table_info({table.name})")}
+        for column in (c.name for c in table.columns if isinstance(c.type, Json) and c.name in there):
+            wrong = f"SELECT rowid FROM {table.name} WHERE {column} IS NOT NULL AND NOT json_valid({column})"
+            for (row,) in connection.execute(wrong):
+                yield f"row {row} of table {table.name}: {column} is no JSON"

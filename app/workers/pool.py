@@ -1,0 +1,120 @@
+"""Processes that take one request after another, for work that is short beside a fork."""
+
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from typing import TypeVar, TypeVarTuple, cast
+
+from app.workers.base import Limits
+from app.workers.isolated import ForkServer, JobProcess
+from app.workers.messages import Request
+from app.workers.progress import Reporter
+
+T = TypeVar("T")
+Ts = TypeVarTuple("Ts")
+
+REUSE = 100  # requests that one process takes at most: what leaks in it ends with it
+
+ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""As many processes as cores run at the same time; threads of libraries would only get in their way."""
+
+
+class WarmProcesses:
+    """Runs functions in processes that are forked from one with light modules loaded, and kept.
+
+    A process takes another request only if the last one ended by itself: whatever crashed, took too long,
+    wanted too much memory or was cancelled ends its own process and no other.
+
+    Args:
+        preload: leaf modules; a package such as `numpy` would be imported with everything beneath it.
+        spares: processes that are kept waiting.
+        reuse: requests that one process takes.
+    """
+
+    def __init__(
+        self,
+        preload: Sequence[str],
+        *,
+        spares: int = 1,
+        reuse: int = REUSE,
+        environment: Mapping[str, str] = ONE_THREAD,
+    ) -> None:
+        self._forkserver = ForkServer(preload, environment)
+        self._spares, self._reuse = spares, reuse
+        self._lock = threading.Lock()
+        self._closed = False
+        self._served: dict[JobProcess, int] = {}  # requests by process, of those that live
+        self._idle = [self._forked() for _ in range(spares)]
+
+    def run(
+        self,
+        function: Callable[[*Ts], T],
+        *args: *Ts,
+        limits: Limits = Limits(),  # noqa: B008 - frozen
+        on_progress: Reporter | None = None,
+        cancelled: threading.Event | None = None,
+    ) -> T:
+        """Run the function in a process that has nothing else to do; see `Worker.run`."""
+        process = self._started(Request(function, args, limits, reusable=True))
+        try:
+            return cast(T, process.finish(limits, on_progress, cancelled))
+        finally:
+            self._put_back(process)
+
+    def answers(self) -> bool:
+        """Whether the forkserver is alive; if it has died, it is started again."""
+        if self._forkserver.is_alive():
+            return True
+        if not self._forkserver.is_stopped() and self._lock.acquire(blocking=False):
+            try:
+                self._idle.append(self._forked())
+            finally:
+                self._lock.release()
+        return False
+
+    def close(self) -> None:
+        """Kill all processes; what still runs ends with JobCrashed."""
+        self._closed = True
+        self._forkserver.close()  # before the lock, which who waits for a stopped forkserver may hold
+        with self._lock:
+            for process in self._idle:
+                process.kill()
+            self._idle.clear()
+
+    def _forked(self) -> JobProcess:
+        process = self._forkserver.fork()
+        self._served[process] = 0
+        return process
+
+    def _started(self, request: Request) -> JobProcess:
+        """Give the request to a process that waits; one that died meanwhile is replaced."""
+        with self._lock:
+            process = self._idle.pop() if self._idle else self._forked()
+        try:
+            process.start(request)
+        except OSError:  # something killed it while it waited
+            self._put_back(process)
+            with self._lock:
+                process = self._forked()
+            process.start(request)
+        except Exception:  # what cannot be pickled was not sent
+            self._put_back(process)
+            raise
+        return process
+
+    def _put_back(self, process: JobProcess) -> None:
+        """Keep a process that may be used again, and one at least that waits for the next request."""
+        with self._lock:
+            self._served[process] += 1
+            is_kept = (
+                process.reusable
+                and self._served[process] < self._reuse
+                and len(self._idle) < self._spares
+                and not self._closed
+            )
+            if is_kept:
+                self._idle.append(process)
+                return
+            del self._served[process]
+            if not self._idle and not self._closed:
+                self._idle.append(self._forked())
+        process.kill()

@@ -1,0 +1,213 @@
+"""What the service is made of: hashes, a bill of materials and licences of all pinned distributions.
+
+    python -m benchmarks.supply_chain            # docs/licences.md, docs/sbom.cdx.json: of what is installed
+    python -m benchmarks.supply_chain --hashes   # requirements.lock as well: asks the package index by pip
+
+Run it in the environment that `constraints.txt` describes. The lock holds the hashes of the files that pip
+takes on this platform: `pip install --require-hashes --no-deps -r requirements.lock` accepts no other bytes.
+"""
+
+import argparse
+import json
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.metadata import Distribution, distribution
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+CONSTRAINTS, LOCK = ROOT / "constraints.txt", ROOT / "requirements.lock"
+LICENCES, BILL = ROOT / "docs" / "licences.md", ROOT / "docs" / "sbom.cdx.json"
+LONGEST = 60  # letters; longer "licences" are the text of one
+
+HEAD = """# Licences
+
+Of everything that is installed with the service and its tests, as each distribution states it itself. Written
+by `python -m benchmarks.supply_chain` from the distributions installed; `docs/sbom.cdx.json` is the same as a
+CycloneDX bill of materials. Distributions marked *tests* are not needed to run the service.
+
+| name | version | licence | home | |
+|---|---|---|---|---|
+"""
+
+
+@dataclass(frozen=True)
+class Component:
+    """A pinned distribution."""
+
+    name: str
+    version: str
+    licence: str
+    home: str
+    needs: tuple[str, ...]  # names, normalised
+
+
+def pins() -> dict[str, str]:
+    """Return name → version of all that is pinned."""
+    lines = CONSTRAINTS.read_text().split()
+    return dict(line.split("==") for line in lines)
+
+
+def normalised(name: str) -> str:
+    """Return a name as PEP 503 compares it."""
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def component(name: str) -> Component:
+    """Return what an installed distribution says of itself."""
+    found = distribution(name)
+    return Component(name, found.version, _licence(found), _home(found), _needs(found))
+
+
+def _needs(found: Distribution) -> tuple[str, ...]:
+    """The names, normalised, of what a distribution needs without any extra."""
+    needs = (need for need in found.requires or () if "extra ==" not in need)
+    return tuple(sorted({normalised(re.split(r"[^\w.-]", need, maxsplit=1)[0]) for need in needs}))
+
+
+def _licence(found: Distribution) -> str:
+    told = found.metadata
+    classified = [
+        line.rpartition("::")[2].strip()
+        for line in told.get_all("Classifier", ())
+        if line.startswith("License ::") and line != "License :: OSI Approved"
+    ]
+    written = (told.get("License") or "").strip()
+    short = written if len(written) <= LONGEST and "\n" not in written else ""
+    return told.get("License-Expression") or " / ".join(classified) or short or _from_text(found)
+
+
+def _from_text(found: Distribution) -> str:
+    """The first line of the licence's own text, which names most of them."""
+    for path in found.files or ():
+        if re.match(r"(licen[cs]e|copying)", path.name.lower()):
+            lines = (line.strip() for line in path.read_text().splitlines())
+            return next((line[:LONGEST] for line in lines if line), "not stated")
+    return "not stated"
+
+
+def _home(found: Distribution) -> str:
+    urls = dict(line.split(", ", 1) for line in found.metadata.get_all("Project-URL", ()))
+    named = {name.lower(): url for name, url in urls.items()}
+    ways = ("homepage", "home", "source", "repository", "source code", "github", "documentation")
+    return found.metadata.get("Home-page") or next((named[way] for way in ways if way in named), "")
+
+
+EXTRAS = {
+    "httptools",
+    "uvloop",
+    "watchfiles",
+    "websockets",
+    "python-dotenv",
+    "pyyaml",
+}  # of uvicorn[standard]
+
+
+def needed(components: dict[str, Component]) -> set[str]:
+    """Return the names, normalised, of what the service needs to run, tests left out."""
+    wanted, seen = {*_needs(distribution("crankwright")), *EXTRAS}, set[str]()
+    while more := wanted - seen:
+        seen |= more
+        wanted = {need for name in more if name in components for need in components[name].needs}
+    return seen
+
+
+def licences(components: dict[str, Component]) -> str:
+    """Return the list of licences as a page."""
+    used = needed(components)
+    rows = [
+        f"| {one.name} | {one.version} | {one.licence} | {one.home} | {'' if key in used else '*tests*'} |"
+        for key, one in sorted(components.items())
+    ]
+    return HEAD + "\n".join(rows) + "\n"
+
+
+def bill(components: dict[str, Component], hashes: dict[str, str]) -> str:
+    """Return the bill of materials, CycloneDX 1.6; equal components give equal text."""
+    ours = distribution("crankwright").version
+    root = {"type": "application", "bom-ref": "crankwright", "name": "crankwright", "version": ours}
+    return json.dumps(
+        {
+            "bomFormat": "CycloneDX",
+            "specVersion": "1.6",
+            "version": 1,
+            "metadata": {"component": root},
+            "components": [_entry(one, hashes.get(key)) for key, one in sorted(components.items())],
+            "dependencies": list(_graph(components)),
+        },
+        indent=1,
+    ) + "\n"  # fmt: skip
+
+
+def _entry(one: Component, sha256: str | None) -> dict[str, object]:
+    hashed = {"hashes": [{"alg": "SHA-256", "content": sha256}]} if sha256 else {}
+    return {
+        "type": "library",
+        "bom-ref": _reference(one),
+        "name": one.name,
+        "version": one.version,
+        "licenses": [{"license": {"name": one.licence}}],
+        "purl": _reference(one),
+        **hashed,
+    }
+
+
+def _reference(one: Component) -> str:
+    return f"pkg:pypi/{normalised(one.name)}@{one.version}"
+
+
+def _graph(components: dict[str, Component]) -> Iterator[dict[str, object]]:
+    """What each component needs of the others."""
+    yield _edges("crankwright", _needs(distribution("crankwright")), components)
+    for _, one in sorted(components.items()):
+        yield _edges(_reference(one), one.needs, components)
+
+
+def _edges(reference: str, needs: tuple[str, ...], components: dict[str, Component]) -> dict[str, object]:
+    known = [_reference(components[need]) for need in needs if need in components]
+    return {"ref": reference, "dependsOn": known}
+
+
+def index_hashes() -> dict[str, str]:
+    """Return name → SHA-256 of the file that pip takes for each pin here; nothing is installed."""
+    with tempfile.NamedTemporaryFile(suffix=".json") as report:
+        options = ["--dry-run", "--ignore-installed", "--no-deps", "--quiet", "--report", report.name]
+        subprocess.run([sys.executable, "-m", "pip", "install", *options, "-r", str(CONSTRAINTS)], check=True)
+        items = json.loads(Path(report.name).read_text())["install"]
+    files = {normalised(one["metadata"]["name"]): one["download_info"]["archive_info"] for one in items}
+    return {name: info["hashes"]["sha256"] for name, info in files.items()}
+
+
+def locked() -> dict[str, str]:
+    """Return name → SHA-256 from the lock."""
+    rows = re.findall(r"^(\S+)==\S+ --hash=sha256:([0-9a-f]{64})$", LOCK.read_text(), re.MULTILINE)
+    return {normalised(name): sha256 for name, sha256 in rows}
+
+
+def write_lock() -> None:
+    """Write names, versions and hashes, and no address."""
+    hashes = index_hashes()
+    lines = [
+        f"{name}=={version} --hash=sha256:{hashes[normalised(name)]}" for name, version in pins().items()
+    ]
+    platform = f"CPython {sys.version_info.major}.{sys.version_info.minor} on {sys.platform}"
+    LOCK.write_text(f"# {platform}: python -m benchmarks.supply_chain --hashes\n" + "\n".join(lines) + "\n")
+
+
+def main() -> None:
+    """Write the files, and the lock if asked for."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--hashes", action="store_true", help="ask the index, and write requirements.lock")
+    if parser.parse_args().hashes:
+        write_lock()
+    components = {normalised(name): component(name) for name in pins()}
+    LICENCES.write_text(licences(components))
+    BILL.write_text(bill(components, locked()))
+    print(f"{len(components)} distributions in {LICENCES.name}, {BILL.name}")
+
+
+if __name__ == "__main__":
+    main()

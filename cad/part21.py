@@ -1,0 +1,95 @@
+"""Strings and tokens of ISO 10303-21, the clear text of STEP files: written, scanned, and read back.
+
+A client may send any bytes as a STEP file. The scan passes over its text once and never goes back, so its
+time is linear in the length of the text, whatever the text holds.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+_BLANK, _WORD = re.compile(r"\s+"), re.compile(r"[A-Za-z0-9_]+")
+_ESCAPED = re.compile(r"''|\\\\|\\X2\\((?:[0-9A-F]{4})*)\\X0\\")
+_NOT_PLAIN = re.compile(r"[^ -~]+")
+
+
+def quoted(text: str) -> str:
+    """A text as a string of Part 21: quotes and backslashes doubled, other than ASCII as \\X2\\…\\X0\\."""
+    doubled = text.replace("\\", "\\\\").replace("'", "''")
+    wide = _NOT_PLAIN.sub(lambda m: f"\\X2\\{m[0].encode('utf-16-be').hex().upper()}\\X0\\", doubled)
+    return f"'{wide}'"
+
+
+def plain(string: str) -> str:
+    """The text of a string of Part 21, given with its quotes; line breaks within it are layout."""
+    return _ESCAPED.sub(_unescaped, string[1:-1].replace("\n", "").replace("\r", ""))
+
+
+def _unescaped(escape: re.Match[str]) -> str:
+    if escape[1] is None:
+        return escape[0][0]
+    return bytes.fromhex(escape[1]).decode("utf-16-be", "replace")
+
+
+def description(text: str) -> list[str]:
+    """The strings of FILE_DESCRIPTION's first list, each with its quotes; none if there is no such list.
+
+    The search ends with the header's section.
+    """
+    scan = tokens(text)
+    for token in scan:
+        if token == "ENDSEC":
+            break
+        if token == "FILE_DESCRIPTION" and next(scan, "") == "(" and next(scan, "") == "(":
+            return _strings(scan)
+    return []
+
+
+def _strings(scan: Iterator[str]) -> list[str]:
+    """The strings up to the closing bracket; none if anything but strings and commas comes before it."""
+    strings: list[str] = []
+    for token in scan:
+        if token == ")":
+            return strings
+        if token.startswith("'"):
+            strings.append(token)
+        elif token != ",":
+            break
+    return []
+
+
+def tokens(text: str) -> Iterator[str]:
+    """Words, single signs, and strings with their quotes; blanks and comments are skipped.
+
+    A string or comment that does not end takes the rest of the text with it.
+    """
+    place = 0
+    while place < len(text):
+        start, place = place, _end(text, place)
+        if not (text[start].isspace() or text.startswith("/*", start)):
+            yield text[start:place]
+
+
+def _end(text: str, start: int) -> int:
+    """Where the token, blank or comment that begins at `start` ends."""
+    if text[start] == "'":
+        return _end_of_string(text, start)
+    if text.startswith("/*", start):
+        return _behind(text, "*/", start + 2)
+    match = _BLANK.match(text, start) or _WORD.match(text, start)
+    return match.end() if match else start + 1
+
+
+def _end_of_string(text: str, start: int) -> int:
+    """Behind the quote that closes a string; two quotes are one of the text."""
+    place = _behind(text, "'", start + 1)
+    while text.startswith("'", place):
+        place = _behind(text, "'", place + 1)
+    return place
+
+
+def _behind(text: str, mark: str, start: int) -> int:
+    """Behind the next `mark`; the end of the text if there is none."""
+    place = text.find(mark, start)
+    return len(text) if place < 0 else place + len(mark)

@@ -1,0 +1,55 @@
+"""A template that misbehaves, expensive by its table, and the server for it."""
+
+import json
+from pathlib import Path
+from textwrap import dedent
+
+SLEEPER = '''
+"""Sleeps, or worse, in the process that calculates."""
+
+import ctypes
+import os
+import time
+from pathlib import Path
+
+import numpy as np
+
+from templates.core.progress import report
+from templates.core.template import Array, Template, choice, formula, given
+
+
+class Sleeper(Template):
+    """Sleeps, or worse, in the process that calculates."""
+
+    example = {"duration": "1 ms"}
+
+    t: Array = given("s", "duration", ge=0)
+    mood: str = choice("good", "dies", "eats", words="mood", default="good")
+
+    @formula("1", "process")
+    def n(self) -> Array:
+        return slept(self.t, self.mood)
+
+
+def slept(seconds, mood):
+    """The process that slept so long; it notes that it began."""
+    with Path(os.environ["SLEEPER_LOG"]).open("a") as log:
+        log.write(f"{os.getpid()}\\n")
+    if mood == "dies":
+        ctypes.string_at(0)
+    if mood == "eats":
+        bytearray(8 * 2**30)
+    report(0.5, "half asleep")
+    time.sleep(float(np.max(seconds)))
+    return np.float64(os.getpid())
+'''
+
+
+def folder_of_sleeper(path: Path) -> Path:
+    """A team's folder with the template and the table that says what it costs."""
+    path.mkdir(parents=True)
+    (path / "sleeper_v1.py").write_text(dedent(SLEEPER).lstrip())
+    axis = {"attribute": "t", "values": [0, 1]}
+    table = {"axes": [axis, axis], "levels": {"only": {"cost": {"single": 1.0}, "errors": {}}}}
+    (path / "sleeper_v1.accuracy.json").write_text(json.dumps(table))
+    return path

@@ -1,0 +1,83 @@
+"""Estimates of cost: what takes milliseconds stays below the limit, what takes long does not."""
+
+import pytest
+
+from app.calculations.cost import EXPENSIVE, estimated_seconds, solving_seconds
+from app.catalogue.finding import find_templates
+
+CATALOGUE = find_templates(())
+FILM = CATALOGUE.get("oil_film", 2)
+
+
+def many(count):
+    return {"value": [10.0 + number for number in range(count)], "unit": "kN"}
+
+
+@pytest.mark.parametrize("cls", list(CATALOGUE), ids=lambda cls: f"{cls.id}_{cls.version}")
+def test_every_example_is_cheap_at_its_usual_level(cls):
+    assert 0 < estimated_seconds(cls, cls.example) < EXPENSIVE
+
+
+@pytest.mark.parametrize(
+    ("level", "points", "is_expensive"),
+    [
+        ("map", 1, False),
+        ("map", 100, False),
+        ("map", 2000, True),
+        ("reynolds", 1, True),
+        ("mass_conserving", 1, True),
+    ],
+)
+def test_levels_and_points_make_the_cost(level, points, is_expensive):
+    inputs = {**FILM.example, "radial_load": many(points) if points > 1 else "25 kN"}
+    assert (estimated_seconds(FILM, inputs, level) > EXPENSIVE) == is_expensive
+
+
+def test_points_multiply_the_cost():
+    one, many_points = (
+        estimated_seconds(FILM, {**FILM.example, "radial_load": many(count)}, "reynolds")
+        for count in (2, 200)
+    )
+    assert many_points > 50 * one
+
+
+def test_transient_takes_longest():
+    cls = CATALOGUE.get("oil_film_cycle", 1)
+    assert estimated_seconds(cls, cls.example, "transient") > 10
+
+
+def test_outputs_that_do_not_depend_on_the_level_cost_nothing_of_it():
+    assert estimated_seconds(FILM, FILM.example, "mass_conserving", outputs=["sommerfeld_number"]) < 0.01
+
+
+def test_a_fed_bearing_costs_what_its_only_level_does():
+    fed = {**FILM.example, "supply_pressure": "3 bar"}
+    assert estimated_seconds(FILM, fed) == pytest.approx(estimated_seconds(FILM, fed, "mass_conserving"))
+
+
+def test_a_tolerance_may_climb_to_the_finest_level():
+    assert estimated_seconds(FILM, FILM.example, tolerance=1e-3) > estimated_seconds(
+        FILM, FILM.example, "reynolds"
+    )
+
+
+def test_solving_costs_more_than_evaluating():
+    cls = CATALOGUE.get("oil_film", 1)
+    target = ["minimum_film_thickness"]
+    assert solving_seconds(cls, cls.example, target=target) > estimated_seconds(cls, cls.example)
+    assert solving_seconds(FILM, FILM.example, "mass_conserving", target=target) > EXPENSIVE
+
+
+@pytest.mark.parametrize(
+    "raw", [None, True, [], {}, [[]], {"value": {}}, "no quantity", {"value": [[1], "x"]}]
+)
+def test_whatever_is_sent_has_a_cost(raw):
+    inputs = {**FILM.example, "radial_load": raw, "nonsense": raw}
+    assert estimated_seconds(FILM, inputs, "no level", 0.1, ["no output"]) > 0
+
+
+def test_a_claim_beyond_all_numbers_has_a_cost():
+    deep = 1.0
+    for _ in range(120):
+        deep = [deep] * 1000
+    assert estimated_seconds(FILM, {**FILM.example, "radial_load": deep}) > EXPENSIVE

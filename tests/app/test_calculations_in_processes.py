@@ -1,0 +1,328 @@
+"""Expensive calculations over HTTP: in processes of their own, and as jobs when nobody waits any longer."""
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+
+import httpx
+import pytest
+from serving import API, faults, heard, problem, serving
+from sleeping import folder_of_sleeper
+from test_workers import alive, eventually
+
+from app.calculations.schemas import EvaluateIn, SolveIn
+from app.calculations.service import run_evaluate, run_solve
+from app.calculations.worksheet import run_worksheet
+from app.catalogue.finding import find_templates
+from app.settings import Settings
+
+SLEEPER = f"{API}/templates/sleeper/versions/1"
+FILM = find_templates(()).get("oil_film", 2)
+FILM_PLACE = f"{API}/templates/oil_film/versions/2"
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    return tmp_path_factory.mktemp("sleeper") / "log"
+
+
+@pytest.fixture(scope="module")
+def settings(tmp_path_factory, log):
+    folder = tmp_path_factory.mktemp("pool")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SLEEPER_LOG", str(log))
+        yield Settings(
+            data=folder / "data",
+            template_folders=(folder_of_sleeper(folder / "own"),),
+            calculation_processes=1,
+            calculation_waiting=2,
+            calculation_deadline=2,
+            calculation_job_deadline=8,
+            calculation_memory_mb=1024,
+        )
+
+
+@pytest.fixture(scope="module")
+def server(settings):
+    with serving(settings) as server:
+        processes = server.app.state.calculations._worker
+        assert processes.run(os.getpid) != os.getpid()  # they have been imported
+        yield server
+
+
+@pytest.fixture(scope="module")
+def http(server):
+    with httpx.Client(base_url=server.url, timeout=60, trust_env=False) as http:
+        yield http
+
+
+@pytest.fixture(autouse=True)
+def quiet(server, log):
+    log.write_text("")
+    yield
+    pool = server.app.state.calculations
+    assert eventually(lambda: pool.running == pool.waiting == 0, 20)
+
+
+def begun(log, count=1):
+    """The processes in which the sleeper has begun, once they are so many."""
+    assert eventually(lambda: len(log.read_text().split()) >= count, 20)
+    return [int(pid) for pid in log.read_text().split()]
+
+
+def sleep(http, duration="1 ms", mood="good", **headers):
+    body = {"inputs": {"duration": duration, "mood": mood}}
+    return http.post(f"{SLEEPER}/evaluate", json=body, headers=headers)
+
+
+def ended(http, place):
+    """A job once it has ended."""
+    end = lambda: http.get(place).json()["state"] not in ("queued", "running")  # noqa: E731
+    assert eventually(end, 30)
+    return http.get(place).json()
+
+
+def without_time(answer):
+    """An answer without what differs from run to run."""
+    return {name: part for name, part in answer.items() if name != "seconds"}
+
+
+def test_it_is_calculated_in_another_process(http, log):
+    answer = sleep(http).json()
+    assert answer["outputs"]["process"]["value"] == begun(log)[0] != os.getpid()
+
+
+def test_processes_are_used_again(http, log):
+    assert {sleep(http).json()["outputs"]["process"]["value"] for _ in range(3)} == {begun(log)[0]}
+
+
+@pytest.mark.parametrize("level", ["reynolds", "mass_conserving"])
+def test_answers_are_those_of_this_process(http, level):
+    body = {"inputs": dict(FILM.example), "level": level, "outputs": ["minimum_film_thickness", "side_flow"]}
+    answer = http.post(f"{FILM_PLACE}/evaluate", json=body)
+    assert without_time(answer.json()) == without_time(run_evaluate(FILM, EvaluateIn(**body)))
+
+
+def test_a_worksheet_is_that_of_this_process(http):
+    body = {"inputs": dict(FILM.example), "level": "reynolds", "outputs": ["minimum_film_thickness"]}
+    answer = http.post(f"{FILM_PLACE}/worksheet", json=body, params={"units": "us"}).json()
+    assert without_time(answer) == without_time(run_worksheet(FILM, EvaluateIn(**body), "us"))
+
+
+def test_a_solution_is_that_of_this_process(http):
+    body = {
+        "inputs": {name: value for name, value in FILM.example.items() if name != "bearing_width"},
+        "unknown": "bearing_width",
+        "bounds": ["10 mm", "40 mm"],
+        "target": {"minimum_film_thickness": "2 um"},
+        "level": "map",
+    }
+    answer, same = http.post(f"{FILM_PLACE}/solve", json=body).json(), run_solve(FILM, SolveIn(**body))
+    assert answer["unknown"] == same["unknown"]
+    assert answer["evaluation"]["outputs"] == same["evaluation"]["outputs"]
+
+
+def test_a_large_body_gives_the_same_answer(http):
+    cls = find_templates(()).get("oil_film", 1)
+    loads = {"value": [6.0 + 0.001 * number for number in range(40_000)], "unit": "kN"}
+    body = {"inputs": {**cls.example, "radial_load": loads}, "outputs": ["minimum_film_thickness"]}
+    answer = http.post(f"{API}/templates/oil_film/versions/1/evaluate", json=body)
+    assert int(answer.request.headers["content-length"]) > 256 * 1024
+    assert without_time(answer.json()) == without_time(run_evaluate(cls, EvaluateIn(**body)))
+
+
+PADDING = {"value": [1.0] * 200_000, "unit": "kN"}
+
+
+@pytest.mark.parametrize("operation", ["evaluate", "worksheet"])
+@pytest.mark.parametrize(
+    "body",
+    [
+        {
+            "inputs": {**FILM.example, "radial_load": {**PADDING, "unit": "furlong"}},
+            "outputs": ["side_flow"],
+        },
+        {"inputs": {"radial_load": PADDING}, "output": []},
+        {"inputs": {"radial_load": PADDING}, "outputs": "all"},
+        {"inputs": {"radial_load": PADDING}, "tolerance": 2},
+        [PADDING],
+    ],
+)
+def test_a_large_body_is_refused_as_a_small_one(http, body, operation):
+    large = faults(http.post(f"{FILM_PLACE}/{operation}", json=body))
+    small = _with_short_lists(body)
+    assert large == faults(http.post(f"{FILM_PLACE}/{operation}", json=small))
+
+
+def _with_short_lists(raw):
+    if isinstance(raw, dict):
+        return {name: _with_short_lists(part) for name, part in raw.items()}
+    return [_with_short_lists(part) for part in raw[:2]] if isinstance(raw, list) else raw
+
+
+def test_a_large_body_that_is_no_json_is_refused(http):
+    answer = http.post(
+        f"{FILM_PLACE}/evaluate", content="[" + "1," * 200_000, headers={"Content-Type": "application/json"}
+    )
+    assert faults(answer) == {"body": "json_invalid"}
+
+
+def test_a_large_body_for_no_template_is_refused(http):
+    place = f"{API}/templates/nothing/versions/1/evaluate"
+    problem(http.post(place, json={"inputs": {"x": PADDING}}), 404, "unknown-template")
+
+
+@pytest.mark.parametrize(("mood", "slug"), [("dies", "crashed"), ("eats", "memory")])
+def test_a_process_that_dies_harms_nobody_else(http, mood, slug):
+    problem(sleep(http, mood=mood), 422, slug)
+    assert sleep(http).status_code == 200
+
+
+def test_who_leaves_frees_the_process(http, log):
+    with pytest.raises(httpx.ReadTimeout):
+        http.post(f"{SLEEPER}/evaluate", json={"inputs": {"duration": "60 s"}}, timeout=1.0)
+    assert eventually(lambda: not alive(begun(log)[0]))
+
+
+def test_what_takes_long_goes_on_as_a_job(http, log):
+    accepted = sleep(http, "3 s")
+    assert accepted.status_code == 202, accepted.text
+    place = accepted.headers["Location"]
+    job = ended(http, place)
+    assert job["kind"], job["state"] == ("calculation", "done")
+    assert job["log"] == ["half asleep"]
+    assert len(begun(log)) == 1  # it was not begun again
+    answer = http.get(job["result"])
+    assert answer.json()["outputs"]["process"]["value"] == begun(log)[0]
+    assert without_time(answer.json()).keys() == without_time(sleep(http).json()).keys()
+
+
+def test_who_prefers_so_does_not_wait(http):
+    accepted = sleep(http, Prefer="respond-async")
+    assert accepted.status_code == 202
+    job = accepted.headers["Location"]
+    waiting = http.get(job.replace("/jobs/", "/evaluations/"))
+    assert waiting.status_code in (200, 202)
+    assert http.get(ended(http, job)["result"]).status_code == 200
+
+
+def test_a_job_that_is_cancelled_ends_its_process(http, log):
+    job = sleep(http, "60 s", Prefer="wait=1").headers["Location"]
+    (pid,) = begun(log)
+    http.delete(job).raise_for_status()
+    assert eventually(lambda: not alive(pid))
+    assert http.get(job).json()["state"] == "cancelled"
+    problem(http.get(job.replace("/jobs/", "/evaluations/")), 409, "cancelled")
+
+
+def test_a_job_ends_at_its_deadline(http):
+    job = ended(http, sleep(http, "60 s", Prefer="wait=1").headers["Location"])
+    assert job["state"] == "failed"
+    problem(http.get(f"{API}/evaluations/{job['id']}"), 422, "deadline")
+
+
+def test_a_job_that_is_refused_says_why(http):
+    body = {"inputs": {"duration": "1 ms", "mood": "odd"}}
+    accepted = http.post(f"{SLEEPER}/evaluate", json=body, headers={"Prefer": "respond-async"})
+    job = ended(http, accepted.headers["Location"])
+    assert job["problem"]["type"] == "/problems/invalid-inputs"
+    assert [fault["name"] for fault in job["problem"]["errors"]] == ["mood"]
+
+
+def test_progress_of_a_job_is_streamed(http):
+    job = sleep(http, "2 s", Prefer="respond-async").headers["Location"]
+    with http.stream("GET", f"{job}/events") as stream:
+        events = list(heard(stream))
+    assert [name for name, _ in events][-1] == "done"
+    assert any(data.get("text") == "half asleep" for name, data in events if name == "progress")
+
+
+def test_a_second_long_job_waits_for_the_first(http, log):
+    places = [sleep(http, "1 s", Prefer="respond-async").headers["Location"] for _ in range(2)]
+    assert [ended(http, place)["state"] for place in places] == ["done", "done"]
+
+
+def test_too_many_are_told_to_come_again_and_a_flood_gives_way(http, log):
+    def ask(client):
+        return sleep(http, "0.5 s", **{"Crankwright-Client": client})
+
+    with ThreadPoolExecutor(6) as threads:
+        first = threads.submit(ask, "flood")
+        begun(log)
+        flood = [threads.submit(ask, "flood") for _ in range(3)]
+        refused = next(f for f in _done_first(flood))
+        newcomer = threads.submit(ask, "newcomer")
+        assert newcomer.result().status_code == 200
+        statuses = sorted(f.result().status_code for f in (first, *flood))
+    told = problem(refused.result(), 429, "queue-full")
+    assert "calculations are waiting" in told["detail"]
+    assert refused.result().headers["Retry-After"] == "5"
+    assert statuses == [200, 200, 429, 429]
+
+
+def _done_first(futures):
+    assert eventually(lambda: any(f.done() for f in futures), 20)
+    return [f for f in futures if f.done()]
+
+
+def design(duration):
+    return {
+        "name": "sleep",
+        "steps": {"s": {"template": "sleeper", "version": 1, "inputs": {"duration": duration}}},
+    }
+
+
+def test_a_step_of_a_design_is_calculated_in_another_process(http, log):
+    made = http.post(f"{API}/designs", json=design("11 ms"))
+    assert made.status_code == 201, made.text
+    steps = http.get(f"{API}/designs/{made.json()['id']}/revisions/1").json()["steps"]
+    assert steps["s"]["outputs"]["process"]["value"] == begun(log)[0] != os.getpid()
+
+
+def test_a_step_may_take_longer_than_an_answer_waits(http, log):
+    made = http.post(f"{API}/designs", json=design("2.5 s"))
+    assert made.status_code == 201, made.text
+
+
+def test_a_step_that_is_refused_or_crashes_says_so(http):
+    problem(http.post(f"{API}/designs", json=design("-1 s")), 422, "invalid-inputs")
+    wrong = design("1 ms")
+    wrong["steps"]["s"]["inputs"]["mood"] = "dies"
+    problem(http.post(f"{API}/designs", json=wrong), 422, "crashed")
+
+
+def test_a_preview_that_nobody_waits_for_ends(http, log):
+    place = f"{API}/designs/{http.post(f'{API}/designs', json=design('12 ms')).json()['id']}"
+    (made,) = begun(log)
+    patch = {"steps": {"s": {"inputs": {"duration": "60 s"}}}}
+    with pytest.raises(httpx.ReadTimeout):
+        http.post(f"{place}/preview", json=patch, timeout=1.0)
+    assert eventually(lambda: not alive(begun(log, 2)[1]))
+    assert http.get(place).status_code == 200
+    assert made
+
+
+def test_a_page_waits_for_its_calculation_within_the_process(server, http):
+    page = http.get(f"/designs/{http.post(f'{API}/designs', json=design('13 ms')).json()['id']}")
+    assert page.status_code == 200
+
+
+def test_a_file_that_changed_is_not_calculated_with_the_old_answer(tmp_path, monkeypatch, log):
+    monkeypatch.setenv("SLEEPER_LOG", str(log))
+    own = folder_of_sleeper(tmp_path / "own")
+    chosen = Settings(data=tmp_path / "data", template_folders=(own,), calculation_processes=1)
+    with serving(chosen) as server, httpx.Client(base_url=server.url, timeout=60, trust_env=False) as http:
+        (own / "sleeper_v1.py").write_text((own / "sleeper_v1.py").read_text() + "\n# changed\n")
+        told = problem(sleep(http), 422, "refused")
+        assert "start the server again" in told["detail"]
+
+
+def test_a_job_runs_again_after_a_restart(tmp_path, monkeypatch, log):
+    monkeypatch.setenv("SLEEPER_LOG", str(log))
+    own = folder_of_sleeper(tmp_path / "own")
+    chosen = Settings(data=tmp_path / "data", template_folders=(own,), calculation_processes=1)
+    with serving(chosen) as server, httpx.Client(base_url=server.url, timeout=60, trust_env=False) as http:
+        job = sleep(http, "4 s", Prefer="respond-async").headers["Location"]
+        begun(log)
+    with serving(chosen) as server, httpx.Client(base_url=server.url, timeout=60, trust_env=False) as http:
+        assert ended(http, job)["state"] == "done"
+        assert len(begun(log)) == 2

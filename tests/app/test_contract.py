@@ -1,0 +1,135 @@
+"""The service keeps what /openapi.json promises: all checks of schemathesis, on requests made up from it.
+
+CRANKWRIGHT_TEST_SEED chooses other requests; pytest prints the seed of a run that fails.
+"""
+
+import os
+from pathlib import Path
+
+import httpx
+import jsonschema_rs
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, Phase, seed, settings
+from schemathesis.config import SchemathesisConfig
+from serving import API, HANG, created, moody
+
+from app.calculations.film_pressure import TYPICAL
+from app.main import create_app
+from app.settings import Settings
+
+SEED = int(os.environ.get("CRANKWRIGHT_TEST_SEED", "11"))
+CONFIGURATION = SchemathesisConfig.from_path(Path(__file__).parents[2] / "schemathesis.toml")
+INTERFACE = schemathesis.openapi.from_dict(create_app(Settings()).openapi(), config=CONFIGURATION)
+QUICK = settings(
+    max_examples=8,
+    deadline=None,
+    database=None,
+    phases=[Phase.explicit, Phase.generate],
+    suppress_health_check=list(HealthCheck),
+)
+THOROUGH = settings(QUICK, max_examples=150)
+
+
+def ask(case, url):
+    print(f"CRANKWRIGHT_TEST_SEED={SEED}")  # noqa: T201 — for whoever repeats a failure
+    response = case.call(base_url=url, headers={"Prefer": "respond-async"}, timeout=2 * HANG)
+    if response.status_code == 202:  # work that may take minutes
+        httpx.delete(f"{url}{response.headers['location'][0]}", timeout=HANG, trust_env=False)
+    case.validate_response(response)
+
+
+@INTERFACE.parametrize()
+@seed(SEED)
+@QUICK
+def test_contract(served, case):
+    ask(case, served.url)
+
+
+@pytest.mark.slow
+@INTERFACE.parametrize()
+@seed(SEED)
+@THOROUGH
+def test_contract_at_length(served, case):
+    ask(case, served.url)
+
+
+def parameters(described):
+    for path, item in described["paths"].items():
+        for method, operation in item.items():
+            for parameter in operation.get("parameters", ()):
+                yield f"{method} {path} {parameter['name']}", parameter
+
+
+def test_no_parameter_may_be_null(http):
+    described = http.get("/openapi.json").json()
+    found = dict(parameters(described))
+    assert len(found) > 50
+    for name, parameter in found.items():
+        schema = parameter["schema"]
+        assert {"type": "null"} not in schema.get("anyOf", ()), name
+        assert schema.get("type") != "null", name
+
+
+def test_preconditions_are_declared(http):
+    described = http.get("/openapi.json").json()
+    sent = {name: one["required"] for name, one in parameters(described) if one["name"] == "if-match"}
+    assert {name.split()[0]: required for name, required in sent.items()} == {"patch": True, "post": False}
+    assert {"412", "428"} <= set(described["paths"][f"{API}/designs/{{id}}"]["patch"]["responses"])
+    for path in ("auto-map", "revisions/{number}/restore"):
+        assert "412" in described["paths"][f"{API}/designs/{{id}}/{path}"]["post"]["responses"]
+
+
+REFUSED = {
+    "DesignIn": ("designs", {"name": "no model", "model": None}),
+    "EvaluateIn": ("templates/oil_film/versions/1/evaluate", {"inputs": {"radial_load": None}}),
+    "BuildIn": ("models/ball_bearing/versions/1/build", {"parameters": {"inner_diameter": None}}),
+    "FilmPressureIn": ("film-pressure", {"inputs": dict.fromkeys(TYPICAL)}),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_null_is_not_described_where_it_is_refused(http, name):
+    path, body = REFUSED[name]
+    assert http.post(f"{API}/{path}", json=body).status_code == 422
+    components = http.get("/openapi.json").json()["components"]
+    schema = {"$ref": f"#/components/schemas/{name}", "components": components}
+    assert not jsonschema_rs.is_valid(schema, body)
+
+
+ALLOWED = {
+    "/api/v1/designs": "GET, POST",
+    "/api/v1/designs/some": "GET, PATCH, DELETE",
+    "/api/v1/jobs/some": "GET, DELETE",
+    "/api/v1/templates/oil_film/versions/1/evaluate": "POST",
+    "/healthz": "GET",
+    "/": "GET",
+    "/static/style.css": "GET, HEAD",
+}
+
+
+@pytest.mark.parametrize(("path", "allowed"), ALLOWED.items())
+@pytest.mark.parametrize("method", ["OPTIONS", "PUT", "HEAD", "TRACE"])
+def test_allow_names_every_method(http, path, allowed, method):
+    if method in allowed:
+        return
+    response = http.request(method, path)
+    assert response.status_code == 405
+    assert response.headers["allow"] == allowed
+
+
+def test_allowed_methods_are_not_refused(http):
+    design = created(http, moody(name="methods"))
+    for method in ALLOWED["/api/v1/designs/some"].split(", "):
+        response = http.request(method, f"{API}/designs/{design['id']}")
+        assert response.status_code not in (404, 405), method
+
+
+def test_an_unknown_analysis_is_told_before_a_wrong_load(http):
+    assert http.get(f"{API}/analyses/none", params={"load": "much"}).status_code == 404
+
+
+def test_metrics_are_described_as_text(http):
+    described = http.get("/openapi.json").json()["paths"]["/metrics"]["get"]["responses"]["200"]
+    assert list(described["content"]) == ["text/plain"]
+    assert http.get("/metrics").headers["content-type"].startswith("text/plain;")
