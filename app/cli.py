@@ -8,10 +8,10 @@ from typing import Any
 
 import click
 import numpy as np
-import uvicorn
 from pydantic import ValidationError
 from pydantic_settings import SettingsError
 
+from app import server
 from app.calculations import rendering
 from app.catalogue.finding import find_templates
 from app.curves.arguments import argument
@@ -23,7 +23,6 @@ from app.settings import Settings
 from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
-from app.targets import WholeTarget
 from cad.catalogue import models as find_models
 from templates.core.catalogue.finding import Catalogue
 from templates.core.catalogue.golden import freeze as freeze_template
@@ -91,8 +90,7 @@ def serve(host: str | None, port: int | None, data: Path | None, insecure: bool)
     click.echo(
         f"Crankwright at http://{place}:{settings.port}/docs, data in {settings.data.absolute()}", err=True
     )
-    app = create_app(settings)
-    uvicorn.run(app, host=settings.host, port=settings.port, log_level="warning", http=WholeTarget)
+    server.run(create_app(settings), settings)
 
 
 def _check_reach(host: str, insecure: bool) -> None:

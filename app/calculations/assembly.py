@@ -7,6 +7,7 @@ from contextlib import ExitStack
 
 from fastapi import FastAPI
 
+from app import metrics
 from app.calculations.answering import Answering
 from app.calculations.jobs import CALCULATION, THREADS, CalculationJobs
 from app.calculations.pool import CalculationPool
@@ -42,6 +43,7 @@ def assemble_calculations(
     stack.callback(processes.close)
     pool = CalculationPool(processes, size, settings.calculation_waiting, limits)
     stack.callback(pool.close)
+    stack.callback(metrics.watch("calculations", pool.occupancy))
     sources = {cls: source_of(cls) for cls in catalogue}
     handler = CalculationJobs(pool, catalogue, sources, database, store, jobs)
     jobs.register(CALCULATION, handler, handler.failed, lane=CALCULATION)
