@@ -1,4 +1,4 @@
-"""The command line: `crankwright serve | demo | evaluate | template | freeze | check | backup | restore`"""
+"""The command line: `crankwright serve | demo | evaluate | template | freeze | check | backup | restore`."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from cad.catalogue import models as find_models
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.golden import freeze as freeze_template
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
-from templates.core.evaluate import Answer
-from templates.core.evaluate import evaluate as evaluate_template
-from templates.core.golden import freeze as freeze_template
-from templates.core.mathml import unit_symbol
-from templates.core.schema import describe
-from templates.core.template import Template
+from templates.core.language.evaluate import Answer
+from templates.core.language.evaluate import evaluate as evaluate_template
+from templates.core.language.template import Template
+from templates.core.paper.mathml import unit_symbol
+from templates.core.paper.schema import describe
 
 GOLDEN = Path("tests/golden")
 
@@ -137,7 +137,7 @@ def evaluate(
 
     A curve may come from a CSV file, pressure=@diagram.csv, from the column of that name or from another:
     pressure_angle=@diagram.csv:crank_angle.
-    """
+    """  # noqa: D400
     cls = _find(template, version)
     try:
         raw = dict(_pair(text) for text in inputs)

@@ -112,9 +112,12 @@ class Client:
         return self._json("GET", f"{BASE}/templates/{id}/versions/{version}")
 
     def evaluate(self, id: str, version: int, inputs: Mapping[str, Any], **options: Any) -> dict[str, Any]:
-        """Evaluate a template; options are `outputs`, `level`, `tolerance`, `units`."""
+        """Evaluate a template; options are `outputs`, `level`, `tolerance`, `units`.
+
+        What takes long goes on as a job, which is followed.
+        """
         body = {"inputs": inputs, **options}
-        return self._json("POST", f"{BASE}/templates/{id}/versions/{version}/evaluate", json=body)
+        return self._calculated(f"{BASE}/templates/{id}/versions/{version}/evaluate", body)
 
     def solve(
         self,
@@ -127,7 +130,7 @@ class Client:
     ) -> dict[str, Any]:
         """Find the input that gives a wanted output."""
         body = {"inputs": inputs, "unknown": unknown, "bounds": bounds, "target": target}
-        return self._json("POST", f"{BASE}/templates/{id}/versions/{version}/solve", json=body)
+        return self._calculated(f"{BASE}/templates/{id}/versions/{version}/solve", body)
 
     def analyse(
         self,
@@ -232,6 +235,16 @@ class Client:
                 told = json.loads(line.removeprefix("data:")) if line.startswith("data:") else {}
                 if on_progress and told.get("event") == "progress":
                     on_progress(told["progress"], told["text"])
+
+    def _calculated(self, path: str, body: Mapping[str, Any]) -> dict[str, Any]:
+        """The answer of a calculation, once its job has ended if it became one."""
+        answer = self._send("POST", path, json=body)
+        if answer.status_code == 202:
+            job = answer.headers["Location"].rpartition("/")[2]
+            self.follow(job)
+            return self._json("GET", f"{BASE}/evaluations/{job}")
+        found: dict[str, Any] = answer.json()
+        return found
 
     def _followed(self, design: Design, on_progress: Progress | None) -> Design:
         if design.job is None:

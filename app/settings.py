@@ -71,11 +71,13 @@ class Settings(BaseSettings):
     )
     keep_alive_seconds: int = Field(5, gt=0, description="longest rest of a connection between requests [s]")
     streams: int = Field(200, gt=0, description="streams of events that may be open")
-    streams_per_client: int = Field(20, gt=0, description="streams of events of one client")
+    streams_per_client: int = Field(20, gt=0, description="streams of events that one client may have open")
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         "warning", description="what is logged; `info` has a line for each request"
     )
-    log_format: Literal["text", "json"] = Field("text", description="lines for people, or JSON for programs")
+    log_format: Literal["text", "json"] = Field(
+        "text", description="how a line of the log is written: for people, or a JSON object"
+    )
 
     @property
     def stop_seconds(self) -> float:

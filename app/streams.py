@@ -14,7 +14,7 @@ from app.http import HttpError
 
 
 class TooManyStreams(HttpError):
-    """This client, or all together, have as many streams open as there may be."""
+    """The client, or all clients together, have as many streams open as there may be."""
 
     headers = {"Retry-After": "5"}
 

@@ -25,9 +25,9 @@ from typing import Any
 import numpy as np
 
 from benchmarks.film_cost import seconds
-from templates.physics.film_dynamics import plain_coefficients
-from templates.physics.film_map import mapped_film
-from templates.physics.reynolds import extrapolated_film, static_film
+from templates.physics.films.film_dynamics import plain_coefficients
+from templates.physics.films.film_map import mapped_film
+from templates.physics.films.reynolds import extrapolated_film, static_film
 
 RELEASE = "ross-rotordynamics==3.1.0"
 ENVIRONMENT = Path("build/ross")
@@ -61,8 +61,10 @@ def main() -> None:
 def environment() -> Path:
     """ROSS's interpreter, installed if it is not yet.
 
-    Raises:
-        NoAnswerError: if it cannot be installed.
+    Raises
+    ------
+    NoAnswerError
+        If it cannot be installed.
     """
     python = ENVIRONMENT / "bin" / "python"
     if not python.exists():
@@ -84,8 +86,10 @@ def interpreter() -> str:
 def run(command: list[str], limit: float) -> str:
     """What a command prints, on as many threads as it likes.
 
-    Raises:
-        NoAnswerError: if it fails or takes too long.
+    Raises
+    ------
+    NoAnswerError
+        If it fails or takes too long.
     """
     free = {name: value for name, value in os.environ.items() if name != "OMP_NUM_THREADS"}
     try:
@@ -100,8 +104,10 @@ def run(command: list[str], limit: float) -> str:
 def answers(python: Path) -> list[dict[str, float]]:
     """ROSS's load and time at each point, from its own environment.
 
-    Raises:
-        NoAnswerError: if it gave none.
+    Raises
+    ------
+    NoAnswerError
+        If it gave none.
     """
     printed = run([str(python), "-m", "benchmarks.film_ross", "--answer"], ANSWER_SECONDS)
     return list(json.loads(printed.splitlines()[-1]))

@@ -15,20 +15,20 @@ from typing import Any
 import numpy as np
 from cadquery import Shape, Workplane
 
-from cad.analysis.elastic import Load
+from cad.analysis.kinds import Kind
 from cad.analysis.solid import Solid, read_solid
 from cad.analysis.stress import Measure, Peaks, first_principal, greatest_stress, von_mises
 from cad.header import Header
 from cad.model import Part
 from cad.shaft import STEEL_MATERIAL, Shaft
 from cad.step import write_step
-from templates.physics.stress_concentration import shoulder_fillet_Pilkey_2008
+from templates.physics.shafts.stress_concentration import shoulder_fillet_Pilkey_2008
 
 RESULTS = Path("benchmarks/results/shoulder_fillet.json")
 WIDE, NARROW, FILLET = 60.0, 40.0, 4.0  # mm
 SHOULDER, END = 60.0, 130.0
 
-LOADS: dict[Load, tuple[Measure, float]] = {
+LOADS: dict[Kind, tuple[Measure, float]] = {
     "torsion": (von_mises, sqrt(3) * 16 / (pi * NARROW**3)),
     "bending": (first_principal, 32 / (pi * NARROW**3)),
 }
@@ -52,23 +52,23 @@ def solid() -> Solid:
     return read_solid(shoulder(FILLET), Shaft(0.0, END))
 
 
-def peaks(load: Load) -> Peaks:
+def peaks(load: Kind) -> Peaks:
     """The greatest stress, mesh by mesh."""
     measure, _ = LOADS[load]
     return greatest_stress(solid(), STEEL_MATERIAL, load, "free_end", lambda step: None, measure)
 
 
-def factors(load: Load, found: Peaks) -> list[float]:
+def factors(load: Kind, found: Peaks) -> list[float]:
     """Stress concentration factors by mesh."""
     return [peak.value / LOADS[load][1] for peak in found.steps]
 
 
-def peterson(load: Load) -> float:
+def peterson(load: Kind) -> float:
     """The published factor."""
     return float(shoulder_fillet_Pilkey_2008(load, *np.array([WIDE, NARROW, FILLET])))
 
 
-def row(load: Load) -> dict[str, Any]:
+def row(load: Kind) -> dict[str, Any]:
     """One load: factors mesh by mesh, and the published one."""
     start = perf_counter()
     found = peaks(load)

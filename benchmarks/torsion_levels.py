@@ -17,7 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from cad.analysis.elastic import LOADS, Boundary, Load, System, respond
+from cad.analysis.elastic import System, respond
+from cad.analysis.kinds import KINDS, Boundary, Kind
 from cad.analysis.levels import LEVELS, Level
 from cad.analysis.mesh import Fineness, Grid, make_grid
 from cad.analysis.modes import torsional_mode
@@ -32,7 +33,7 @@ RESULTS = Path("benchmarks/results/torsion_levels.json")
 COUNT, SEED = 12, 20261121
 TRUTH = Fineness(size=0.8, curvature=0.4, turn=np.pi / 3, sharp=0.06)
 ORDER, SHARP_ORDER = 5, 4
-ASKED: dict[str, tuple[Load, Boundary]] = {
+ASKED: dict[str, tuple[Kind, Boundary]] = {
     "stiffness": ("torsion", "free_end"),
     "guided stiffness": ("torsion", "guided_end"),
     "bending stiffness": ("bending", "free_end"),
@@ -94,7 +95,7 @@ def found_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = OU
     """Outputs on one mesh: stiffnesses [N·m/rad], frequency [Hz]."""
     told: Found = {}
     few = FREQUENCY not in outputs
-    for load in LOADS:
+    for load in KINDS:
         asked = {name: end for name, (kind, end) in ASKED.items() if kind == load and name in outputs}
         if not asked:
             continue

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from cadquery import Location, Shape
-from numpy.typing import NDArray
 from OCP.Bnd import Bnd_Box
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepCheck import BRepCheck_Analyzer
@@ -20,8 +19,7 @@ from OCP.GProp import GProp_GProps
 from cad.model import Box
 from cad.step import Body, rigid
 from cad.surfaces import Seen, look
-
-Matrix = NDArray[np.float64]
+from templates.core.arrays import Array
 
 MEASURES = {
     "mass": "kg",
@@ -48,8 +46,8 @@ class Measured:
     solids: int
     valid: bool
     volume: float  # [mm³]
-    centre: Matrix  # [mm], in the body's own coordinates
-    inertia: Matrix  # [mm⁵], about the centre
+    centre: Array  # [mm], in the body's own coordinates
+    inertia: Array  # [mm⁵], about the centre
 
 
 def measure(body: Body) -> Measured:
@@ -116,13 +114,13 @@ def _rounded(corner: tuple[float, float, float]) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _stand(one: Measured, place: Location, density: float) -> tuple[float, Matrix, Matrix]:
+def _stand(one: Measured, place: Location, density: float) -> tuple[float, Array, Array]:
     """Mass [kg], centre [mm] and inertia about it [kg·mm²] of a body at a place; density in kg/mm³."""
     turn, shift = rigid(place)
     return density * one.volume, turn @ one.centre + shift, density * turn @ one.inertia @ turn.T
 
 
-def _steiner(mass: float, arm: Matrix) -> Matrix:
+def _steiner(mass: float, arm: Array) -> Array:
     """What a mass at the end of an arm adds to the inertia (parallel axes)."""
     return mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from cadquery import Location, Shape
-from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.TopAbs import TopAbs_Orientation
@@ -15,9 +14,7 @@ from OCP.TopLoc import TopLoc_Location
 
 from cad.model import Colour
 from cad.step import Body, rigid
-
-Points = NDArray[np.float64]
-Triangles = NDArray[np.int64]
+from templates.core.arrays import Array, Integers
 
 ANGULAR_TOLERANCE = 0.2  # [rad] between neighbouring facets; 0.1 takes five times as long
 RELATIVE_TOLERANCE = 1e-3  # of the size of the body: the greatest distance of a facet from the true surface
@@ -30,10 +27,10 @@ class Mesh:
     name: str
     colour: Colour
     places: tuple[Location, ...]
-    points: Points  # (n, 3)
-    normals: Points  # (n, 3), outwards
-    triangles: Triangles  # (m, 3), counter-clockwise seen from outside
-    faces: Triangles  # (m,), the number of the face that a triangle lies on
+    points: Array  # (n, 3)
+    normals: Array  # (n, 3), outwards
+    triangles: Integers  # (m, 3), counter-clockwise seen from outside
+    faces: Integers  # (m,), the number of the face that a triangle lies on
 
 
 def mesh(body: Body, angle: float = ANGULAR_TOLERANCE) -> Mesh:
@@ -53,7 +50,7 @@ def mesh(body: Body, angle: float = ANGULAR_TOLERANCE) -> Mesh:
     )
 
 
-def placed(meshes: Iterable[Mesh]) -> Iterator[tuple[Mesh, Points, Points]]:
+def placed(meshes: Iterable[Mesh]) -> Iterator[tuple[Mesh, Array, Array]]:
     """Each mesh at each of its places: the mesh, its points and its normals there."""
     for one in meshes:
         for place in one.places:
@@ -61,7 +58,7 @@ def placed(meshes: Iterable[Mesh]) -> Iterator[tuple[Mesh, Points, Points]]:
             yield one, one.points @ turn.T + shift, one.normals @ turn.T
 
 
-def _face_meshes(shape: Shape) -> Iterator[tuple[Points, Points, Triangles]]:
+def _face_meshes(shape: Shape) -> Iterator[tuple[Array, Array, Integers]]:
     for face in shape.Faces():
         location = TopLoc_Location()
         found = BRep_Tool.Triangulation_s(face.wrapped, location)

@@ -24,7 +24,7 @@ from cadquery import Location, Shape
 from cad.errors import GeometryError
 from cad.shaft import STEEL_DENSITY, Shaft
 from cad.surfaces import Seen
-from templates.core.template import Array, Template
+from templates.core.language.template import Array, Template
 
 Colour = tuple[float, float, float]
 
@@ -63,7 +63,7 @@ class Part:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The name of the part at each of its places: `ball_1`, `ball_2`, …"""
+        """The name of the part at each of its places, as `ball_1` and `ball_2`."""
         if len(self.places) == 1:
             return (self.name,)
         return tuple(f"{self.name}_{i}" for i in range(1, len(self.places) + 1))

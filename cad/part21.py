@@ -15,7 +15,7 @@ _NOT_PLAIN = re.compile(r"[^ -~]+")
 
 
 def quoted(text: str) -> str:
-    """A text as a string of Part 21: quotes and backslashes doubled, other than ASCII as \\X2\\…\\X0\\."""
+    r"""A text as a string of Part 21: quotes and backslashes doubled, other than ASCII as `\X2\…\X0\`."""
     doubled = text.replace("\\", "\\\\").replace("'", "''")
     wide = _NOT_PLAIN.sub(lambda m: f"\\X2\\{m[0].encode('utf-16-be').hex().upper()}\\X0\\", doubled)
     return f"'{wide}'"

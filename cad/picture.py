@@ -13,14 +13,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
 from cad.mesh import Mesh, placed
 from cad.view import RIGHT, TOWARDS, UP
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from templates.core.arrays import Array, Integers, Mask
 
 SIZE = (640, 480)  # [pixels]
 _SAMPLES = 2  # along each side of a pixel
@@ -38,10 +35,10 @@ _SHININESS = 40
 class Scene:
     """Triangles that face the eye; corners in samples, y downwards, z towards the eye."""
 
-    corners: Floats  # (t, 3, 3)
-    normals: Floats  # (t, 3, 3)
-    colours: Floats  # (t, 3)
-    faces: Ints  # (t,), different for every face of every body
+    corners: Array  # (t, 3, 3)
+    normals: Array  # (t, 3, 3)
+    colours: Array  # (t, 3)
+    faces: Integers  # (t,), different for every face of every body
 
 
 def write_png(meshes: Sequence[Mesh], size: tuple[int, int] = SIZE) -> bytes:
@@ -70,17 +67,17 @@ def _scene(meshes: Sequence[Mesh], width: int, height: int) -> Scene:
     return Scene(corners[seen], normals[seen], colours[seen], faces[seen])
 
 
-def _fitted(corners: Floats, width: int, height: int) -> Floats:
+def _fitted(corners: Array, width: int, height: int) -> Array:
     """Corners [mm; y upwards] as they fill the picture [samples; y downwards]."""
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     room = (1 - 2 * _MARGIN) * np.array([width, height])
     scale = (room / (high - low)[:2]).min()
-    moved: Floats = (corners - (low + high) / 2) * (scale * np.array([1, -1, 1]))
+    moved: Array = (corners - (low + high) / 2) * (scale * np.array([1, -1, 1]))
     moved += np.array([width / 2, height / 2, 0])
     return moved
 
 
-def _draw(scene: Scene, width: int, height: int) -> tuple[Floats, Ints]:
+def _draw(scene: Scene, width: int, height: int) -> tuple[Array, Integers]:
     """Light (height, width, 3) and the face seen (height, width; -1 for none) at every sample."""
     triangle, column, row = _fragments(scene.corners)
     weights = _barycentric(scene.corners[triangle], column + 0.5, row + 0.5)
@@ -98,7 +95,7 @@ def _draw(scene: Scene, width: int, height: int) -> tuple[Floats, Ints]:
     return light.reshape(height, width, 3), faces.reshape(height, width)
 
 
-def _fragments(corners: Floats) -> tuple[Ints, Ints, Ints]:
+def _fragments(corners: Array) -> tuple[Integers, Integers, Integers]:
     """The samples that triangles cover: which triangle, column and row; a sample counts by its middle."""
     x, y = corners[:, :, 0], corners[:, :, 1]
     triangle, row = _expand(y.min(axis=1), y.max(axis=1))
@@ -115,7 +112,7 @@ def _fragments(corners: Floats) -> tuple[Ints, Ints, Ints]:
     return triangle[span], column, row[span]
 
 
-def _expand(low: Floats, high: Floats) -> tuple[Ints, Ints]:
+def _expand(low: Array, high: Array) -> tuple[Integers, Integers]:
     """For intervals, the whole numbers n with low ≤ n + 1/2 ≤ high: which interval, and n."""
     first = np.ceil(np.where(np.isfinite(low), low, 0) - 0.5).astype(np.int64)
     last = np.floor(np.where(np.isfinite(high), high, -1) - 0.5).astype(np.int64)
@@ -125,7 +122,7 @@ def _expand(low: Floats, high: Floats) -> tuple[Ints, Ints]:
     return which, first[which] + within
 
 
-def _barycentric(corners: Floats, x: Any, y: Any) -> Floats:
+def _barycentric(corners: Array, x: Any, y: Any) -> Array:
     """Weights (n, 3) of the corners of each triangle at its point."""
     a, b, c = (corners[:, i, :2] for i in range(3))
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
@@ -135,7 +132,7 @@ def _barycentric(corners: Floats, x: Any, y: Any) -> Floats:
     return np.stack([1 - second - third, second, third], axis=1)
 
 
-def _lit(normals: Floats, colours: Floats) -> Floats:
+def _lit(normals: Array, colours: Array) -> Array:
     """Colours under two lights, with a highlight of the first (Blinn–Phong)."""
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     key, fill = (light / np.linalg.norm(light) for light in (_KEY, _FILL))
@@ -144,11 +141,11 @@ def _lit(normals: Floats, colours: Floats) -> Floats:
     diffuse = (
         _AMBIENT + _KEY_SHARE * np.clip(normals @ key, 0, 1) + _FILL_SHARE * np.clip(normals @ fill, 0, 1)
     )
-    light: Floats = colours * diffuse[:, None] + _GLOSS * gloss[:, None]
+    light: Array = colours * diffuse[:, None] + _GLOSS * gloss[:, None]
     return light
 
 
-def _borders(faces: Ints) -> NDArray[np.bool_]:
+def _borders(faces: Integers) -> Mask:
     """Samples beside which another face begins."""
     differs = np.zeros(faces.shape, dtype=bool)
     differs[:, :-1] |= faces[:, :-1] != faces[:, 1:]

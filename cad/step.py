@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from cadquery import Location, Shape
-from numpy.typing import NDArray
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
@@ -28,6 +27,7 @@ from cad.errors import UnreadableStep
 from cad.header import Header
 from cad.model import STEEL, Colour, Part
 from cad.step_text import finished
+from templates.core.arrays import Array
 
 STEPCAFControl_Controller.Init_s()  # the writer's settings exist only from here on
 Message.DefaultMessenger_s().ChangePrinters().Clear()  # what is wrong is raised, not printed
@@ -76,7 +76,7 @@ def read_step(step: bytes) -> tuple[Body, ...]:
     return tuple(_bodies(document))
 
 
-def rigid(place: Location) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def rigid(place: Location) -> tuple[Array, Array]:
     """Rotation (3, 3) and translation (3,) [mm] of a place."""
     motion = place.wrapped.Transformation()
     rows = np.array([[motion.Value(i, j) for j in (1, 2, 3, 4)] for i in (1, 2, 3)])

@@ -6,12 +6,13 @@ import json
 from typing import Any
 
 from app.analyses import repository
-from app.analyses.questions import SURFACE, Question
+from app.analyses.questions import Question
 from app.designs import repository as builds
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.workers.base import Limits, Runner
 from app.workers.progress import report
+from cad.analysis.kinds import SURFACE
 from cad.errors import AnalysisError
 from cad.model import CadModel
 from cad.regenerate import build_key

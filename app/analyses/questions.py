@@ -1,7 +1,7 @@
 """What can be asked of a solid by finite elements, and by what an answer is found again.
 
-For the REST interface and for relations of designs. The server knows here what an analysis tells without
-importing what makes it: `cad.analysis` brings a kernel of its own. A test holds the two together.
+For the REST interface and for relations of designs. Which analyses exist stands in `cad.analysis.kinds`; that
+module does not import the kernel that computes them.
 """
 
 from __future__ import annotations
@@ -11,32 +11,26 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
-from typing import Any, Literal, get_args
+from typing import Any
 
 from pydantic import ConfigDict, Field
 
 from app.bounded import Bounded
+from cad.analysis.kinds import (
+    BOUNDARIES,
+    DEFAULT_LEVEL,
+    KINDS,
+    LEVELS,
+    STRESSES,
+    SURFACE,
+    Boundary,
+    Level,
+)
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText
-from templates.core.quantity import read
-
-Boundary = Literal["free_end", "guided_end"]
-Level = Literal["coarse", "default", "fine"]
-DEFAULT: Level = "default"
-
-KINDS: dict[str, dict[str, str]] = {
-    "torsion": {"stiffness": "N*m/rad", "torsional_frequency": "Hz", "maximum_stress": "MPa"},
-    "bending": {"stiffness": "N*m/rad", "maximum_stress": "MPa"},
-}
-"""What each kind of analysis tells, with its unit."""
-
-SURFACE = "surface"
-"""An output of every kind, the surface for a picture; it is no quantity, so no relation can use it."""
+from templates.core.units.quantity import read
 
 LARGEST_LOAD = 1e12  # [N m]
-
-STRESSES = frozenset({"maximum_stress"})
-"""What is proportional to the load, and found on meshes of its own, whatever the level."""
 
 DEAR = STRESSES | {SURFACE}
 """What is found only where it is asked for by name."""
@@ -99,7 +93,7 @@ class Question:
 
 def question(kind: str, options: Options) -> Question:
     """The question that options of a kind ask; nothing said is the default level, and a load of 1 N·m."""
-    level = options.level or (None if options.tolerance else DEFAULT)
+    level = options.level or (None if options.tolerance else DEFAULT_LEVEL)
     load = 1.0 if options.load is None or load_faults(options.load) else load_of(options.load)
     return Question(kind, options.boundary, level, options.tolerance, load)
 
@@ -161,9 +155,9 @@ def what_can_be_asked(cls: type[CadModel]) -> dict[str, Any]:
     """The kinds of analyses of a model, each with its outputs and their units; none of what is no shaft."""
     if no_shaft(cls):
         return {}
-    options = {"boundaries": list(get_args(Boundary)), "levels": list(get_args(Level))}
+    options = {"boundaries": list(BOUNDARIES), "levels": list(LEVELS)}
     return {
-        kind: {"outputs": {**units, SURFACE: None}, **options, "default_level": DEFAULT}
+        kind: {"outputs": {**units, SURFACE: None}, **options, "default_level": DEFAULT_LEVEL}
         for kind, units in KINDS.items()
     }
 

@@ -8,10 +8,11 @@ from typing import Any
 from sqlalchemy import Text, select, type_coerce
 from sqlalchemy.orm import Session
 
-from app.analyses.questions import STRESSES, SURFACE, Question, in_order
+from app.analyses.questions import Question, in_order
 from app.designs.errors import NotFound
 from app.storage.identity import now
 from app.storage.tables import AnalysisRow
+from cad.analysis.kinds import STRESSES, SURFACE
 
 Found = dict[str, dict[str, Any]]
 

@@ -13,7 +13,6 @@ from starlette.concurrency import run_in_threadpool
 from app import problems
 from app.analyses.questions import (
     DEAR,
-    KINDS,
     faults,
     in_order,
     load_faults,
@@ -32,6 +31,7 @@ from app.healing import UNAVAILABLE, StoredFile, lost
 from app.http import StrictRoute
 from app.models.routes import FOR_EVER
 from app.waiting import LATER, accepted, finished
+from cad.analysis.kinds import KINDS
 from cad.model import CadModel
 from templates.core.errors import Fault, InvalidInputs
 

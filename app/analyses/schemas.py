@@ -6,8 +6,9 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
-from app.analyses.questions import KINDS, Options, offered
+from app.analyses.questions import Options, offered
 from app.values import Parameters
+from cad.analysis.kinds import KINDS
 
 THROW: dict[str, Any] = {
     "journal_diameter": "50 mm",

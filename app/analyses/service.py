@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from app.analyses import repository
 from app.analyses.finding import Analysing, is_known, shaft_of
-from app.analyses.questions import SURFACE, Question, under_load
+from app.analyses.questions import Question, under_load
 from app.analyses.views import shown
 from app.designs import repository as builds
 from app.designs.errors import NotFound
@@ -22,10 +22,11 @@ from app.models.shapes import shape_of
 from app.problems import describe
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from cad.analysis.kinds import SURFACE
 from cad.errors import AnalysisError
 from cad.model import CadModel
 from cad.regenerate import as_text, build_key
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
 
 ANALYSIS = "analysis"
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from app.analyses.questions import SURFACE, Question, warnings
+from app.analyses.questions import Question, warnings
+from cad.analysis.kinds import SURFACE
 
 
 def shown(

@@ -19,8 +19,8 @@ from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.workers.base import Limits
 from app.workers.pool import WarmProcesses
-from templates.core.catalogue import Catalogue
-from templates.core.template import Template
+from templates.core.catalogue.finding import Catalogue
+from templates.core.language.template import Template
 
 PRELOAD = ("app.calculations.warm",)
 LANES = {CALCULATION: THREADS}

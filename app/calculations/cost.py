@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from app.calculations.size import shape, spanned
-from templates.core.declare import Curve, Table
 from templates.core.errors import InvalidInputs
-from templates.core.levels import SINGLE, accuracy
-from templates.core.quantity import Typed
-from templates.core.solve import POLISHES, SAMPLES
-from templates.core.template import Template
+from templates.core.language.levels import SINGLE, accuracy
+from templates.core.language.solve import POLISHES, SAMPLES
+from templates.core.language.spec import Curve, Table
+from templates.core.language.template import Template
+from templates.core.units.quantity import Typed
 
 EXPENSIVE = 0.05  # beyond this a calculation leaves the server's process [s]
 

@@ -8,18 +8,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.catalogue import digest
-from templates.core.evaluate import Answer, Echo, Evaluation
-from templates.core.template import Template
+from templates.core.catalogue.digests import content_digest, digest
+from templates.core.language.evaluate import Answer, Echo, Evaluation
+from templates.core.language.template import Template
 
-_digests: dict[Any, str] = {}
+_identities: dict[Any, dict[str, Any]] = {}
 
 
 def identity(cls: type[Template]) -> dict[str, Any]:
-    """Which version calculated: id, version and the digest of its code."""
-    if cls not in _digests:
-        _digests[cls] = digest(cls)
-    return {"id": cls.id, "version": cls.version, "digest": _digests[cls]}
+    """Which version calculated: id, version and both digests of its code."""
+    if cls not in _identities:
+        codes = {"digest": digest(cls), "content_digest": content_digest(cls)}
+        _identities[cls] = {"id": cls.id, "version": cls.version, **codes}
+    return dict(_identities[cls])
 
 
 def quantity(value: Any, unit: str | None) -> dict[str, Any]:

@@ -57,6 +57,7 @@ class Dispatcher:
         limits: Limits,
         events: Events,
         describe: Callable[[Exception], Problem],
+        threads: int = 1,
     ) -> None:
         self.kinds: dict[str, Kind] = {}
         self.durations = Durations()
@@ -65,15 +66,15 @@ class Dispatcher:
         self._limits = limits
         self._events = events
         self._describe = describe
-        self._counts = {FAST: 1, SLOW: 1}  # threads of each lane
+        self._counts = {FAST: threads, SLOW: 1}  # threads of each lane
         self._awake = {FAST: threading.Semaphore(0), SLOW: threading.Semaphore(0)}
         self._stopping = threading.Event()
         self._running: dict[str, threading.Event] = {}  # job id -> set to stop it
         self._threads: list[threading.Thread] = []
 
-    def start(self, threads: int, beside: Mapping[str, int]) -> None:
-        """Begin to take jobs from the queue, with so many threads for fast ones and for lanes `beside`."""
-        self._counts = {FAST: threads, SLOW: 1, **beside}
+    def start(self, beside: Mapping[str, int]) -> None:
+        """Begin to take jobs from the queue, with so many threads for the lanes `beside` the usual two."""
+        self._counts |= beside
         self._awake = {lane: threading.Semaphore(0) for lane in self._counts}
         for number, lane in enumerate(lane for lane, count in self._counts.items() for _ in range(count)):
             thread = threading.Thread(target=self._work, args=[lane], name=f"jobs-{number}", daemon=True)

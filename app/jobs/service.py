@@ -49,7 +49,7 @@ class Jobs:
         self.settings = settings
         self._describe = describe
         limits = Limits(settings.job_deadline, settings.job_memory_mb)
-        self._dispatcher = Dispatcher(database, worker, limits, self.events, describe)
+        self._dispatcher = Dispatcher(database, worker, limits, self.events, describe, settings.workers)
 
     def register(
         self,
@@ -76,7 +76,7 @@ class Jobs:
         `lanes` gives the number of threads of lanes beside the usual two.
         """
         self._database.write(repository.give_back_all)
-        self._dispatcher.start(self.settings.workers, lanes or {})
+        self._dispatcher.start(lanes or {})
 
     def drain(self) -> None:
         """End all subscriptions and begin no more jobs; those that run go on."""

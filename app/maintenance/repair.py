@@ -10,7 +10,6 @@ from typing import TypeVar, TypeVarTuple
 
 from app.analyses import repository as analyses
 from app.analyses.finding import Analysing
-from app.analyses.questions import SURFACE
 from app.maintenance.check import Findings, Say
 from app.maintenance.rows import Named
 from app.models.builds import Builds
@@ -22,6 +21,7 @@ from app.storage.database import Database
 from app.workers.base import Limits
 from app.workers.errors import WorkerError
 from app.workers.local import LocalProcesses
+from cad.analysis.kinds import SURFACE
 from cad.catalogue import models as find_models
 from cad.errors import AnalysisError, GeometryError
 from cad.export import DERIVED
@@ -60,6 +60,8 @@ class Repair:
 
     def row(self, row: Named) -> str | None:
         """Have the file of a row good; return why it is not, if it is not."""
+        if row.kind in ("body", "answer"):
+            return "send the calculation again: its answer is not kept anywhere else"
         try:
             if row.kind == SURFACE:
                 self._surface(row.owner)

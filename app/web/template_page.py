@@ -15,6 +15,7 @@ from app.web.pictures import pictures
 from app.web.rendering import show, units_of
 
 ABOUT = {"units"}  # of the address, beside the inputs
+AT_ONCE = {"Prefer": "wait=2"}  # the page shows how the rest goes on
 
 
 async def template_page(request: Request, api: Api, id: str, version: int) -> Response:
@@ -24,7 +25,7 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
     typed = {name: text for name, text in request.query_params.items() if name not in ABOUT}
     asked = _asked(told, typed)
     measured = await api.find(f"{path}/accuracy")
-    answer, faults = await _tried(api, path, asked, units_of(request))
+    answer, job, faults = await _tried(api, path, asked, units_of(request))
     used = answer["inputs"] if answer else {}
     fields = sheet.of_block(told["inputs"], "", asked["inputs"], used, typed, faults)
     options = sheet.of_options(told, "", asked, typed, faults)
@@ -39,7 +40,8 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
         fields=fields,
         options=options,
         loose=sheet.loose_faults([*fields, *options], faults),
-        answer=answer,
+        answer=answer or (_empty(told) if job else None),
+        job=job,
         pictures=pictures("", told, answer or {}),
         path_of_api=f"/api/v1{path}",
     )
@@ -56,10 +58,27 @@ def _asked(told: Mapping[str, Any], typed: Mapping[str, str]) -> dict[str, Any]:
 
 async def _tried(
     api: Api, path: str, asked: Mapping[str, Any], units: str
-) -> tuple[dict[str, Any] | None, dict[str, str]]:
+) -> tuple[dict[str, Any] | None, str, dict[str, str]]:
+    """The answer, or the address of the job that calculates it, or what is wrong."""
     try:
-        return await api.post(f"{path}/worksheet", asked, units=units), {}
+        answer = await api.send(
+            "POST", f"{path}/worksheet", json=asked, params={"units": units}, headers=AT_ONCE
+        )
     except Refused as refused:
-        if refused.status not in (413, 422):
+        if refused.status not in (413, 422, 429):
             raise
-        return None, refused.faults or {"inputs": refused.problem["detail"]}
+        return None, "", refused.faults or {"inputs": refused.problem["detail"]}
+    return (None, answer.headers["Location"], {}) if answer.status_code == 202 else (answer.json(), "", {})
+
+
+def _empty(told: Mapping[str, Any]) -> dict[str, Any]:
+    """What stands in place of results while they are calculated; the page's script fills it in."""
+    waiting = {"value": None, "reason": "is being calculated"}
+    names = told["outputs"]["properties"]
+    return {
+        "outputs": dict.fromkeys(names, waiting),
+        "error": dict.fromkeys(names),
+        "warnings": [],
+        "formulas": [],
+        "level": None,
+    }

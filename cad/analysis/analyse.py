@@ -7,7 +7,8 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from cad.analysis.elastic import Boundary, Load, Response, System, respond
+from cad.analysis.elastic import Response, System, respond
+from cad.analysis.kinds import KINDS, SURFACE, Boundary, Kind
 from cad.analysis.levels import Level, ladder
 from cad.analysis.mesh import make_grid
 from cad.analysis.modes import torsional_mode
@@ -19,15 +20,6 @@ from cad.shaft import Shaft
 
 Report = Callable[[float, str], None]
 
-OUTPUTS: dict[Load, dict[str, str]] = {
-    "torsion": {"stiffness": "N*m/rad", "torsional_frequency": "Hz", "maximum_stress": "MPa"},
-    "bending": {"stiffness": "N*m/rad", "maximum_stress": "MPa"},
-}
-"""What each analysis tells, with its unit; stress is that under a torque or moment of 1 N·m."""
-
-SURFACE = "surface"
-"""An output of every analysis that is no quantity: `cad.analysis.surface.Surface`, for a picture."""
-
 WORST = 0.25
 """The relative error from which on no value is told."""
 
@@ -36,7 +28,7 @@ WORST = 0.25
 class Asked:
     """What is asked of an analysis; a tolerance (relative) chooses the level, else it is named."""
 
-    load: Load = "torsion"
+    load: Kind = "torsion"
     boundary: Boundary = "free_end"
     level: str | None = None
     tolerance: float | None = None
@@ -44,7 +36,7 @@ class Asked:
 
 @dataclass
 class Found:
-    """Outputs by name: value in the unit of `OUTPUTS`, or the surface, with its error and its mesh."""
+    """Outputs by name: value in the unit of `KINDS`, or the surface, with its error and its mesh."""
 
     outputs: dict[str, dict[str, Any]] = field(default_factory=dict)
 
@@ -114,7 +106,7 @@ def _at_level(
     }
     found: dict[str, dict[str, Any]] = {}
     for name in wanted:
-        about = {"unit": OUTPUTS[asked.load][name], **told}
+        about = {"unit": KINDS[asked.load][name], **told}
         if name in reasons:
             found[name] = {"value": None, "error": None, **about, "reason": reasons[name]}
         else:

@@ -16,21 +16,20 @@ from typing import Any
 import numpy as np
 from netgen.meshing import MeshingParameters, MeshingStep
 from netgen.occ import OCCGeometry
-from numpy.typing import NDArray
+
+from templates.core.arrays import Array, Integers
 
 SHARP = pi / 3  # [rad]
 
 _SIZE, _CURVATURE, _GRADING = 1.0, 1.0, 0.7  # of triangles: in radii; by radius of curvature; of neighbours
-
-Reals = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Edges:
     """Straight pieces of edges."""
 
-    ends: Reals  # (n, 2, 3) [mm]
-    radius: Reals  # (n,) [mm], of the edge there; of a straight one the scale of the solid
+    ends: Array  # (n, 2, 3) [mm]
+    radius: Array  # (n,) [mm], of the edge there; of a straight one the scale of the solid
 
 
 def sharp_inner_edges(shape: Any, scale: float) -> Edges:
@@ -70,7 +69,7 @@ def along(edges: Edges, share: float) -> Iterator[tuple[tuple[float, float, floa
             yield (float(x), float(y), float(z)), step
 
 
-def _radii(faces: NDArray[np.int64], vertices: NDArray[np.int64], ends: Reals) -> Reals:
+def _radii(faces: Integers, vertices: Integers, ends: Array) -> Array:
     """The radius [mm] of the edge at each piece: length by turning, where two between the same faces meet."""
     met = defaultdict(list)
     for piece, (pair, two) in enumerate(zip(faces, vertices, strict=True)):
@@ -87,7 +86,7 @@ def _radii(faces: NDArray[np.int64], vertices: NDArray[np.int64], ends: Reals) -
     return radius
 
 
-def _neighbours(corners: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _neighbours(corners: Integers) -> tuple[Integers, Integers]:
     """For each side that two triangles share: the one, and the other, each with the place of its side."""
     sides = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1), axis=-1).reshape(-1, 2)
     order = np.lexsort(sides.T)
@@ -97,7 +96,7 @@ def _neighbours(corners: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[
     return one, other
 
 
-def _normals(triangles: Reals) -> Reals:
+def _normals(triangles: Array) -> Array:
     a, b, c = triangles.transpose(1, 0, 2)
     normal = np.cross(b - a, c - a)
     return np.asarray(normal / np.linalg.norm(normal, axis=1)[:, None])

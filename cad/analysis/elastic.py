@@ -18,23 +18,18 @@ between them and the load, so no other system is solved.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import ngsolve as ng
 import numpy as np
 from ngsolve.krylovspace import CGSolver
-from numpy.typing import NDArray
 
+from cad.analysis.kinds import Boundary, Kind
 from cad.analysis.mesh import Grid, curve
 from cad.analysis.solid import HELD, LOADED, MIRROR
 from cad.errors import AnalysisError
 from cad.shaft import Material
-
-Load = Literal["torsion", "bending"]
-Boundary = Literal["free_end", "guided_end"]
-
-LOADS: tuple[Load, ...] = ("torsion", "bending")
-BOUNDARIES: tuple[Boundary, ...] = ("free_end", "guided_end")
+from templates.core.arrays import Array
 
 _RESIDUAL = 1e-10  # relative, in the norm of the preconditioner
 _MOST_STEPS = 1000
@@ -56,7 +51,7 @@ class System:
     """
 
     def __init__(
-        self, grid: Grid, order: int, material: Material, load: Load, *, few_forces: bool = False
+        self, grid: Grid, order: int, material: Material, load: Kind, *, few_forces: bool = False
     ) -> None:
         self.grid, self.order, self.material, self.load = grid, order, material, load
         self.deformation = curve(grid.mesh, order)
@@ -124,7 +119,7 @@ class Response:
     displacement: Any  # a GridFunction [mm]
     guides: tuple[Any, ...]  # forces that act on the guided end
     guided: tuple[Any, ...]  # displacements under them
-    gram: NDArray[np.float64]  # work between them
+    gram: Array  # work between them
 
 
 def respond(system: System, boundary: Boundary) -> Response:
@@ -146,12 +141,12 @@ def respond(system: System, boundary: Boundary) -> Response:
     return Response(system, float(work), displacement, guides, guided, gram)
 
 
-def is_antisymmetric(mirror: str, load: Load) -> bool:
+def is_antisymmetric(mirror: str, load: Kind) -> bool:
     """Whether the displacement at the image of a point, in the plane of this normal, is minus the image."""
     return load == "torsion" or mirror == "x"  # a moment about y is odd in x
 
 
-def _locked(mirror: str, load: Load) -> str:
+def _locked(mirror: str, load: Kind) -> str:
     """The directions in which nothing moves on a mirror plane of this normal."""
     tangential = "".join(axis for axis in "xyz" if axis != mirror)
     return (tangential if is_antisymmetric(mirror, load) else mirror) if mirror else ""

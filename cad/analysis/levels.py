@@ -14,9 +14,8 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
+from cad.analysis.kinds import DEFAULT_LEVEL
 from cad.analysis.mesh import Fineness
-
-DEFAULT = "default"
 
 
 @dataclass(frozen=True)
@@ -60,5 +59,5 @@ NAMES = tuple(level.name for level in LEVELS)
 def ladder(level: str | None, tolerance: float | None) -> tuple[Level, ...]:
     """The levels to try in turn: the one named, or those from the cheapest that is likely to do."""
     if tolerance is None:
-        return tuple(rung for rung in LEVELS if rung.name == (level or DEFAULT))
+        return tuple(rung for rung in LEVELS if rung.name == (level or DEFAULT_LEVEL))
     return tuple(rung for rung in LEVELS if rung.typical <= tolerance) or LEVELS[-1:]

@@ -13,11 +13,11 @@ from typing import Any
 
 import ngsolve as ng
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from cad.analysis.elastic import Response
 from cad.errors import AnalysisError
+from templates.core.arrays import Array
 
 _MODES = 6
 _MOST_MODES = 48
@@ -58,13 +58,13 @@ def natural_modes(response: Response, count: int) -> list[Mode]:
     free = np.flatnonzero(np.array(list(system.space.FreeDofs())))
     work, done = mass.CreateColVector(), mass.CreateColVector()
 
-    def times_mass(part: NDArray[np.float64]) -> NDArray[np.float64]:
+    def times_mass(part: Array) -> Array:
         work.FV().NumPy()[:] = 0
         work.FV().NumPy()[free] = part.ravel()
         done.data = mass * work
         return np.array(done.FV().NumPy()[free])
 
-    def inverse(part: NDArray[np.float64]) -> NDArray[np.float64]:
+    def inverse(part: Array) -> Array:
         work.FV().NumPy()[:] = 0
         work.FV().NumPy()[free] = part.ravel()
         return np.array(_guided(response, system.solve(work)).FV().NumPy()[free])

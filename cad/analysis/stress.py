@@ -17,13 +17,14 @@ from typing import Any
 
 import ngsolve as ng
 import numpy as np
-from numpy.typing import NDArray
 
-from cad.analysis.elastic import Boundary, Load, Response, System, respond, stress
+from cad.analysis.elastic import Response, System, respond, stress
+from cad.analysis.kinds import Boundary, Kind
 from cad.analysis.mesh import Fineness, Near, make_grid
 from cad.analysis.solid import FREE, HELD, LOADED, Solid
 from cad.errors import AnalysisError
 from cad.shaft import Material
+from templates.core.arrays import Array
 
 Components = list[Any]  # xx, yy, zz, xy, yz, xz of a stress, each a function on the mesh
 Measure = Callable[[Components], Any]
@@ -90,7 +91,7 @@ def first_principal(components: Components) -> Any:
 def greatest_stress(
     solid: Solid,
     material: Material,
-    load: Load,
+    load: Kind,
     boundary: Boundary,
     report: Callable[[int], None],
     measure: Measure = von_mises,
@@ -159,7 +160,7 @@ def _extent(face: Any) -> tuple[float, float]:
     return min(levels), max(levels)
 
 
-def _on_surface(system: System, field: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _on_surface(system: System, field: Any) -> tuple[Array, Array]:
     """Points (elements, places, 3) [mm] on the free surface, and a field there."""
     mesh = system.grid.mesh
     where = mesh.MapToAllElements(ng.IntegrationRule(ng.TRIG, 2 * system.order), mesh.Boundaries(FREE))
@@ -168,13 +169,13 @@ def _on_surface(system: System, field: Any) -> tuple[NDArray[np.float64], NDArra
     return points.reshape(count, -1, 3), np.ravel(field(where)).reshape(count, -1)
 
 
-def _corners(mesh: Any) -> NDArray[np.float64]:
+def _corners(mesh: Any) -> Array:
     """The corners (elements, 3, 3) [mm] of the free surface's elements."""
     elements = mesh.Boundaries(FREE).Elements()
     return np.array([[mesh[v].point for v in element.vertices] for element in elements])
 
 
-def _halved(corners: NDArray[np.float64]) -> Near:
+def _halved(corners: Array) -> Near:
     size = float(np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1).mean())
     x, y, z = (float(c) for c in corners.mean(axis=0))
     return Near((x, y, z), size / 2, size / 2)

@@ -18,11 +18,11 @@ from typing import Any
 
 import ngsolve as ng
 import numpy as np
-from numpy.typing import NDArray
 
 from cad.analysis.elastic import Response, is_antisymmetric
 from cad.analysis.solid import FREE, HELD, LOADED
 from cad.analysis.stress import recover, von_mises
+from templates.core.arrays import Array, Integers
 
 MOST_TRIANGLES = 16_000
 """Elements are divided as finely as keeps the whole within this number, but for the coarsest division."""
@@ -34,18 +34,16 @@ _NEAR = 1e-6  # [mm], to the mirror plane
 _DIGITS = 6
 _NOISE = 1e-9  # of the largest value: what is smaller is nothing
 
-Reals = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class Surface:
     """Triangles, counterclockwise as seen from outside, between points; a field has a value at each."""
 
-    points: Reals  # (n, 3) [mm]
-    triangles: NDArray[np.int64]  # (m, 3)
-    displacement: Reals  # (n, 3) [mm/(N·m)]
-    twist: Reals | None  # (n,) [deg/(N·m)]; torsion only
-    stress: Reals  # (n,) [MPa/(N·m)], von Mises, recovered
+    points: Array  # (n, 3) [mm]
+    triangles: Integers  # (m, 3)
+    displacement: Array  # (n, 3) [mm/(N·m)]
+    twist: Array | None  # (n,) [deg/(N·m)]; torsion only
+    stress: Array  # (n,) [MPa/(N·m)], von Mises, recovered
     load: str
 
     def told(self) -> dict[str, Any]:
@@ -81,7 +79,7 @@ def surface(response: Response) -> Surface:
     return _whole(half, "xyz".index(mirror), is_antisymmetric(mirror, system.load)) if mirror else half
 
 
-def _fields(response: Response, where: Any) -> dict[str, Reals]:
+def _fields(response: Response, where: Any) -> dict[str, Array]:
     """Everything at mapped points (n), under 1 N·m."""
     u = response.displacement
     gradient = ng.Grad(u)
@@ -96,7 +94,7 @@ def _fields(response: Response, where: Any) -> dict[str, Reals]:
     }
 
 
-def _at(where: Any, *functions: Any) -> Reals:
+def _at(where: Any, *functions: Any) -> Array:
     return np.column_stack([np.ravel(function(where)) for function in functions])
 
 
@@ -105,19 +103,19 @@ def _division(elements: int) -> int:
     return max(n for n in range(1, _FINEST + 1) if n == 1 or elements * n**2 <= MOST_TRIANGLES)
 
 
-def _lattice(division: int) -> NDArray[np.int64]:
+def _lattice(division: int) -> Integers:
     """The points of a divided triangle, as whole weights of its three corners."""
     steps = range(division + 1)
     return np.array([(i, j, division - i - j) for i, j in product(steps, steps) if i + j <= division])
 
 
-def _rule(lattice: NDArray[np.int64], division: int) -> Any:
+def _rule(lattice: Integers, division: int) -> Any:
     """The points of a lattice where NGSolve wants them: the weights of the first two corners."""
     points = [(i / division, j / division) for i, j, _ in lattice.tolist()]
     return ng.IntegrationRule(points, [0.0] * len(points))
 
 
-def _pieces(lattice: NDArray[np.int64]) -> NDArray[np.int64]:
+def _pieces(lattice: Integers) -> Integers:
     """The triangles (m, 3) between the points of a lattice, turned as the element is, outward."""
     place = {(i, j): n for n, (i, j, _) in enumerate(lattice.tolist())}
     up = [[(i, j), (i + 1, j), (i, j + 1)] for i, j in place]
@@ -125,9 +123,7 @@ def _pieces(lattice: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.array([[place[at] for at in piece] for piece in up + down if place.keys() >= {*piece}])
 
 
-def _shared(
-    corners: NDArray[np.int64], lattice: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _shared(corners: Integers, lattice: Integers) -> tuple[Integers, Integers]:
     """Of every point of every element: its number among those that differ; and where each number is first."""
     known: dict[tuple[tuple[int, int], ...], int] = {}
     number: list[int] = []
@@ -161,7 +157,7 @@ def _whole(half: Surface, normal: int, antisymmetric: bool) -> Surface:
     )
 
 
-def _written(values: Reals) -> Any:
+def _written(values: Array) -> Any:
     noise = _NOISE * np.abs(values).max(initial=0.0)
     return [_row(row, noise) for row in values.tolist()]
 

@@ -11,7 +11,7 @@ from math import pi, radians
 import numpy as np
 
 from cad.cranks.parameters import CrankParameters
-from templates.core.template import Array, Truth, require, units
+from templates.core.language.template import Array, Truth, require, units
 
 
 @units(None, "m", returns="m")
@@ -150,8 +150,7 @@ class CrankRules(CrankParameters):
 
     @require("counterweight_angle", "web_shape", remedy="meet the corner exactly, or keep off it by 0.1°")
     def flanks_clear_corners(self) -> Truth:
-        """The counterweight's flanks meet the corners of the web exactly (obround 180°, rectangular 90°), or
-        keep off them by 0.1°."""
+        """The counterweight's flanks meet corners (obround 180°, rectangular 90°) or miss by 0.1°."""
         return (self.R_w <= 0) | clear_of_corners(self.web_shape, self.phi_w)
 
     @require("face_inclination", "web_thickness", remedy="make the inclination smaller or the web thicker")

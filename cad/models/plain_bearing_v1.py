@@ -1,5 +1,4 @@
-"""Plain bearing shell: a half or a full cylinder, with an oil groove around the bore and an oil hole at the
-crown.
+"""Plain bearing shell, half or full, with an oil groove around the bore and an oil hole at the crown.
 
 For crankshaft main, big-end and small-end bearings. The bore is the finished one: the caller adds the
 clearance. The half shell stands on the side +y, its joint in the plane y = 0; the hole points along +y in
@@ -25,7 +24,7 @@ from scipy.integrate import quad
 
 from cad.model import BRONZE, Box, CadModel, Part, mm
 from cad.surfaces import Seen, Y, Z
-from templates.core.template import Array, Truth, choice, derived, formula, given, require, units
+from templates.core.language.template import Array, Truth, choice, derived, formula, given, require, units
 
 
 @dataclass(frozen=True)

@@ -93,7 +93,7 @@ class FaultyText(TemplateError):
         super().__init__(detail)
 
     def fault(self, name: str) -> Fault:
-        """This error as a fault of the input `name`."""
+        """The error as a fault of the input `name`."""
         return Fault(name, self.code, str(self))
 
 

@@ -1,5 +1,7 @@
 """A migrated database in a folder of its own, and one server for all tests of the interface."""
 
+import os
+
 import httpx
 import pytest
 from serving import folder_of_models, serving
@@ -36,6 +38,8 @@ def served(tmp_path_factory):
         job_memory_mb=800,
     )
     with serving(settings) as server:
+        # Answers may take 5 s; on a busy machine the calculation processes take as long to be there.
+        server.app.state.calculations.submit("tests", os.getpid).future.result(60)
         yield server
 
 

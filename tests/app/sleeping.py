@@ -33,14 +33,17 @@ class Sleeper(Template):
 
 def slept(seconds, mood):
     """The process that slept so long; it notes that it began."""
-    with Path(os.environ["SLEEPER_LOG"]).open("a") as log:
+    with Path(os.environ.get("SLEEPER_LOG", os.devnull)).open("a") as log:
         log.write(f"{os.getpid()}\\n")
     if mood == "dies":
         ctypes.string_at(0)
     if mood == "eats":
         bytearray(8 * 2**30)
+    end = time.monotonic() + float(np.max(seconds))
     report(0.5, "half asleep")
-    time.sleep(float(np.max(seconds)))
+    while (left := end - time.monotonic()) > 0:
+        time.sleep(min(left, 0.2))
+        report(0.5, "half asleep")
     return np.float64(os.getpid())
 '''
 
@@ -49,7 +52,8 @@ def folder_of_sleeper(path: Path) -> Path:
     """A team's folder with the template and the table that says what it costs."""
     path.mkdir(parents=True)
     (path / "sleeper_v1.py").write_text(dedent(SLEEPER).lstrip())
-    axis = {"attribute": "t", "values": [0, 1]}
-    table = {"axes": [axis, axis], "levels": {"only": {"cost": {"single": 1.0}, "errors": {}}}}
+    axis = {"attribute": "t", "name": "duration", "unit": "s", "values": [0, 1]}
+    words = {"truth": "a clock", "error": "relative error", "cost": "seconds a point"}
+    table = {**words, "axes": [axis, axis], "levels": {"only": {"cost": {"single": 1.0}, "errors": {}}}}
     (path / "sleeper_v1.accuracy.json").write_text(json.dumps(table))
     return path

@@ -13,6 +13,7 @@ from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.service import run_evaluate, run_solve
 from app.calculations.worksheet import run_worksheet
 from app.catalogue.finding import find_templates
+from app.client import Client, Problem
 from app.settings import Settings
 
 SLEEPER = f"{API}/templates/sleeper/versions/1"
@@ -44,8 +45,8 @@ def settings(tmp_path_factory, log):
 @pytest.fixture(scope="module")
 def server(settings):
     with serving(settings) as server:
-        processes = server.app.state.calculations._worker
-        assert processes.run(os.getpid) != os.getpid()  # they have been imported
+        pool = server.app.state.calculations
+        assert pool.submit("tests", os.getpid).future.result(60) != os.getpid()  # they have been imported
         yield server
 
 
@@ -189,11 +190,20 @@ def test_what_takes_long_goes_on_as_a_job(http, log):
     place = accepted.headers["Location"]
     job = ended(http, place)
     assert job["kind"], job["state"] == ("calculation", "done")
-    assert job["log"] == ["half asleep"]
+    assert set(job["log"]) == {"half asleep"}
     assert len(begun(log)) == 1  # it was not begun again
     answer = http.get(job["result"])
     assert answer.json()["outputs"]["process"]["value"] == begun(log)[0]
     assert without_time(answer.json()).keys() == without_time(sleep(http).json()).keys()
+
+
+def test_the_client_follows_what_takes_long(server, log):
+    with Client(server.url) as client:
+        answer = client.evaluate("sleeper", 1, {"duration": "3 s"})
+        assert answer["outputs"]["process"]["value"] == begun(log)[0]
+        with pytest.raises(Problem, match="must be") as caught:
+            client.evaluate("sleeper", 1, {"duration": "-1 s"})
+        assert caught.value.status == 422
 
 
 def test_who_prefers_so_does_not_wait(http):

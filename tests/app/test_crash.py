@@ -162,7 +162,7 @@ def nothing_is_half_done(http, data) -> None:
     files = [file for file in (data / "artifacts").rglob("*") if file.is_file()]
     whole = [file for file in files if len(file.name) == 64]
     assert whole
-    assert all(store.check(file.name) for file in whole)
+    assert all(store.exists(file.name) for file in whole)
 
 
 def nothing_lives(family: set[int]) -> None:

@@ -171,6 +171,24 @@ class TestRelationsBothWays:
         assert (load["unit"], mass["unit"]) == ("N", "kg")
         assert load["value"] == pytest.approx(mass["value"] * 9810, rel=1e-9)
 
+    def test_a_measured_mass_stands_for_the_viscosity_that_no_temperature_gives(self, http):
+        """The rule that asks for a temperature waits until the viscosity is known."""
+        document = weighed()
+        inputs = document["steps"]["film"]["inputs"]
+        document["steps"]["film"]["version"] = 2
+        inputs["radial_load"] = "25 kN"
+        inputs["dynamic_viscosity"] = "= model.mass * 0.1 Pa*s/kg"
+        for name in [name for name in inputs if "temperature" in name]:
+            del inputs[name]
+        design = created(http, document)
+        assert design["state"] == "current", design["problem"]
+        mass = http.get(f"{DESIGNS}/{design['id']}/measurements").json()["model"]["mass"]
+        film = revision(http, design)["steps"]["film"]
+        viscosity = film["inputs"]["dynamic_viscosity"]
+        assert (viscosity["unit"], viscosity["from"]) == ("mPa*s", "given")
+        assert viscosity["value"] == pytest.approx(mass["value"] * 100, rel=1e-9)
+        assert film["outputs"]["minimum_film_thickness"]["value"] > 0
+
     def test_a_mass_that_a_step_cannot_take_fails_the_revision_by_name(self, http):
         document = weighed()
         inputs = document["steps"]["film"]["inputs"]

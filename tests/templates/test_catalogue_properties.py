@@ -12,14 +12,17 @@ import pytest
 
 import templates
 from cad.catalogue import models
-from templates.core import dimensions, golden, report
-from templates.core.catalogue import digest, find
-from templates.core.declare import Choice, Curve, Derived, Given, Profile, Text
+from templates.core.catalogue import golden
+from templates.core.catalogue.digests import digests, release_file
+from templates.core.catalogue.finding import find
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate, is_told
-from templates.core.intake import is_single
-from templates.core.schema import describe, inputs_schema
-from templates.core.template import Template
+from templates.core.language import dimensions
+from templates.core.language.evaluate import evaluate, is_told
+from templates.core.language.intake import is_single
+from templates.core.language.spec import Choice, Curve, Derived, Given, Profile, Text
+from templates.core.language.template import Template
+from templates.core.paper import report
+from templates.core.paper.schema import describe, inputs_schema
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 BUILT_IN = find([Path(templates.__file__).parent], Template)
@@ -165,21 +168,30 @@ class TestGolden:
         path = golden.golden_file(cls, GOLDEN)
         assert path.exists(), f"not frozen; run: crankwright freeze {cls.id} {cls.version}"
         record = json.loads(path.read_text(encoding="utf-8"))
-        assert record["digest"] == digest(cls), (
+        assert {name: record[name] for name in digests(cls)} == digests(cls), (
             f"the code of {cls.id} {cls.version} was edited; a change to a released version is a new version"
         )
+        assert json.loads(release_file(cls).read_text(encoding="utf-8")) == digests(cls)
         assert len(record["cases"]) > len(cls.inputs)
         for case in record["cases"]:
             check_case(cls, case, record["precision"])
+
+    @every_template
+    def test_golden_results_of_every_level_are_unchanged(self, cls):
+        cases = json.loads(golden.golden_file(cls, GOLDEN).read_text(encoding="utf-8"))
+        recorded = {case["level"] for case in cases["levels"]}
+        assert recorded == set(cls.levels) - {cls.default_level}
+        for case in cases["levels"]:
+            check_case(cls, case, cases["precision"])
 
 
 def check_case(cls, case, precision):
     if "refused" in case:
         with pytest.raises(InvalidInputs) as refusal:
-            golden.results(cls, case["inputs"])
+            golden.results(cls, case["inputs"], case.get("level", ""))
         assert sorted(fault.code for fault in refusal.value.faults) == case["refused"]
         return
-    results = golden.results(cls, case["inputs"])
+    results = golden.results(cls, case["inputs"], case.get("level", ""))
     assert results.keys() == case["outputs"].keys()
     for name, value in case["outputs"].items():
         if isinstance(value, list):

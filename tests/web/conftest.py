@@ -4,6 +4,7 @@ import httpx
 import pytest
 from browsing import AWKWARD, CHROMIUM, FLAGS, THIRD, Watched, created
 from serving import folder_of_models, serving
+from sleeping import folder_of_sleeper
 
 from app.settings import Settings
 
@@ -15,6 +16,7 @@ def served(tmp_path_factory):
     own = folder_of_models(folder / "templates")
     (own / "own" / "third_v1.py").write_text(THIRD.lstrip())
     (own / "own" / "awkward_v1.py").write_text(AWKWARD.lstrip())
+    folder_of_sleeper(own / "sleeper")
     settings = Settings(data=folder / "data", template_folders=(own,), wait_seconds=5)
     with serving(settings) as server:
         yield server

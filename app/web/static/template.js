@@ -4,6 +4,7 @@ import { Refused, call, units } from "./api.js";
 import { isolated } from "./isolated.js";
 import { live } from "./live.js";
 import { drawPictures, whenSeen } from "./pictures.js";
+import { follow } from "./progress.js";
 import { OUTDATED, markOutdated, showFaults, showResults } from "./results.js";
 import { optionOf, valueOf } from "./typed.js";
 
@@ -21,10 +22,31 @@ function asked() {
   return asked;
 }
 
-const tried = (signal) => call("POST", `${path}/worksheet?units=${units()}`, asked(), { signal });
+const progress = document.querySelector("[data-progress]");
+
+async function tried(signal) {
+  const options = { signal, headers: { Prefer: "wait=1" } };
+  const answer = await call("POST", `${path}/worksheet?units=${units()}`, asked(), options);
+  return answer.status === 202 ? calculated(answer.location, signal) : answer;
+}
+
+// What takes long is a job: how far it is, a way to stop it, and its answer. Who types or leaves stops it as well.
+async function calculated(job, signal) {
+  const stop = () => fetch(job, { method: "DELETE", keepalive: true }).catch(() => {}); // it has ended meanwhile
+  if (signal?.aborted) stop();
+  signal?.addEventListener("abort", stop);
+  addEventListener("pagehide", stop);
+  markOutdated(true);
+  await follow(job, progress, "Calculating …");
+  removeEventListener("pagehide", stop);
+  if (signal?.aborted) throw new DOMException("something else is wanted now", "AbortError");
+  progress.hidden = true;
+  return call("GET", job.replace("/jobs/", "/evaluations/"));
+}
 
 function show({ told }) {
   markOutdated(false);
+  progress.hidden = true;
   showFaults(form, new Map());
   showResults("", told);
   drawPictures(document, "", told);
@@ -32,6 +54,7 @@ function show({ told }) {
 }
 
 function refuse(error) {
+  progress.hidden = true;
   const loose = error instanceof Refused ? showFaults(form, error.faults) : new Map();
   const words = [...loose.values()].join("; ") || (error.faults?.size ? "see the message beside the field" : error.message);
   const hasResults = document.querySelector("[data-output]");
@@ -53,6 +76,7 @@ form.addEventListener("input", () => {
   preview.ask();
 });
 
-if (document.querySelector("[data-output]")) tried().then(show, refuse);
+if (progress.dataset.job) calculated(progress.dataset.job).then(show, refuse);
+else if (document.querySelector("[data-output]")) tried().then(show, refuse);
 const accuracy = document.querySelector("[data-accuracy]");
 if (accuracy) whenSeen(accuracy, () => drawAccuracy(accuracy));

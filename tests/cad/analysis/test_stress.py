@@ -15,7 +15,7 @@ from benchmarks.shoulder_fillet import (
     shoulder,
 )
 from cad.analysis.analyse import Asked, analyse
-from cad.analysis.elastic import Load
+from cad.analysis.kinds import Kind
 from cad.analysis.solid import read_solid
 from cad.analysis.stress import CONVERGED, SMALL, Peak, Peaks, searched
 from cad.errors import AnalysisError
@@ -27,7 +27,7 @@ from cad.step import write_step
 
 @pytest.mark.slow
 @pytest.mark.parametrize("load", LOADS)
-def test_a_shoulder_fillet_concentrates_stress_as_peterson_says(load: Load) -> None:
+def test_a_shoulder_fillet_concentrates_stress_as_peterson_says(load: Kind) -> None:
     found = peaks(load)
     assert found.converged
     assert factors(load, found)[-1] == pytest.approx(peterson(load), rel=0.05)

@@ -8,7 +8,8 @@ from cadquery import Shape, Workplane
 from test_torsion_analytic import mirrored
 
 from cad.analysis.analyse import Asked, analyse
-from cad.analysis.elastic import LOADS, Load, System, respond
+from cad.analysis.elastic import System, respond
+from cad.analysis.kinds import KINDS, Kind
 from cad.analysis.mesh import Fineness, Grid, make_grid
 from cad.analysis.solid import Solid, read_solid
 from cad.analysis.surface import MOST_TRIANGLES, Surface, surface
@@ -32,13 +33,13 @@ def step_of(workplane: Workplane) -> bytes:
 ROUND = step_of(Workplane().circle(DIAMETER / 2).extrude(LENGTH))
 
 
-def seen(step: bytes, length: float, load: Load, mirrors: tuple[str, ...]) -> Surface:
+def seen(step: bytes, length: float, load: Kind, mirrors: tuple[str, ...]) -> Surface:
     solid = read_solid(step, Shaft(0.0, length), mirrors)
     assert solid.mirror == "".join(mirrors)
     return surface_of(make_grid(solid, FINE), load)
 
 
-def surface_of(grid: Grid, load: Load) -> Surface:
+def surface_of(grid: Grid, load: Kind) -> Surface:
     return surface(respond(System(grid, 3, STEEL_MATERIAL, load), "free_end"))
 
 
@@ -92,9 +93,9 @@ def test_the_surface_is_round_and_closed(coulomb: Surface) -> None:
     assert 1000 < len(coulomb.triangles) <= MOST_TRIANGLES
 
 
-@pytest.mark.parametrize("load", LOADS)
+@pytest.mark.parametrize("load", KINDS)
 @pytest.mark.parametrize("mirrors", [("y",), ("x",)])
-def test_an_image_moves_as_the_other_half_does(load: Load, mirrors: tuple[str, ...]) -> None:
+def test_an_image_moves_as_the_other_half_does(load: Kind, mirrors: tuple[str, ...]) -> None:
     """In sign and size: another mesh, of the whole, tells the same up to what two meshes differ by."""
     block = step_of(Workplane().rect(40, 30).extrude(60))
     half, whole = seen(block, 60.0, load, mirrors), seen(block, 60.0, load, ())

@@ -11,10 +11,11 @@ from cadquery import Shape, Workplane
 
 from benchmarks.shoulder_fillet import END, FILLET, NARROW, SHOULDER, shoulder
 from cad.analysis.corners import sharp_inner_edges
-from cad.analysis.elastic import BOUNDARIES, Boundary, System, respond
-from cad.analysis.levels import DEFAULT, LEVELS, Level
+from cad.analysis.elastic import System, respond
+from cad.analysis.kinds import BOUNDARIES, DEFAULT_LEVEL, Boundary
+from cad.analysis.levels import LEVELS, Level
 from cad.analysis.mesh import Grid, make_grid
-from cad.analysis.modes import torsional_mode
+from cad.analysis.modes import natural_modes, torsional_mode
 from cad.analysis.solid import LOADED, MIRROR, Solid, read_solid
 from cad.header import Header
 from cad.model import Part
@@ -32,7 +33,7 @@ def shaft_of(workplane: Workplane, length: float, mirrors: tuple[str, ...] = ("y
     return read_solid(step, Shaft(0.0, length), mirrors)
 
 
-@pytest.mark.parametrize("level", [level for level in LEVELS if level.name in (DEFAULT, "fine")])
+@pytest.mark.parametrize("level", [level for level in LEVELS if level.name in (DEFAULT_LEVEL, "fine")])
 def test_a_circular_shaft_twists_and_vibrates_as_coulomb_says(level: Level) -> None:
     """K = G I_p / l and f = sqrt(G / rho) / (4 l), exact for a circular section, held and free."""
     solid = shaft_of(Workplane().circle(25).extrude(200), 200)
@@ -105,6 +106,33 @@ def test_a_solid_that_does_not_mirror_itself_is_not_halved() -> None:
     lopsided = block.cut(Workplane().center(15, 12).circle(3).extrude(60))
     assert shaft_of(block, 60).mirror == "y"
     assert shaft_of(lopsided, 60).mirror == ""
+
+
+def test_a_small_hole_is_enough_to_keep_a_solid_whole() -> None:
+    """It takes 0.2 per mille of the volume away, and moves no face: neither is within the kernel's noise."""
+    block = Workplane().rect(40, 40).extrude(60)
+    pierced = block.cut(Workplane().center(15, 12).circle(0.3).extrude(60))
+    assert shaft_of(pierced, 60).mirror == ""
+
+
+@pytest.mark.parametrize(("place", "radius"), [(-12.05, 3.0), (-12.0, 3.02)])
+def test_halves_that_differ_by_a_hair_are_no_images(place: float, radius: float) -> None:
+    """As many faces, areas and centres alike within a per cent: two holes that are not quite a pair."""
+    block = Workplane().rect(40, 40).extrude(60)
+    upper = Workplane().center(15, 12).circle(3.0).extrude(60)
+    pair, odd = (Workplane().center(15, y).circle(r).extrude(60) for y, r in ((-12.0, 3.0), (place, radius)))
+    assert shaft_of(block.cut(upper).cut(pair), 60).mirror == "y"
+    assert shaft_of(block.cut(upper).cut(odd), 60).mirror == ""
+
+
+def test_a_guide_raises_the_frequency_of_a_shaft_beside_its_axis() -> None:
+    """Rayleigh: a constraint lowers no frequency. Off its axis a bar twists about itself unless guided."""
+    solid = shaft_of(Workplane().center(15, 0).rect(20, 20).extrude(100), 100)
+    system = System(make_grid(solid, LEVELS[0].fineness), 2, STEEL_MATERIAL, "torsion")
+    free, guided = (natural_modes(respond(system, boundary), 6) for boundary in BOUNDARIES)
+    for one, other in zip(free, guided, strict=True):
+        assert other.frequency > one.frequency * 0.999
+    assert guided[0].frequency > 1.5 * free[0].frequency
 
 
 def flat() -> Shape:

@@ -5,14 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from templates.core import levels
-from templates.core.declare import limits
+from templates.core.catalogue.golden import record
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
-from templates.core.golden import record
-from templates.core.levels import Accuracy
-from templates.core.schema import describe, inputs_schema
-from templates.core.template import (
+from templates.core.language import levels
+from templates.core.language.declare import limits
+from templates.core.language.evaluate import evaluate
+from templates.core.language.levels import Accuracy
+from templates.core.language.template import (
     Template,
     Truth,
     derived,
@@ -24,6 +23,7 @@ from templates.core.template import (
     text,
     units,
 )
+from templates.core.paper.schema import describe, inputs_schema
 
 OFFSETS = {"rough": 0.1, "fine": 0.001}
 
@@ -121,6 +121,15 @@ class TestLadder:
 
 
 class TestLimits:
+    def test_property_one_point_that_misses_the_tolerance_warns(self, measured):
+        """Two points at the finest level, errors 0.001 and 0.002: the good one does not excuse the other."""
+        at_both = metres(5, 50)
+        assert evaluated("size", tolerance=0.0025, length=at_both).warnings == []
+        for points in (at_both, metres(50, 5)):
+            (warning,) = evaluated("size", tolerance=0.0015, length=points).warnings
+            assert (warning.code, warning.name) == ("tolerance_unmet", "size")
+            assert "0.002" in warning.detail
+
     def test_property_limits_of_a_level(self):
         assert evaluated("size", level="fine", length="0.5 m").outputs["size"].value
         with pytest.raises(InvalidInputs, match="it must be ≥ 1 m and ≤ 50 m; take fine"):

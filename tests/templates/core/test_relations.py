@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from templates.core.errors import FaultyText
-from templates.core.quantity import registry, unit
-from templates.core.relation import Kind, is_relation, parse
+from templates.core.units.quantity import registry
+from templates.core.units.relation import Kind, is_relation, parse
+from templates.core.units.units import unit
 
 LENGTH = Kind(registry.Unit("m"))
 PURE = Kind()
@@ -149,6 +150,15 @@ class TestUnits:
         assert kind("= T", T=TEMPERATURE).absolute
         assert kind("= max(T, 20 degC)", T=TEMPERATURE).absolute
         assert not kind("= 20 K").absolute
+
+    @pytest.mark.parametrize("text", ["max(dT, 20 degC)", "max(20 degC, dT)", "min(dT, dT, 20 degC)"])
+    def test_analytic_a_temperature_among_differences_makes_the_whole_absolute(self, text):
+        """Else a difference could be added to it, or it could be doubled, as if it were one itself."""
+        kelvin = Kind(TEMPERATURE.base)
+        assert not kind("= max(dT, dT)", dT=kelvin).absolute
+        assert kind(f"= {text}", dT=kelvin).absolute
+        with pytest.raises(FaultyText, match="write it in K"):
+            kind(f"= 2 * {text}", dT=kelvin)
 
 
 ATTACKS = [

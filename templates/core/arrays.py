@@ -1,0 +1,13 @@
+"""The array types of templates, of physics and of geometry."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+"""Real numbers: values [SI] of any number of points."""
+Mask = NDArray[np.bool_]
+"""Which of several points."""
+Truth = bool | Mask
+"""Whether a rule holds: at one point, or at each of several."""
+Integers = NDArray[np.int64]
+"""Numbers of nodes, corners or faces."""

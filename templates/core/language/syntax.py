@@ -1,0 +1,69 @@
+"""A formula's source as a syntax tree: what it returns and what it uses."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import textwrap
+from collections.abc import Callable
+from typing import Any
+
+
+def returned(function: Callable[..., Any]) -> ast.expr:
+    """The expression that a function of one `return` returns.
+
+    Raises
+    ------
+    TypeError
+        If the function does more than return an expression (branches live in physics functions).
+    """
+    body = syntax(function).body
+    statements = [s for s in body if not (isinstance(s, ast.Expr) and isinstance(s.value, ast.Constant))]
+    match statements:
+        case [ast.Return(value=ast.expr() as expression)]:
+            return expression
+    raise TypeError(f"{function.__qualname__}: a formula is one return")
+
+
+def syntax(function: Callable[..., Any]) -> ast.FunctionDef:
+    """The syntax tree of a function."""
+    tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+    assert isinstance(tree, ast.FunctionDef)
+    return tree
+
+
+def attributes_used(function: Callable[..., Any]) -> tuple[str, ...]:
+    """The names x in `self.x` and `getattr(self, "x")` within a method, each once, in order of appearance."""
+    return _in_order(function, _used)
+
+
+def inputs_read_as_given(function: Callable[..., Any]) -> tuple[str, ...]:
+    """The names x in `self.as_given("x")` within a method: the value is used, the formula of x is not."""
+    return _in_order(function, _read_as_given)
+
+
+def _in_order(function: Callable[..., Any], name_of: Callable[[ast.AST], str | None]) -> tuple[str, ...]:
+    nodes = [node for node in ast.walk(syntax(function)) if isinstance(node, (ast.Attribute, ast.Call))]
+    names = (name_of(node) for node in sorted(nodes, key=lambda node: (node.lineno, node.col_offset)))
+    return tuple(dict.fromkeys(name for name in names if name is not None))
+
+
+def _used(node: ast.AST) -> str | None:
+    match node:
+        case ast.Attribute(value=ast.Name(id="self"), attr=name):
+            return name
+        case ast.Call(
+            func=ast.Name(id="getattr"), args=[ast.Name(id="self"), ast.Constant(value=str(name)), *_]
+        ):
+            return name
+    return None
+
+
+def _read_as_given(node: ast.AST) -> str | None:
+    match node:
+        case ast.Call(func=ast.Attribute(value=ast.Name(id="self"), attr="as_given")):
+            arguments = [*node.args, *(keyword.value for keyword in node.keywords)]
+            match arguments:
+                case [ast.Constant(value=str(name))]:
+                    return name
+    return None

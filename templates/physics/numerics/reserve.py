@@ -1,0 +1,21 @@
+"""Whether a result keeps a limit that a user may have set."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from templates.core.arrays import Array, Truth
+
+
+def above(limit: Array, value: Callable[[], Array]) -> Truth:
+    """Whether a value is not below a limit; without a limit it is not asked for."""
+    none = np.isnan(limit)
+    return True if np.all(none) else none | (value() >= limit)
+
+
+def below(limit: Array, value: Callable[[], Array]) -> Truth:
+    """Whether a value is not above a limit; without a limit it is not asked for."""
+    none = np.isnan(limit)
+    return True if np.all(none) else none | (value() <= limit)

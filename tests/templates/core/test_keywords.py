@@ -1,0 +1,45 @@
+"""The keywords that editors and type checkers see are those that declarations take."""
+
+import inspect
+import subprocess
+import sys
+
+import pytest
+
+from templates.core.language.declare import curve, derived, formula, given, profile, table, text
+from templates.core.language.meaning import Keywords, meaning
+
+
+def test_property_the_keywords_are_those_of_a_meaning():
+    taken = inspect.signature(meaning).parameters
+    assert list(Keywords.__annotations__) == [
+        name for name, parameter in taken.items() if parameter.kind is inspect.Parameter.KEYWORD_ONLY
+    ]
+
+
+@pytest.mark.parametrize(
+    "declare", [given, table, curve, formula, derived, profile, text], ids=lambda f: f.__name__
+)
+def test_property_every_declaration_names_its_keywords(declare):
+    parameters = inspect.signature(declare).parameters.values()
+    (rest,) = (p for p in parameters if p.kind is inspect.Parameter.VAR_KEYWORD)
+    assert rest.annotation == "Unpack[Keywords]"
+
+
+@pytest.mark.parametrize(
+    ("line", "complaint"),
+    [
+        ('given("mm", "width", ge=1, remedy="wider")', None),
+        ('given("mm", "width", minimum=1)', 'Unexpected keyword argument "minimum" for "given"'),
+        ('given("mm", "width", ge="1 mm")', 'has incompatible type "str"'),
+        ('formula("mm", "width", sorce="Walther")', 'Unexpected keyword argument "sorce" for "formula"'),
+    ],
+)
+def test_property_a_type_checker_sees_a_wrong_keyword(tmp_path, line, complaint):
+    file = tmp_path / "own.py"
+    file.write_text(
+        f"from templates.core.template import formula, given\n\nwidth = {line}\n", encoding="utf-8"
+    )
+    command = [sys.executable, "-m", "mypy", "--follow-imports=silent", str(file)]
+    told = subprocess.run(command, capture_output=True, text=True, check=False).stdout
+    assert (complaint in told) if complaint else "Success" in told
