@@ -8,10 +8,10 @@ from typing import Any
 
 import click
 import numpy as np
-import uvicorn
 from pydantic import ValidationError
 from pydantic_settings import SettingsError
 
+from app import server
 from app.calculations import rendering
 from app.catalogue.finding import find_templates
 from app.curves.arguments import argument
@@ -23,16 +23,15 @@ from app.settings import Settings
 from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
-from app.targets import WholeTarget
 from cad.catalogue import models as find_models
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.golden import freeze as freeze_template
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
-from templates.core.evaluate import Answer
-from templates.core.evaluate import evaluate as evaluate_template
-from templates.core.golden import freeze as freeze_template
-from templates.core.mathml import unit_symbol
-from templates.core.schema import describe
-from templates.core.template import Template
+from templates.core.language.evaluate import Answer
+from templates.core.language.evaluate import evaluate as evaluate_template
+from templates.core.language.template import Template
+from templates.core.paper.mathml import unit_symbol
+from templates.core.paper.schema import describe
 
 GOLDEN = Path("tests/golden")
 
@@ -91,8 +90,7 @@ def serve(host: str | None, port: int | None, data: Path | None, insecure: bool)
     click.echo(
         f"Crankwright at http://{place}:{settings.port}/docs, data in {settings.data.absolute()}", err=True
     )
-    app = create_app(settings)
-    uvicorn.run(app, host=settings.host, port=settings.port, log_level="warning", http=WholeTarget)
+    server.run(create_app(settings), settings)
 
 
 def _check_reach(host: str, insecure: bool) -> None:

@@ -10,6 +10,7 @@ import re
 from typing import Annotated
 
 from fastapi import Depends, Request
+from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from templates.core.errors import Fault, InvalidInputs
@@ -17,6 +18,8 @@ from templates.core.errors import Fault, InvalidInputs
 HEADER, COOKIE = "Crankwright-Client", "crankwright_session"
 _NAME = re.compile(r"[!-~][ -~]{0,98}[!-~]|[!-~]")  # up to 100 printable ASCII characters
 _SESSION = re.compile(r"[A-Za-z0-9_-]{16,64}")
+_IN_COOKIES = re.compile(rf"(?:^|;)[ ]*{COOKIE}=([A-Za-z0-9_-]{{16,64}})(?:;|$)")
+_MOST_COOKIES = 8192  # characters that are looked at
 _CALLER = "crankwright.caller"
 """Key of an ASGI scope that only this process sets: for which client a page calls the interface."""
 
@@ -59,6 +62,19 @@ async def get_client(request: Request) -> str:
     if is_session(session):
         return f"session:{session}"
     return f"address:{request.client.host if request.client else 'unknown'}"
+
+
+def from_whom(scope: Scope) -> str:
+    """The client of a request as `get_client` has it; a name that is none counts as none."""
+    if is_inside(scope):
+        return str(scope[_CALLER])
+    headers = Headers(scope=scope)
+    if _NAME.fullmatch(named := headers.get(HEADER, "")):
+        return f"name:{named}"
+    session = _IN_COOKIES.search(headers.get("cookie", "")[:_MOST_COOKIES])
+    if session:
+        return f"session:{session[1]}"
+    return f"address:{scope['client'][0] if scope.get('client') else 'unknown'}"
 
 
 TheClient = Annotated[str, Depends(get_client)]

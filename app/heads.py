@@ -36,8 +36,12 @@ class BoundedHead(HttpToolsProtocol):
         super().data_received(data)
         if self._pending > LONGEST_HEAD and not self.transport.is_closing():
             if self.cycle is None or self.cycle.response_complete:
-                self.transport.write(_CLOSED)
+                self.refuse_head()
             self.transport.close()
+
+    def refuse_head(self) -> None:
+        """Answer a head that is too large."""
+        self.transport.write(_CLOSED)
 
     def on_headers_complete(self) -> None:
         """Go on, with a new count."""

@@ -13,7 +13,7 @@ from typing import Any
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
-from app import docs, guard, health, problems, readiness
+from app import docs, guard, health, metrics, observing, problems, readiness
 from app.analyses.finding import Analysing
 from app.analyses.routes import router as analyses
 from app.analyses.service import ANALYSIS, Analyses, ModelAnalysis
@@ -34,12 +34,11 @@ from app.designs.regeneration import Regeneration
 from app.designs.routes import router as designs
 from app.designs.service import REGENERATE, REGENERATE_SLOWLY, Designs
 from app.heads import HeadLimit
-from app.health import Metrics
 from app.hosts import Hosts
 from app.http import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
 from app.jobs.routes import router as jobs
 from app.jobs.service import Jobs
-from app.jobs.shutdown import streams_end_on_signal
+from app.jobs.shutdown import on_stop_signal
 from app.models.builds import Builds
 from app.models.healing import Healing
 from app.models.routes import router as models
@@ -54,6 +53,8 @@ from app.storage.database import Database
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.storage.migrations import migrate
+from app.streams import Streams
+from app.timeouts import BodyTime
 from app.web import assembly as pages
 from app.workers.base import Limits
 from app.workers.local import LocalProcesses
@@ -76,7 +77,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         with ExitStack() as stack:
             assemble(app, chosen, stack)
-            stack.enter_context(streams_end_on_signal(app.state.jobs.events))
+            stack.enter_context(on_stop_signal(app.state.jobs.drain))
             stack.enter_context(spared_by_collections())
             yield
 
@@ -117,9 +118,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     docs.install(app)
     pages.install(app)
     app.add_middleware(BodyLimit, limit=chosen.body_limit, refuse=_too_large)
+    app.add_middleware(BodyTime, seconds=chosen.body_seconds, rate=chosen.slowest_rate)
     app.add_middleware(HeadLimit, refuse=_head_too_large)
-    app.add_middleware(Metrics)
     guard.install(app, Hosts(chosen.allowed_hosts, chosen.host), _refused)
+    observing.install(app)  # the outermost: it sees what the others refuse
     app.openapi = partial(describe_interface, app)  # type: ignore[method-assign]
     return app
 
@@ -145,7 +147,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     url = settings.database_url or folder.database_url
     refuse_damage(url)  # before anything is written to it
     migrate(url)
-    database = Database(url)
+    database = Database(url, on_commit=metrics.committed)
     stack.callback(database.close)
     store = ArtifactStore(folder.artifacts)
     results.limit(settings.cache_mb)
@@ -170,6 +172,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     stack.callback(queue.stop)
     app.state.database, app.state.store, app.state.jobs = database, store, queue
     app.state.catalogues, app.state.settings = catalogues, settings
+    app.state.streams = Streams(settings.streams, settings.streams_per_client)
     app.state.designs = Designs(database, queue, catalogues)
     app.state.models = Models(database, store, queue, catalogues.models)
     app.state.analyses = Analyses(database, store, queue)
@@ -207,6 +210,7 @@ PROBLEM: dict[str, Any] = {
         "title": {"type": "string"},
         "status": {"type": "integer"},
         "detail": {"type": "string"},
+        "request_id": {"type": "string", "description": "as in the header X-Request-ID and in the log"},
         "errors": {
             "type": "array",
             "items": {

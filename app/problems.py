@@ -15,6 +15,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
 
+from app import logs, metrics
 from app.allow import allowed_methods
 from app.calculations.errors import InvalidBody
 from app.designs import errors as designs
@@ -34,6 +35,8 @@ from app.jobs import errors as jobs
 from app.models.errors import CannotRebuild
 from app.reports.errors import Unprintable
 from app.storage import errors as storage
+from app.streams import TooManyStreams
+from app.timeouts import BodyTooSlow
 from app.workers import errors as workers
 from cad.errors import AnalysisError, GeometryError, UnreadableStep
 from templates.core import errors as templates
@@ -93,6 +96,8 @@ TABLE: dict[type[Exception], Kind] = {
     HeadTooLarge: Kind("head-too-large", 431, "The headers are too large", "send fewer or shorter headers"),
     TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),
+    BodyTooSlow: Kind("too-slow", 408, "The request comes too slowly", "send it faster, or in parts"),
+    TooManyStreams: Kind("too-many-streams", 429, "Too many streams are open", "close some, then retry"),
     jobs.JobNotFound: Kind("no-such-job", 404, "No such job", "GET /api/v1/jobs lists them"),
     jobs.JobFinished: Kind("job-finished", 409, "The job has ended", "nothing is left to cancel"),
     jobs.JobShared: Kind("job-shared", 409, "Others wait for the job", "leave it to them"),
@@ -123,6 +128,13 @@ HTTP = {
     404: Kind("no-such-path", 404, "No such path", "GET /openapi.json lists all paths"),
     405: Kind("method-not-allowed", 405, "Method not allowed here", "see the header Allow"),
 }
+
+CROWDED = Kind("too-many-connections", 503, "Too many connections", "close some, then retry")
+BEFORE_HTTP = (
+    CROWDED,
+    Kind("not-http", 400, "Not HTTP", "send HTTP/1.1"),
+)
+"""What `app.connections` answers before there is a request."""
 
 
 def kind_of(error: Exception) -> Kind:
@@ -214,14 +226,18 @@ router = APIRouter(tags=["problems"])
 @router.get("/problems/{slug}")
 def explain_problem(slug: str) -> dict[str, Any]:
     """What a kind of problem means, and how to mend it."""
-    kinds = {kind.slug: kind for kind in (*TABLE.values(), *HTTP.values(), NOT_READY, REBUILDING, INTERNAL)}
+    kinds = {
+        kind.slug: kind
+        for kind in (*TABLE.values(), *HTTP.values(), *BEFORE_HTTP, NOT_READY, REBUILDING, INTERNAL)
+    }
     if slug not in kinds:
         raise HTTPException(404, f"there is no problem {slug[:60]!r}")
     return vars(kinds[slug])
 
 
 def answer(about: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
-    """A problem as a response."""
+    """A problem as a response; it carries the id of the request."""
+    about = {**about, "request_id": id_} if (id_ := logs.REQUEST_ID.get()) else about
     return JSONResponse(dict(about), about["status"], headers=dict(headers or {}), media_type=MEDIA_TYPE)
 
 
@@ -234,7 +250,9 @@ def install(app: FastAPI) -> None:
 
 
 async def _handle(request: Request, error: Exception) -> Response:
-    headers = {"Retry-After": str(error.retry_after)} if isinstance(error, jobs.QueueFull) else {}
+    headers = getattr(error, "headers", {})
+    if isinstance(error, jobs.QueueFull):
+        headers = {"Retry-After": str(error.retry_after)}
     return answer(describe(error), headers)
 
 
@@ -246,5 +264,6 @@ async def _handle_http(request: Request, error: Exception) -> Response:
 
 
 async def _handle_unexpected(request: Request, error: Exception) -> Response:
+    metrics.FAILURES.labels("internal").inc()
     logger.error("%s %s failed", request.method, request.url.path, exc_info=error)
     return answer(describe(error))

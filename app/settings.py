@@ -1,7 +1,7 @@
 """What an operator may set: environment variables that begin with CRANKWRIGHT_, such as CRANKWRIGHT_PORT."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 from pydantic_settings import BaseSettings, SettingsConfigDict
@@ -61,3 +61,25 @@ class Settings(BaseSettings):
     keep_builds_days: float = Field(
         90, ge=1, description="how long a build that no revision uses is kept [days of operation]"
     )
+    drain_seconds: float = Field(10.0, gt=0, description="longest time from SIGTERM to the end [s]")
+    connections: int = Field(1000, gt=0, description="connections at the same time; others get 503")
+    header_seconds: float = Field(10.0, gt=0, description="longest time for the head of a request [s]")
+    body_seconds: float = Field(10.0, gt=0, description="longest pause while a body comes [s]")
+    write_seconds: float = Field(60.0, gt=0, description="longest time in which an answer is not read [s]")
+    slowest_rate: float = Field(
+        16384, gt=0, description="what a body brings, or a client reads, on average at least [bytes/s]"
+    )
+    keep_alive_seconds: int = Field(5, gt=0, description="longest rest of a connection between requests [s]")
+    streams: int = Field(200, gt=0, description="streams of events that may be open")
+    streams_per_client: int = Field(20, gt=0, description="streams of events that one client may have open")
+    log_level: Literal["debug", "info", "warning", "error"] = Field(
+        "warning", description="what is logged; `info` has a line for each request"
+    )
+    log_format: Literal["text", "json"] = Field(
+        "text", description="how a line of the log is written: for people, or a JSON object"
+    )
+
+    @property
+    def stop_seconds(self) -> float:
+        """The part of the drain time that is kept for jobs and database, after the last request [s]."""
+        return min(4.0, 0.4 * self.drain_seconds)

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pint
 
-from templates.core.spec import Declaration, Requirement, Shared
-from templates.core.units import Unit
+from templates.core.language.spec import Declaration, Requirement, Shared
+from templates.core.units.units import Unit
 
 _SHARED = (
     type, ModuleType, FunctionType, BuiltinFunctionType, MethodType,

@@ -24,14 +24,14 @@ import numpy as np
 from templates.core.arrays import Array
 from templates.oil_film.oil_film_v1 import OilFilm as Paper
 from templates.oil_film.oil_film_v2 import OilFilm
-from templates.physics.arrays import ECCENTRICITY_LIMIT
-from templates.physics.film_fit import load_ISO_7902
-from templates.physics.film_map import _DAMPING_SCALE, _STIFFNESS_SCALE, decode
-from templates.physics.journal_coefficients import coefficients_at
-from templates.physics.power_fit import exponent_k2, factor_k1
-from templates.physics.short_bearing import load_Ocvirk_1952
-from templates.physics.static_journal import WIDTHS, JournalFilm, static_film_at
-from templates.physics.whirl import threshold_mass
+from templates.physics.films.film_fit import load_ISO_7902
+from templates.physics.films.film_map import _DAMPING_SCALE, _STIFFNESS_SCALE, decode
+from templates.physics.films.short_bearing import load_Ocvirk_1952
+from templates.physics.journals.journal_coefficients import coefficients_at
+from templates.physics.journals.static_journal import WIDTHS, JournalFilm, static_film_at
+from templates.physics.journals.whirl import threshold_mass
+from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
+from templates.physics.numerics.power_fit import exponent_k2, factor_k1
 
 FOLDER = Path("templates/oil_film")
 CHECKS = Path("benchmarks/film_map_checks.npz")

@@ -19,8 +19,8 @@ import numpy as np
 
 from templates.bearing_load.bearing_load_v1 import BearingLoad
 from templates.bearing_load.engine_v1 import Engine
-from templates.core.evaluate import evaluate
-from templates.core.template import Template
+from templates.core.language.evaluate import evaluate
+from templates.core.language.template import Template
 
 RESULTS = Path("benchmarks/results/engine.json")
 PICTURE = Path("docs/pictures/engine_loads.png")

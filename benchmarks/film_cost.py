@@ -11,8 +11,8 @@ from collections.abc import Callable
 from importlib.util import module_from_spec, spec_from_file_location
 from time import perf_counter
 
-from templates.physics.petrov import friction_number_Petrov_1883
-from templates.physics.reynolds import extrapolated_film, static_film
+from templates.physics.films.reynolds import extrapolated_film, static_film
+from templates.physics.journals.petrov import friction_number_Petrov_1883
 
 MESHES = [(48, 8), (64, 8), (128, 16), (256, 32)]
 POINTS = [(0.1, 1.0), (0.5, 0.5), (0.8, 1.0), (0.95, 0.25), (0.99, 1.0), (0.999, 1.0)]

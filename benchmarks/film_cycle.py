@@ -22,9 +22,9 @@ import numpy as np
 
 from benchmarks.film_cycle_accuracy import ROD_RATIO, firing
 from templates.core.arrays import Array
-from templates.core.evaluate import evaluate
+from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
-from templates.physics.cyclic_film import cycle_orbit
+from templates.physics.orbits.cyclic_film import cycle_orbit
 
 RESULTS = Path("benchmarks/results/film_cycle.json")
 PICTURE = Path("docs/pictures/oil_film_cycle.png")

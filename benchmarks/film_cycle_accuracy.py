@@ -24,8 +24,15 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
-from templates.physics.cyclic_film import MARCHING, CycleFilm, CycleOrbit, Duty, cycle_film, cycle_orbit
-from templates.physics.transient_orbit import Marching
+from templates.physics.orbits.cyclic_film import (
+    MARCHING,
+    CycleFilm,
+    CycleOrbit,
+    Duty,
+    cycle_film,
+    cycle_orbit,
+)
+from templates.physics.orbits.transient_orbit import Marching
 
 FILE = Path("templates/oil_film/oil_film_cycle_v1.accuracy.json")
 LOADS = [0.5, 2.0, 8.0, 32.0]

@@ -1,4 +1,4 @@
-"""Build `templates/physics/data/film_map.npz` from full solutions, and measure its error.
+"""Build `templates/physics/films/film_map.npz` from full solutions, and measure its error.
 
 python -m benchmarks.film_map build      about 10 minutes on one core
 python -m benchmarks.film_map measure    about 10 minutes: fresh, finer solutions at random places
@@ -12,9 +12,8 @@ from time import perf_counter
 import numpy as np
 
 from templates.core.arrays import Array
-from templates.physics.arrays import ECCENTRICITY_LIMIT
-from templates.physics.film_dynamics import linear_forces
-from templates.physics.film_map import (
+from templates.physics.films.film_dynamics import linear_forces
+from templates.physics.films.film_map import (
     NARROWEST,
     WIDEST,
     encode,
@@ -23,12 +22,13 @@ from templates.physics.film_map import (
     mapped_film,
     mapped_load,
 )
-from templates.physics.film_measures import measure
-from templates.physics.reynolds import static_field
-from templates.physics.short_bearing import attitude_Ocvirk_1952
-from templates.physics.uniform_spline import Axis, surface, surface_coefficients
+from templates.physics.films.film_measures import measure
+from templates.physics.films.reynolds import static_field
+from templates.physics.films.short_bearing import attitude_Ocvirk_1952
+from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
+from templates.physics.numerics.uniform_spline import Axis, surface, surface_coefficients
 
-DATA = Path("templates/physics/data/film_map.npz")
+DATA = Path("templates/physics/films/film_map.npz")
 CHECKS = Path("benchmarks/film_map_checks.npz")
 NODES = 86, 94
 CELLS = 12, 12

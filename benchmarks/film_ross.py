@@ -25,9 +25,9 @@ from typing import Any
 import numpy as np
 
 from benchmarks.film_cost import seconds
-from templates.physics.film_dynamics import plain_coefficients
-from templates.physics.film_map import mapped_film
-from templates.physics.reynolds import extrapolated_film, static_film
+from templates.physics.films.film_dynamics import plain_coefficients
+from templates.physics.films.film_map import mapped_film
+from templates.physics.films.reynolds import extrapolated_film, static_film
 
 RELEASE = "ross-rotordynamics==3.1.0"
 ENVIRONMENT = Path("build/ross")

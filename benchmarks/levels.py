@@ -7,7 +7,7 @@ there; the cost is processor time a point among many, stiffness apart, as a mult
 """
 
 from benchmarks.accuracy import cost
-from templates.core.evaluate import evaluate
+from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_v2 import OilFilm
 
 COLUMNS = {

@@ -1,4 +1,4 @@
-"""Build `templates/physics/data/mobility_map.npz` from full solutions, and measure its error.
+"""Build `templates/physics/orbits/mobility_map.npz` from full solutions, and measure its error.
 
 python -m benchmarks.mobility_map build      about 6 minutes on one core; goes on where it was stopped
 python -m benchmarks.mobility_map measure    about 4 minutes: fresh, finer solutions at random places
@@ -15,9 +15,11 @@ import numpy as np
 from scipy.special import lambertw
 
 from templates.core.arrays import Array
-from templates.physics.arrays import ECCENTRICITY_LIMIT
-from templates.physics.film_mobility import Motion, film_mobility
-from templates.physics.mobility_map import (
+from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
+from templates.physics.numerics.uniform_spline import Axis, spline_coefficients
+from templates.physics.numerics.volume_spline import Axes, volume
+from templates.physics.orbits.film_mobility import Motion, film_mobility
+from templates.physics.orbits.mobility_map import (
     LARGEST,
     NARROWEST,
     WIDEST,
@@ -28,10 +30,8 @@ from templates.physics.mobility_map import (
     mapped_mobility_along_load,
     mobility_map,
 )
-from templates.physics.uniform_spline import Axis, spline_coefficients
-from templates.physics.volume_spline import Axes, volume
 
-DATA = Path("templates/physics/data/mobility_map.npz")
+DATA = Path("templates/physics/orbits/mobility_map.npz")
 CHECKS = Path("benchmarks/mobility_map_checks.npz")
 KEPT = Path("build/mobility_map")
 NODES = 44, 10, 18

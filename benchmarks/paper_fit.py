@@ -9,9 +9,9 @@ printed beside.
 
 import numpy as np
 
-from templates.physics.film_map import map_error
-from templates.physics.film_map_inverse import mapped_eccentricity
-from templates.physics.power_fit import exponent_k2, factor_k1
+from templates.physics.films.film_map import map_error
+from templates.physics.films.film_map_inverse import mapped_eccentricity
+from templates.physics.numerics.power_fit import exponent_k2, factor_k1
 
 RATIO = np.array(32 / 85)
 NUMBERS = (1, 1.9, 3.948, 5, 10, 40, 100, 200)

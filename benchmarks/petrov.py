@@ -19,11 +19,11 @@ from matplotlib import pyplot as plt
 
 from templates.core.arrays import Array
 from templates.oil_film.journal_friction_v1 import JournalFriction
-from templates.physics.arrays import ECCENTRICITY_LIMIT
-from templates.physics.film_map import NARROWEST, WIDEST
-from templates.physics.loaded_journal import friction_over_Petrov
-from templates.physics.petrov import friction_Petrov_1883
-from templates.physics.reynolds import extrapolated_film
+from templates.physics.films.film_map import NARROWEST, WIDEST
+from templates.physics.films.reynolds import extrapolated_film
+from templates.physics.journals.loaded_journal import friction_over_Petrov
+from templates.physics.journals.petrov import friction_Petrov_1883
+from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 
 TABLE = Path("templates/oil_film/journal_friction_v1.accuracy.json")
 PICTURE = Path("docs/pictures/petrov.svg")

@@ -33,10 +33,10 @@ from app.designs.schemas import PAPER
 from benchmarks import service_cad, service_hostile, service_load, service_process
 from benchmarks.service_process import Server
 from cad.regenerate import regenerate
-from templates.core.evaluate import evaluate
+from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_v1 import OilFilm
-from templates.physics.oil import density, double_logarithm, temperature_logarithm, walther
-from templates.physics.power_fit import exponent_k2, factor_k1
+from templates.physics.journals.oil import density, double_logarithm, temperature_logarithm, walther
+from templates.physics.numerics.power_fit import exponent_k2, factor_k1
 
 RESULTS = Path("benchmarks/results/service.json")
 EVALUATE = "/api/v1/templates/oil_film/versions/1/evaluate"

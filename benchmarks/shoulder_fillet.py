@@ -22,7 +22,7 @@ from cad.header import Header
 from cad.model import Part
 from cad.shaft import STEEL_MATERIAL, Shaft
 from cad.step import write_step
-from templates.physics.stress_concentration import shoulder_fillet_Pilkey_2008
+from templates.physics.shafts.stress_concentration import shoulder_fillet_Pilkey_2008
 
 RESULTS = Path("benchmarks/results/shoulder_fillet.json")
 WIDE, NARROW, FILLET = 60.0, 40.0, 4.0  # mm

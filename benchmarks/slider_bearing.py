@@ -17,7 +17,15 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.oil_film.slider_bearing_v1 import SliderBearing
-from templates.physics.slider_film import NARROWEST, STATIONS, STEEPEST, WIDEST, PadFilm, finite_pad, pad_film
+from templates.physics.pads.slider_film import (
+    NARROWEST,
+    STATIONS,
+    STEEPEST,
+    WIDEST,
+    PadFilm,
+    finite_pad,
+    pad_film,
+)
 
 TABLE = Path("templates/oil_film/slider_bearing_v1.accuracy.json")
 RATIO = [1 / STEEPEST, 1, 1.05, 1.2, 1.5, 2, 3, 5, 10, 30, 100, STEEPEST]

@@ -24,7 +24,7 @@ from cadquery import Location, Shape
 from cad.errors import GeometryError
 from cad.shaft import STEEL_DENSITY, Shaft
 from cad.surfaces import Seen
-from templates.core.template import Array, Template
+from templates.core.language.template import Array, Template
 
 Colour = tuple[float, float, float]
 

@@ -28,7 +28,7 @@ from cad.analysis.kinds import (
 )
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText
-from templates.core.quantity import read
+from templates.core.units.quantity import read
 
 LARGEST_LOAD = 1e12  # [N m]
 

@@ -26,7 +26,7 @@ from cad.analysis.kinds import SURFACE
 from cad.errors import AnalysisError
 from cad.model import CadModel
 from cad.regenerate import as_text, build_key
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
 
 ANALYSIS = "analysis"
 

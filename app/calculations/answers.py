@@ -10,6 +10,8 @@ from app import problems
 from app.calculations.jobs import CALCULATION
 from app.dependencies import TheJobs, TheStore
 from app.jobs.errors import JobNotFound
+from app.models.errors import CannotRebuild
+from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.waiting import LATER, accepted
 
 router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
@@ -26,4 +28,9 @@ def answer(job: Annotated[str, Path(max_length=64)], jobs: TheJobs, store: TheSt
     if found.result is None:
         problem = found.problem or problems.problem(problems.INTERNAL, "the job left no answer")
         return problems.answer(problem)
-    return Response(store.read(found.result.rpartition("sha256=")[2]), media_type="application/json")
+    sha = found.result.rpartition("sha256=")[2]
+    try:
+        return Response(store.read(sha), media_type="application/json")
+    except (ArtifactMissing, ArtifactDamaged) as error:
+        detail = f"the answer of job {job} was lost. Send the calculation again, or restore a backup"
+        raise CannotRebuild("answer_lost", detail) from error

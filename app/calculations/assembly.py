@@ -7,6 +7,7 @@ from contextlib import ExitStack
 
 from fastapi import FastAPI
 
+from app import metrics
 from app.calculations.answering import Answering
 from app.calculations.jobs import CALCULATION, THREADS, CalculationJobs
 from app.calculations.pool import CalculationPool
@@ -18,8 +19,8 @@ from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.workers.base import Limits
 from app.workers.pool import WarmProcesses
-from templates.core.catalogue import Catalogue
-from templates.core.template import Template
+from templates.core.catalogue.finding import Catalogue
+from templates.core.language.template import Template
 
 PRELOAD = ("app.calculations.warm",)
 LANES = {CALCULATION: THREADS}
@@ -42,6 +43,7 @@ def assemble_calculations(
     stack.callback(processes.close)
     pool = CalculationPool(processes, size, settings.calculation_waiting, limits)
     stack.callback(pool.close)
+    stack.callback(metrics.watch("calculations", pool.occupancy))
     sources = {cls: source_of(cls) for cls in catalogue}
     handler = CalculationJobs(pool, catalogue, sources, database, store, jobs)
     jobs.register(CALCULATION, handler, handler.failed, lane=CALCULATION)

@@ -15,11 +15,11 @@ import numpy as np
 
 from app.calculations.size import shape, spanned
 from templates.core.errors import InvalidInputs
-from templates.core.levels import SINGLE, accuracy
-from templates.core.quantity import Typed
-from templates.core.solve import POLISHES, SAMPLES
-from templates.core.spec import Curve, Table
-from templates.core.template import Template
+from templates.core.language.levels import SINGLE, accuracy
+from templates.core.language.solve import POLISHES, SAMPLES
+from templates.core.language.spec import Curve, Table
+from templates.core.language.template import Template
+from templates.core.units.quantity import Typed
 
 EXPENSIVE = 0.05  # beyond this a calculation leaves the server's process [s]
 

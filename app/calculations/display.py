@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from fastapi import Query
 
-from templates.core.units import unit
+from templates.core.units.units import unit
 
 System = Literal["si", "us"]
 Units = Annotated[

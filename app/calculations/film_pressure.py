@@ -1,7 +1,8 @@
 """`/film-pressure`: the pressure of a journal bearing's oil film over its unrolled surface, for pictures.
 
 A steady, rigid, aligned journal at a given eccentricity; Reynolds' equation with Swift-Stieber rupture, as
-`templates.physics.reynolds`. What a template says of the same film stays with the template: this field is
+`templates.physics.films.reynolds`. What a template says of the same film stays with the template: this field
+is
 solved afresh on a mesh for the eye, 64 × 16 intervals, which errs by 0.1 % of the largest pressure.
 """
 
@@ -19,9 +20,9 @@ from app.calculations.display import Units, converted
 from app.http import StrictRoute
 from app.values import GIVEN
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.template import Array, Template, given
-from templates.physics.film_measures import measure
-from templates.physics.reynolds import static_field
+from templates.core.language.template import Array, Template, given
+from templates.physics.films.film_measures import measure
+from templates.physics.films.reynolds import static_field
 
 router = APIRouter(prefix="/api/v1", tags=["templates"], route_class=StrictRoute)
 

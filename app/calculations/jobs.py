@@ -20,9 +20,9 @@ from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.problems import describe
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
-from templates.core.template import Template
+from templates.core.language.template import Template
 
 CALCULATION = "calculation"
 THREADS = 8  # that follow jobs; calculations that were adopted while they ran do not wait behind others

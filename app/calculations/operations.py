@@ -20,8 +20,8 @@ from app.calculations.service import run_evaluate, run_solve
 from app.calculations.sources import Source, loaded
 from app.calculations.worksheet import run_worksheet
 from app.workers.progress import report
+from templates.core.language.template import Template
 from templates.core.progress import reporting
-from templates.core.template import Template
 
 
 @dataclass(frozen=True)

@@ -86,6 +86,10 @@ class CalculationPool:
         """Calculations that wait."""
         return len(self._queue)
 
+    def occupancy(self) -> dict[str, float]:
+        """The figures of the pool for `app.metrics`."""
+        return {"running": self.running, "waiting": self.waiting, "size": self.size}
+
     def answers(self) -> bool:
         """Whether a calculation would find a process that is alive; see `Worker.answers`."""
         return self._worker.answers()

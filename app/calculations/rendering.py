@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.digests import content_digest, digest
-from templates.core.evaluate import Answer, Echo, Evaluation
-from templates.core.template import Template
+from templates.core.catalogue.digests import content_digest, digest
+from templates.core.language.evaluate import Answer, Echo, Evaluation
+from templates.core.language.template import Template
 
 _identities: dict[Any, dict[str, Any]] = {}
 

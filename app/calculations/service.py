@@ -8,9 +8,9 @@ from app.calculations import rendering
 from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.size import points
 from app.http import TooManyValues
-from templates.core.evaluate import Evaluation, evaluate
-from templates.core.solve import solve
-from templates.core.template import Template
+from templates.core.language.evaluate import Evaluation, evaluate
+from templates.core.language.solve import solve
+from templates.core.language.template import Template
 
 MOST_VALUES = 2_000_000  # in one answer: some 40 MB of JSON
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.quantity import Typed
+from templates.core.units.quantity import Typed
 
 Shape = tuple[int, ...]
 

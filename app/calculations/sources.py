@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from templates.core.catalogue import declared_in_file
+from templates.core.catalogue.finding import declared_in_file
 from templates.core.errors import UnusableFile
-from templates.core.template import Template
+from templates.core.language.template import Template
 
 BUILT_IN = "templates."
 

@@ -23,9 +23,9 @@ from app.calculations.sources import Source, loaded
 from app.clients import get_client
 from app.waiting import client_left
 from app.workers.progress import report
-from templates.core.evaluate import Evaluation, evaluate
+from templates.core.language.evaluate import Evaluation, evaluate
+from templates.core.language.template import Template
 from templates.core.progress import reporting
-from templates.core.template import Template
 
 P = ParamSpec("P")
 T = TypeVar("T")

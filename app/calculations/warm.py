@@ -16,10 +16,10 @@ from pydantic_core import to_json
 import templates
 from app.calculations import operations  # noqa: F401 - what the processes run
 from app.calculations.rendering import evaluation
-from templates.core.catalogue import find
+from templates.core.catalogue.finding import find
 from templates.core.errors import TemplateError
-from templates.core.evaluate import evaluate
-from templates.core.template import Template
+from templates.core.language.evaluate import evaluate
+from templates.core.language.template import Template
 
 NICENESS = 5  # the server's own thread comes first
 

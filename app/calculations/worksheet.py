@@ -9,10 +9,10 @@ from app.calculations import rendering
 from app.calculations.display import System, converted, shown_unit
 from app.calculations.schemas import EvaluateIn
 from app.calculations.service import evaluated
-from templates.core import report
-from templates.core.evaluate import Evaluation
-from templates.core.mathml import mathml
-from templates.core.template import Template
+from templates.core.language.evaluate import Evaluation
+from templates.core.language.template import Template
+from templates.core.paper import report
+from templates.core.paper.mathml import mathml
 
 
 def run_worksheet(cls: type[Template], body: EvaluateIn, system: System) -> dict[str, Any]:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import templates
 from cad.model import CadModel
-from templates.core.catalogue import Catalogue, find
-from templates.core.template import Template
+from templates.core.catalogue.finding import Catalogue, find
+from templates.core.language.template import Template
 
 BUILT_IN = tuple(Path(folder) for folder in templates.__path__)
 

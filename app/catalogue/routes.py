@@ -9,11 +9,11 @@ from fastapi import APIRouter, Path
 from app.dependencies import TheCatalogues
 from app.http import StrictRoute
 from app.paging import Cursor, Limit, page_of
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import UnknownTemplate
-from templates.core.levels import accuracy
-from templates.core.schema import describe
-from templates.core.template import Template
+from templates.core.language.levels import accuracy
+from templates.core.language.template import Template
+from templates.core.paper.schema import describe
 
 router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=StrictRoute)
 

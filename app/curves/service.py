@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt
-from templates.core.meaning import api_name
-from templates.core.units import unit
+from templates.core.language.meaning import api_name
+from templates.core.units.units import unit
 
 MOST_ROWS, MOST_COLUMNS, MOST_FAULTS, LONGEST_LINE = 20_000, 32, 20, 4000
 MOST_LINES = 5 * MOST_ROWS

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from app.designs.graph import Block, Graph
-from templates.core.spec import Choice
-from templates.core.units import compatible, unit
+from templates.core.language.spec import Choice
+from templates.core.units.units import compatible, unit
 
 
 @dataclass(frozen=True)

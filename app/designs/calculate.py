@@ -19,12 +19,12 @@ from app.designs.memory import memory
 from app.designs.size import limit_operations, limit_values
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText, InvalidInputs
-from templates.core.evaluate import Evaluation
-from templates.core.quantity import Typed, read, read_any
-from templates.core.relation import is_relation, parse
-from templates.core.spec import Choice
-from templates.core.template import Template
-from templates.core.units import Value, unit
+from templates.core.language.evaluate import Evaluation
+from templates.core.language.spec import Choice
+from templates.core.language.template import Template
+from templates.core.units.quantity import Typed, read, read_any
+from templates.core.units.relation import is_relation, parse
+from templates.core.units.units import Value, unit
 
 Measures = Mapping[str, float]  # in the units of MEASURES
 Measured = Callable[[CadModel], Measures | None]

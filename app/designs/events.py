@@ -11,6 +11,7 @@ from starlette.concurrency import run_in_threadpool
 from app.dependencies import TheDesigns, TheJobs
 from app.designs.routes import Id, show_design
 from app.http import StrictRoute
+from app.streams import OneStream
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
@@ -19,7 +20,9 @@ NAMES = {"queued": "regenerating", "running": "regenerating", "done": "current",
 
 
 @router.get("/{id}/events", response_class=EventSourceResponse, dependencies=[Depends(show_design)])
-async def watch_design(id: Id, designs: TheDesigns, jobs: TheJobs) -> AsyncIterator[ServerSentEvent]:
+async def watch_design(
+    id: Id, designs: TheDesigns, jobs: TheJobs, place: OneStream
+) -> AsyncIterator[ServerSentEvent]:
     """The state first, then `revision`, `regenerating`, `progress`, `current`, `failed` as they come."""
     async with jobs.events.subscribe(f"design:{id}") as events:
         now = await run_in_threadpool(designs.state, id)

@@ -12,9 +12,9 @@ from app.designs.calculate import Calculation
 from app.designs.errors import NotFound
 from app.designs.graph import SOLID
 from templates.core.errors import FaultyText
-from templates.core.schema import formula_on_paper
-from templates.core.spec import Derived, Formula
-from templates.core.units import unit
+from templates.core.language.spec import Derived, Formula
+from templates.core.paper.schema import formula_on_paper
+from templates.core.units.units import unit
 
 DEEPEST = 50  # links; JSON that nests deeper is refused by many readers, and by our own writer
 

@@ -20,13 +20,13 @@ from app.designs.analyses import is_measured, measured_names, measured_unit, que
 from app.designs.document import Document
 from app.designs.size import too_many_relations
 from cad.model import CadModel
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_names
-from templates.core.quantity import read_any
-from templates.core.relation import Kind, Relation, is_relation, parse
-from templates.core.spec import Choice
-from templates.core.template import Template
-from templates.core.units import compatible, unit
+from templates.core.language.spec import Choice
+from templates.core.language.template import Template
+from templates.core.units.quantity import read_any
+from templates.core.units.relation import Kind, Relation, is_relation, parse
+from templates.core.units.units import compatible, unit
 
 SOLID = "!"
 

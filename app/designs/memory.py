@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from app.cache import Cache, results
 from app.calculations.steps import evaluated_step
 from app.designs.graph import Block
-from templates.core.evaluate import Evaluation
+from templates.core.language.evaluate import Evaluation
 
 
 class _Kept(NamedTuple):

@@ -25,7 +25,7 @@ from app.storage.database import Database
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
 from cad.errors import AnalysisError, GeometryError
 from templates.core.errors import FaultyText, InvalidInputs, TemplateError
-from templates.core.units import unit
+from templates.core.units.units import unit
 
 FAILURES = (
     NotConverged, TemplateError, GeometryError, AnalysisError, DeadlineExceeded, MemoryExceeded,

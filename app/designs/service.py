@@ -26,7 +26,7 @@ from app.storage.database import Database
 from cad.model import CadModel
 from cad.regenerate import build_key
 from templates.core.errors import Fault, FaultyText, InvalidInputs, plain
-from templates.core.quantity import Value, read
+from templates.core.units.quantity import Value, read
 
 REGENERATE, REGENERATE_SLOWLY = "regenerate", "regenerate_and_analyse"
 """Kinds of jobs: the second is that of designs whose relations use finite elements."""

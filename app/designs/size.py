@@ -8,7 +8,7 @@ from typing import Any
 
 from app.designs.document import Document
 from templates.core.errors import Fault, FaultyText
-from templates.core.relation import is_relation
+from templates.core.units.relation import is_relation
 
 MOST_RELATION_TEXT = (
     50_000  # characters of all relations of a design; reading them takes a quarter of a second

@@ -13,10 +13,10 @@ from app.calculations.display import System, converted
 from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
 from app.designs.calculate import Calculation
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
-from templates.core.template import Template
-from templates.core.verdicts import Check, checks
+from templates.core.language.template import Template
+from templates.core.paper.verdicts import Check, checks
 
 
 def worksheets(steps: Mapping[str, Any], catalogue: Catalogue[Template], system: System) -> dict[str, Any]:

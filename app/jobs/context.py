@@ -1,10 +1,12 @@
 """What a handler can do while its job runs."""
 
+import logging
 import threading
 import time
 from collections.abc import Callable
 from typing import TypeVar, TypeVarTuple
 
+from app import metrics
 from app.jobs import repository
 from app.jobs.events import Events
 from app.jobs.job import Job
@@ -13,6 +15,8 @@ from app.workers.base import Limits, Worker
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
+
+logger = logging.getLogger(__name__)
 
 _LINES = 200  # of the log that are kept
 _INTERVAL = 0.5  # between two times that progress is stored [s]
@@ -75,6 +79,9 @@ class JobContext:
 
 def publish(events: Events, job: Job, name: str, **more: object) -> None:
     """Tell an event of a job to those who watch it, and to those who watch its design."""
+    metrics.job_event(job.id, job.kind, name)
+    if name in ("done", "failed", "cancelled"):
+        logger.info("job %s (%s) %s", job.id, job.kind, name, extra={"job": job.id})
     event = {"event": name, "job": job.id, "revision": job.revision, **more}
     events.publish(f"job:{job.id}", event)
     if job.design is not None:

@@ -10,6 +10,7 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
+from app import logs
 from app.jobs import repository
 from app.jobs.admission import Durations
 from app.jobs.context import JobContext, publish
@@ -18,6 +19,7 @@ from app.jobs.events import Events
 from app.jobs.job import Job
 from app.jobs.turns import Lane
 from app.storage.database import Database
+from app.storage.errors import DatabaseClosed
 from app.workers.base import Limits, Worker
 from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed, MemoryExceeded
 
@@ -55,6 +57,7 @@ class Dispatcher:
         limits: Limits,
         events: Events,
         describe: Callable[[Exception], Problem],
+        threads: int = 1,
     ) -> None:
         self.kinds: dict[str, Kind] = {}
         self.durations = Durations()
@@ -63,15 +66,15 @@ class Dispatcher:
         self._limits = limits
         self._events = events
         self._describe = describe
-        self._counts = {FAST: 1, SLOW: 1}  # threads of each lane
+        self._counts = {FAST: threads, SLOW: 1}  # threads of each lane
         self._awake = {FAST: threading.Semaphore(0), SLOW: threading.Semaphore(0)}
         self._stopping = threading.Event()
         self._running: dict[str, threading.Event] = {}  # job id -> set to stop it
         self._threads: list[threading.Thread] = []
 
-    def start(self, threads: int, beside: Mapping[str, int]) -> None:
-        """Begin to take jobs from the queue, with so many threads for fast ones and for lanes `beside`."""
-        self._counts = {FAST: threads, SLOW: 1, **beside}
+    def start(self, beside: Mapping[str, int]) -> None:
+        """Begin to take jobs from the queue, with so many threads for the lanes `beside` the usual two."""
+        self._counts |= beside
         self._awake = {lane: threading.Semaphore(0) for lane in self._counts}
         for number, lane in enumerate(lane for lane, count in self._counts.items() for _ in range(count)):
             thread = threading.Thread(target=self._work, args=[lane], name=f"jobs-{number}", daemon=True)
@@ -97,21 +100,33 @@ class Dispatcher:
         if cancelled := self._running.get(id):
             cancelled.set()
 
-    def stop(self) -> None:
-        """Kill what runs, put it back into the queue, and wait for the threads."""
+    def drain(self) -> None:
+        """Begin no more jobs; those that run go on."""
         self._stopping.set()
+
+    def stop(self, patience: float = 10.0) -> None:
+        """Kill what runs, put it back into the queue, and wait for the threads, at most for so long [s].
+
+        A thread that calculates by itself cannot be stopped: its job is put back at the next start.
+        """
+        self.drain()
         for id in list(self._running):
             self.interrupt(id)
         for _ in self._threads:
             self.wake()
+        end = time.monotonic() + patience
         for thread in self._threads:
-            thread.join()
+            thread.join(max(0.0, end - time.monotonic()))
+        if busy := [thread.name for thread in self._threads if thread.is_alive()]:
+            logger.warning("still busy, and left behind: %s", ", ".join(busy))
 
     def _work(self, lane: str) -> None:
         while not self._stopping.is_set():
             self._awake[lane].acquire()
             try:
                 self._empty_queue(lane)
+            except DatabaseClosed:
+                return  # this thread was left behind when the server stopped
             except Exception:
                 logger.exception("The queue of jobs could not be read or written; trying again")
                 self._stopping.wait(_PAUSE)
@@ -121,7 +136,8 @@ class Dispatcher:
         while not self._stopping.is_set() and (job := self._database.write(partial(self._claim, lane=lane))):
             mine, start = self._running[job.id], time.monotonic()
             try:
-                self._execute(job)
+                with logs.caused(job.id):
+                    self._execute(job)
             finally:
                 self.durations.note(self.lane(job.kind), time.monotonic() - start)
                 if self._running.get(job.id) is mine:  # given back, it may run again in another thread by now
@@ -149,6 +165,7 @@ class Dispatcher:
         cancelled = self._running[job.id]
         if self._stopping.is_set():  # it was claimed while `stop` went through the running jobs
             cancelled.set()
+        logger.info("job %s (%s) begins", job.id, job.kind, extra={"job": job.id})
         context = JobContext(job, self._database, self._worker, self._limits, self._events, cancelled)
         publish(self._events, job, "running")
         try:
@@ -178,6 +195,9 @@ class Dispatcher:
 
     def _crashed(self, job: Job, context: JobContext, error: JobCrashed) -> None:
         """Try again: another process may have been to blame, such as one that took the machine's memory."""
+        if self._stopping.is_set():  # its process was ended with the others
+            self._give_back(job, job.crashes)
+            return
         crashes = job.crashes + 1
         logger.warning("Job %s (%s) crashed, time %d: %s", job.id, job.kind, crashes, error)
         if crashes < MAX_CRASHES:

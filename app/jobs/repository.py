@@ -6,7 +6,7 @@ claimed, so a job which was cancelled or claimed again cannot write any more.
 
 from typing import Any, cast
 
-from sqlalchemy import ColumnElement, and_, select, update
+from sqlalchemy import ColumnElement, and_, func, select, update
 from sqlalchemy.orm import Session
 
 from app.jobs.job import Job, State
@@ -35,6 +35,13 @@ def add(
     session.add(row)
     session.flush()
     return row.id
+
+
+def census(session: Session) -> list[tuple[str, str, int]]:
+    """Return kind, state and number of the jobs that have not ended, of which there are few."""
+    living = select(JobRow.kind, JobRow.state, func.count()).group_by(JobRow.kind, JobRow.state)
+    living = living.where(JobRow.state.in_(["queued", "running"]))
+    return [(kind, state, count) for kind, state, count in session.execute(living)]
 
 
 def get(session: Session, id: str) -> Job | None:

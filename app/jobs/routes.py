@@ -12,6 +12,7 @@ from app.dependencies import TheJobs
 from app.jobs.job import Job
 from app.jobs.schemas import JobList, JobOut
 from app.paging import Cursor, Limit, page
+from app.streams import OneStream
 
 router = APIRouter(prefix="/api/v1/jobs", tags=["jobs"])
 
@@ -35,7 +36,7 @@ def cancel_job(id: str, jobs: TheJobs, client: TheClient) -> Job:
 
 
 @router.get("/{id}/events", response_class=EventSourceResponse, dependencies=[Depends(read_job)])
-async def watch_job(id: str, jobs: TheJobs) -> AsyncIterator[ServerSentEvent]:
+async def watch_job(id: str, jobs: TheJobs, place: OneStream) -> AsyncIterator[ServerSentEvent]:
     """Stream the events of a job until it has ended: its state with the whole job, and its progress."""
     async with jobs.events.subscribe(f"job:{id}") as events:
         job = await asyncio.to_thread(jobs.get, id)

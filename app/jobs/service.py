@@ -1,11 +1,13 @@
 """What the rest of the server can do with jobs."""
 
 import asyncio
+import logging
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from sqlalchemy.orm import Session
 
+from app import logs
 from app.jobs import repository, turns
 from app.jobs.admission import admit
 from app.jobs.context import JobContext, publish
@@ -20,6 +22,8 @@ from app.workers.base import Limits, Worker
 from app.workers.errors import JobCancelled
 
 __all__ = ["Completion", "Job", "JobContext", "JobFailed", "Jobs"]
+
+logger = logging.getLogger(__name__)
 
 
 def _ignore(session: Session, job: Job, problem: Problem) -> None:
@@ -45,7 +49,7 @@ class Jobs:
         self.settings = settings
         self._describe = describe
         limits = Limits(settings.job_deadline, settings.job_memory_mb)
-        self._dispatcher = Dispatcher(database, worker, limits, self.events, describe)
+        self._dispatcher = Dispatcher(database, worker, limits, self.events, describe, settings.workers)
 
     def register(
         self,
@@ -72,12 +76,21 @@ class Jobs:
         `lanes` gives the number of threads of lanes beside the usual two.
         """
         self._database.write(repository.give_back_all)
-        self._dispatcher.start(self.settings.workers, lanes or {})
+        self._dispatcher.start(lanes or {})
+
+    def drain(self) -> None:
+        """End all subscriptions and begin no more jobs; those that run go on."""
+        self.events.close()
+        self._dispatcher.drain()
 
     def stop(self) -> None:
         """End all subscriptions and all running jobs; they stay in the queue for the next start."""
         self.events.close()
-        self._dispatcher.stop()
+        self._dispatcher.stop(self.settings.stop_seconds / 2)
+
+    def census(self, session: Session) -> list[tuple[str, str, int]]:
+        """Return kind, state and number of the jobs that have not ended."""
+        return repository.census(session)
 
     def enqueue(
         self,
@@ -100,7 +113,10 @@ class Jobs:
         threads = self._dispatcher.threads(kind)
         admit(session, client, lane, threads, self.settings, self._dispatcher.durations)
         turn = turns.next_turn(session, client, lane)
-        return repository.add(session, kind, payload, design, revision, client, turn)
+        id = repository.add(session, kind, payload, design, revision, client, turn)
+        logs.note_cause(id)
+        logger.info("job %s (%s) queued", id, kind, extra={"job": id})
+        return id
 
     def request(self, session: Session, kind: str, payload: dict[str, Any], client: str = "") -> str:
         """Return the id of the job that is to do just this, in the earlier turn of its clients; or queue it.

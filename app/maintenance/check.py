@@ -89,17 +89,21 @@ def _check_files(artifacts: Path, rows: Iterable[Named], findings: Findings, dat
         if row.sha not in seen:
             seen[row.sha] = fault_of(artifacts / row.sha[:2] / row.sha, row)
             findings.files += seen[row.sha] is None
-            findings.size += row.size if seen[row.sha] is None else 0
+            findings.size += _size(artifacts, row) if seen[row.sha] is None else 0
         text = seen[row.sha]
         if text and is_still_named(database, row):
             findings.damaged[row] = text
+
+
+def _size(artifacts: Path, row: Named) -> int:
+    return (artifacts / row.sha[:2] / row.sha).stat().st_size if row.size is None else row.size
 
 
 def fault_of(path: Path, row: Named) -> str | None:
     """What is wrong with the file of a row, if anything is; its size is in bytes."""
     try:
         size = path.stat().st_size
-        if size != row.size:
+        if row.size is not None and size != row.size:
             return f"the file has {size} bytes instead of {row.size}"
         with path.open("rb") as file:
             if hashlib.file_digest(file, "sha256").hexdigest() != row.sha:
@@ -119,8 +123,8 @@ def is_still_named(database: Path, row: Named) -> bool:
 
 def named_files_of(connection: sqlite3.Connection, row: Named) -> Iterable[Named]:
     """The row as it stands now, if it does."""
-    if row.kind == "surface":
-        return (other for other in named_files(connection) if other.kind == "surface")
+    if row.kind in ("surface", "body", "answer"):
+        return (other for other in named_files(connection) if other.kind == row.kind)
     query = "SELECT sha256, size, build_key, kind FROM artifact WHERE build_key = ? AND kind = ?"
     return (Named(*found) for found in connection.execute(query, (row.owner, row.kind)))
 

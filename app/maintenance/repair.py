@@ -60,6 +60,8 @@ class Repair:
 
     def row(self, row: Named) -> str | None:
         """Have the file of a row good; return why it is not, if it is not."""
+        if row.kind in ("body", "answer"):
+            return "send the calculation again: its answer is not kept anywhere else"
         try:
             if row.kind == SURFACE:
                 self._surface(row.owner)

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Named:
-    """A file that a row names: a file of a build, or the surface of an analysis."""
+    """A file that a row names: of a build, the surface of an analysis, or a calculation's body or answer."""
 
     sha: str
-    size: int
-    owner: str  # the key of the build or the analysis
-    kind: str  # step, png, …; or surface
+    size: int | None  # None where the row does not say it
+    owner: str  # the key of the build or the analysis, or the id of the job
+    kind: str  # step, png, …; or surface, body, answer
 
 
 def named_files(connection: sqlite3.Connection) -> Iterator[Named]:
@@ -27,6 +27,17 @@ def named_files(connection: sqlite3.Connection) -> Iterator[Named]:
         for key, found in connection.execute(surfaces):
             told = json.loads(found)
             yield Named(told["sha256"], told["size"], key, "surface")
+    for id, payload, result in connection.execute(CALCULATIONS):
+        yield from _files_of_calculation(id, json.loads(payload), result)
+
+
+CALCULATIONS = "SELECT id, payload, result FROM job WHERE kind = 'calculation'"
+
+
+def _files_of_calculation(id: str, payload: dict[str, str], result: str | None) -> Iterator[Named]:
+    yield Named(payload["body"], None, id, "body")
+    if result is not None:
+        yield Named(result.rpartition("sha256=")[2], None, id, "answer")
 
 
 LEADING_NOWHERE = {

@@ -26,7 +26,7 @@ from app.workers.progress import report
 from cad.export import derive
 from cad.model import CadModel
 from cad.regenerate import MADE_BY, Build, build_key, regenerate
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
 
 logger = logging.getLogger(__name__)
 

@@ -25,7 +25,7 @@ from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.schema import describe
+from templates.core.paper.schema import describe
 
 router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
 

@@ -24,7 +24,7 @@ from cad.export import DERIVED
 from cad.header import read_header
 from cad.model import CadModel
 from cad.regenerate import as_text, build_key
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 
 BUILD = "build"

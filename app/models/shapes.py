@@ -9,7 +9,7 @@ from app.designs.errors import NotFound
 from app.models.errors import CannotRebuild
 from cad.model import CadModel
 from cad.regenerate import MADE_BY, build_key
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError, UnknownTemplate
 
 OLDER = "an older version of this program"

@@ -11,7 +11,7 @@ from typing import Any
 from app.calculations.display import System, converted
 from app.web import numbers
 from app.web.forms import text_of
-from templates.core.units import compatible, unit
+from templates.core.units.units import compatible, unit
 
 DIGITS_TYPED = 12  # of a number that a user typed: as many as are kept
 _DERIVED = ("1", "m", "kg", "s", "N", "Pa", "J", "W", "K", "rad", "rad/s")

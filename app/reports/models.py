@@ -16,9 +16,9 @@ from app.reports.steps import known, symbol_of, verdicts, version_of, words_of
 from app.reports.typesetting import DRAWING, PICTURE
 from app.web import numbers
 from cad.model import CadModel
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
-from templates.core.verdicts import checks
+from templates.core.paper.verdicts import checks
 
 KEPT = ("step", DRAWING, PICTURE)  # files that are told of, whichever others were asked for
 NO_VALUES = "its parameters wait for a solid, or are not set"

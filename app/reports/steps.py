@@ -12,12 +12,12 @@ from app.reports.cells import Cell, cell, in_si, shown
 from app.reports.cells import typed as as_typed
 from app.reports.content import Formula, Identity, Line, Step, Verdict, Warned
 from app.web import numbers
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
-from templates.core.mathml import mathml, symbol
-from templates.core.schema import documentation
-from templates.core.template import Template
-from templates.core.verdicts import Check
+from templates.core.language.template import Template
+from templates.core.paper.mathml import mathml, symbol
+from templates.core.paper.schema import documentation
+from templates.core.paper.verdicts import Check
 
 WAITS = "waits for a solid that is not built"
 GUARD = 1e-5  # a domain that is used less than this guards against overflow and tells an engineer nothing

@@ -22,8 +22,8 @@ from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untype
 
 from app.web.forms import text_of
 from templates.core.errors import FaultyText
-from templates.core.quantity import read_any
-from templates.core.relation import is_relation
+from templates.core.units.quantity import read_any
+from templates.core.units.relation import is_relation
 
 HEAD = ("block", "kind", "name", "index", "value", "unit", "origin", "remark")
 WIDTHS = (16, 12, 34, 8, 18, 14, 34, 40)

@@ -5,8 +5,10 @@ in one transaction pays one sync for all of them, and nobody ever meets a locked
 """
 
 import asyncio
+import contextvars
 import queue
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
@@ -29,10 +31,14 @@ GROUP = 256  # units in one transaction: bounds how long the first of them waits
 class Database:
     """Reads in snapshots, writes by units of work; once damage has shown, it only reads.
 
+    `on_commit` is called with each group's number of units, its time [s], and whether it failed. A unit
+    runs in the context (`contextvars`) of its caller.
+
     Rows stay readable after their session has ended; what was not loaded by then cannot be loaded later.
     """
 
-    def __init__(self, url: str) -> None:
+    def __init__(self, url: str, on_commit: Callable[[int, float, bool], object] | None = None) -> None:
+        self._on_commit = on_commit or (lambda units, seconds, failed: None)
         self.watch = Watch(url)
         self._reader = reading_engine(url)
         self._writer = writing_engine(url)
@@ -118,6 +124,7 @@ class Database:
         return group, True
 
     def _commit(self, group: "list[_Pending]") -> None:
+        start = time.perf_counter()
         try:
             with self.watch, self._writer.begin() as connection:
                 self.watch.refuse()  # damage may have shown while the group was waiting
@@ -126,9 +133,11 @@ class Database:
                     pending.run(connection)
                     self.watch.raise_if_damage(pending.error)
         except Exception as error:
+            self._on_commit(len(group), time.perf_counter() - start, True)
             for pending in group:
                 pending.refuse(error)
         else:
+            self._on_commit(len(group), time.perf_counter() - start, False)
             self.clock.commit(seconds)
             for pending in group:
                 pending.settle()
@@ -140,6 +149,7 @@ class _Pending:
     def __init__(self, unit: Unit[Any]) -> None:
         self.future: Future[Any] = Future()
         self._unit = unit
+        self._context = contextvars.copy_context()
         self._result: Any = None
         self.error: BaseException | None = None
 
@@ -148,7 +158,7 @@ class _Pending:
         session = Session(connection, join_transaction_mode="create_savepoint", expire_on_commit=False)
         try:
             with session:
-                self._result = self._unit(session)
+                self._result = self._context.run(self._unit, session)
                 session.commit()  # releases the savepoint; raises if the unit has hidden a failed statement
         except BaseException as error:  # even SystemExit belongs to the caller, not to the writer thread
             self.error = error

@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from app.bidi import balanced, bare
 from app.web import numbers
-from templates.core.mathml import mathml
+from templates.core.paper.mathml import mathml
 
 PAGES = Path(__file__).with_name("pages")
 

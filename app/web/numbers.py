@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from templates.core.mathml import unit_symbol
+from templates.core.paper.mathml import unit_symbol
 
 DIGITS = 5
 LARGEST_PLAIN = 1e6  # from here on with a power of ten

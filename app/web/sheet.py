@@ -8,7 +8,7 @@ from typing import Any
 
 from app.web import numbers
 from app.web.forms import OPTIONS, text_of
-from templates.core.relation import is_relation
+from templates.core.units.relation import is_relation
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,8 @@
 A fork of it is ready in milliseconds, where an import takes seconds. It is a plain process of its own: the
 children of `multiprocessing`'s would import the server's main module again.
 
-It ends when the server's end of its channel closes, however the server died, and its children die with it.
-Unlike a parent-death signal to this process, that does not depend on the thread which started it.
+It and its children hang on the server's lifeline and are killed with it, also in the middle of an import.
+Where the system has no such thing, it ends when it notices that its channel has closed.
 """
 
 import gc
@@ -19,19 +19,23 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from types import ModuleType
+from typing import NoReturn
 
 from app.workers.job_process import Rehearsal, serve_jobs
+from app.workers.lifeline import hang_on
 
 Nursery = dict[int, Connection]  # process id of a living job -> where its exit code is told
 
 
-def main(channel: int, modules: Iterable[str]) -> None:
+def main(channel: int, lifeline: int, modules: Iterable[str]) -> NoReturn:
     """Import the modules, then fork a job process for each pair of connections that the channel brings."""
+    hang_on(lifeline)  # first of all: the imports take seconds, on a busy machine many
     loaded = [_preload(module) for module in modules]
     rehearsals = [module.rehearse for module in loaded if module and hasattr(module, "rehearse")]
     gc.freeze()  # collections in the children shall not copy what is shared
     with socket.socket(fileno=channel) as server:
-        _serve(server, rehearsals)
+        _serve(server, lifeline, rehearsals)
+    os._exit(0)  # to take down an interpreter with so many modules takes half a second
 
 
 def _preload(name: str) -> ModuleType | None:
@@ -50,7 +54,7 @@ def _preload(name: str) -> ModuleType | None:
     return module
 
 
-def _serve(server: socket.socket, rehearsals: Sequence[Rehearsal]) -> None:
+def _serve(server: socket.socket, lifeline: int, rehearsals: Sequence[Rehearsal]) -> None:
     """Fork and bury by turns: no death is handled in the middle of anything else."""
     nursery: Nursery = {}
     deaths, knell = socket.socketpair()
@@ -71,7 +75,7 @@ def _serve(server: socket.socket, rehearsals: Sequence[Rehearsal]) -> None:
                 if not descriptors:
                     break
                 job, status = (Connection(descriptor) for descriptor in descriptors)
-                _fork(job, status, (server, deaths, knell), nursery, rehearsals)
+                _fork(job, status, (server, deaths, knell), lifeline, nursery, rehearsals)
     for pid in list(nursery):
         with suppress(ProcessLookupError):
             os.killpg(pid, signal.SIGKILL)
@@ -81,6 +85,7 @@ def _fork(
     job: Connection,
     status: Connection,
     own: Iterable[socket.socket],
+    lifeline: int,
     nursery: Nursery,
     rehearsals: Sequence[Rehearsal],
 ) -> None:
@@ -88,7 +93,7 @@ def _fork(
     parent = os.getpid()
     pid = os.fork()
     if pid == 0:
-        _become_job(job, (*own, status, *nursery.values()), parent, rehearsals)
+        _become_job(job, (*own, status, *nursery.values()), parent, lifeline, rehearsals)
     with suppress(OSError):  # the server may have gone
         os.setpgid(pid, pid)
         status.send(pid)
@@ -100,6 +105,7 @@ def _become_job(
     job: Connection,
     foreign: Iterable[socket.socket | Connection],
     parent: int,
+    lifeline: int,
     rehearsals: Sequence[Rehearsal],
 ) -> None:
     """Turn a fork of this process into a job process; does not return."""
@@ -108,7 +114,7 @@ def _become_job(
     for other in foreign:  # a copy left open here would hide the end of its owner
         other.close()
     os.set_inheritable(job.fileno(), False)
-    serve_jobs(job, parent, rehearsals)
+    serve_jobs(job, parent, lifeline, rehearsals)
 
 
 def _bury(nursery: Nursery) -> None:

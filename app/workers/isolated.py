@@ -18,15 +18,16 @@ from typing import Any
 
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed
+from app.workers.lifeline import Lifeline
 from app.workers.messages import Progress, Raised, Request, Returned
 from app.workers.progress import Reporter
 
 _BOOT = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
-    "from app.workers.forkserver import main; main(int(sys.argv[2]), sys.argv[3:])"
+    "from app.workers.forkserver import main; main(int(sys.argv[2]), int(sys.argv[3]), sys.argv[4:])"
 )
 _GLANCE = 0.05  # how often a waiting thread looks whether its job was cancelled [s]
-_PATIENCE = 1.0  # how long the forkserver may take to end by itself [s]
+_PATIENCE = 1.0  # how long the forkserver may take to end [s]
 
 
 class JobProcess:
@@ -50,19 +51,30 @@ class JobProcess:
 
     def finish(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event | None) -> Any:
         """Wait for the end of the job and return its result; see `Worker.run` for what it raises."""
+        cancelled = cancelled or threading.Event()
         try:
-            _ = self._pid  # the clock starts when the process exists, not while the forkserver is importing
-            return self._converse(limits, on_progress, cancelled or threading.Event())
+            self._await_birth(cancelled)
+            return self._converse(limits, on_progress, cancelled)
         finally:
             if not self.reusable:
                 self.kill()
 
     def kill(self) -> None:
-        """End the process, and those which it has started."""
+        """End the process, and those which it has started; one not born yet ends by itself when it is."""
+        if self._status.closed:
+            return
         with suppress(ProcessLookupError, JobCrashed):
-            os.killpg(self._pid, signal.SIGKILL)
+            if self.is_born():
+                os.killpg(self._pid, signal.SIGKILL)
         self._connection.close()
         self._status.close()
+
+    def _await_birth(self, cancelled: threading.Event) -> None:
+        """Wait for the process: its clock starts then, not while the forkserver is importing, or hangs."""
+        while not ("_pid" in vars(self) or self._status.poll(_GLANCE)):
+            if cancelled.is_set():
+                raise JobCancelled
+        _ = self._pid
 
     def is_born(self) -> bool:
         """Whether the forkserver has made the process; reads nothing, so its owner may use it meanwhile."""
@@ -126,10 +138,17 @@ class ForkServer:
         self._preload = preload
         self._environment = environment or {}
         self._lock = threading.Lock()
+        self._closed = False
         self._start()
 
     def fork(self) -> JobProcess:
-        """Ask for a process; it may come to life later, and takes its job even before."""
+        """Ask for a process; it may come to life later, and takes its job even before.
+
+        Raises
+        ------
+        JobCancelled
+            The forkserver has been closed.
+        """
         connection, theirs = Pipe()
         status, told = Pipe(duplex=False)
         with theirs, told:
@@ -149,7 +168,9 @@ class ForkServer:
         return state in "Tt"
 
     def close(self) -> None:
-        """End the forkserver and all its processes."""
+        """End the forkserver and all its processes, whatever they are doing."""
+        self._closed = True
+        self._lifeline.cut()  # before the lock, which who waits for a stopped forkserver may hold
         with self._lock:
             self._end()
 
@@ -157,26 +178,33 @@ class ForkServer:
         with self._lock:
             try:
                 socket.send_fds(self._channel, [b"."], descriptors)
-            except (BrokenPipeError, ConnectionResetError):
+            except OSError:  # it has died, or has been closed
+                if self._closed:
+                    raise JobCancelled from None
                 self._end()
                 self._start()
                 socket.send_fds(self._channel, [b"."], descriptors)
 
     def _start(self) -> None:
+        self._lifeline = Lifeline()
         self._channel, theirs = socket.socketpair()
+        ends = [theirs.fileno(), self._lifeline.reader]
         with theirs:
             self._process = subprocess.Popen(
-                [sys.executable, "-c", _BOOT, json.dumps(sys.path), str(theirs.fileno()), *self._preload],
-                pass_fds=[theirs.fileno()],
+                [sys.executable, "-c", _BOOT, json.dumps(sys.path), *map(str, ends), *self._preload],
+                pass_fds=ends,
                 stdin=subprocess.DEVNULL,
                 env={**self._environment, **os.environ},
                 start_new_session=True,  # Ctrl-C in a terminal is for the server, which ends its jobs itself
             )
+        self._lifeline.close_reader()
 
     def _end(self) -> None:
+        self._lifeline.cut()
         self._channel.close()
-        try:
+        with suppress(subprocess.TimeoutExpired):
             self._process.wait(_PATIENCE)
-        except subprocess.TimeoutExpired:  # it is still importing, and has no children yet
-            self._process.kill()
-            self._process.wait()
+            return
+        self._process.kill()  # where a lifeline kills nobody, it may still be importing
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(_PATIENCE)

@@ -18,6 +18,7 @@ from typing import NoReturn
 
 from app.workers.base import Limits
 from app.workers.errors import MemoryExceeded, RemoteError, WorkerError
+from app.workers.lifeline import hang_on, has_hung_up
 from app.workers.messages import Progress, Raised, Request, Returned
 from app.workers.progress import reporting
 
@@ -28,7 +29,9 @@ _PR_SET_PDEATHSIG = 1
 _GROWTH = 4  # a process that keeps more than this part of its allowance takes no other request
 
 
-def serve_jobs(connection: Connection, parent: int, rehearsals: Iterable[Rehearsal] = ()) -> NoReturn:
+def serve_jobs(
+    connection: Connection, parent: int, lifeline: int, rehearsals: Iterable[Rehearsal] = ()
+) -> NoReturn:
     """Wait for a request, answer it, and end the process, unless another request may follow.
 
     Meanwhile it rehearses, so that the job finds ready what is made at first use. It ends without cleaning
@@ -37,16 +40,20 @@ def serve_jobs(connection: Connection, parent: int, rehearsals: Iterable[Rehears
     exit_code = 1
     try:
         _die_with(parent)
+        os.setpgid(0, 0)
+        hang_on(lifeline, group=os.getpid())  # also if the forkserver is stopped or was killed
         for rehearse in rehearsals:
             with suppress(Exception):  # the job will meet it again, and say so
                 rehearse(connection.poll)
-        reusable = True
+        request = connection.recv_bytes()
+        reusable = not has_hung_up(connection.fileno())  # else cancelled before this process was born
         while reusable:
-            answer, reusable = _answer(connection.recv_bytes(), connection)
+            answer, reusable = _answer(request, connection)
             connection.send_bytes(answer)
             del answer
             if reusable:
                 gc.collect()  # what a calculation leaves in cycles may be large
+                request = connection.recv_bytes()
         exit_code = 0
     finally:  # also when the server has closed its end, which is how it dismisses a process
         os._exit(exit_code)

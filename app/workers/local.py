@@ -55,8 +55,8 @@ class LocalProcesses:
 
     def close(self) -> None:
         """Kill all processes; jobs that still run end with JobCrashed."""
+        self._forkserver.close()  # before the lock, which who waits for a stopped forkserver may hold
         with self._lock:
-            self._forkserver.close()
             self._spare.kill()
 
     def _start(self, request: Request) -> JobProcess:

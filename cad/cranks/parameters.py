@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from cad.model import CadModel
-from templates.core.template import Array, choice, derived, formula, given
+from templates.core.language.template import Array, choice, derived, formula, given
 
 
 class CrankParameters(CadModel):

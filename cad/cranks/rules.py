@@ -11,7 +11,7 @@ from math import pi, radians
 import numpy as np
 
 from cad.cranks.parameters import CrankParameters
-from templates.core.template import Array, Truth, require, units
+from templates.core.language.template import Array, Truth, require, units
 
 
 @units(None, "m", returns="m")

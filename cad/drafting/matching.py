@@ -9,7 +9,7 @@ from itertools import pairwise
 from math import dist, isclose
 
 from cad.drafting.measures import Measure, Sort
-from templates.core.units import unit
+from templates.core.units.units import unit
 
 _WORDS: dict[str, tuple[Sort, ...]] = {
     "diameter": ("diameter",),

@@ -27,7 +27,7 @@ from cadquery.func import face, segment, sphere, wire
 
 from cad.model import BRIGHT_STEEL, Box, CadModel, Part, mm
 from cad.surfaces import Seen, Z
-from templates.core.template import Array, Truth, derived, formula, given, require, units
+from templates.core.language.template import Array, Truth, derived, formula, given, require, units
 
 SIZES = np.genfromtxt(
     Path(__file__).with_name("deep_groove_sizes.csv"),

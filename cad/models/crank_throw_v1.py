@@ -6,7 +6,7 @@ the class below, which users read; parameters, rules and the solid are those of 
 """
 
 from cad.cranks.crank import CrankModel
-from templates.core.template import Array, formula
+from templates.core.language.template import Array, formula
 
 
 class CrankThrow(CrankModel):

@@ -11,7 +11,7 @@ from cad.cranks.reading import Webs, stubs
 from cad.cranks.throw import End
 from cad.model import mm
 from cad.surfaces import Seen
-from templates.core.template import Array, Truth, derived, formula, require
+from templates.core.language.template import Array, Truth, derived, formula, require
 
 
 class Crankshaft(CrankModel):

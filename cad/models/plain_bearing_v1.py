@@ -24,7 +24,7 @@ from scipy.integrate import quad
 
 from cad.model import BRONZE, Box, CadModel, Part, mm
 from cad.surfaces import Seen, Y, Z
-from templates.core.template import Array, Truth, choice, derived, formula, given, require, units
+from templates.core.language.template import Array, Truth, choice, derived, formula, given, require, units
 
 
 @dataclass(frozen=True)

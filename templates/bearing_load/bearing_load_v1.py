@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from templates.core.template import Array, formula, profile, shared
+from templates.core.language.template import Array, formula, profile, shared
 from templates.groups.cylinder import DYREMI, NO_INERTIA, Cylinder
-from templates.physics.arrays import largest_load, spread
-from templates.physics.crank_loads import (
+from templates.physics.engine.crank_loads import (
     axial_force,
     correction_torque,
     crankpin_load_x_Rao_Singh_1993,
@@ -21,9 +20,10 @@ from templates.physics.crank_loads import (
     torque_Rao_Singh_1993,
     wall_force_Rao_Singh_1993,
     wristpin_load_x,
-)  # fmt: skip
-from templates.physics.gas_pressure import peak_pressure, pressure_at
-from templates.physics.slider_crank import Motion, crank_angles, crank_motion
+)
+from templates.physics.engine.gas_pressure import peak_pressure, pressure_at
+from templates.physics.engine.slider_crank import Motion, crank_angles, crank_motion
+from templates.physics.numerics.arrays import largest_load, spread
 
 CYCLE = "crank_angle"
 PEAK = ("p_max",)

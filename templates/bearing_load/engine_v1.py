@@ -7,9 +7,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from templates.core.template import Array, Truth, curve, derived, formula, given, profile, require, shared
+from templates.core.language.template import (
+    Array,
+    Truth,
+    curve,
+    derived,
+    formula,
+    given,
+    profile,
+    require,
+    shared,
+)
 from templates.groups.cylinder import DYREMI, Cylinder
-from templates.physics.balance import (
+from templates.physics.engine.balance import (
     Arrangement,
     TwoPlanes,
     arrangement,
@@ -24,15 +34,15 @@ from templates.physics.balance import (
     rotating_couple,
     rotating_force,
     two_planes,
-)  # fmt: skip
-from templates.physics.flywheel import (
+)
+from templates.physics.engine.flywheel import (
     cylinder_motion,
     energy_fluctuation,
     inertia_of_fluctuation,
     larger,
     total_torque,
-)  # fmt: skip
-from templates.physics.slider_crank import Motion, crank_angles
+)
+from templates.physics.engine.slider_crank import Motion, crank_angles
 
 CYCLE = "crank_angle"
 EVEN = "nothing is out of balance"

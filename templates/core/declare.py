@@ -1,21 +1,7 @@
-"""What a template is made of: givens, choices, curves, derived givens, formulas and requirements.
+"""Kept for imports of version 0.1: the declarations, for templates written for version 0.1."""
 
-Each is declared once. Its words make the API name, the label and the line in the report; its symbol makes
-the formula on paper; its bounds make the check, the schema and the message.
-
-Two kinds of bounds are told apart. The *domain* is where a quantity means anything: outside it a value is
-refused. The *published* range is where the source claims its formula: outside it the answer carries a
-warning that names the limit.
-"""
-
-from __future__ import annotations
-
-from collections.abc import Callable, Mapping
-from typing import Any, TypeVar, Unpack
-
-from templates.core.arrays import Array, Truth
-from templates.core.meaning import Bounds, Keywords, meaning
-from templates.core.spec import (
+from templates.core.language.declare import (
+    Array,
     Choice,
     Curve,
     Declaration,
@@ -27,159 +13,47 @@ from templates.core.spec import (
     Shared,
     Table,
     Text,
+    Truth,
+    by_name,
+    choice,
+    curve,
+    derived,
+    formula,
+    given,
+    limits,
+    profile,
+    require,
+    shared,
+    table,
+    text,
+    units,
 )
-from templates.core.units import unit
 
 __all__ = [
-    "Array", "Choice", "Curve", "Declaration", "Derived", "Formula", "Given", "Profile", "Requirement",
-    "Shared", "Table", "Text", "Truth", "by_name", "choice", "curve", "derived", "formula", "given", "limits",
-    "profile", "require", "shared", "table", "text", "units",
-]  # fmt: skip
-
-T = TypeVar("T")
-F = TypeVar("F", bound=Callable[..., Any])
-
-
-def given(
-    unit: str,
-    words: str,
-    *,
-    default: Any = None,
-    optional: bool = False,
-    alternative: bool = False,
-    single: bool = False,
-    **keywords: Unpack[Keywords],
-) -> Any:
-    """Declare an input in `unit`, with bounds in that unit; required unless it has a default or is optional.
-
-    An optional input that is missing is NaN; outputs that need it do not exist, and say so. An `alternative`
-    is optional too, but one of several ways to say something: its formulas deal with the NaN themselves.
-    Of a `single` one arrays are refused: all points share its value.
-    """
-    meant = meaning(unit, words, **keywords)
-    return Given(meant, default, optional=optional, alternative=alternative, single=single)
-
-
-def table(unit: str, words: str, *columns: str, most: int = 12, **keywords: Unpack[Keywords]) -> Any:
-    """Declare an optional input that is a list of at most so many rows; every column is in `unit`."""
-    return Table(meaning(unit, words, **keywords), columns, most)
-
-
-def limits(
-    ge: float | None = None,
-    le: float | None = None,
-    published: tuple[float | None, float | None] = (None, None),
-) -> tuple[Bounds, Bounds]:
-    """Domain and published range at one level of fidelity, for `per_level`, in the declared unit."""
-    return Bounds(ge=ge, le=le), Bounds(ge=published[0], le=published[1])
-
-
-def curve(
-    unit: str, words: str, *, default: Any = None, constant: bool = False, along: str = "cycle",
-    optional: bool = False, alternative: bool = False, **keywords: Unpack[Keywords],
-) -> Any:  # fmt: skip
-    """Declare an input that is an array along the crank angle (last axis), or a `constant` if it may be.
-
-    `along` names another axis: `inertias`. Optional ones that are missing are NaN, as those of `given`.
-    """
-    return Curve(
-        meaning(unit, words, **keywords), default,
-        constant=constant, along=along, optional=optional, alternative=alternative,
-    )  # fmt: skip
-
-
-def choice(*options: str, words: str, default: str | None = None, name: str | None = None) -> Any:
-    """Declare an input that is one of the named options."""
-    return Choice(meaning("1", words, name=name), options, default)
-
-
-def formula(
-    unit: str, words: str, *, latex: str | None = None, **keywords: Unpack[Keywords]
-) -> Callable[[Callable[[T], Any]], Formula[T]]:
-    """Declare an output in `unit`; `latex` by hand only where the code is opaque."""
-    return lambda function: Formula(function, meaning(unit, words, **keywords), latex)
-
-
-def derived(
-    unit: str, words: str, *, shown: bool = False, **keywords: Unpack[Keywords]
-) -> Callable[[Callable[[T], Any]], Derived[T]]:
-    """Declare an optional input that defaults to this formula of others; `shown`: it is an output too."""
-    return lambda function: Derived(function, meaning(unit, words, **keywords), shown=shown)
-
-
-def profile(
-    unit: str,
-    words: str,
-    *,
-    along: str,
-    axes: int = 1,
-    latex: str | None = None,
-    **keywords: Unpack[Keywords],
-) -> Callable[[Callable[[T], Any]], Profile[T]]:
-    """Declare an output that is an array along its last axis, or axes, at the places given by `along`."""
-    return lambda function: Profile(function, meaning(unit, words, **keywords), latex, along, axes)
-
-
-def text(words: str, **keywords: Unpack[Keywords]) -> Callable[[Callable[[T], Any]], Text[T]]:
-    """Declare an output in words, without a unit."""
-    return lambda function: Text(function, meaning("1", words, **keywords), None)
-
-
-def shared(function: Callable[[Any], T]) -> Shared[T]:
-    """Declare an intermediate result that several formulas use."""
-    return Shared(function)
-
-
-def require(
-    *names: str, remedy: str, missing: bool = False, warning: str = ""
-) -> Callable[[Callable[[Any], Any]], Requirement]:
-    """Declare a rule between the inputs `names`; its docstring is the sentence that a user reads.
-
-    Where an optional input that it uses is missing the rule is not applied, unless it is about `missing`.
-    With the code of a `warning` nothing is refused, and the answer carries the sentence.
-    """
-    return lambda function: Requirement(function, names, remedy, missing, warning)
-
-
-def units(
-    *arguments: str | None, returns: str | tuple[str, ...], latex: str | None = None
-) -> Callable[[F], F]:
-    """Declare the units in which a physics function takes its arguments and returns its result.
-
-    For functions whose inside is not dimensionally pure, such as Walther's `nu + 0.7`: the catalogue-wide
-    test of dimensions checks calls at this border. Values are in exactly these units, which must be SI
-    (or pure numbers) so that nothing needs converting in the hot path. None stands for an argument that is no
-    quantity: a word, or a record that several formulas share.
-
-    Raises
-    ------
-    TypeError
-        If a unit is not SI.
-    """
-    named = (name for name in arguments if name is not None)
-    for name in (*named, *([returns] if isinstance(returns, str) else returns)):
-        if (scale := unit(name)).factor != 1 or scale.absolute:
-            raise TypeError(f"{name} is not SI; a physics function takes and returns SI values")
-
-    def mark(function: F) -> F:
-        function.border = (arguments, returns)  # type: ignore[attr-defined]
-        function.latex = latex  # type: ignore[attr-defined]
-        return function
-
-    return mark
-
-
-def by_name(declarations: Mapping[str, Any]) -> dict[str, Any]:
-    """Declarations by API name instead of by attribute.
-
-    Raises
-    ------
-    TypeError
-        If two of them make the same API name; one then needs an explicit `name=`.
-    """
-    named: dict[str, Any] = {}
-    for declaration in declarations.values():
-        if declaration.name in named:
-            raise TypeError(f"two declarations are named {declaration.name!r}; give one a name=")
-        named[declaration.name] = declaration
-    return named
+    "Array",
+    "Choice",
+    "Curve",
+    "Declaration",
+    "Derived",
+    "Formula",
+    "Given",
+    "Profile",
+    "Requirement",
+    "Shared",
+    "Table",
+    "Text",
+    "Truth",
+    "by_name",
+    "choice",
+    "curve",
+    "derived",
+    "formula",
+    "given",
+    "limits",
+    "profile",
+    "require",
+    "shared",
+    "table",
+    "text",
+    "units",
+]

@@ -1,83 +1,15 @@
-"""The lines of a calculation report: symbol = expression = numbers = result, for every formula used."""
+"""Kept for imports of version 0.1: the lines of a report, for scripts written for version 0.1."""
 
-from __future__ import annotations
+from templates.core.paper.report import (
+    NONE,
+    Row,
+    rows,
+    shown,
+)
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-
-import numpy as np
-
-from templates.core.mathml import amount, expression, mathml, symbol, symbols
-from templates.core.spec import Choice
-from templates.core.template import Template
-from templates.core.units import unit
-
-
-@dataclass(frozen=True)
-class Row:
-    """One formula on paper; `numbers` and `result` are empty where an array has no single value."""
-
-    name: str
-    words: str
-    symbol: str
-    expression: str
-    numbers: str
-    result: str
-    source: str | None
-
-    @property
-    def latex(self) -> str:
-        """The whole line as LaTeX."""
-        return "=".join(part for part in (self.symbol, self.expression, self.numbers, self.result) if part)
-
-    @property
-    def mathml(self) -> str:
-        """The whole line as MathML."""
-        return mathml(self.latex)
-
-
-NONE = r"\text{none}"
-
-
-def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator[Row]:
-    """The report lines of every formula that the template has evaluated so far.
-
-    `units` names other units than the declared ones, by attribute.
-    """
-    cls = type(template)
-    names, shown_in = symbols(cls), units or {}
-    values = {attribute: shown(template, attribute, shown_in) for attribute in cls.declarations}
-    result = {a: shown(template, a, shown_in, absolute=True) for a in cls.declarations}
-    for formula in cls.formulas.values():
-        if formula.attribute in vars(template):
-            complete = all(values.get(used) not in (None, "", NONE) for used in formula.uses)
-            yield Row(
-                name=formula.name,
-                words=formula.meaning.words,
-                symbol=symbol(formula),
-                expression=expression(formula, names),
-                numbers=expression(formula, values, r"\cdot ") if complete and formula.latex is None else "",
-                result=result[formula.attribute],
-                source=formula.meaning.source,
-            )
-
-
-def shown(template: Template, attribute: str, units: Mapping[str, str], *, absolute: bool = False) -> str:
-    """The value of a declaration with its unit, as LaTeX; empty where it has none or is an array.
-
-    A temperature inside an expression stands in kelvin: only there do sums and ratios hold.
-    """
-    declared = template.declarations[attribute]
-    if isinstance(declared, Choice):
-        return rf"\text{{{getattr(template, attribute).replace('_', ' ')}}}"
-    value = vars(template).get(attribute)
-    if value is None or isinstance(value, (np.ndarray, tuple)):
-        return ""
-    if isinstance(value, str):
-        return rf"\text{{{value.replace('_', ' ')}}}"
-    if np.isnan(value):
-        return NONE
-    scale = unit(units.get(attribute, declared.meaning.unit))
-    if scale.absolute and not absolute:
-        return amount(float(value), "K")
-    return amount(float(scale.from_si(value)), scale.text)
+__all__ = [
+    "NONE",
+    "Row",
+    "rows",
+    "shown",
+]

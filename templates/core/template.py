@@ -1,24 +1,10 @@
-"""Template: declare once what is given and what follows; everything else is derived.
+"""Kept for imports of version 0.1: the language, for templates written for version 0.1."""
 
-A template is a class in a file `<id>_v<version>.py`. Its instance holds SI values: givens as attributes,
-formulas evaluated when first asked for and then kept. The same code runs for one point and for 10⁶.
-"""
-
-from __future__ import annotations
-
-import inspect
-import math
-import re
-from collections.abc import Collection, Iterator, Mapping
-from typing import Any, ClassVar, NoReturn, Self
-
-import numpy as np
-from numpy.typing import NDArray
-
-from templates.core.admission import absence, masked, refusal, warn_if_outside, whole
-from templates.core.arrays import Array, Truth
-from templates.core.declare import (
-    by_name,
+from templates.core.language.template import (
+    VERSIONED,
+    Array,
+    Template,
+    Truth,
     choice,
     curve,
     derived,
@@ -31,253 +17,21 @@ from templates.core.declare import (
     text,
     units,
 )
-from templates.core.errors import Fault, InvalidInputs
-from templates.core.intake import (
-    Input,
-    admitted,
-    as_typed,
-    check_shapes,
-    is_curve,
-    points_of,
-    read_inputs,
-    violations,
-)
-from templates.core.ledger import Ledger, Mask
-from templates.core.spec import Choice, Declaration, Derived, Formula, Given, Profile, Requirement, Shared
 
 __all__ = [
-    "Array", "Template", "Truth", "choice", "curve", "derived", "formula", "given", "profile", "require",
-    "shared", "table", "text", "units",
-]  # fmt: skip
-
-VERSIONED = re.compile(r"(?:^|.*\.)([a-z][a-z0-9_]*)_v([1-9][0-9]*)$")
-
-
-class Template:
-    """Base of all templates and CAD models."""
-
-    id: ClassVar[str] = ""
-    version: ClassVar[int] = 0
-    withdrawn: ClassVar[str | None] = None
-    example: ClassVar[Mapping[str, Any]] = {}
-    precision: ClassVar[float] = (
-        1e-12  # relative, to which results of a released version are held; solvers: 1e-8
-    )
-
-    inputs: ClassVar[dict[str, Input]] = {}
-    formulas: ClassVar[dict[str, Formula[Any]]] = {}
-    requirements: ClassVar[tuple[Requirement, ...]] = ()
-    declarations: ClassVar[dict[str, Declaration]] = {}
-    intermediates: ClassVar[dict[str, Shared[Any]]] = {}
-
-    levels: ClassVar[tuple[str, ...]] = ()  # fidelities, cheapest first
-    default_level: ClassVar[str] = ""
-    most_points: ClassVar[Mapping[str, int]] = {}  # that a dear level takes at once
-    level: str
-
-    _ancestry: ClassVar[dict[str, frozenset[str]]] = {}
-    ledger: Ledger
-
-    def __init_subclass__(cls) -> None:
-        if match := VERSIONED.match(cls.__module__):
-            cls.id, cls.version = match[1], int(match[2])
-        everything = {name: v for base in reversed(cls.__mro__) for name, v in vars(base).items()}
-        declared = {name: v for name, v in everything.items() if isinstance(v, Declaration)}
-        if reserved := sorted(name for name in declared if name in cls._own_words()):
-            told = ", ".join(reserved)
-            raise TypeError(f"{cls.__name__}: {told} has a meaning in every template; name it otherwise")
-        cls.declarations, cls._ancestry = declared, {}
-        named = by_name(declared)
-        cls.inputs = {name: v for name, v in named.items() if isinstance(v, (Given, Choice, Derived))}
-        cls.formulas = {n: v for n, v in named.items() if n not in cls.inputs or getattr(v, "shown", False)}
-        cls.requirements = tuple(v for v in everything.values() if isinstance(v, Requirement))
-        cls.intermediates = {name: v for name, v in everything.items() if isinstance(v, Shared)}
-
-    def __init__(self, values: Mapping[str, Any], ledger: Ledger | None = None) -> None:
-        """Take SI values by attribute, unchecked; a user's input comes in by `from_quantities`."""
-        self.__dict__.update(values)
-        self.__dict__.setdefault("level", self.default_level)
-        self.__dict__["ledger"] = ledger or Ledger()
-        self.ledger.handed = frozenset(values)
-
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a {type(self).__name__} is a record of one calculation; make a new one")
-
-    def __delattr__(self, name: str) -> NoReturn:
-        self.__setattr__(name, None)
-
-    @classmethod
-    def _own_words(cls) -> set[str]:
-        """The attributes of the bases that are part of the language."""
-        bases = (vars(base) for base in cls.__mro__[1:])
-        return {name for own in bases for name, v in own.items() if not isinstance(v, Declaration)}
-
-    @classmethod
-    def title(cls) -> str:
-        """The first sentence of the docstring."""
-        return cls.summary().split(". ")[0].rstrip(".")
-
-    @classmethod
-    def summary(cls) -> str:
-        """The first paragraph of the docstring, or of its module."""
-        return " ".join(cls.documentation().split("\n\n")[0].split())
-
-    @classmethod
-    def documentation(cls) -> str:
-        """The docstring of the class, or of its module."""
-        return inspect.cleandoc(cls.__dict__.get("__doc__") or inspect.getmodule(cls).__doc__ or cls.__name__)
-
-    @classmethod
-    def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
-        """A template from what a user typed: read, convert to SI, check; once, before any formula runs.
-
-        `pending` are inputs that come later: they are not missed, and no rule about them is checked.
-
-        Raises
-        ------
-        InvalidInputs
-            Naming all that is wrong at once.
-        """
-        typed, faults = read_inputs(cls, raw)
-        ledger = Ledger(typed=typed)
-        values, refused = admitted(cls, typed, ledger)
-        faults = [fault for fault in (*faults, *refused) if fault.name not in pending]
-        if faults:
-            raise InvalidInputs(faults)
-        return cls._checked(values, ledger, pending)
-
-    def at(self, level: str, where: NDArray[np.bool_] | None = None) -> Self:
-        """The same inputs at another level; only those points of arrays where `where` holds, if given."""
-        names = (declared.attribute for declared in self.inputs.values())
-        values = {name: vars(self)[name] for name in names if name in self.ledger.handed}
-        masks = self._own_masks()
-        if where is not None:
-            values = {name: _picked(value, where, is_curve(self, name)) for name, value in values.items()}
-            masks = [Mask(m.names, np.broadcast_to(m.where, where.shape)[where], m.reason) for m in masks]
-        ledger = Ledger(typed=self.ledger.typed, masks=masks, missing=self.ledger.missing)
-        return type(self)({**values, "level": level}, ledger)
-
-    def shape_of_points(self) -> tuple[int, ...]:
-        """The shape of the points that the inputs make; a curve is one thing for each."""
-        given = {name: vars(self)[name] for name in self.ledger.handed}
-        return points_of(self, {name: v for name, v in given.items() if isinstance(v, np.ndarray)})
-
-    def as_given(self, attribute: str) -> Any:
-        """The value of an input as it was given, or its default; NaN where its formula has to make it.
-
-        Name the attribute by a literal: the language reads from the source which inputs a formula depends on.
-        """
-        return vars(self)[attribute] if attribute in self.ledger.handed else np.float64(np.nan)
-
-    def ladder(self) -> tuple[str, ...]:
-        """The levels that answer the question these inputs ask, cheapest first."""
-        return self.levels
-
-    def is_measured(self) -> bool:
-        """Whether the measured errors are those of such inputs."""
-        return True
-
-    def starting_level(self) -> str:
-        """The level that is taken when none is asked for."""
-        ladder = self.ladder()
-        return self.default_level if self.default_level in ladder else ladder[-1]
-
-    def _own_masks(self) -> list[Mask]:
-        """The masks that come from inputs; those of formulas come anew with the level."""
-        inputs = {declared.attribute for declared in self.inputs.values()}
-        return [mask for mask in self.ledger.masks if inputs.issuperset(mask.names)]
-
-    @classmethod
-    def from_si(cls, values: Mapping[str, Any]) -> Self:
-        """A template from SI values by API name, checked like a user's."""
-        return cls.from_quantities({name: as_typed(cls, name, value) for name, value in values.items()})
-
-    @classmethod
-    def _checked(cls, values: Mapping[str, Any], ledger: Ledger, pending: Collection[str] = ()) -> Self:
-        self = cls(values, ledger)
-        check_shapes(self)
-        faults: list[Fault] = []
-        with np.errstate(all="ignore"):
-            for rule in (rule for rule in cls.requirements if not cls._waits(rule, pending)):
-                try:
-                    faults += violations(self, rule)
-                except InvalidInputs as error:  # a default that the rule asks for is refused
-                    faults += (fault for fault in error.faults if fault not in faults)
-        if faults:
-            raise InvalidInputs(faults)
-        return self
-
-    @classmethod
-    def _waits(cls, rule: Requirement, pending: Collection[str]) -> bool:
-        """Whether a rule is about any of the inputs that are pending, by name or beneath what it uses."""
-        if not pending:
-            return False
-        beneath = {name for used in rule.uses for name in cls.dependencies(used)}.union(rule.uses_as_given)
-        attributes = {cls.inputs[name].attribute for name in pending}
-        return not (attributes.isdisjoint(beneath) and frozenset(pending).isdisjoint(rule.names))
-
-    @classmethod
-    def ancestors(cls, attribute: str) -> frozenset[str]:
-        """The attributes that are evaluated for this one, directly or not, itself included."""
-        if attribute not in cls._ancestry:
-            cls._ancestry[attribute] = frozenset(cls._beneath(attribute))
-        return cls._ancestry[attribute]
-
-    @classmethod
-    def dependencies(cls, attribute: str) -> frozenset[str]:
-        """The ancestors, and the inputs that any of them reads as given.
-
-        Formulas beneath an input's default may read the input as given: this is no order of evaluation.
-        """
-        ancestors = cls.ancestors(attribute)
-        return ancestors.union(*(getattr(cls._node(name), "uses_as_given", ()) for name in ancestors))
-
-    def depends_on(self, attribute: str) -> frozenset[str]:
-        """The dependencies of an attribute here: an input read as given counts only where it was given."""
-        ancestors = self.ancestors(attribute)
-        return ancestors | (self.dependencies(attribute) & self.ledger.handed)
-
-    @classmethod
-    def _node(cls, attribute: str) -> Declaration | Shared[Any] | None:
-        return cls.declarations.get(attribute) or cls.intermediates.get(attribute)
-
-    @classmethod
-    def _beneath(cls, attribute: str) -> Iterator[str]:
-        found, waiting = {attribute}, [attribute]
-        while waiting:
-            yield (name := waiting.pop())
-            new = dict.fromkeys(n for n in getattr(cls._node(name), "uses", ()) if n not in found)
-            found |= new.keys()
-            waiting += new
-
-    def inputs_si(self) -> dict[str, Any]:
-        """Every input in SI by API name, defaults included."""
-        with np.errstate(all="ignore"):
-            return {name: getattr(self, declared.attribute) for name, declared in self.inputs.items()}
-
-    def admit(self, declaration: Formula[Any], value: Any) -> Any:
-        """Check a formula's result against its bounds: refuse a point, mask points of an array, or warn."""
-        meaning = declaration.meaning.at(self.level)
-        if isinstance(value, float) or (np.ndim(value) == 0 and not isinstance(value, str)):
-            value = np.float64(value)
-            if not (math.isfinite(value) and (meaning.domain_si is None or meaning.domain_si.admits(value))):
-                why = absence(self, declaration) if math.isnan(value) else None
-                if why is None:
-                    raise InvalidInputs([refusal(self, declaration, value)])
-                self.ledger.absent[declaration.attribute] = why
-        elif isinstance(declaration, Profile) and value.ndim == declaration.axes:
-            value = whole(self, declaration, value)
-        elif isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
-            value = masked(self, declaration, value)
-        if meaning.published_si is not None:
-            warn_if_outside(self.ledger, declaration, value, self.level)
-        for assumed in meaning.assumes:
-            getattr(self, assumed)
-        return value
-
-
-def _picked(value: Any, where: NDArray[np.bool_], along_cycle: bool) -> Any:
-    if not isinstance(value, np.ndarray):
-        return value
-    places = value.shape[-1:] if along_cycle else ()
-    return np.broadcast_to(value, where.shape + places)[where]
+    "VERSIONED",
+    "Array",
+    "Template",
+    "Truth",
+    "choice",
+    "curve",
+    "derived",
+    "formula",
+    "given",
+    "profile",
+    "require",
+    "shared",
+    "table",
+    "text",
+    "units",
+]

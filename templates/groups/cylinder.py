@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from templates.core.template import (
+from templates.core.language.template import (
     Array,
     Template,
     Truth,
@@ -15,9 +15,9 @@ from templates.core.template import (
     given,
     require,
     shared,
-)  # fmt: skip
-from templates.physics.crank_loads import excess_at, pendulum_inertia
-from templates.physics.gas_checks import (
+)
+from templates.physics.engine.crank_loads import excess_at, pendulum_inertia
+from templates.physics.engine.gas_checks import (
     CYCLES,
     GIVEN_PEAK,
     POLYTROPIC,
@@ -30,10 +30,10 @@ from templates.physics.gas_checks import (
     table_closes,
     table_is_known,
     valves_in_order,
-)  # fmt: skip
-from templates.physics.gas_cycle import Charge, Valves, gas_cycle
-from templates.physics.gas_pressure import GasCycle, mean_effective
-from templates.physics.slider_crank import steps_in
+)
+from templates.physics.engine.gas_cycle import Charge, Valves, gas_cycle
+from templates.physics.engine.gas_pressure import GasCycle, mean_effective
+from templates.physics.engine.slider_crank import steps_in
 
 DYREMI = "Rao & Singh 1993"
 NO_INERTIA = "needs rod_inertia or rod_pendulum_period"

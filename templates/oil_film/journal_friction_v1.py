@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from templates.core.template import Array, Template, Truth, formula, given, require
-from templates.physics.loaded_journal import eccentricity_of_load, friction_over_Petrov, load_number
-from templates.physics.petrov import friction_Petrov_1883
+from templates.core.language.template import Array, Template, Truth, formula, given, require
+from templates.physics.journals.loaded_journal import eccentricity_of_load, friction_over_Petrov, load_number
+from templates.physics.journals.petrov import friction_Petrov_1883
 
 PETROV = "Petrov 1883"
 AT_REST = "without speed there is no film"

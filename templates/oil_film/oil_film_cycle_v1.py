@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from templates.core.declare import limits
-from templates.core.template import (
+from templates.core.language.declare import limits
+from templates.core.language.template import (
     Array,
     Template,
     Truth,
@@ -20,8 +20,9 @@ from templates.core.template import (
     require,
     shared,
     text,
-)  # fmt: skip
-from templates.physics.cyclic_film import (
+)
+from templates.physics.numerics.reserve import above, below
+from templates.physics.orbits.cyclic_film import (
     BOUNDARY,
     CycleFilm,
     CycleOrbit,
@@ -33,8 +34,7 @@ from templates.physics.cyclic_film import (
     level_spread,
     mean_speed,
 )
-from templates.physics.reserve import above, below
-from templates.physics.slider_film import spread
+from templates.physics.pads.slider_film import spread
 
 BOOKER = "Booker 1965"
 UNBORNE = (

@@ -6,9 +6,9 @@ their old worksheets. Static load, aligned journal, mean of inlet and outlet tem
 
 from __future__ import annotations
 
-from templates.core.template import Array, Template, Truth, formula, given, require
-from templates.physics.oil import density, double_logarithm, temperature_logarithm, walther
-from templates.physics.power_fit import exponent_k2, factor_k1
+from templates.core.language.template import Array, Template, Truth, formula, given, require
+from templates.physics.journals.oil import density, double_logarithm, temperature_logarithm, walther
+from templates.physics.numerics.power_fit import exponent_k2, factor_k1
 
 PAPER = "Bhadke et al. 2015"
 WIDTH_RATIO = 32 / 85  # the paper's test bearing; its print rounds to 0.376, hence the ±1 % below

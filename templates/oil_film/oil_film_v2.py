@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from templates.core.declare import limits
-from templates.core.template import (
+from templates.core.language.declare import limits
+from templates.core.language.template import (
     Array,
     Template,
     Truth,
@@ -21,24 +21,29 @@ from templates.core.template import (
     shared,
     table,
     text,
-)  # fmt: skip
-from templates.physics.heat_balance import HeatBalance, Running, heat_balance
-from templates.physics.journal_coefficients import Linear, linear_at
-from templates.physics.journal_motion import hydrodynamic_speed, mass_of_weight, sliding_speed, whirl_speed
-from templates.physics.journal_temperature import (
+)
+from templates.physics.journals.heat_balance import HeatBalance, Running, heat_balance
+from templates.physics.journals.journal_coefficients import Linear, linear_at
+from templates.physics.journals.journal_motion import (
+    hydrodynamic_speed,
+    mass_of_weight,
+    sliding_speed,
+    whirl_speed,
+)
+from templates.physics.journals.journal_temperature import (
     film_temperature,
     mean_is_used,
     or_reference,
     outlet_temperature,
     viscosity_known,
-)  # fmt: skip
-from templates.physics.lubrication_regime import (
+)
+from templates.physics.journals.lubrication_regime import (
     duty_parameter,
     film_parameter,
     friction_coefficient,
     lubrication_regime,
-)  # fmt: skip
-from templates.physics.oil import (
+)
+from templates.physics.journals.oil import (
     by_law,
     density,
     double_logarithm,
@@ -47,10 +52,17 @@ from templates.physics.oil import (
     vogel_factor,
     vogel_slope,
     walther,
-)  # fmt: skip
-from templates.physics.oil_grades import grades, viscosity_at_40, viscosity_at_100
-from templates.physics.smallest_film import smallest_film_ISO_7902
-from templates.physics.static_journal import BOUNDARY, FED, JournalFilm, is_fed, ladder, static_film_at
+)
+from templates.physics.journals.oil_grades import grades, viscosity_at_40, viscosity_at_100
+from templates.physics.journals.smallest_film import smallest_film_ISO_7902
+from templates.physics.journals.static_journal import (
+    BOUNDARY,
+    FED,
+    JournalFilm,
+    is_fed,
+    ladder,
+    static_film_at,
+)
 
 ISO = "ISO 7902-1:1998"
 NO_COEFFICIENTS = "level fit has none, nor a film whose cavities do not settle; take another level"

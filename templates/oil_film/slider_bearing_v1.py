@@ -6,10 +6,20 @@ narrowing film. Isothermal, incompressible, laminar, rigid faces, oil at ambient
 
 from __future__ import annotations
 
-from templates.core.declare import limits
-from templates.core.template import Array, Template, Truth, derived, formula, given, profile, require, shared
-from templates.physics.slider import reduced_Reynolds_number, squeeze_number
-from templates.physics.slider_film import (
+from templates.core.language.declare import limits
+from templates.core.language.template import (
+    Array,
+    Template,
+    Truth,
+    derived,
+    formula,
+    given,
+    profile,
+    require,
+    shared,
+)
+from templates.physics.pads.slider import reduced_Reynolds_number, squeeze_number
+from templates.physics.pads.slider_film import (
     HEIGHTS,
     NARROWEST,
     STATIONS,

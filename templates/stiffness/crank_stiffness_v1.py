@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.template import Array, Template, Truth, formula, given, require, text
-from templates.physics.torsion_throw import reason, recommended, recommended_stiffness, ring
+from templates.core.language.template import Array, Template, Truth, formula, given, require, text
+from templates.physics.shafts.torsion_throw import reason, recommended, recommended_stiffness, ring
 
 CARTER = "Carter 1928"
 WILSON = "Ker Wilson 1956"

@@ -6,7 +6,7 @@ elements, or measured), or as a nominal one with its stress concentration.
 
 from __future__ import annotations
 
-from templates.core.template import (
+from templates.core.language.template import (
     Array,
     Template,
     Truth,
@@ -18,7 +18,7 @@ from templates.core.template import (
     shared,
     text,
 )
-from templates.physics.fatigue import (
+from templates.physics.shafts.fatigue import (
     GERBER,
     GOODMAN,
     MORROW,
@@ -34,7 +34,7 @@ from templates.physics.fatigue import (
     mean_share,
     ratio_or_none,
 )
-from templates.physics.stress_concentration import (
+from templates.physics.shafts.stress_concentration import (
     BENDING,
     TORSION,
     fatigue_notch_factor_Peterson,

@@ -8,18 +8,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from templates.core.template import (
-    Array,
-    Template,
-    Truth,
-    choice,
-    curve,
-    profile,
-    require,
-    text,
+from templates.core.language.template import Array, Template, Truth, choice, curve, profile, require, text
+from templates.physics.shafts.torsion_chain import (
+    FIXED,
+    FREE,
+    angular_frequencies,
+    fits,
+    manageable,
+    mode_shapes,
 )
-from templates.physics.torsion_chain import FIXED, FREE, angular_frequencies, fits, manageable, mode_shapes
-from templates.physics.torsion_orders import (
+from templates.physics.shafts.torsion_orders import (
     ascending,
     campbell_speeds,
     critical_speeds,

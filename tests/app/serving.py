@@ -21,8 +21,8 @@ from patience import GLANCE, patient, until
 from app.client import Client
 from app.designs.schemas import PAPER
 from app.main import create_app
+from app.server import configuration
 from app.settings import Settings
-from app.targets import WholeTarget
 
 API = "/api/v1"
 PATIENCE = patient(60.0)  # for a server to start [s]; importing the geometry kernel takes some of it
@@ -183,8 +183,7 @@ class Served:
 def serving(settings: Settings):
     """The real app under uvicorn in a thread, until the end."""
     app = create_app(settings)
-    config = uvicorn.Config(app, host="127.0.0.1", port=0, log_level="error", http=WholeTarget)
-    server = uvicorn.Server(config)
+    server = uvicorn.Server(configuration(app, settings, port=0))
     thread = threading.Thread(target=server.run, name="uvicorn")
     thread.start()
     try:

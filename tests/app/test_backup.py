@@ -315,7 +315,7 @@ class Writers:
 
 
 def test_a_backup_among_writes_is_complete(folders, tmp_path):
-    with serving(Settings(data=folders / "busy", queue_limit=1000)) as server:
+    with serving(Settings(data=folders / "busy", queue_limit=1000, client_queue_limit=1000)) as server:
         writers = Writers(server.url)
         with ThreadPoolExecutor(DESIGNS) as pool:
             changing = [pool.submit(writers.change, number) for number in range(DESIGNS)]
@@ -335,7 +335,7 @@ def test_a_backup_among_writes_is_complete(folders, tmp_path):
     assert run("restore", tmp_path / "busy.tar", "--data", tmp_path / "new").exit_code == 0
     checked = run("check", "--data", tmp_path / "new")
     assert checked.exit_code == 0, checked.output
-    with serving(Settings(data=tmp_path / "new", queue_limit=1000)) as server:
+    with serving(Settings(data=tmp_path / "new", queue_limit=1000, client_queue_limit=1000)) as server:
         with httpx.Client(base_url=server.url, timeout=90, trust_env=False) as http:
             for id, number, state in before:
                 found = revision(http, {"id": id}, number)

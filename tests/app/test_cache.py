@@ -13,7 +13,7 @@ from app.designs.graph import Block
 from app.designs.memory import Memory
 from app.designs.worksheet import _written_out
 from app.sizes import size_of
-from templates.core.evaluate import evaluate
+from templates.core.language.evaluate import evaluate
 
 MIB = 2**20
 
@@ -112,7 +112,7 @@ class TestMemory:
     def test_an_evaluation_is_computed_once(self, film, monkeypatch):
         memory = Memory(Cache(16))
         first = memory.evaluation(block(film), film.example, None)
-        monkeypatch.setattr(designs, "evaluate", None)
+        monkeypatch.setattr(designs, "evaluated_step", None)
         assert memory.evaluation(block(film), dict(film.example), None) is first
 
     def test_one_that_has_grown_is_measured_again(self, film):
@@ -131,5 +131,5 @@ def test_formulas_written_out_are_kept_in_the_same_cache(film, monkeypatch):
     arguments = (film, to_json(dict(film.example)), tuple(film.formulas)[:1], None, "si")
     first = _written_out(*arguments)
     assert cache.size > 1000
-    monkeypatch.setattr("app.designs.worksheet.evaluate", None)
+    monkeypatch.setattr("app.designs.worksheet.evaluated_step", None)
     assert _written_out(*arguments) is first

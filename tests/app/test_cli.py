@@ -156,7 +156,7 @@ class TestServe:
     def served_with(self, monkeypatch):
         """The options of each server that would have started."""
         served = []
-        monkeypatch.setattr("app.cli.uvicorn.run", lambda app, **options: served.append(options))
+        monkeypatch.setattr("app.cli.server.run", lambda app, settings: served.append(settings))
         return served
 
     @pytest.mark.parametrize("host", ["127.0.0.1", "127.3.2.1", "::1", "localhost"])
@@ -164,7 +164,7 @@ class TestServe:
         result = run("serve", "--host", host, "--port", "8123", "--data", str(tmp_path))
         assert result.exit_code == 0
         assert "WARNING" not in result.stderr
-        assert (served_with[0]["host"], served_with[0]["port"]) == (host, 8123)
+        assert (served_with[0].host, served_with[0].port) == (host, 8123)
 
     @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.5", "crank.example", "localhost.example"])
     def test_beyond_loopback_the_operator_must_insist(self, tmp_path, served_with, host):
@@ -184,13 +184,13 @@ class TestServe:
         assert allowed.exit_code == 0
         assert "WARNING" in allowed.stderr
         assert "without authentication" in allowed.stderr
-        assert (served_with[0]["host"], served_with[0]["port"]) == (host, 8123)
+        assert (served_with[0].host, served_with[0].port) == (host, 8123)
 
     def test_the_environment_says_where_to_listen(self, tmp_path, monkeypatch, served_with):
         monkeypatch.setenv("CRANKWRIGHT_DATA", str(tmp_path))
         monkeypatch.setenv("CRANKWRIGHT_PORT", "8124")
         assert run("serve").exit_code == 0
-        assert (served_with[0]["host"], served_with[0]["port"]) == ("127.0.0.1", 8124)
+        assert (served_with[0].host, served_with[0].port) == ("127.0.0.1", 8124)
         monkeypatch.setenv("CRANKWRIGHT_HOST", "0.0.0.0")
         assert "--insecure" in run("serve").output
         assert len(served_with) == 1

@@ -18,6 +18,7 @@ from app.jobs.errors import JobFinished, JobNotFound
 from app.jobs.routes import router
 from app.jobs.service import Jobs
 from app.settings import Settings
+from app.streams import Streams
 from app.workers.inline import Inline
 
 
@@ -42,7 +43,7 @@ def jobs(database):
 def app(jobs):
     app = FastAPI()
     app.include_router(router)
-    app.state.jobs = jobs
+    app.state.jobs, app.state.streams = jobs, Streams(most=5, most_of_client=5)
     return app
 
 
@@ -184,16 +185,18 @@ import uvicorn
 from fastapi import FastAPI
 from app.jobs.routes import router
 from app.jobs.service import Jobs
-from app.jobs.shutdown import streams_end_on_signal
+from app.jobs.shutdown import on_stop_signal
 from app.settings import Settings
 from app.storage.database import Database
+from app.streams import Streams
 from app.workers.inline import Inline
 
 @asynccontextmanager
 async def lifespan(app):
     database = Database(sys.argv[1])
+    app.state.streams = Streams(most=5, most_of_client=5)
     app.state.jobs = jobs = Jobs(database, Inline(), Settings(), lambda error: {})
-    with streams_end_on_signal(jobs.events):
+    with on_stop_signal(jobs.drain):
         yield
     jobs.stop()
     database.close()

@@ -19,18 +19,18 @@ from app.models.routes import BuildIn
 from app.paging import page_of
 from app.reports.cells import clean
 from app.reports.routes import REPORTS, _wanted
-from app.waiting import _seconds
+from app.waiting import patience
 from app.web import numbers
 from app.web.forms import kept, patch_of, text_of, value_of
 from cad.header import LONGEST_HEADER, read_header
 from cad.part21 import description, plain, quoted, tokens
-from templates.core.catalogue import Catalogue
+from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import MOST_SUGGESTED, Fault, InvalidInputs, excerpt, unknown_name, unknown_names
-from templates.core.meaning import api_name
+from templates.core.language.meaning import api_name
 from templates.core.nearest import nearest
-from templates.core.quantity import _parted, read
-from templates.core.relation import MAX_LENGTH, parse
-from templates.core.units import MOST_REMEMBERED, forget_units, registry, unit
+from templates.core.units.quantity import _parted, read
+from templates.core.units.relation import MAX_LENGTH, parse
+from templates.core.units.units import MOST_REMEMBERED, forget_units, registry, unit
 from templates.oil_film.oil_film_v1 import OilFilm
 
 START = "FILE_DESCRIPTION(("
@@ -167,7 +167,7 @@ class TestUnitsAndQuantities:
         assert_linear(points, lambda n: {f"a{i}": [1, 2, 3] for i in range(n)}, 500)
 
     def test_pint_does_not_keep_everything_that_it_was_asked_for(self, monkeypatch):
-        monkeypatch.setattr("templates.core.units.MOST_REMEMBERED", 200)
+        monkeypatch.setattr("templates.core.units.units.MOST_REMEMBERED", 200)
         for power in range(300):
             unit.__wrapped__(f"mm**{power % 99}*s**{power // 99}")
         forget_units()
@@ -351,7 +351,7 @@ def alike_names(count):
 class TestHeaders:
     @pytest.mark.parametrize("piece", ["wait=", "wait=9", "w", "wait=1 ", ",", "respond-async", "=9999"])
     def test_prefer(self, piece):
-        assert_linear(lambda text: _seconds(text, 2.0), lambda n: piece * n, 20_000)
+        assert_linear(lambda text: patience(text, 2.0), lambda n: piece * n, 20_000)
 
     @pytest.mark.parametrize("piece", ["/", ",", ";", "q=", ";q=0.5", "text/html,", "model/step;q=1,", " "])
     def test_accept(self, piece):

@@ -116,7 +116,7 @@ def test_ready(http):
     answer = until(lambda: http.get("/readyz"), lambda answer: answer.status_code == 200)
     assert answer.json() == {
         "status": "ready",
-        "checks": {"database": "ok", "space": "ok", "processes": "ok"},
+        "checks": {"database": "ok", "space": "ok", "processes": "ok", "calculations": "ok"},
     }
 
 

@@ -57,7 +57,7 @@ def build(database, key, bytes_, store):
     """A build with a file and an analysis."""
 
     def unit(session):
-        designs.add_build(session, key, "moody", 1, {}, {})
+        designs.add_build(session, key, "moody", 1, {}, {}, "recipe 1")
         designs.add_artifact(session, key, "step", store.put(bytes_), len(bytes_))
         session.add(
             AnalysisRow(key=f"of {key}", output="stress", build_key=key, asked={}, found={}, created="")
@@ -199,7 +199,7 @@ class TestFiles:
         lost = store.put(b"lost")
         sweep = Sweep(database, store)
         assert sweep.run() == 0
-        assert store.check(lost)
+        assert store.exists(lost)
         assert sweep.run() == 1
         assert [file.sha for file in store.list()] == [store.put(b"kept")]
 
@@ -238,7 +238,7 @@ class TestFiles:
         assert sweep.run() == 0
         build(database, "a", b"wanted again", store)
         assert sweep.run() == 0
-        assert store.check(sha)
+        assert store.exists(sha)
 
     def test_a_file_that_is_stored_while_the_sweep_runs_stays(self, database, store, monkeypatch):
         sha = store.put(b"wanted again")
@@ -248,7 +248,7 @@ class TestFiles:
         monkeypatch.setattr(store, "list", lambda: listed)
         store.put(b"wanted again")
         assert sweep.run() == 0
-        assert store.check(sha)
+        assert store.exists(sha)
 
     def test_a_round_sweeps_once_in_an_hour_of_operation(self, database, retention, store):
         store.put(b"lost")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 import victims
-from patience import patient, until
+from patience import GLANCE, patient
 
 from app.workers.base import Limits
 from app.workers.errors import (
@@ -44,7 +44,11 @@ def alive(pid):
 
 
 def eventually(condition, seconds=20.0):
-    return until(condition, seconds=seconds)
+    """Whether the condition comes true within the time."""
+    end = time.monotonic() + patient(seconds)
+    while not (answer := condition()) and time.monotonic() < end:
+        time.sleep(GLANCE)
+    return answer
 
 
 @pytest.mark.parametrize("inline", [False, True])

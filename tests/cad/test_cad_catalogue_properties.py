@@ -20,7 +20,7 @@ from cad.inspect import MEASURES
 from cad.model import CadModel
 from cad.regenerate import Build, as_text, build_key, regenerate
 from templates.core.errors import InvalidInputs
-from templates.core.spec import Choice, Derived
+from templates.core.language.spec import Choice, Derived
 
 HOSTILE = [math.nan, math.inf, -math.inf, -1.0, 1e12]
 IN_ANOTHER_PROCESS = """

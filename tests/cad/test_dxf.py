@@ -17,7 +17,7 @@ from cad.header import read_header
 from cad.inspect import bounding_box
 from cad.regenerate import Build, regenerate
 from cad.step import read_step
-from templates.core.units import unit
+from templates.core.units.units import unit
 
 SHOWN = 0.9  # of the lengths and angles of an example
 

@@ -12,9 +12,9 @@ import pytest
 
 from cad.catalogue import models
 from cad.regenerate import build_key, regenerate
-from templates.core.catalogue import find
-from templates.core.evaluate import evaluate
-from templates.core.template import Template
+from templates.core.catalogue.finding import find
+from templates.core.language.evaluate import evaluate
+from templates.core.language.template import Template
 
 FOLDER = Path(__file__).parents[1] / "references" / "version_0_1"
 DOORS = {

@@ -1,6 +1,7 @@
 """A second solver of the plane slider of finite width, by the equations of the journal film.
 
-The independent check of `templates.physics.slider_film`: another mesh, another quadrature, another solution.
+The independent check of `templates.physics.pads.slider_film`: another mesh, another quadrature, another
+solution.
 
 Boundary condition: P = 0 on all four sides; a converging film does not rupture.
 x runs from the inlet (0) to the outlet (1) over the length l, zeta = 2z/b from the middle to the side.
@@ -16,11 +17,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from templates.core.arrays import Array
-from templates.physics.arrays import require
-from templates.physics.complementarity import rupture
-from templates.physics.film_equations import film_equations, midpoints, rotation
-from templates.physics.film_mesh import Mesh, graded_across, gregory
-from templates.physics.slider import friction_incline_Rayleigh_1918, load_incline_Rayleigh_1918
+from templates.physics.films.complementarity import rupture
+from templates.physics.films.film_equations import film_equations, midpoints, rotation
+from templates.physics.films.film_mesh import Mesh, graded_across, gregory
+from templates.physics.numerics.arrays import require
+from templates.physics.pads.slider import friction_incline_Rayleigh_1918, load_incline_Rayleigh_1918
 
 WIDEST = 100.0
 """Widest pad b/l that the mesh resolves [-]."""

@@ -1,18 +1,19 @@
 """A second way to a bearing with axial grooves: its lands one by one, with rupture after Swift and Stieber.
 
-The independent check of `templates.physics.fed_film`, which solves the whole circle with cavities that
+The independent check of `templates.physics.cavities.fed_film`, which solves the whole circle with cavities
+that
 re-form: where grooves stand at ambient pressure nearly nothing re-forms outside them, and both agree.
 """
 
 import numpy as np
 from scipy.optimize import brentq
 
-from templates.physics.arrays import require, require_film
-from templates.physics.complementarity import Rupture, rupture
-from templates.physics.film_dynamics import Coefficients, in_load_axes, linear_forces
-from templates.physics.film_measures import force
-from templates.physics.film_mesh import Mesh, gregory
-from templates.physics.reynolds import journal_equations
+from templates.physics.films.complementarity import Rupture, rupture
+from templates.physics.films.film_dynamics import Coefficients, in_load_axes, linear_forces
+from templates.physics.films.film_measures import force
+from templates.physics.films.film_mesh import Mesh, gregory
+from templates.physics.films.reynolds import journal_equations
+from templates.physics.numerics.arrays import require, require_film
 
 
 def grooved_coefficients(

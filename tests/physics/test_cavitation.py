@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from grooved_lands import grooved_coefficients
 
-from templates.physics.cavitating_dynamics import LinearFilm, linear_film
-from templates.physics.cavitating_film import cavitating_film, solved_ring
-from templates.physics.cavitating_network import Groove
-from templates.physics.cavitating_slider import PocketedSlider, discrete_slider, film_Fowell_2007
-from templates.physics.fed_film import Feed, fed_coefficients, fed_film
-from templates.physics.film_dynamics import plain_coefficients
-from templates.physics.reynolds import extrapolated_film
+from templates.physics.cavities.cavitating_dynamics import LinearFilm, linear_film
+from templates.physics.cavities.cavitating_film import cavitating_film, solved_ring
+from templates.physics.cavities.cavitating_network import Groove
+from templates.physics.cavities.fed_film import Feed, fed_coefficients, fed_film
+from templates.physics.films.film_dynamics import plain_coefficients
+from templates.physics.films.reynolds import extrapolated_film
+from tests.references.cavitating_slider import PocketedSlider, discrete_slider, film_Fowell_2007
 
 SLIDER = PocketedSlider(1e-2, 1.05e-6, 1e-6, 2e-3, 5e-3, 1e-6, eta=1e-2, speed=1.0, ambient=1e5)
 UNIT = SLIDER.eta * SLIDER.speed * SLIDER.length / SLIDER.outlet**2

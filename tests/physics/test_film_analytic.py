@@ -3,24 +3,24 @@
 import numpy as np
 import pytest
 
-from templates.physics.eccentricity import eccentricity
-from templates.physics.film_dynamics import plain_coefficients
-from templates.physics.film_measures import force
-from templates.physics.long_bearing import (
+from templates.physics.films.film_dynamics import plain_coefficients
+from templates.physics.films.film_measures import force
+from templates.physics.films.long_bearing import (
     force_Swift_Stieber,
     load_Swift_Stieber,
     peak_pressure_Swift_Stieber,
 )
-from templates.physics.moving_film import mobility, moving_force
-from templates.physics.reynolds import extrapolated_film, static_field, static_film
-from templates.physics.short_bearing import (
+from templates.physics.films.reynolds import extrapolated_film, static_field, static_film
+from templates.physics.films.short_bearing import (
     attitude_Ocvirk_1952,
     load_Ocvirk_1952,
     peak_angle_Ocvirk_1952,
     peak_pressure_Ocvirk_1952,
     side_flow_Ocvirk_1952,
 )
-from templates.physics.whirl import threshold_mass, whirl_ratio_squared
+from templates.physics.journals.whirl import threshold_mass, whirl_ratio_squared
+from templates.physics.numerics.eccentricity import eccentricity
+from tests.references.moving_film import mobility, moving_force
 
 
 @pytest.mark.parametrize(("eps", "ratio"), [(0.1, 1.0), (0.5, 0.25), (0.8, 1.0), (0.95, 0.5), (0.99, 2.0)])

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from seeds import seeded
 
-from templates.physics.film_dynamics import plain_coefficients
-from templates.physics.film_map import map_error, mapped_coefficients, mapped_film, mapped_load
-from templates.physics.film_map_inverse import mapped_eccentricity
-from templates.physics.reynolds import extrapolated_film
-from templates.physics.short_bearing import load_Ocvirk_1952
+from templates.physics.films.film_dynamics import plain_coefficients
+from templates.physics.films.film_map import map_error, mapped_coefficients, mapped_film, mapped_load
+from templates.physics.films.film_map_inverse import mapped_eccentricity
+from templates.physics.films.reynolds import extrapolated_film
+from templates.physics.films.short_bearing import load_Ocvirk_1952
 
 
 def compare(eps: float, ratio: float) -> tuple[float, float]:

@@ -5,7 +5,7 @@ import pytest
 
 from templates.bearing_load.bearing_load_v1 import BearingLoad
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
+from templates.core.language.evaluate import evaluate
 
 BASE = {**BearingLoad.example, "crank_angle_step": "1 deg"}
 IDEAL = {**BASE, "compression_exponent": 1.4, "expansion_exponent": 1.4, "suction_pressure": "1 bar",

@@ -10,8 +10,8 @@ from seeds import seeded
 from test_film_literature import table
 
 from templates.core.arrays import Array
-from templates.physics.film_mobility import film_mobility
-from templates.physics.mobility_map import (
+from templates.physics.orbits.film_mobility import film_mobility
+from templates.physics.orbits.mobility_map import (
     LARGEST,
     NARROWEST,
     WIDEST,
@@ -20,12 +20,12 @@ from templates.physics.mobility_map import (
     mapped_mobility_along_load,
     mobility_error,
 )
-from templates.physics.moving_film import extrapolated_force, mobility, moving_force
-from templates.physics.short_mobility import (
+from templates.physics.orbits.short_mobility import (
     mobility_Booker_1965,
     mobility_Booker_1971,
     squeeze_force_Booker_1965,
 )
+from tests.references.moving_film import extrapolated_force, mobility, moving_force
 
 
 def size(vector: Array) -> Array:

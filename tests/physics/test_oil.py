@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from templates.physics.oil import MM2_PER_S, vogel, vogel_factor, vogel_slope
-from templates.physics.oil_grades import grades, viscosity_at_40, viscosity_at_100
+from templates.physics.journals.oil import MM2_PER_S, vogel, vogel_factor, vogel_slope
+from templates.physics.journals.oil_grades import grades, viscosity_at_40, viscosity_at_100
 
 REFERENCES = Path(__file__).parents[1] / "references"
 J300 = {"20": (6.9, 9.3), "30": (9.3, 12.5), "40": (12.5, 16.3), "50": (16.3, 21.9), "60": (21.9, 26.1)}

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import templates
-from templates.core.catalogue import find
-from templates.core.evaluate import evaluate
-from templates.core.template import Template
-from templates.physics.oil import density, walther
-from templates.physics.static_journal import static_film_at
-from templates.physics.stress_concentration import BENDING, shoulder_fillet_Pilkey_2008
+from templates.core.catalogue.finding import find
+from templates.core.language.evaluate import evaluate
+from templates.core.language.template import Template
+from templates.physics.journals.oil import density, walther
+from templates.physics.journals.static_journal import static_film_at
+from templates.physics.shafts.stress_concentration import BENDING, shoulder_fillet_Pilkey_2008
 
 FILM = find([Path(templates.__file__).parent], Template).get("oil_film", 2)
 

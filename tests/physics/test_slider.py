@@ -6,7 +6,7 @@ from finite_slider import finite_slider, leakage_factor
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from templates.physics.slider import (
+from templates.physics.pads.slider import (
     centre_of_pressure_Rayleigh_1918,
     film_velocity,
     friction_incline_Rayleigh_1918,

@@ -5,12 +5,12 @@ import pytest
 from finite_slider import finite_slider
 from scipy.integrate import quad
 
-from templates.physics.complementarity import rupture
-from templates.physics.film_equations import film_equations, midpoints, rotation
-from templates.physics.film_mesh import Mesh
-from templates.physics.pad_equations import solved_pads
-from templates.physics.pad_mesh import across, grading
-from templates.physics.slider_film import STATIONS, pad_film, shear_of_wedge, velocity_profile
+from templates.physics.films.complementarity import rupture
+from templates.physics.films.film_equations import film_equations, midpoints, rotation
+from templates.physics.films.film_mesh import Mesh
+from templates.physics.pads.pad_equations import solved_pads
+from templates.physics.pads.pad_mesh import across, grading
+from templates.physics.pads.slider_film import STATIONS, pad_film, shear_of_wedge, velocity_profile
 
 RATIOS = [1 + 1e-9, 1.05, 2.0, 10.0, 300.0]
 WIDTHS = [0.01, 0.3, 1.0, 10.0, 100.0]

@@ -7,7 +7,7 @@ from math import log2, pi, sin
 import numpy as np
 import pytest
 
-from templates.physics.torsion_chain import FIXED, FREE, angular_frequencies, mode_shapes
+from templates.physics.shafts.torsion_chain import FIXED, FREE, angular_frequencies, mode_shapes
 
 SCALES = [(-9, 9), (-2, 2)]
 

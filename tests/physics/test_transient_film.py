@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from templates.core.arrays import Array
-from templates.physics.cavitating_film import cavitating_film
-from templates.physics.cavitating_network import Groove
-from templates.physics.journal_orbit import CyclicLoad, periodic_orbit
-from templates.physics.mobility_law import MapLaw
-from templates.physics.transient_balance import Journal, balance, transient_mesh
-from templates.physics.transient_film import State, stepped
-from templates.physics.transient_orbit import Marching, transient_orbit
+from templates.physics.cavities.cavitating_film import cavitating_film
+from templates.physics.cavities.cavitating_network import Groove
+from templates.physics.cavities.transient_balance import Journal, balance, transient_mesh
+from templates.physics.cavities.transient_film import State, stepped
+from templates.physics.orbits.journal_orbit import CyclicLoad, periodic_orbit
+from templates.physics.orbits.mobility_law import MapLaw
+from templates.physics.orbits.transient_orbit import Marching, transient_orbit
 
 STEP = np.radians(4.0)
 

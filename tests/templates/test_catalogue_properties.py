@@ -13,15 +13,17 @@ from seeds import seeded
 
 import templates
 from cad.catalogue import models
-from templates.core import dimensions, golden, report
-from templates.core.catalogue import find
-from templates.core.digests import digests, release_file
+from templates.core.catalogue import golden
+from templates.core.catalogue.digests import digests, release_file
+from templates.core.catalogue.finding import find
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate, is_told
-from templates.core.intake import is_single
-from templates.core.schema import describe, inputs_schema
-from templates.core.spec import Choice, Curve, Derived, Given, Profile, Text
-from templates.core.template import Template
+from templates.core.language import dimensions
+from templates.core.language.evaluate import evaluate, is_told
+from templates.core.language.intake import is_single
+from templates.core.language.spec import Choice, Curve, Derived, Given, Profile, Text
+from templates.core.language.template import Template
+from templates.core.paper import report
+from templates.core.paper.schema import describe, inputs_schema
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 BUILT_IN = find([Path(templates.__file__).parent], Template)

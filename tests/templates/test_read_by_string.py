@@ -10,10 +10,10 @@ import pytest
 
 import templates
 from cad.catalogue import models
-from templates.core.catalogue import find
+from templates.core.catalogue.finding import find
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
-from templates.core.template import Template, derived, formula, given, require, shared
+from templates.core.language.evaluate import evaluate
+from templates.core.language.template import Template, derived, formula, given, require, shared
 
 BUILT_IN = [*chain(find([Path(templates.__file__).parent], Template), models())]
 

@@ -10,7 +10,7 @@ from sqlalchemy import text
 from app.web.forms import kept, patch_of, text_of, value_of
 from app.web.numbers import aligned, percent, told, unit
 from app.web.rendering import POLICY
-from templates.physics.reynolds import extrapolated_film
+from templates.physics.films.reynolds import extrapolated_film
 
 HOSTILE = "<script>alert(1)</script>&\"'"
 PAGES = (

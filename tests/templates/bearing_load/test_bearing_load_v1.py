@@ -5,7 +5,7 @@ import pytest
 
 from templates.bearing_load.bearing_load_v1 import BearingLoad
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
+from templates.core.language.evaluate import evaluate
 
 SWUNG = {**BearingLoad.example, "crank_angle_step": "1 deg"}
 BASE = {**{n: v for n, v in SWUNG.items() if n != "rod_pendulum_period"}, "rod_inertia": "2.1e-3 kg*m**2"}

@@ -8,8 +8,8 @@ from nine_cylinders import PRINTED
 from templates.bearing_load.bearing_load_v1 import BearingLoad
 from templates.bearing_load.engine_v1 import Engine
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
-from templates.physics.balance import Arrangement, two_planes
+from templates.core.language.evaluate import evaluate
+from templates.physics.engine.balance import Arrangement, two_planes
 
 
 def values(raw, **options):

@@ -10,7 +10,7 @@ from app.calculations import rendering
 from templates.bearing_load.bearing_load_v1 import BearingLoad
 from templates.bearing_load.engine_v1 import Engine
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
+from templates.core.language.evaluate import evaluate
 
 BOTH = pytest.mark.parametrize("cls", [BearingLoad, Engine])
 WILD = (0, -1, 1e-3, 1e3, 1e-9, 1e9, 1e-150, 1e150, 1e300)

@@ -7,13 +7,11 @@ import numpy as np
 import pytest
 
 from app.calculations import rendering
-from templates.core import dimensions
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
-from templates.core.report import rows
-from templates.core.schema import describe, inputs_schema
-from templates.core.solve import solve
-from templates.core.template import (
+from templates.core.language import dimensions
+from templates.core.language.evaluate import evaluate
+from templates.core.language.solve import solve
+from templates.core.language.template import (
     Template,
     Truth,
     choice,
@@ -25,6 +23,8 @@ from templates.core.template import (
     require,
     units,
 )
+from templates.core.paper.report import rows
+from templates.core.paper.schema import describe, inputs_schema
 
 
 @units("m", returns="m", latex=r"f\left({0}\right)")

@@ -11,8 +11,7 @@ import pytest
 
 import templates
 from cad.catalogue import models
-from templates.core.catalogue import find
-from templates.core.digests import (
+from templates.core.catalogue.digests import (
     content_digest,
     content_digest_of,
     digest,
@@ -21,8 +20,9 @@ from templates.core.digests import (
     release_file,
     source_digest,
 )
-from templates.core.golden import mark_released
-from templates.core.template import Template
+from templates.core.catalogue.finding import find
+from templates.core.catalogue.golden import mark_released
+from templates.core.language.template import Template
 
 SOURCE = '''"""A team's own template."""
 

@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from templates.core.declare import curve, derived, formula, given, profile, table, text
-from templates.core.meaning import Keywords, meaning
+from templates.core.language.declare import curve, derived, formula, given, profile, table, text
+from templates.core.language.meaning import Keywords, meaning
 
 
 def test_property_the_keywords_are_those_of_a_meaning():

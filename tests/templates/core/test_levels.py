@@ -5,14 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from templates.core import levels
-from templates.core.declare import limits
+from templates.core.catalogue.golden import record
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
-from templates.core.golden import record
-from templates.core.levels import Accuracy
-from templates.core.schema import describe, inputs_schema
-from templates.core.template import (
+from templates.core.language import levels
+from templates.core.language.declare import limits
+from templates.core.language.evaluate import evaluate
+from templates.core.language.levels import Accuracy
+from templates.core.language.template import (
     Template,
     Truth,
     derived,
@@ -24,6 +23,7 @@ from templates.core.template import (
     text,
     units,
 )
+from templates.core.paper.schema import describe, inputs_schema
 
 OFFSETS = {"rough": 0.1, "fine": 0.001}
 

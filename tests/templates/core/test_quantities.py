@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from templates.core.errors import FaultyText, excerpt, plain, unknown_name
-from templates.core.quantity import read, read_any, require_same_kind
-from templates.core.units import unit
+from templates.core.units.quantity import read, read_any, require_same_kind
+from templates.core.units.units import unit
 
 
 def nested(depth):

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from templates.core.errors import FaultyText
-from templates.core.quantity import registry
-from templates.core.relation import Kind, is_relation, parse
-from templates.core.units import unit
+from templates.core.units.quantity import registry
+from templates.core.units.relation import Kind, is_relation, parse
+from templates.core.units.units import unit
 
 LENGTH = Kind(registry.Unit("m"))
 PURE = Kind()

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from templates.core.errors import InvalidInputs, Unreachable
-from templates.core.solve import solve
-from templates.core.template import Template, choice, formula, given
+from templates.core.language.solve import solve
+from templates.core.language.template import Template, choice, formula, given
 
 
 class Curves(Template):

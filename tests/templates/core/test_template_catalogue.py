@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 import templates
-from templates.core.catalogue import find
-from templates.core.digests import content_digest, digests, source_digest
+from templates.core.catalogue.digests import content_digest, digests, source_digest
+from templates.core.catalogue.finding import find
+from templates.core.catalogue.golden import freeze, golden_file, record
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, Unreachable, UnusableFile
-from templates.core.evaluate import evaluate
-from templates.core.golden import freeze, golden_file, record
-from templates.core.template import Template
+from templates.core.language.evaluate import evaluate
+from templates.core.language.template import Template
 
 SOURCE = '''"""A team's own template."""
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from templates.core.evaluate import evaluate
-from templates.core.template import Array, Template, Truth, formula, given, require
-from templates.core.verdicts import checks
+from templates.core.language.evaluate import evaluate
+from templates.core.language.template import Array, Template, Truth, formula, given, require
+from templates.core.paper.verdicts import checks
 
 
 def reserve(limit: Array, value: Array) -> Truth:

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
+from templates.core.language.evaluate import evaluate
 from templates.oil_film.journal_friction_v1 import JournalFriction
-from templates.physics.reynolds import extrapolated_film
+from templates.physics.films.reynolds import extrapolated_film
 
 CASE = {name: value for name, value in JournalFriction.example.items() if name != "radial_load"}
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
+from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
 from templates.oil_film.oil_film_v2 import OilFilm
-from templates.physics.film_map import mapped_load
-from templates.physics.short_bearing import load_Ocvirk_1952
+from templates.physics.films.film_map import mapped_load
+from templates.physics.films.short_bearing import load_Ocvirk_1952
 
 D, PSI, ETA, OMEGA = 0.1, 1e-3, 0.02, 300.0
 COUNT = 72

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from templates.core.errors import InvalidInputs, Unreachable
-from templates.core.evaluate import evaluate
-from templates.core.solve import solve
+from templates.core.language.evaluate import evaluate
+from templates.core.language.solve import solve
 from templates.oil_film.oil_film_v1 import OilFilm
 
 CASE = {"radial_load": "25 kN", "diametral_clearance": "0.055 mm", "bearing_diameter": "48 mm"}

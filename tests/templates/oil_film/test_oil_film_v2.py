@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
-from templates.core.quantity import Typed
-from templates.core.solve import solve
+from templates.core.language.evaluate import evaluate
+from templates.core.language.solve import solve
+from templates.core.units.quantity import Typed
 from templates.oil_film.oil_film_v2 import OilFilm
-from templates.physics.short_bearing import attitude_Ocvirk_1952
+from templates.physics.films.short_bearing import attitude_Ocvirk_1952
 
 REFERENCES = Path(__file__).parents[2] / "references"
 D, PSI, ETA, OMEGA = 0.1, 1e-3, 0.02, 100.0

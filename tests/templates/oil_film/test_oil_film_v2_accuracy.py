@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from templates.core.evaluate import evaluate
-from templates.core.levels import accuracy
-from templates.core.quantity import Typed
+from templates.core.language.evaluate import evaluate
+from templates.core.language.levels import accuracy
+from templates.core.units.quantity import Typed
 from templates.oil_film.oil_film_v1 import OilFilm as Paper
 from templates.oil_film.oil_film_v2 import OilFilm
-from templates.physics.film_map import mapped_load
-from templates.physics.reynolds import extrapolated_film
+from templates.physics.films.film_map import mapped_load
+from templates.physics.films.reynolds import extrapolated_film
 
 D, PSI, ETA, OMEGA = 0.1, 1e-3, 0.02, 100.0
 NAMES = ("minimum_film_thickness", "attitude_angle", "maximum_pressure", "friction_coefficient", "side_flow")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from templates.core.errors import InvalidInputs, Unreachable
-from templates.core.evaluate import evaluate
-from templates.core.levels import accuracy
-from templates.core.solve import solve
+from templates.core.language.evaluate import evaluate
+from templates.core.language.levels import accuracy
+from templates.core.language.solve import solve
 from templates.oil_film.slider_bearing_v1 import SliderBearing
 
 LEVELS = SliderBearing.levels
@@ -285,7 +285,7 @@ class TestAccuracy:
 
 def finer(ratio, width):
     """The pads solved on 128 × 32 intervals and 64 × 16, extrapolated, with the example's dimensions."""
-    from templates.physics.slider_film import finite_pad
+    from templates.physics.pads.slider_film import finite_pad
 
     film = finite_pad(ratio, width, 128, 32)
     return {

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
-from templates.physics.torsion_throw import ring
+from templates.core.language.evaluate import evaluate
+from templates.physics.shafts.torsion_throw import ring
 from templates.stiffness.crank_stiffness_v1 import CrankStiffness
 
 HAND = {

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
-from templates.core.solve import solve
-from templates.physics.stress_concentration import shoulder_fillet_Pilkey_2008
+from templates.core.language.evaluate import evaluate
+from templates.core.language.solve import solve
+from templates.physics.shafts.stress_concentration import shoulder_fillet_Pilkey_2008
 from templates.stiffness.fatigue_life_v1 import FatigueLife
 
 STEEL = {

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from templates.core.errors import InvalidInputs
-from templates.core.evaluate import evaluate
+from templates.core.language.evaluate import evaluate
 from templates.stiffness.torsional_vibration_v1 import TorsionalVibration
 
 REFERENCES = Path(__file__).parents[2] / "references"

@@ -1,0 +1,151 @@
+"""Structured logs on standard error, as text or JSON lines, each with the id of the request behind it.
+
+Bodies, queries, cookies and keys are never logged. A thread of its own writes: a terminal that does not take
+the lines delays nobody, and what is beyond the room of the queue is dropped and counted.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+import logging
+import queue
+import re
+import secrets
+import sys
+from collections import OrderedDict
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from datetime import UTC, datetime
+from logging.handlers import QueueListener
+from typing import Any, Literal, TextIO
+
+Format = Literal["json", "text"]
+Level = Literal["debug", "info", "warning", "error"]
+
+REQUEST_ID: ContextVar[str] = ContextVar("request_id", default="")
+FIELDS = ("request_id", "client", "method", "route", "path", "status", "ms", "job")
+
+_ROOM = 10_000  # lines that may wait to be written
+_CAUSES = 10_000  # jobs of which it is remembered who caused them
+_HARMLESS = re.compile(rb"[A-Za-z0-9._-]{1,64}")
+# Control characters, line and paragraph separators, and what turns the direction of writing.
+_CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+
+_process, _numbers = secrets.token_hex(5), itertools.count(1)
+_causes: OrderedDict[str, str] = OrderedDict()
+
+
+def request_id(headers: Iterable[tuple[bytes, bytes]]) -> str:
+    """Return the id that a client has given its request, if it is harmless; else a new one."""
+    for name, value in headers:
+        if name == b"x-request-id" and _HARMLESS.fullmatch(value):
+            return value.decode()
+    return new_id()
+
+
+def new_id() -> str:
+    """Return an id that no other request of any server has."""
+    return f"{_process}-{next(_numbers):06x}"
+
+
+def without_secret(client: str) -> str:
+    """Return a client as the log may have it: of a session the hash, because who knows it is the client."""
+    kind, _, name = client.partition(":")
+    return f"session:{hashlib.sha256(name.encode()).hexdigest()[:12]}" if kind == "session" else client
+
+
+def note_cause(job: str) -> None:
+    """Remember that the present request has queued a job."""
+    if cause := REQUEST_ID.get():
+        _causes[job] = cause
+        while len(_causes) > _CAUSES:
+            _causes.popitem(last=False)
+
+
+@contextmanager
+def caused(job: str) -> Iterator[None]:
+    """Within it, lines carry the id of the request that has queued the job, if it is still known."""
+    token = REQUEST_ID.set(_causes.pop(job, ""))
+    try:
+        yield
+    finally:
+        REQUEST_ID.reset(token)
+
+
+def escaped(text: str) -> str:
+    """Return a text in which nothing moves the cursor, begins a line, or turns the direction of writing."""
+    return _CONTROLS.sub(lambda found: ascii(found[0])[1:-1], text)
+
+
+class TextFormatter(logging.Formatter):
+    """`time LEVEL logger [request] message`, on one line; a traceback follows, indented."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return the line."""
+        request = f" [{id}]" if (id := getattr(record, "request_id", "")) else ""
+        line = f"{_time(record)} {record.levelname} {record.name}{request} {escaped(record.getMessage())}"
+        trace = "".join(f"\n  | {escaped(part)}" for part in _traceback(self, record).splitlines())
+        return line + trace
+
+
+class JsonFormatter(logging.Formatter):
+    """One JSON object a line: time, level, logger, message, and those of `FIELDS` that are known."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return the line."""
+        about: dict[str, Any] = {
+            "time": _time(record),
+            "level": record.levelname.lower(),
+            "logger": record.name,
+            "message": record.getMessage(),
+        }
+        about |= {name: value for name in FIELDS if (value := getattr(record, name, None)) not in (None, "")}
+        if trace := _traceback(self, record):
+            about["exception"] = trace
+        return json.dumps(about, default=str)  # escapes whatever is not ASCII
+
+
+class QueueHandler(logging.Handler):
+    """Hands records to the writing thread, with the id of the present request."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.queue: queue.Queue[Any] = queue.Queue(_ROOM)
+        self.dropped = 0
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Never waits."""
+        if not hasattr(record, "request_id"):
+            record.request_id = REQUEST_ID.get()
+        try:
+            self.queue.put_nowait(record)
+        except queue.Full:
+            self.dropped += 1
+
+
+def configure(level: Level, form: Format, stream: TextIO | None = None) -> Callable[[], None]:
+    """Write the program's logs to standard error, or a stream; returns what ends that, the last line written.
+
+    `level` is for this program and its web server; other libraries' lines are written from warnings on.
+    """
+    handler, writer = QueueHandler(), logging.StreamHandler(stream or sys.stderr)
+    writer.setFormatter(JsonFormatter() if form == "json" else TextFormatter())
+    logging.root.handlers = [handler]
+    logging.root.setLevel(logging.WARNING)
+    for name in ("app", "uvicorn"):
+        logging.getLogger(name).setLevel(level.upper())
+    listener = QueueListener(handler.queue, writer)
+    listener.start()
+    return listener.stop
+
+
+def _time(record: logging.LogRecord) -> str:
+    moment = datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds")
+    return moment.replace("+00:00", "Z")
+
+
+def _traceback(formatter: logging.Formatter, record: logging.LogRecord) -> str:
+    return formatter.formatException(record.exc_info) if record.exc_info else ""

@@ -1,0 +1,56 @@
+"""A pipe to which nothing is written: when its server's end closes, the kernel kills whoever hangs on it.
+
+However the server dies, the kernel closes its end and sends SIGKILL in the same moment. So it matters neither
+what the process is doing (importing for seconds, forking, stopped by a debugger, in a call that keeps the
+interpreter lock), nor which thread of the server started it, as it does for a parent-death signal.
+
+Linux only. Elsewhere a process notices the end of the server when it next reads from it.
+"""
+
+import fcntl
+import os
+import select
+import signal
+import sys
+
+
+class Lifeline:
+    """The server's end of the pipe; `reader` is for the processes that shall not outlive it."""
+
+    def __init__(self) -> None:
+        self.reader, self._writer = os.pipe()
+
+    def close_reader(self) -> None:
+        """Close the server's copy of the other end, once it has been handed on."""
+        os.close(self.reader)
+
+    def cut(self) -> None:
+        """Kill the processes that hang on this; a second call does nothing."""
+        writer, self._writer = self._writer, -1
+        if writer >= 0:
+            os.close(writer)
+
+
+def hang_on(reader: int, group: int | None = None) -> None:
+    """Tie this process, or its process group, to the server: they die with it.
+
+    Raises
+    ------
+    ProcessLookupError
+        The server has gone already.
+    """
+    if sys.platform == "linux":
+        # Opened again, because a pipe's end that processes share can have one owner only.
+        own = os.open(f"/proc/self/fd/{reader}", os.O_RDONLY | os.O_NONBLOCK)
+        fcntl.fcntl(own, fcntl.F_SETOWN, os.getpid() if group is None else -group)
+        fcntl.fcntl(own, fcntl.F_SETSIG, signal.SIGKILL)
+        fcntl.fcntl(own, fcntl.F_SETFL, os.O_NONBLOCK | os.O_ASYNC)
+    if has_hung_up(reader):
+        raise ProcessLookupError("the server has gone")
+
+
+def has_hung_up(descriptor: int) -> bool:
+    """Return whether the other end of a pipe or socket is closed, whatever is still to be read from it."""
+    poll = select.poll()
+    poll.register(descriptor, 0)  # a hang-up is reported always
+    return any(event & select.POLLHUP for _, event in poll.poll(0))

@@ -1,0 +1,1 @@
+"""Finding versions; digests and golden records of released ones."""

@@ -1,0 +1,137 @@
+"""Frozen versions: digests of the code, some inputs, every result; so a change beneath shows in its results.
+
+`crankwright freeze` writes the record of a released version once; a test compares for ever after. A file that
+exists is never overwritten: a change to a released version is a new version.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.catalogue.digests import digests, release_file
+from templates.core.errors import InvalidInputs
+from templates.core.language.evaluate import is_told
+from templates.core.language.intake import Input
+from templates.core.language.spec import Choice
+from templates.core.language.template import Template
+
+STEPS = (0.9, 1.1)  # every numeric input in turn, around the example
+
+
+def record(cls: type[Template]) -> dict[str, Any]:
+    """The golden record of one version: SI inputs and SI results of the example and of steps around it."""
+    return {
+        "id": cls.id,
+        "version": cls.version,
+        **digests(cls),
+        "precision": cls.precision,
+        "cases": list(_cases(cls)),
+        "levels": list(cases_of_levels(cls)),
+    }
+
+
+def golden_file(cls: type[Template], folder: Path) -> Path:
+    """Where the record of a version stands."""
+    return folder / f"{cls.id}_v{cls.version}.json"
+
+
+def freeze(cls: type[Template], folder: Path) -> Path:
+    """Write the record of a version that is to be released, and its digests beside its file; where it stands.
+
+    Raises
+    ------
+    FileExistsError
+        If the version is frozen already.
+    """
+    path = golden_file(cls, folder)
+    text = json.dumps(record(cls), indent=1, ensure_ascii=False, allow_nan=False)
+    folder.mkdir(parents=True, exist_ok=True)
+    with path.open("x", encoding="utf-8") as file:
+        file.write(text + "\n")
+    mark_released(cls)
+    return path
+
+
+def mark_released(cls: type[Template]) -> Path:
+    """Record the digests of a version beside its file, where the service reads them; never over a record."""
+    path = release_file(cls)
+    if not path.exists():
+        path.write_text(json.dumps(digests(cls), indent=1) + "\n", encoding="utf-8")
+    return path
+
+
+def _cases(cls: type[Template]) -> Iterator[dict[str, Any]]:
+    example = _given(cls)
+    yield {"inputs": _plain(example), "outputs": results(cls, example)}
+    for name, declared in cls.inputs.items():
+        for value in _steps(declared, example.get(name)):
+            inputs = {**example, name: value}
+            try:
+                yield {"inputs": _plain(inputs), "outputs": results(cls, inputs)}
+            except InvalidInputs as refusal:
+                yield {"inputs": _plain(inputs), "refused": sorted(fault.code for fault in refusal.faults)}
+
+
+def cases_of_levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
+    """The example at every level but the default one, at which the other cases are."""
+    example = _given(cls)
+    for level in cls.levels:
+        if level == cls.default_level:
+            continue
+        case = {"level": level, "inputs": _plain(example)}
+        try:
+            yield {**case, "outputs": results(cls, example, level)}
+        except InvalidInputs as refusal:
+            yield {**case, "refused": sorted(fault.code for fault in refusal.faults)}
+
+
+def _given(cls: type[Template]) -> dict[str, Any]:
+    """The example's inputs in SI with defaults; without what is missing or shown as an output."""
+    template = cls.from_quantities(cls.example)
+    told = {name: declared for name, declared in cls.inputs.items() if is_told(template, declared)}
+    return {name: getattr(template, declared.attribute) for name, declared in told.items()}
+
+
+def _steps(declared: Input, value: Any) -> list[Any]:
+    """Other values of one input: the other options, a number more or fewer, 10 % below and above."""
+    if value is None or isinstance(value, tuple):
+        return []
+    if isinstance(declared, Choice):
+        return [option for option in declared.options if option != value]
+    if declared.meaning.integer:
+        return [value - 1, value + 1]
+    return [value * step for step in STEPS]
+
+
+def results(cls: type[Template], inputs: Mapping[str, Any], level: str = "") -> dict[str, Any]:
+    """Every output in SI for SI inputs, at the default level unless another is named.
+
+    Raises
+    ------
+    InvalidInputs
+        Where the template refuses.
+    """
+    template = cls.from_si(inputs)
+    template = template.at(level) if level else template
+    with np.errstate(all="ignore"):
+        return _plain({name: getattr(template, formula.attribute) for name, formula in cls.formulas.items()})
+
+
+def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        name: value if isinstance(value, (str, tuple)) else _without_nan(np.asarray(value))
+        for name, value in values.items()
+    }
+
+
+def _without_nan(value: NDArray[Any]) -> Any:
+    """As JSON, null where there is none."""
+    plain = value.astype(object)
+    plain[np.isnan(value)] = None
+    return plain.tolist()

@@ -1,0 +1,1 @@
+"""Declaring a template, reading its inputs, evaluating it, at every level."""

@@ -1,0 +1,84 @@
+"""Which results are let through: a point is refused, points of an array are masked, or a warning is noted."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.errors import Fault, InvalidInputs
+from templates.core.language.ledger import Ledger, Mask, Notice
+from templates.core.language.spec import Declaration, Formula, Profile
+
+if TYPE_CHECKING:
+    from templates.core.language.template import Template
+
+
+def absence(self: Template, declaration: Formula[Any]) -> str | None:
+    """Why a result may be NaN without being a fault: an optional input is missing, or it does not exist."""
+    missing = sorted(self.ledger.missing & self.ancestors(declaration.attribute))
+    if missing:
+        return f"needs {', '.join(self.declarations[name].name for name in missing)}"
+    return declaration.meaning.absent
+
+
+def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:
+    """The fault of a formula's result outside its domain, with the inputs that it follows from."""
+    meaning = declaration.meaning.at(self.level)
+    beneath = sorted(self.depends_on(declaration.attribute) & self.declarations.keys())
+    used = (self.declarations[n].name for n in beneath)
+    inputs = ", ".join(name for name in used if name in self.inputs) or "constants alone"
+    if np.isfinite(value):
+        what = f"would be {meaning.told(value)}; it must be {meaning.wanted}"
+    else:
+        what = "has no finite value here"
+    remedy = f"; {meaning.remedy}" if meaning.remedy else ""
+    detail = f"{meaning.words} {what}{remedy} (it follows from {inputs})"
+    return Fault(declaration.name, "outside_domain", detail)
+
+
+def whole(self: Template, declaration: Formula[Any], value: Array) -> Array:
+    """The profile of a single point: refused unless all of it means something, or none of it exists."""
+    inside = declaration.meaning.at(self.level).admits(value)
+    if not inside.all():
+        why = absence(self, declaration) if np.isnan(value).any() else None
+        if why is None:
+            raise InvalidInputs([refusal(self, declaration, value[~inside][0])])
+        self.ledger.absent[declaration.attribute] = why
+    return value
+
+
+def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
+    """The results with NaN where they mean nothing, the reason noted; a profile is masked as a whole."""
+    meaning = declaration.meaning.at(self.level)
+    inside = meaning.admits(value)
+    if inside.all():
+        return value
+    known = ~np.isnan(value)
+    if isinstance(declaration, Profile):
+        inside, known = declaration.inside(inside), declaration.inside(known)
+    if (known & ~inside).any():
+        remedy = f"; {meaning.remedy}" if meaning.remedy else ""
+        reason = f"{declaration.name} must be {meaning.wanted}{remedy}"
+        self.ledger.masks.append(Mask((declaration.attribute,), known & ~inside, reason))
+    if not known.all() and (why := absence(self, declaration)):
+        self.ledger.masks.append(Mask((declaration.attribute,), ~known, why, tells=True))
+    return np.where(declaration.spread(inside) if isinstance(declaration, Profile) else inside, value, np.nan)
+
+
+def warn_if_outside(ledger: Ledger, declaration: Declaration, value: Any, level: str = "") -> None:
+    """Note a warning that names the limit where a value leaves its published range."""
+    meaning = declaration.meaning.at(level)
+    outside = ~np.isnan(value) & ~np.asarray(meaning.published_si.admits(value))  # type: ignore[union-attr]
+    if not outside.any():
+        return
+    if np.ndim(value):
+        where = f"leaves it at {int(outside.sum())} of {outside.size} points"
+    else:
+        where = f"is {meaning.told(value)}"
+    source = f" ({meaning.source})" if meaning.source else ""
+    remedy = f"; {meaning.remedy}" if meaning.remedy and meaning.domain.open else ""
+    limits = meaning.published.text(meaning.unit)
+    detail = f"published for {meaning.words} {limits}{source}; here it {where}{remedy}"
+    ledger.warnings.append(Notice("outside_published_range", declaration.name, detail))

@@ -1,0 +1,166 @@
+"""Checks the dimensions of a template's formulas, by evaluating each on Pint quantities.
+
+For tests: a wrong dimension fails the build, and no Pint object exists in the hot path. Every formula is
+tried by itself, at the template's example. Physics functions marked by `units(...)` are checked at that
+border and run on magnitudes; all others, being dimensionally pure, run on the quantities themselves. Angles
+have no dimension here, so a lost 2π is not seen: literature tests see it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import wraps
+from inspect import signature
+from types import CodeType, FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+import pint
+
+from templates.core.language.spec import Choice, Derived, Formula, Requirement, Table
+from templates.core.language.syntax import attributes_used
+from templates.core.language.template import Template
+from templates.core.units.units import registry, unit
+
+LIBRARIES = ("numpy", "scipy", "pint", "math")
+
+
+def faults(cls: type[Template]) -> list[str]:
+    """What is wrong with the dimensions of a template, a sentence for each formula or rule."""
+    with np.errstate(all="ignore"):
+        return [fault for fault in _faults(cls, cls.from_quantities(cls.example)) if fault]
+
+
+def _faults(cls: type[Template], template: Template) -> Iterator[str | None]:
+    for declared in cls.declarations.values():
+        if isinstance(declared, (Formula, Derived)):
+            yield _fault_of_formula(template, declared)
+    for rule in cls.requirements:
+        yield _fault_of_rule(template, rule)
+
+
+def _fault_of_formula(template: Template, formula: Formula[Any]) -> str | None:
+    meaning, number = formula.meaning, formula.function(template)
+    if isinstance(number, str):
+        return None
+    try:
+        result = _applied(template, formula.function)
+    except (pint.PintError, TypeError, ValueError) as error:
+        return f"{formula.name}: {error}"
+    si = _magnitude(result, meaning.unit)
+    if si is None:
+        return f"{formula.name} is declared in {meaning.unit}, but its formula gives {_units(result)}"
+    if not np.allclose(si, number, rtol=1e-9, atol=0, equal_nan=True):
+        return f"{formula.name}: the formula gives {si} on quantities, but {number} on SI values"
+    return None
+
+
+def _fault_of_rule(template: Template, rule: Requirement) -> str | None:
+    try:
+        _applied(template, rule.function)
+    except (pint.PintError, TypeError, ValueError) as error:
+        return f"{rule.sentence}: {error}"
+    return None
+
+
+def _applied(template: Template, function: Callable[..., Any]) -> Any:
+    """The function of a template, on quantities for its attributes."""
+    values = {name: _quantity(template, name) for name in attributes_used(function)}
+    return rebound(function, {})(_Record(values))
+
+
+class _Record:
+    """Stands for the template: its attributes are quantities."""
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        self.__dict__.update(values)
+
+
+def _quantity(template: Template, name: str) -> Any:
+    declared, value = template.declarations.get(name), getattr(template, name)
+    if declared is None or isinstance(declared, (Choice, Table)) or isinstance(value, str):
+        return value
+    return registry.Quantity(value, declared.meaning.scale.base)
+
+
+def _magnitude(result: Any, declared: str) -> Any:
+    """The SI magnitude of a result, or None if it does not measure what is declared."""
+    wanted = unit(declared).base
+    quantity = result if isinstance(result, pint.Quantity) else registry.Quantity(result, "")
+    if quantity.dimensionality != registry.get_dimensionality(wanted):
+        return None
+    return quantity.to_base_units().magnitude
+
+
+def _units(result: Any) -> str:
+    return f"{result.units:~P}" if isinstance(result, pint.Quantity) else "a pure number"
+
+
+def rebound(function: Callable[..., Any], known: dict[Any, Any]) -> Callable[..., Any]:
+    """The same function, in a scope where every physics function checks its border."""
+    if function in known:
+        return known[function]
+    if hasattr(function, "border"):
+        known[function] = _bordered(function)
+        return known[function]
+    if not isinstance(function, FunctionType) or function.__module__.partition(".")[0] in LIBRARIES:
+        return function
+    scope = dict(function.__globals__)
+    copy = FunctionType(
+        function.__code__, scope, function.__name__, function.__defaults__, function.__closure__
+    )
+    copy.__kwdefaults__ = function.__kwdefaults__
+    known[function] = copy
+    for name in _names(function.__code__) & scope.keys():
+        scope[name] = _in_scope(scope[name], known)
+    return copy
+
+
+def _names(code: CodeType) -> set[str]:
+    """The names that a function's code refers to, in nested functions too."""
+    nested = (constant for constant in code.co_consts if isinstance(constant, CodeType))
+    return set(code.co_names).union(*map(_names, nested))
+
+
+def _in_scope(value: Any, known: dict[Any, Any]) -> Any:
+    if isinstance(value, FunctionType):
+        return rebound(value, known)
+    if isinstance(value, ModuleType) and value.__name__.partition(".")[0] not in LIBRARIES:
+        return _Record({name: _in_scope(v, known) for name, v in vars(value).items() if callable(v)})
+    return value
+
+
+def _bordered(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function marked by `units(...)`, on quantities: arguments are checked, the result gets its unit."""
+    arguments, returns = function.border  # type: ignore[attr-defined]
+
+    @wraps(function)
+    def checked(*given: Any, **named: Any) -> Any:
+        bound = list(signature(function).bind(*given, **named).arguments.items())
+        if len(bound) != len(arguments):
+            told = f"{function.__name__} declares {len(arguments)} units for {len(bound)} arguments"
+            raise TypeError(told)
+        values = [_inside(function, *pair) for pair in zip(bound, arguments, strict=True)]
+        result = function(*values)
+        if isinstance(returns, str):
+            return _outside(result, returns)
+        return tuple(map(_outside, result, returns))
+
+    return checked
+
+
+def _outside(result: Any, declared: str) -> Any:
+    """A result in its declared unit; whether something holds has none."""
+    return result if np.asarray(result).dtype == bool else registry.Quantity(result, unit(declared).base)
+
+
+def _inside(function: Callable[..., Any], argument: tuple[str, Any], declared: str | None) -> Any:
+    """The magnitude of an argument, if it measures what the border declares."""
+    name, value = argument
+    if declared is None:
+        return value
+    si = _magnitude(value, declared)
+    if si is None:
+        told = f"{function.__name__} takes {name} in {declared}, not in {_units(value)}"
+        raise TypeError(told)
+    return si

@@ -1,0 +1,306 @@
+"""Evaluate a template: from a user's inputs to named answers, computing only what is asked for."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache, reduce
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array
+from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name, unknown_names
+from templates.core.language.admission import absence
+from templates.core.language.intake import Input, remarks
+from templates.core.language.ledger import Notice
+from templates.core.language.levels import Rung, accuracy, at_level, climb
+from templates.core.language.spec import Choice, Derived, Formula, Given, Profile, Text
+from templates.core.language.template import Template
+from templates.core.units.quantity import Typed, Unit, require_same_kind
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """One result in its unit; NaN in an array, or None, where there is none, with its reason."""
+
+    value: Any
+    unit: str | None
+    reason: str | None = None
+    reasons: NDArray[np.object_] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Echo:
+    """One input as it was used: as typed, or its default."""
+
+    value: Any
+    unit: str | None
+    source: str  # "given" or "default"
+    extra: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What `evaluate` returns; `template` is the evaluated instance with every SI value it computed.
+
+    `level` and `error` (relative; None or NaN where it was not measured) are single values, or arrays of the
+    shape of the outputs.
+    """
+
+    template: Template
+    inputs: dict[str, Echo]
+    outputs: dict[str, Answer]
+    level: Any
+    error: dict[str, Any]
+    warnings: list[Notice]
+    seconds: float
+
+    def count(self) -> int:
+        """How many values all outputs have together."""
+        return sum(np.size(answer.value) for answer in self.outputs.values())
+
+
+def evaluate(
+    cls: type[Template],
+    raw: Mapping[str, Any],
+    *,
+    outputs: Iterable[str] | None = None,
+    units: Mapping[str, str] | None = None,
+    level: str | None = None,
+    tolerance: float | None = None,
+) -> Evaluation:
+    """Evaluate the outputs named (all, if None) for inputs as a user types them.
+
+    `units` asks for outputs in other units. Arrays of inputs give arrays of outputs.
+
+    Raises
+    ------
+    InvalidInputs
+        Naming everything that is wrong with the request at once, or the result that is out of its domain.
+    """
+    start = time.perf_counter()
+    names = list(cls.formulas) if outputs is None else list(outputs)
+    faults = unknown_names((name for name in names if name not in cls.formulas), cls.formulas, "output")
+    shown_in = _units(cls, units or {}, faults)
+    faults += _level_faults(cls, level)
+    try:
+        template = cls.from_quantities(raw)
+    except InvalidInputs as error:
+        raise InvalidInputs([*faults, *error.faults]) from None
+    if faults:
+        raise InvalidInputs(faults)
+    with np.errstate(all="ignore"):
+        rungs = _rungs(template, names, level, tolerance)
+        parts = [_part(rung.template, names, shown_in) for rung in rungs]
+        whole = parts[0] if rungs[0].where is None else _joined(rungs, parts)
+        echoes = {
+            n: _echo(template, declared) for n, declared in cls.inputs.items() if is_told(template, declared)
+        }
+    notices = [*_standing(cls), *_noticed(rungs), *_unmet(cls, whole, names, tolerance)]
+    seconds = time.perf_counter() - start
+    return Evaluation(rungs[0].template, echoes, whole.answers, whole.level, whole.error, notices, seconds)
+
+
+def _level_faults(cls: type[Template], level: str | None) -> list[Fault]:
+    if level is None or level in cls.levels:
+        return []
+    if not cls.levels:
+        return [Fault("level", "unknown_name", f"{cls.id} {cls.version} has one level only; leave it out")]
+    return [unknown_name(level, cls.levels, "level").within("level")]
+
+
+@dataclass(frozen=True)
+class _Part:
+    """The answers at one level, or of all levels joined."""
+
+    answers: dict[str, Answer]
+    level: Any
+    error: dict[str, Any]
+
+
+def _rungs(template: Template, names: list[str], level: str | None, tolerance: float | None) -> list[Rung]:
+    if not template.levels:
+        return [Rung(template, None)]
+    if level is None and tolerance is not None:
+        return list(climb(template, names, tolerance))
+    return [Rung(at_level(template, level or template.starting_level()), None)]
+
+
+def _part(template: Template, names: list[str], shown_in: Mapping[str, Unit]) -> _Part:
+    measured = accuracy(type(template))
+    answers = {name: _answer(template, template.formulas[name], shown_in.get(name)) for name in names}
+    error = measured.of(template, names) if measured else dict.fromkeys(names)
+    return _Part(answers, template.level or None, error)
+
+
+def _joined(rungs: list[Rung], parts: list[_Part]) -> _Part:
+    """The answers of several levels, each at its own points, as arrays over all points."""
+    answers = {
+        name: _joined_answer(rungs, rungs[0].template.formulas[name], [part.answers[name] for part in parts])
+        for name in parts[0].answers
+    }
+    error = {name: _scattered(rungs, [part.error[name] for part in parts], float) for name in parts[0].error}
+    return _Part(answers, _scattered(rungs, [part.level for part in parts], object), error)
+
+
+def _joined_answer(rungs: list[Rung], formula: Formula[Any], answers: list[Answer]) -> Answer:
+    unit = answers[0].unit
+    places = np.shape(answers[0].value)[-formula.axes :] if isinstance(formula, Profile) else ()
+    values = _scattered(rungs, [answer.value for answer in answers], float if unit else object, places)
+    if all(answer.reasons is None for answer in answers):
+        return Answer(values, unit)
+    return Answer(values, unit, reasons=_scattered(rungs, [answer.reasons for answer in answers], object))
+
+
+def _scattered(
+    rungs: list[Rung], values: list[Any], kind: type, places: tuple[int, ...] = ()
+) -> NDArray[Any]:
+    assert rungs[0].where is not None
+    whole: NDArray[Any] = np.empty(rungs[0].where.shape + places, dtype=kind)
+    for rung, value in zip(rungs, values, strict=True):
+        whole[rung.where] = value
+    return whole
+
+
+def _units(cls: type[Template], units: Mapping[str, str], faults: list[Fault]) -> dict[str, Unit]:
+    shown: dict[str, Unit] = {}
+    unknown = unknown_names((name for name in units if name not in cls.formulas), cls.formulas, "output")
+    faults += [fault.within("units") for fault in unknown]
+    for name, text in units.items():
+        if name not in cls.formulas:
+            continue
+        try:
+            shown[name] = require_same_kind(text, cls.formulas[name].meaning.unit)
+        except FaultyText as error:
+            faults.append(error.fault(f"units.{name}"))
+    return shown
+
+
+def _answer(template: Template, formula: Formula[Any], shown_in: Unit | None) -> Answer:
+    si = getattr(template, formula.attribute)
+    if isinstance(formula, Text):
+        return _words(template, formula, si)
+    scale = shown_in or formula.meaning.scale
+    if formula.attribute in template.ledger.absent:
+        return Answer(None, scale.text, reason=template.ledger.absent[formula.attribute])
+    if not isinstance(si, np.ndarray):
+        return Answer(float(scale.from_si(si)), scale.text)
+    value, reasons = _with_reasons(template, formula, si)
+    return Answer(scale.from_si(value), scale.text, reasons=reasons)
+
+
+def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
+    """An answer in words; an empty word is none, and there is none where a mask of anything beneath lies."""
+    why = absence(template, formula) or "there is nothing to tell here"
+    if isinstance(value, str):
+        return Answer(value or None, None, reason=None if value else why)
+    beneath = template.depends_on(formula.attribute)
+    masks = [m for m in template.ledger.masks if not (m.tells or beneath.isdisjoint(m.names))]
+    shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), value.shape)
+    told = np.broadcast_to(value, shape).astype(object)
+    reasons = np.full(shape, None, dtype=object)
+    reasons[told == ""] = why
+    for mask in reversed(masks):
+        reasons[np.broadcast_to(mask.where, shape)] = mask.reason
+    told[reasons != None] = None  # noqa: E711
+    return Answer(told, None, reasons=reasons if reasons.any() else None)
+
+
+def _with_reasons(
+    template: Template, formula: Formula[Any], si: Array
+) -> tuple[Array, NDArray[np.object_] | None]:
+    """The values with NaN where a mask of anything beneath covers them, and the reason for each NaN.
+
+    A profile has one reason as a whole.
+    """
+    beneath = template.depends_on(formula.attribute)
+    profile = formula if isinstance(formula, Profile) else None
+    masks = [mask for mask in template.ledger.masks if not beneath.isdisjoint(mask.names)]
+    if not masks and not np.isnan(si).any():
+        return si, None
+    points = si.shape[: -profile.axes] if profile else si.shape
+    shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), points)
+    covering = (mask.where for mask in masks if not mask.tells)
+    covered = reduce(np.logical_or, covering, np.zeros(shape, dtype=bool))
+    value = np.where(profile.spread(covered) if profile else covered, np.nan, si)
+    holes = ~profile.inside(~np.isnan(value)) if profile else np.isnan(value)
+    reasons = np.full(shape, None, dtype=object)
+    reasons[holes] = "the formula has no finite value here"
+    for mask in reversed(masks):
+        reasons[np.broadcast_to(mask.where, shape) & holes] = mask.reason
+    return value, reasons
+
+
+def is_told(template: Template, declared: Input) -> bool:
+    """Whether an input is worth telling: given, or with a default that exists and is no output anyway."""
+    if declared.name in template.ledger.typed:
+        return True
+    if isinstance(declared, Derived):
+        return not (declared.shown or np.all(np.isnan(getattr(template, declared.attribute))))
+    return not (isinstance(declared, Given) and declared.optional)
+
+
+def _echo(template: Template, declared: Input) -> Echo:
+    typed = template.ledger.typed.get(declared.name)
+    if isinstance(typed, Typed):
+        return Echo(typed.value, typed.unit, "given", typed.extra)
+    if typed is None and isinstance(declared, Given) and isinstance(declared.default, Typed):
+        return _default(declared)
+    value = getattr(template, declared.attribute)
+    source = "default" if typed is None else "given"
+    return Echo(value, None, source, {}) if isinstance(declared, Choice) else _shown(declared, value, source)
+
+
+@cache
+def _default(declared: Given) -> Echo:
+    """The constant default of an input; there are only so many."""
+    assert declared.default is not None
+    return _shown(declared, declared.default.si, "default")
+
+
+def _shown(declared: Given | Derived[Any], si: Any, source: str) -> Echo:
+    shown = declared.meaning.scale.from_si(si)
+    plain = _with_nulls(shown) if isinstance(shown, np.ndarray) else float(shown)
+    return Echo(plain, declared.meaning.unit, source, {})
+
+
+def _with_nulls(shown: Array) -> list[Any]:
+    """An array as a list, None where a default follows from an input that means nothing."""
+    plain = shown.astype(object)
+    plain[np.isnan(shown)] = None
+    return plain.tolist()
+
+
+def _standing(cls: type[Template]) -> list[Notice]:
+    """The warnings that hold for every answer of this version."""
+    if not cls.withdrawn:
+        return []
+    detail = f"{cls.id} version {cls.version} is withdrawn: {cls.withdrawn}"
+    return [Notice("withdrawn", cls.id, detail)]
+
+
+def _noticed(rungs: list[Rung]) -> list[Notice]:
+    """The warnings of all levels, each once."""
+    noticed = (notice for rung in rungs for notice in rung.template.ledger.warnings)
+    return list(dict.fromkeys([*noticed, *(notice for rung in rungs for notice in remarks(rung.template))]))
+
+
+def _unmet(cls: type[Template], whole: _Part, names: list[str], tolerance: float | None) -> list[Notice]:
+    """A warning for every output whose error is not known to be within the tolerance."""
+    if tolerance is None:
+        return []
+    if accuracy(cls) is None:
+        detail = f"the error of {cls.id} version {cls.version} is not measured; no level is known to meet it"
+        return [Notice("tolerance_unmet", "tolerance", detail)]
+    numbers = [name for name in names if not isinstance(cls.formulas[name], Text)]
+    missed = {name: whole.error[name] for name in numbers if not np.all(whole.error[name] <= tolerance)}
+    return [Notice("tolerance_unmet", name, _missed(name, error)) for name, error in missed.items()]
+
+
+def _missed(name: str, error: Any) -> str:
+    if np.isnan(error).all():
+        return f"the error of {name} was not measured here; the finest level was taken"
+    return f"{name} may be off by {np.nanmax(error):.2g} at the finest level, which is more than asked for"

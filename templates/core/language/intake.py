@@ -1,0 +1,219 @@
+"""From what a user typed to the SI values of a template; everything that is wrong is found at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array
+from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_names
+from templates.core.language.admission import warn_if_outside
+from templates.core.language.ledger import Ledger, Mask, Notice
+from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Requirement, Table
+from templates.core.units.quantity import Typed, read
+from templates.core.units.units import unit
+
+Input = Given | Choice | Derived[Any]
+
+if TYPE_CHECKING:
+    from templates.core.language.template import Template
+
+
+def read_inputs(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, Typed | str], list[Fault]]:
+    """Every input that was given, read in its unit, and what is wrong with the others."""
+    typed: dict[str, Typed | str] = {}
+    faults = unknown_names((name for name in raw if name not in cls.inputs), cls.inputs, "input")
+    for name, declared in cls.inputs.items():
+        if name in raw:
+            try:
+                typed[name] = _read_one(declared, raw[name])
+            except FaultyText as error:
+                faults.append(error.fault(name))
+        elif declared.required:
+            faults.append(Fault(name, "missing", f"{declared.meaning.words} is needed{_example(declared)}"))
+    return typed, faults
+
+
+def _read_one(declared: Input, raw: Any) -> Typed | str:
+    if isinstance(declared, Choice):
+        option = raw["value"] if isinstance(raw, dict) and raw.keys() == {"value"} else raw  # as it is told
+        if isinstance(option, str) and option in declared.options:
+            return option
+        raise FaultyText("not_an_option", f"{excerpt(raw)} is none of {', '.join(declared.options)}")
+    return raw if isinstance(raw, Typed) else read(raw, declared.meaning.unit)
+
+
+def _example(declared: Input) -> str:
+    if isinstance(declared, Choice):
+        return f"; one of {', '.join(declared.options)}"
+    scale = declared.meaning.unit
+    return "; give a number" if scale == "1" else f"; give it in {scale} or its like"
+
+
+def admitted(
+    cls: type[Template], typed: Mapping[str, Typed | str], ledger: Ledger
+) -> tuple[dict[str, Any], list[Fault]]:
+    """The SI value of every input that was given or has a constant default, by attribute; and the faults."""
+    values: dict[str, Any] = {}
+    faults: list[Fault] = []
+    for name, declared in cls.inputs.items():
+        source = typed.get(name) or (None if isinstance(declared, Derived) else declared.default)
+        if isinstance(source, Typed):
+            values[declared.attribute], fault = _bounded(declared, source, ledger)
+            faults += [fault] if fault else []
+        elif source is not None:
+            values[declared.attribute] = source
+        elif isinstance(declared, Given) and declared.optional:
+            ledger.missing |= set() if declared.alternative else {declared.attribute}
+            values[declared.attribute] = () if isinstance(declared, Table) else np.float64(np.nan)
+    return values, faults
+
+
+def _bounded(declared: Input, typed: Typed, ledger: Ledger) -> tuple[Any, Fault | None]:
+    """The value and what is wrong with it; a faulty point of an array is masked, and is no fault."""
+    if isinstance(declared, Table):
+        return _rows(declared, typed.si)
+    if is_single(declared) and isinstance(typed.si, np.ndarray):
+        detail = f"{declared.meaning.words} is one value for all points: give a number, not an array"
+        return np.float64(np.nan), Fault(declared.name, "not_single", detail)
+    if isinstance(declared, Curve) and not (declared.constant and isinstance(typed.si, float)):
+        value, fault = _along_a_cycle(declared, typed)
+    elif isinstance(typed.si, np.ndarray):
+        value, fault = _mask_given(declared, typed.si, declared.meaning.admits(typed.si), ledger), None
+    else:
+        value, fault = _one_number(declared, typed)
+    if declared.meaning.published_si is not None:
+        warn_if_outside(ledger, declared, value)
+    return value, fault
+
+
+def _one_number(declared: Input, typed: Typed) -> tuple[np.float64, Fault | None]:
+    inside = declared.meaning.admits(typed.si)
+    return np.float64(typed.si), None if inside else _out_of_bounds(declared, typed, inside)
+
+
+def _along_a_cycle(declared: Curve, typed: Typed) -> tuple[Any, Fault | None]:
+    """A curve means something as a whole: one point out of its domain refuses it."""
+    meaning, value = declared.meaning, typed.si
+    if not isinstance(value, np.ndarray):
+        detail = f"{meaning.words} is a curve: give an array over the {declared.along}, in {meaning.unit}"
+        return value, Fault(declared.name, "not_a_curve", detail)
+    inside = meaning.admits(value)
+    return value, None if np.all(inside) else _out_of_bounds(declared, typed, inside)
+
+
+def _rows(declared: Table, value: Any) -> tuple[tuple[tuple[float, ...], ...], Fault | None]:
+    """The rows of a table; a single row may stand alone."""
+    rows = np.atleast_2d(value)
+    fits = rows.ndim == 2 and rows.shape[1] == len(declared.columns) and len(rows) <= declared.most
+    if not fits or not np.all(declared.meaning.admits(rows)):
+        rows_of = f"at most {declared.most} rows of {', '.join(declared.columns)}"
+        detail = f"{declared.meaning.words} are {rows_of}, each {declared.meaning.wanted}"
+        return (), Fault(declared.name, "not_a_table", detail)
+    return tuple(map(tuple, rows.tolist())), None
+
+
+def _out_of_bounds(declared: Declaration, typed: Typed, inside: Any) -> Fault:
+    meaning = declared.meaning
+    first = np.atleast_1d(typed.si)[~np.atleast_1d(inside)][0]
+    scale = unit(typed.unit)
+    shown = f"{scale.from_si(float(first)):.9g}{'' if typed.unit == '1' else ' ' + typed.unit}"
+    where = f" at {int(np.sum(~inside))} of its points" if np.ndim(inside) else ""
+    remedy = f"; {meaning.remedy}" if meaning.remedy else ""
+    detail = f"{meaning.words} is {shown}{where}; it must be {meaning.wanted}{remedy}"
+    return Fault(declared.name, "out_of_range", detail)
+
+
+def _mask_given(declared: Declaration, value: Array, inside: NDArray[np.bool_], ledger: Ledger) -> Array:
+    if inside.all():
+        return value
+    reason = f"{declared.name} must be {declared.meaning.wanted}"
+    ledger.masks.append(Mask((declared.attribute,), ~inside, reason))
+    return np.where(inside, value, np.nan)
+
+
+def as_typed(cls: type[Template], name: str, value: Any) -> Any:
+    """An SI value as if it had been typed in the declared unit."""
+    declared = cls.inputs.get(name)
+    if declared is None or isinstance(declared, Choice):
+        return value
+    si = np.asarray(value, dtype=float) if np.ndim(value) else float(value)
+    shown = declared.meaning.scale.from_si(si)
+    return Typed(shown.tolist() if isinstance(shown, np.ndarray) else shown, declared.meaning.unit, si, {})
+
+
+def check_shapes(self: Template) -> None:
+    """Refuse arrays whose points cannot be broadcast together, and curves of different lengths.
+
+    Raises
+    ------
+    InvalidInputs
+        Naming the arrays and their shapes.
+    """
+    arrays = {n: v for n, v in vars(self).items() if isinstance(v, np.ndarray)}
+    try:
+        points_of(self, arrays)
+        curves = {n: d for n, d in self.declarations.items() if isinstance(d, Curve) and n in arrays}
+        for along in {curve.along for curve in curves.values()}:
+            np.broadcast_shapes(
+                *(arrays[n].shape[-1:] for n, curve in curves.items() if curve.along == along)
+            )
+    except ValueError:
+        names = {self.declarations[n].name: v.shape for n, v in arrays.items()}
+        told = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
+        detail = (
+            f"arrays of different shapes do not fit together ({told}); give equal lengths or a single value"
+        )
+        raise InvalidInputs([Fault(name, "shape", detail) for name in names]) from None
+
+
+def is_single(declared: Declaration) -> bool:
+    """Whether an input is one value for all points."""
+    return isinstance(declared, Given) and declared.single
+
+
+def is_curve(self: Template, attribute: str) -> bool:
+    """Whether an attribute is an input along the crank angle."""
+    return isinstance(self.declarations[attribute], Curve)
+
+
+def points_of(self: Template, arrays: Mapping[str, Array]) -> tuple[int, ...]:
+    """The shape of the points that arrays of inputs, by attribute, make; a curve is one thing for each."""
+    shapes = (array.shape[:-1] if is_curve(self, name) else array.shape for name, array in arrays.items())
+    return np.broadcast_shapes(*shapes)
+
+
+def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
+    """The faults of inputs that break a rule; points of arrays are masked instead."""
+    if rule.warning or (not rule.missing and not self.ledger.missing.isdisjoint(rule.uses)):
+        return
+    holds = rule.function(self)
+    if isinstance(holds, np.ndarray):
+        if not holds.all():
+            names = tuple(self.inputs[name].attribute for name in rule.names)
+            self.ledger.masks.append(Mask(names, ~holds, f"{rule.sentence}: {rule.remedy}"))
+    elif not holds:
+        told = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in rule.names)
+        detail = f"{rule.sentence}, but {told}; {rule.remedy}"
+        yield from (Fault(name, "inconsistent", detail) for name in rule.names)
+
+
+def remarks(self: Template) -> Iterator[Notice]:
+    """A warning for every rule that asks for no more than attention, where it does not hold."""
+    for rule in (rule for rule in self.requirements if rule.warning):
+        if not np.all(rule.function(self)):
+            yield from (Notice(rule.warning, name, f"{rule.sentence}; {rule.remedy}") for name in rule.names)
+
+
+def _shown(self: Template, declared: Declaration) -> str:
+    value = getattr(self, declared.attribute)
+    if isinstance(value, str):
+        return value
+    if isinstance(value, tuple):
+        return str([[float(f"{declared.meaning.scale.from_si(v):.6g}") for v in row] for row in value])
+    if np.ndim(value):
+        return f"{np.shape(value)[-1]} values from {declared.meaning.told(value.flat[0])}"
+    return "not given" if np.isnan(value) else declared.meaning.told(value)

@@ -1,0 +1,44 @@
+"""What is noticed while a template is made and evaluated: warnings, and points that mean nothing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.units.quantity import Typed
+
+
+@dataclass(frozen=True)
+class Notice:
+    """Something that the user of an answer should know: which name, a code, a sentence."""
+
+    code: str
+    name: str
+    detail: str
+
+
+@dataclass(frozen=True)
+class Mask:
+    """Points of an array that mean nothing, and why; `names` are the attributes it comes from.
+
+    What follows from them means nothing either, unless the mask only `tells` why a result is absent.
+    """
+
+    names: tuple[str, ...]
+    where: NDArray[np.bool_]
+    reason: str
+    tells: bool = False
+
+
+@dataclass
+class Ledger:
+    """What was noticed while a template was made and evaluated."""
+
+    typed: dict[str, Typed | str] = field(default_factory=dict)
+    warnings: list[Notice] = field(default_factory=list)
+    masks: list[Mask] = field(default_factory=list)
+    missing: set[str] = field(default_factory=set)  # attributes of optional inputs that were not given
+    absent: dict[str, str] = field(default_factory=dict)  # attributes of results that do not exist, and why
+    handed: frozenset[str] = frozenset()  # attributes that the template was made with

@@ -1,0 +1,210 @@
+"""What a number means: its words, unit, symbol, bounds and source; each declared once."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, TypedDict
+
+import numpy as np
+
+from templates.core.units.units import Unit, unit
+
+_RELATIONS = (("gt", ">"), ("ge", "≥"), ("lt", "<"), ("le", "≤"))
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Limits of a value, in its declared unit; None leaves a side open."""
+
+    gt: float | None = None
+    ge: float | None = None
+    lt: float | None = None
+    le: float | None = None
+
+    def in_si(self, scale: Unit) -> Bounds:
+        """The same limits in SI."""
+        limits = (getattr(self, side) for side, _ in _RELATIONS)
+        return Bounds(*(None if limit is None else float(scale.to_si(limit)) for limit in limits))
+
+    def admits(self, value: Any) -> Any:
+        """Where the value (scalar or array) lies within the limits; NaN does not."""
+        inside = value == value
+        if self.gt is not None:
+            inside = inside & (value > self.gt)
+        if self.ge is not None:
+            inside = inside & (value >= self.ge)
+        if self.lt is not None:
+            inside = inside & (value < self.lt)
+        if self.le is not None:
+            inside = inside & (value <= self.le)
+        return inside
+
+    def text(self, name: str) -> str:
+        """In words: `> 0 mm and ≤ 5 mm`."""
+        scale = "" if name == "1" else f" {name}"
+        limits = ((sign, getattr(self, side)) for side, sign in _RELATIONS)
+        return " and ".join(f"{sign} {limit:.6g}{scale}" for sign, limit in limits if limit is not None)
+
+    @property
+    def open(self) -> bool:
+        """Whether there is no limit at all."""
+        return all(getattr(self, side) is None for side, _ in _RELATIONS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Meaning:
+    """What a number means: its words, unit, symbol, bounds and source.
+
+    `domain` is where it means anything, `published` where its source claims it; `remedy` says what to do
+    outside. `also` are other names under which it is known. `assumes` are attributes of the template whose
+    published range bounds this formula too, though it does not use them. `absent` says why a result may be
+    NaN without being a fault. `per_level` narrows domain and published range at single levels of fidelity.
+    """
+
+    words: str
+    unit: str
+    name: str
+    symbol: str | None = None
+    source: str | None = None
+    domain: Bounds = Bounds()
+    published: Bounds = Bounds()
+    remedy: str | None = None
+    also: tuple[str, ...] = ()
+    integer: bool = False
+    assumes: tuple[str, ...] = ()
+    absent: str | None = None
+    per_level: Mapping[str, tuple[Bounds, Bounds]] = field(default_factory=dict, hash=False)
+
+    def at(self, level: str) -> Meaning:
+        """What the number means at a level of fidelity, which may have limits of its own."""
+        return self._at_levels.get(level, self) if self.per_level else self
+
+    @cached_property
+    def _at_levels(self) -> dict[str, Meaning]:
+        narrowed = self.per_level.items()
+        return {level: replace(self, domain=d, published=p, per_level={}) for level, (d, p) in narrowed}
+
+    @property
+    def wanted(self) -> str:
+        """What the value must be, in words: `a whole number ≥ 3 and ≤ 200`, `> 0 mm`, `finite`."""
+        limits = self.domain.text(self.unit)
+        return " ".join(filter(None, ("a whole number" if self.integer else "", limits))) or "finite"
+
+    def told(self, si: float) -> str:
+        """An SI value in the declared unit, for a message."""
+        return f"{self.scale.from_si(float(si)):.6g}{'' if self.unit == '1' else ' ' + self.unit}"
+
+    def admits(self, value: Any) -> Any:
+        """Where an SI value (scalar or array) is finite, within the domain and whole if it must be."""
+        inside = math.isfinite(value) if isinstance(value, float) else np.isfinite(value)
+        if self.domain_si is not None:
+            inside = inside & self.domain_si.admits(value)
+        return inside & (np.round(value) == value) if self.integer else inside
+
+    @cached_property
+    def scale(self) -> Unit:
+        """The declared unit, reduced to SI."""
+        return unit(self.unit)
+
+    @cached_property
+    def domain_si(self) -> Bounds | None:
+        """The domain in SI, or None where every finite value means something."""
+        return None if self.domain.open else self.domain.in_si(self.scale)
+
+    @cached_property
+    def published_si(self) -> Bounds | None:
+        """The published range in SI, or None where the source states none."""
+        return None if self.published.open else self.published.in_si(self.scale)
+
+
+def api_name(words: str) -> str:
+    """The words as an API name: `minimum film thickness` → `minimum_film_thickness`."""
+    return re.sub(r"[^a-z0-9]+", "_", words.lower()).strip("_")
+
+
+_API_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+
+
+def _named(words: str, name: str | None) -> str:
+    """The explicit name, else the words as one.
+
+    Raises
+    ------
+    TypeError
+        If that is no name in snake_case.
+    """
+    name = name or api_name(words)
+    if not _API_NAME.fullmatch(name):
+        raise TypeError(f"{words!r} makes the API name {name!r}; give it a name= in snake_case")
+    return name
+
+
+class Keywords(TypedDict, total=False):
+    """The keywords that every declaration shares: those of `meaning`, for editors and type checkers."""
+
+    name: str | None
+    """API name, where the words would make another."""
+    symbol: str | None
+    """LaTeX on paper, where the attribute would make another."""
+    source: str | None
+    """Who published it."""
+    gt: float | None
+    ge: float | None
+    lt: float | None
+    le: float | None
+    """The domain, in the declared unit; a value outside is refused."""
+    published: tuple[float | None, float | None]
+    """The range that the source claims; outside it an answer carries a warning."""
+    remedy: str | None
+    """What to do outside the domain."""
+    also: tuple[str, ...]
+    """Other words under which the quantity is known."""
+    integer: bool
+    """Whether the value is a whole number."""
+    assumes: tuple[str, ...]
+    """Attributes whose published range bounds this formula too, though it does not use them."""
+    absent: str | None
+    """Why a result may be missing without being a fault."""
+    per_level: Mapping[str, tuple[Bounds, Bounds]] | None
+    """Domain and published range at single levels of fidelity."""
+
+
+def meaning(
+    unit: str,
+    words: str,
+    *,
+    name: str | None = None,
+    symbol: str | None = None,
+    source: str | None = None,
+    gt: float | None = None,
+    ge: float | None = None,
+    lt: float | None = None,
+    le: float | None = None,
+    published: tuple[float | None, float | None] = (None, None),
+    remedy: str | None = None,
+    also: tuple[str, ...] = (),
+    integer: bool = False,
+    assumes: tuple[str, ...] = (),
+    absent: str | None = None,
+    per_level: Mapping[str, tuple[Bounds, Bounds]] | None = None,
+) -> Meaning:
+    """The keywords that every declaration shares, as a `Meaning`; bounds are in the declared unit."""
+    return Meaning(
+        words=words,
+        unit=unit,
+        name=_named(words, name),
+        symbol=symbol,
+        source=source,
+        domain=Bounds(gt, ge, lt, le),
+        published=Bounds(ge=published[0], le=published[1]),
+        remedy=remedy,
+        also=tuple(api_name(other) for other in also),
+        integer=integer,
+        assumes=assumes,
+        absent=absent,
+        per_level=per_level or {},
+    )

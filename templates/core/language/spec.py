@@ -1,0 +1,223 @@
+"""What a template is made of: the classes of givens, choices, curves, formulas and requirements.
+
+Authors use the functions of `templates.core.declare`, which make them.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any, Generic, Self, TypeVar, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array
+from templates.core.language.meaning import Meaning
+from templates.core.language.syntax import attributes_used, inputs_read_as_given, returned
+from templates.core.units.quantity import Typed, read
+
+T = TypeVar("T")
+
+
+class Declaration:
+    """One named thing of a template; knows the attribute under which it stands in the code."""
+
+    attribute: str
+
+    def __init__(self, meaning: Meaning) -> None:
+        self.meaning = meaning
+        self.name = meaning.name
+
+    def __set_name__(self, owner: type, attribute: str) -> None:
+        self.attribute = attribute
+
+
+class Given(Declaration):
+    """An input: a quantity that the user gives, its default, or NaN if it is optional and missing.
+
+    A `single` one is one value for all points: it says how many values a curve has, say.
+    """
+
+    def __init__(
+        self, meaning: Meaning, default: Any = None, *, optional: bool = False, alternative: bool = False,
+        single: bool = False,
+    ) -> None:  # fmt: skip
+        super().__init__(meaning)
+        self.default: Typed | None = None if default is None else read(default, meaning.unit)
+        self.optional, self.alternative = optional or alternative, alternative
+        self.single = single
+
+    @property
+    def required(self) -> bool:
+        """Whether the template cannot do without it."""
+        return self.default is None and not self.optional
+
+
+class Curve(Given):
+    """An input that is an array along the crank angle: its last axis is the cycle, or what `along` names.
+
+    A curve means something only as a whole: one point out of its domain refuses it. Axes before the last are
+    points, as of other inputs. Where it may be `constant`, a single value holds all over the cycle. Curves
+    along the same axis are of one length.
+    """
+
+    def __init__(
+        self, meaning: Meaning, default: Any = None, *, constant: bool = False, along: str = "cycle",
+        optional: bool = False, alternative: bool = False,
+    ) -> None:  # fmt: skip
+        super().__init__(meaning, default, optional=optional, alternative=alternative)
+        self.constant, self.along = constant, along
+
+
+class Table(Given):
+    """An optional input that is a list of rows, each of the same columns; one thing, not many points.
+
+    Its value is a tuple of tuples [SI]; empty when missing.
+    """
+
+    def __init__(self, meaning: Meaning, columns: tuple[str, ...], most: int) -> None:
+        super().__init__(meaning, alternative=True)
+        self.columns, self.most = columns, most
+
+
+class Choice(Declaration):
+    """An input that is one of several words."""
+
+    def __init__(self, meaning: Meaning, options: tuple[str, ...], default: str | None) -> None:
+        super().__init__(meaning)
+        self.options, self.default = options, default
+
+    @property
+    def required(self) -> bool:
+        """Whether the template cannot do without it."""
+        return self.default is None
+
+
+class Formula(Declaration, Generic[T]):
+    """An output: evaluated when first asked for, then kept with the template it belongs to."""
+
+    def __init__(self, function: Callable[[T], Any], meaning: Meaning, latex: str | None = None) -> None:
+        super().__init__(meaning)
+        self.function, self.latex = function, latex
+        self.__doc__ = function.__doc__
+
+    @overload
+    def __get__(self, obj: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, obj: T, owner: type) -> Array: ...
+    def __get__(self, obj: T | None, owner: type) -> Self | Array:
+        if obj is None:
+            return self
+        value = obj.__dict__[self.attribute] = obj.admit(self, self.function(obj))  # type: ignore[attr-defined]
+        return value
+
+    @cached_property
+    def expression(self) -> ast.expr:
+        """The syntax tree of what the formula returns."""
+        return returned(self.function)
+
+    @cached_property
+    def uses(self) -> tuple[str, ...]:
+        """The attributes that the formula refers to, in order of appearance."""
+        return attributes_used(self.function)
+
+    @cached_property
+    def uses_as_given(self) -> tuple[str, ...]:
+        """The inputs whose given value it reads, without the formula of their default."""
+        return inputs_read_as_given(self.function)
+
+
+class Derived(Formula[T]):
+    """An optional input: a value given by the user, else this formula of other inputs; `shown` as output."""
+
+    required = False
+
+    def __init__(self, function: Callable[[T], Any], meaning: Meaning, *, shown: bool = False) -> None:
+        super().__init__(function, meaning)
+        self.shown = shown
+
+
+class Profile(Formula[T]):
+    """An output that is an array along its last axis, as along a pad, for each point of the inputs.
+
+    It means something only as a whole: one place out of its domain takes the profile of that point.
+    `along` is the name of the profile that says where its places are; its own for that one. A profile of
+    several `axes` is a table for each point: mode shapes [mode, inertia].
+    """
+
+    def __init__(
+        self, function: Callable[[T], Any], meaning: Meaning, latex: str | None, along: str, axes: int
+    ) -> None:
+        super().__init__(function, meaning, latex)
+        self.along, self.axes = along, axes
+
+    def inside(self, places: NDArray[np.bool_]) -> Any:
+        """Where all places of a point hold."""
+        return np.all(places, axis=tuple(range(-self.axes, 0)))
+
+    def spread(self, points: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Points as an array that goes with the profile."""
+        return points[(..., *(None,) * self.axes)]
+
+
+class Text(Formula[T]):
+    """An output in words; empty where it does not exist."""
+
+
+class Shared(Generic[T]):
+    """An intermediate result that several formulas use: made when first asked for, then kept; no output."""
+
+    attribute: str
+
+    def __init__(self, function: Callable[[Any], T]) -> None:
+        self.function = function
+        self.__doc__ = function.__doc__
+
+    def __set_name__(self, owner: type, attribute: str) -> None:
+        self.attribute = attribute
+
+    @overload
+    def __get__(self, obj: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, obj: object, owner: type) -> T: ...
+    def __get__(self, obj: object | None, owner: type) -> Self | T:
+        if obj is None:
+            return self
+        value = obj.__dict__[self.attribute] = self.function(obj)
+        return value
+
+    @cached_property
+    def uses(self) -> tuple[str, ...]:
+        """The attributes of the template that it refers to."""
+        return attributes_used(self.function)
+
+    @cached_property
+    def uses_as_given(self) -> tuple[str, ...]:
+        """The inputs whose given value it reads, without the formula of their default."""
+        return inputs_read_as_given(self.function)
+
+
+class Requirement:
+    """A rule between inputs; where it does not hold, the inputs it names are refused."""
+
+    def __init__(
+        self, function: Callable[[Any], Any], names: tuple[str, ...], remedy: str, missing: bool, warning: str
+    ) -> None:
+        self.function, self.names, self.remedy = function, names, remedy
+        self.missing, self.warning = missing, warning
+        self.sentence = " ".join((inspect.getdoc(function) or "").split()).rstrip(".")
+        if not self.sentence:
+            raise TypeError(f"{function.__qualname__}: the docstring of a requirement is its sentence")
+
+    @cached_property
+    def uses(self) -> tuple[str, ...]:
+        """The attributes of the template that the rule refers to."""
+        return attributes_used(self.function)
+
+    @cached_property
+    def uses_as_given(self) -> tuple[str, ...]:
+        """The inputs whose given value it reads, without the formula of their default."""
+        return inputs_read_as_given(self.function)

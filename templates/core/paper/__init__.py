@@ -1,0 +1,1 @@
+"""Formulas, reports, checks and schemas for readers."""

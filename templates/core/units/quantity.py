@@ -1,0 +1,222 @@
+"""Quantities, handled once at the edge: from what a user types to SI floats or arrays.
+
+What is typed is untrusted. Every refusal is a `FaultyText` with a code and a remedy; it quotes no more than
+a few characters of the text, and is fit for JSON (no lone surrogates).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.errors import FaultyText, excerpt
+from templates.core.units.units import Unit, Value, compatible, registry, require_same_kind, unit
+
+__all__ = [
+    "Typed", "Unit", "Value", "compatible", "read", "read_any", "registry", "require_same_kind", "unit",
+]  # fmt: skip
+
+_NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?"
+_PATTERN = re.compile(rf"({_NUMBER})\s*(.*)", re.DOTALL)  # of a text without blanks at its ends
+_LONGEST_TEXT = 200
+_DEEPEST = 4  # axes of an array
+_TOLERANCES = ("plus", "minus")
+
+
+@dataclass(frozen=True)
+class Typed:
+    """A quantity as its user typed it, and what it is in SI."""
+
+    value: Any
+    unit: str
+    si: Value
+    extra: dict[str, Any]
+
+
+def read(raw: Any, declared: str) -> Typed:
+    """Read a quantity in any of its written forms, for something declared in the unit `declared`.
+
+    Forms: `"25 kN"`, `{"value": 25, "unit": "kN"}` (value may be a list; `plus`, `minus` may stand by it),
+    a list of such, and a bare number or list of numbers where the declared unit is `1`.
+
+    Raises
+    ------
+    FaultyText
+        With a code and a remedy.
+    """
+    match raw:
+        case str():
+            return _read_text(raw, declared)
+        case dict():
+            return _read_object(raw, declared)
+        case list() | tuple():
+            return _read_list(list(raw), declared)
+        case np.ndarray() | np.number():
+            return read(raw.tolist(), declared)
+        case bool():
+            raise _no_quantity(raw, declared)
+        case int() | float():
+            return _read_bare(raw, declared)
+    raise _no_quantity(raw, declared)
+
+
+def read_any(raw: Any) -> Typed:
+    """Read a quantity of whatever kind its own unit says.
+
+    Raises
+    ------
+    FaultyText
+        With a code and a remedy.
+    """
+    return read(raw, unit(_own_unit(raw)).text)
+
+
+def _own_unit(raw: Any) -> str:
+    for _ in range(_DEEPEST):
+        if not isinstance(raw, list) or not raw:
+            break
+        raw = raw[0]
+    match raw:
+        case str() if parts := _parted(raw):
+            return parts[1] or "1"
+        case {"unit": str() as name}:
+            return name
+    return "1"
+
+
+@lru_cache(maxsize=4096)  # who varies one input sends the others again
+def _read_text(text: str, declared: str) -> Typed:
+    if not (parts := _parted(text)):
+        raise _no_quantity(text, declared)
+    number, name = parts
+    if not name:
+        return _read_bare(float(number), declared)
+    return _quantity(_finite(float(number)), name, declared)
+
+
+def _parted(text: str) -> tuple[str, str] | None:
+    """Number and unit of a text; None if it does not begin with a number, or is too long."""
+    match = _PATTERN.fullmatch(text.strip()) if len(text) <= _LONGEST_TEXT else None
+    return (match[1], match[2]) if match else None
+
+
+def _read_object(raw: dict[str, Any], declared: str) -> Typed:
+    if "value" not in raw or not raw.keys() <= {"value", "unit", *_TOLERANCES}:
+        raise _no_quantity(raw, declared)
+    if "unit" not in raw and declared != "1":
+        raise FaultyText("missing_unit", f'the unit is missing; add "unit": "{declared}"')
+    name, value = raw.get("unit", "1"), raw["value"]
+    if not isinstance(name, str):
+        raise _no_quantity(raw, declared)
+    if isinstance(value, (np.ndarray, np.number)):
+        value = value.tolist()
+    magnitude = _array(value) if isinstance(value, (list, tuple)) else _number(value)
+    extra = {key: raw[key] for key in _TOLERANCES if key in raw}
+    for tolerance in extra.values():
+        _check_tolerance(tolerance, declared)
+    typed = _quantity(magnitude, name, declared)
+    return Typed(value, typed.unit, typed.si, extra)
+
+
+def _check_tolerance(tolerance: Any, declared: str) -> None:
+    """A tolerance is a bare number in the quantity's unit, or a text; of a temperature it is a difference."""
+    if isinstance(tolerance, str):
+        _read_text(tolerance, "delta_degC" if unit(declared).absolute else declared)
+    else:
+        _number(tolerance)
+
+
+def _read_list(raw: list[Any], declared: str) -> Typed:
+    if raw and all(isinstance(item, (str, dict)) for item in raw):
+        return _read_each(raw, declared)
+    if declared != "1" and raw:
+        raise FaultyText("missing_unit", f'the unit is missing; write {{"value": […], "unit": "{declared}"}}')
+    return _quantity(_array(raw), "1", declared)
+
+
+def _read_each(raw: list[Any], declared: str) -> Typed:
+    """A list of quantities, each in its own unit; shown in the declared one."""
+    parts = [read(item, declared).si for item in raw]
+    if len({np.shape(part) for part in parts}) > 1:
+        raise FaultyText("uneven", "the items of an array must be of one length; give each a single value")
+    si = np.array(parts, dtype=float)
+    return Typed(np.asarray(unit(declared).from_si(si)).tolist(), declared, si, {})
+
+
+def _read_bare(raw: float, declared: str) -> Typed:
+    number = _number(raw)
+    if declared != "1":
+        raise FaultyText("missing_unit", f'{number:.15g} has no unit; write it as "{number:.15g} {declared}"')
+    return _quantity(number, "1", declared)
+
+
+def _quantity(magnitude: Value, name: str, declared: str) -> Typed:
+    si = _in_si(magnitude, require_same_kind(name, declared))
+    if not (math.isfinite(si) if isinstance(si, float) else np.isfinite(si).all()):
+        raise FaultyText(
+            "not_finite", f"the value is too large in {name}; give one below 1.8e308 in SI units"
+        )
+    shown = magnitude.tolist() if isinstance(magnitude, np.ndarray) else magnitude
+    return Typed(shown, name, si, {})
+
+
+def _in_si(magnitude: Value, scale: Unit) -> Value:
+    if isinstance(magnitude, float):
+        return scale.to_si(magnitude)
+    with np.errstate(over="ignore"):
+        return scale.to_si(magnitude)
+
+
+def _number(raw: Any) -> float:
+    if isinstance(raw, bool) or not isinstance(raw, (int, float)):
+        raise FaultyText("not_a_number", f"{excerpt(raw)} is no number; write it as in 1.5, without quotes")
+    try:
+        return _finite(float(raw))
+    except OverflowError:
+        return _finite(math.inf)
+
+
+def _finite(number: float) -> float:
+    if not math.isfinite(number):
+        raise FaultyText("not_finite", "the value must be finite: not NaN, infinity or above 1.8e308")
+    return number
+
+
+def _array(raw: Sequence[Any]) -> Array:
+    """A list of numbers, nested evenly, as an array; `true` and texts are no numbers."""
+    flat, shape = list(raw), [len(raw)]
+    while flat and isinstance(flat[0], (list, tuple)) and len(shape) < _DEEPEST:
+        shape.append(len(flat[0]))
+        flat = _joined(flat, shape[-1])
+    if not flat:
+        raise FaultyText("empty", "an array needs at least one value")
+    if not set(map(type, flat)) <= {int, float}:
+        raise FaultyText("not_a_number", "every item of an array must be a number")
+    try:
+        array = np.array(flat, dtype=float).reshape(shape)
+    except OverflowError:
+        array = np.array(np.inf)
+    if not np.isfinite(array).all():
+        raise FaultyText(
+            "not_finite", "every item of an array must be finite: not NaN, infinity or above 1.8e308"
+        )
+    return array
+
+
+def _joined(rows: Sequence[Any], length: int) -> list[Any]:
+    """The items of all rows, which must be lists of one length."""
+    if not all(isinstance(row, (list, tuple)) and len(row) == length for row in rows):
+        raise FaultyText("uneven", "the rows of an array must be of equal length")
+    return [item for row in rows for item in row]
+
+
+def _no_quantity(raw: Any, declared: str) -> FaultyText:
+    form = '"1.5"' if declared == "1" else f'"1.5 {declared}"'
+    return FaultyText("not_a_quantity", f"{excerpt(raw)} is no quantity; write it as {form}")

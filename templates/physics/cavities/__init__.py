@@ -1,0 +1,1 @@
+"""Films with mass-conserving cavities, static and over time."""

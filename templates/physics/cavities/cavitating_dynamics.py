@@ -1,0 +1,74 @@
+"""Linear stiffness and damping of a film with mass-conserving cavities, by perturbing its discrete equations.
+
+Which nodes are full is held, and in the full ones the pressure, in the others the void follows the change of
+the gap: a front of re-formation moves with the oil that reaches it. Damping is that of slow motion: the oil
+that cavities store follows the displacement, so its rate is the velocity's. Grooves stand still.
+
+Axes and scales as in `film_dynamics`; here over psi²/(B D eta omega_h) instead of the load, so that the
+coefficients stay finite as the load vanishes.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csc_array, diags_array
+from scipy.sparse.linalg import splu
+
+from templates.core.arrays import Array
+from templates.physics.cavities.cavitating_film import SolvedRing, force
+from templates.physics.cavities.cavitating_network import perturbed_flows
+from templates.physics.films.film_equations import midpoints
+from templates.physics.films.film_mesh import gap
+
+_DAMPING = 1e-10
+"""Share of the diagonal added: a ring of cavities alone would leave its void undetermined."""
+
+
+@dataclass(frozen=True)
+class LinearFilm:
+    """Force of a film and its derivatives; along and ahead of the line of centres, in the units of So."""
+
+    force: Array
+    """(2,)"""
+    K: Array
+    """(2, 2) by displacement over the radial clearance."""
+    B: Array
+    """(2, 2) by velocity over omega_h times the radial clearance."""
+
+    def turned(self, attitude: float) -> "LinearFilm":
+        """The same in axes x, y, of which x lies behind the line of centres by the attitude [rad]."""
+        cos, sin = np.cos(attitude), np.sin(attitude)
+        turn = np.array([[cos, -sin], [sin, cos]])
+        return LinearFilm(turn @ self.force, turn @ self.K @ turn.T, turn @ self.B @ turn.T)
+
+
+def linear_film(found: SolvedRing) -> LinearFilm:
+    """Force, stiffness and damping of a solved film."""
+    ring, P, fill = found.ring, found.solution.P, 1 - found.solution.void
+    phi, middle = ring.phi, midpoints(ring.phi)
+    respond, storage = _response(found), 12 * ring.cells()
+    H = np.repeat(gap(phi[:-1], ring.eps), ring.zeta.size)
+    columns = []
+    for shape in (np.cos, np.sin):
+        dA, dT = perturbed_flows(ring, -shape(phi), -shape(middle))
+        dP, dvoid = respond(dA @ P + dT @ fill)
+        stored = -np.repeat(shape(phi[:-1]), ring.zeta.size) * fill - H * dvoid
+        columns += [force(ring, dP), force(ring, respond(storage * stored)[0])]
+    return LinearFilm(force(ring, P), np.array(columns[::2]).T, np.array(columns[1::2]).T)
+
+
+def _response(found: SolvedRing) -> Callable[[Array], tuple[Array, Array]]:
+    """A function from what nodes lose to the changes of pressure and void that make up for it."""
+    network, free = found.network, ~found.network.fixed
+    full = found.solution.void == 0
+    matrix = csc_array(network.A * full - network.T * ~full)[free][:, free]
+    diagonal = np.abs(matrix.diagonal())
+    factors = splu(csc_array(matrix + diags_array(_DAMPING * np.where(full[free], diagonal, -diagonal))))
+
+    def respond(loss: Array) -> tuple[Array, Array]:
+        change = np.zeros(free.size)
+        change[free] = factors.solve(-loss[free])
+        return np.where(full, change, 0.0), np.where(full, 0.0, change)
+
+    return respond

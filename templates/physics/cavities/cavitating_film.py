@@ -1,0 +1,152 @@
+"""Static journal bearing with mass-conserving cavities, grooves and supply pressure.
+
+Boundary condition: the ambient pressure at the ends, the supply pressure in the grooves, which are
+full; elsewhere the film ruptures and re-forms as mass conservation demands (`cavitation`).
+Pressures are above that of the cavity, P = p psi²/(eta omega_h). First order at the re-formation:
+128 × 16 intervals err by about 0.1 % in So and 3 % in side flow; the flow from pockets that end inside
+the width converges more slowly, 10 % and more. The film turns in the positive sense.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array, Mask
+from templates.physics.cavities.cavitating_network import Groove, Ring, fed_network, grooved_ring
+from templates.physics.cavities.cavitation import Cavitation, Network, cavitation
+from templates.physics.films.film_equations import dual_widths
+from templates.physics.films.film_mesh import gap
+from templates.physics.numerics.arrays import require, require_film
+
+_COARSEST = 16, 6
+
+
+@dataclass(frozen=True)
+class SolvedRing:
+    """A solved film on its nodes."""
+
+    ring: Ring
+    """Where the nodes are."""
+    network: Network
+    """Their balances of flow."""
+    solution: Cavitation
+    """Pressure and void."""
+    fed: Mask
+    """(n, m + 1) nodes fed by grooves."""
+
+
+@dataclass(frozen=True)
+class CavitatingFilm:
+    """A solved film; values dimensionless as in `film_measures.Film`."""
+
+    So: float
+    """Sommerfeld number F psi²/(B D eta omega_h)."""
+    attitude: float
+    """Angle from load to narrowest gap in the sense of rotation [rad]."""
+    P_max: float
+    """Largest pressure above that of the cavity."""
+    friction: float
+    """Friction on the journal F_f psi/(B D eta omega), shear by the oil there is."""
+    side_flow: float
+    """Oil that leaves at both ends, less what enters, Q/(R³ psi omega_h)."""
+    supply_flow: float
+    """Oil that the grooves feed, Q/(R³ psi omega_h)."""
+    imbalance: float
+    """Supply less side flow, over the flow that the journal carries round."""
+    phi: Array
+    """(n + 1,) angles of the nodes from the narrowest gap; the last is the first [rad]."""
+    zeta: Array
+    """(m + 1,) axial places of the nodes, 0 (middle) … 1 (end)."""
+    P: Array
+    """(n + 1, m + 1) pressure above that of the cavity."""
+    void: Array
+    """(n + 1, m + 1) share of the gap without oil."""
+
+
+def cavitating_film(
+    eps: float, ratio: float, grooves: list[Groove], ambient: float = 0.0, around: int = 128, across: int = 16
+) -> CavitatingFilm:
+    """Solve and measure the static film with cavities; as `solved_ring`."""
+    return measured(solved_ring(eps, ratio, grooves, ambient, around, across))
+
+
+def solved_ring(
+    eps: float, ratio: float, grooves: list[Groove], ambient: float = 0.0, around: int = 128, across: int = 16
+) -> SolvedRing:
+    """Solve the static film with cavities, from a coarse mesh to the one asked for.
+
+    Parameters
+    ----------
+    eps
+        Relative eccentricity, 0 … 1 − 1e-7 [-].
+    ratio
+        Width over diameter B/D [-].
+    grooves
+        Where oil is fed.
+    ambient
+        Pressure at the ends above that of the cavity, 0 or more [-].
+    around
+        Intervals around.
+    across
+        Intervals across half the width.
+
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
+    """
+    require_film(np.asarray(eps), np.asarray(ratio))
+    require(np.asarray(len(grooves) > 0), "grooves: at least one must feed the film")
+    pressures = np.array([ambient, *(groove.P for groove in grooves)])
+    require((pressures >= 0) & np.isfinite(pressures), "pressures must be 0 or more above that of the cavity")
+    found: SolvedRing | None = None
+    meshes = [(max(around >> k, _COARSEST[0]), max(across >> k, _COARSEST[1])) for k in (3, 2, 1, 0)]
+    for n, m in dict.fromkeys(meshes):
+        ring = grooved_ring(eps, ratio, grooves, n, m)
+        network, fed = fed_network(ring, grooves, ambient)
+        solution = cavitation(network, None if found is None else _interpolated(found, ring))
+        found = SolvedRing(ring, network, solution, fed)
+    assert found is not None
+    return found
+
+
+def _interpolated(found: SolvedRing, finer: Ring) -> tuple[Array, Array]:
+    """Carry pressure and void to the nodes of a finer mesh, linearly along each direction."""
+    ring = found.ring
+
+    def carried(values: Array) -> Array:
+        columns = ring.closed(values).T
+        rows = np.stack([np.interp(finer.phi[:-1], ring.phi, column) for column in columns], axis=1)
+        return np.stack([np.interp(finer.zeta, ring.zeta, row) for row in rows]).ravel()
+
+    return carried(found.solution.P), carried(found.solution.void)
+
+
+def force(ring: Ring, P: Array) -> Array:
+    """Force along and ahead of the line of centres of a pressure at the nodes, in the units of So, (2,)."""
+    weight = dual_widths(ring.phi)
+    axes = np.array([np.cos(ring.phi), np.sin(ring.phi)]) * weight
+    return axes @ ring.closed(P) @ dual_widths(ring.zeta) / 2
+
+
+def measured(found: SolvedRing) -> CavitatingFilm:
+    """Integrate load, friction and flow."""
+    ring, solution, fed = found.ring, found.solution, found.fed
+    P, void = ring.closed(solution.P), ring.closed(solution.void)
+    along, ahead = force(ring, solution.P)
+    shear = dual_widths(ring.phi) / gap(ring.phi, ring.eps) @ (1 - void) @ dual_widths(ring.zeta) / 2
+    loss = found.network.loss(solution.P, solution.void).reshape(fed.shape)
+    supply, side = loss[fed].sum(), -loss[:, -1][~fed[:, -1]].sum()
+    return CavitatingFilm(
+        So=float(np.hypot(along, ahead)),
+        attitude=float(np.arctan2(-ahead, along)),
+        P_max=float(P.max()),
+        friction=float(shear - ring.eps * ahead / 2),
+        side_flow=float(ring.ratio / 6 * side),
+        supply_flow=float(ring.ratio / 6 * supply),
+        imbalance=float((supply - side) / 6),
+        phi=ring.phi,
+        zeta=ring.zeta,
+        P=P,
+        void=void,
+    )

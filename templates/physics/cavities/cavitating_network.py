@@ -1,0 +1,114 @@
+"""Balances of flow of a journal's cavitating film on the ring of its nodes, and their change with the gap.
+
+Every coefficient is a product of one factor around and one across, as in `film_equations`; a change of the
+gap changes the factors around alone.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csc_array, diags_array, eye_array, kron
+
+from templates.core.arrays import Array, Mask
+from templates.physics.cavities.cavitation import Network
+from templates.physics.films.film_equations import dual_widths, midpoints
+from templates.physics.films.film_mesh import gap, ring_mesh
+
+
+@dataclass(frozen=True)
+class Groove:
+    """An axial groove or pocket, full at its pressure; a width of 0 makes a line."""
+
+    centre: float
+    """From the narrowest gap in the sense of rotation [rad]."""
+    width: float
+    """Extent around [rad]."""
+    length: float = 1.0
+    """Extent across over the bearing's width, 0 … 1 [-]."""
+    P: float = 0.0
+    """Supply pressure above that of the cavity [-]."""
+
+
+@dataclass(frozen=True)
+class Ring:
+    """Where the nodes are: those around × those across, the axial index fastest; phi ends where it starts."""
+
+    eps: float
+    """Relative eccentricity [-]."""
+    ratio: float
+    """Width over diameter B/D [-]."""
+    phi: Array
+    """(n + 1,) angles from the narrowest gap [rad]."""
+    zeta: Array
+    """(m + 1,) axial places, 0 (middle) … 1 (end)."""
+
+    def closed(self, values: Array) -> Array:
+        """Node values as an array around × across whose last row repeats the first."""
+        rows = values.reshape(self.phi.size - 1, self.zeta.size, *values.shape[1:])
+        return np.concatenate([rows, rows[:1]])
+
+    def cells(self) -> Array:
+        """(N,) areas dphi dzeta of the cells around the nodes."""
+        around = dual_widths(self.phi)
+        return np.outer(np.append(around[0] + around[-1], around[1:-1]), dual_widths(self.zeta)).ravel()
+
+
+def grooved_ring(eps: float, ratio: float, grooves: list[Groove], n: int, m: int) -> Ring:
+    """A graded mesh whose nearest nodes are moved to the edges of the grooves."""
+    mesh = ring_mesh(eps, ratio, n, m)
+    edges = [groove.centre + side * groove.width / 2 for groove in grooves for side in (-1, 1)]
+    phi = _snapped(mesh.phi, _wrapped(np.array(edges)))
+    return Ring(eps, ratio, phi, _snapped(mesh.zeta, np.array([groove.length for groove in grooves])))
+
+
+def _wrapped(angle: Array) -> Array:
+    """The same angle in [−pi, pi)."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi
+
+
+def _snapped(nodes: Array, places: Array) -> Array:
+    """Move the inner node nearest to each place there."""
+    nodes = nodes.copy()
+    for place in places[(places > nodes[0]) & (places < nodes[-1])]:
+        nodes[1 + np.abs(nodes[1:-1] - place).argmin()] = place
+    return nodes
+
+
+def _inside(groove: Groove, phi: Array, zeta: Array) -> Mask:
+    """Nodes of a groove; a groove narrower than the mesh still has the node that was moved to it."""
+    around = np.abs(_wrapped(phi - groove.centre)) <= groove.width / 2 + 1e-9
+    return around[:, None] & (zeta <= groove.length + 1e-9)
+
+
+def fed_network(ring: Ring, grooves: list[Groove], ambient: float) -> tuple[Network, Mask]:
+    """Balances of flow, and which nodes (around × across) are fed by grooves."""
+    phi, middle = ring.phi, midpoints(ring.phi)
+    H, H_mid = gap(phi, ring.eps), gap(middle, ring.eps)
+    A, T = _flows(ring, H_mid**3, H**3, H_mid)
+    P_fixed = np.full((phi.size - 1, ring.zeta.size), -1.0)
+    fed = np.zeros(P_fixed.shape, bool)
+    P_fixed[:, -1] = ambient
+    for groove in grooves:
+        inside = _inside(groove, phi[:-1], ring.zeta)
+        P_fixed[inside] = groove.P
+        fed |= inside
+    return Network(A, T, (P_fixed >= 0).ravel(), P_fixed.ravel()), fed
+
+
+def perturbed_flows(ring: Ring, change: Array, change_mid: Array) -> tuple[csc_array, csc_array]:
+    """The derivatives of A and T of the network for a change of the gap at (n + 1) and between (n) nodes."""
+    H, H_mid = gap(ring.phi, ring.eps), gap(midpoints(ring.phi), ring.eps)
+    return _flows(ring, 3 * H_mid**2 * change_mid, 3 * H**2 * change, change_mid)
+
+
+def _flows(ring: Ring, cube_mid: Array, cube: Array, H_mid: Array) -> tuple[csc_array, csc_array]:
+    """What nodes lose by pressure and by shear, for H³ between and at the nodes and H between them."""
+    n, dual = ring.phi.size - 1, dual_widths(ring.zeta)
+    step = csc_array((np.ones(n), (np.arange(n), np.arange(1, n + 1) % n)), shape=(n, n)) - eye_array(n)
+    axial = eye_array(dual.size - 1, dual.size, k=1) - eye_array(dual.size - 1, dual.size)
+    conductance = cube * dual_widths(ring.phi) / ring.ratio**2
+    conductance[0] += conductance[-1]
+    around = kron(step.T @ diags_array(cube_mid / np.diff(ring.phi)) @ step, diags_array(dual))
+    across = kron(diags_array(conductance[:-1]), axial.T @ diags_array(1 / np.diff(ring.zeta)) @ axial)
+    shear = kron(-step.T @ diags_array(6 * H_mid), diags_array(dual))
+    return csc_array(around + across), csc_array(shear)

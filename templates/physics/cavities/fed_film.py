@@ -1,0 +1,249 @@
+"""Static position of a journal in a mass-conserving film, from its load: eccentricity and attitude found.
+
+The film is fed by a line at the widest gap, or by grooves that stand still relative to the load. Films are
+those of `cavitating_film`, searched for on 64 × 8 intervals and then extrapolated from twice as many, after
+which their stiffness makes up for what the load still lacks. No answer, where the supply pressure alone lifts
+more than the load, or the search has not come to rest after 20 films.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.cavities.cavitating_dynamics import LinearFilm, linear_film
+from templates.physics.cavities.cavitating_film import CavitatingFilm, SolvedRing, measured, solved_ring
+from templates.physics.cavities.cavitating_network import Groove
+from templates.physics.films.film_map import mapped_film, mapped_load
+from templates.physics.films.film_map_inverse import mapped_eccentricity
+from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
+
+_COARSE, _FINE = (64, 8), (128, 16)
+_ACCURACY = 1e-3
+"""Share of the load at which the search ends; the rest is linear."""
+_SHORTEST = 1e-4
+"""Step of y, over its size if below 1, at which it ends likewise: where pressure outweighs the load [-]."""
+_HUNTED = 0.03
+"""The same where the force has a step [-]."""
+_STEPS = 20
+_SMALLEST = 1e-3
+"""Eccentricity below which a film without supply pressure is taken in proportion [-]."""
+_LONGEST = 1.0
+"""Longest step of atanh(eps); halved whenever the search turns back [-]."""
+
+
+@dataclass(frozen=True)
+class Feed:
+    """How a bearing is fed; without grooves by a line at the widest gap."""
+
+    pressure: float = 0.0
+    """Supply pressure above ambient P = p psi²/(eta omega_h) [-]."""
+    grooves: tuple[tuple[float, float], ...] = ()
+    """Angle of the centre from the load in the sense of rotation, and width around, of each [rad]."""
+
+    def placed(self, attitude: float) -> list[Groove]:
+        """The grooves as the film sees them, from the narrowest gap."""
+        if not self.grooves:
+            return [Groove(np.pi, 0.0, P=self.pressure)]
+        return [Groove(angle - attitude, width, P=self.pressure) for angle, width in self.grooves]
+
+
+@dataclass(frozen=True)
+class FedFilm:
+    """A film whose load is nearly the one wanted; dimensionless as in `cavitating_film`."""
+
+    eps: float
+    """Eccentricity at the load wanted."""
+    solved_eps: float
+    """Eccentricity of the film whose measures follow."""
+    attitude: float
+    """At the load wanted [rad]."""
+    P_max: float
+    peak: float
+    shear: float
+    side_flow: float
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the journal is: a vector y along and ahead of the load, as long as atanh(eps).
+
+    So no step of y leaves the bearing, and near its wall a step of 1 is one of the load's size.
+    """
+
+    y: Array
+
+    @property
+    def eps(self) -> float:
+        """Relative eccentricity [-]."""
+        return min(float(np.tanh(np.hypot(*self.y))), ECCENTRICITY_LIMIT)
+
+    @property
+    def attitude(self) -> float:
+        """Angle from the load to the narrowest gap [rad]."""
+        return float(np.arctan2(self.y[1], self.y[0]))
+
+    def moved(self, step: Array) -> "Place":
+        """The place after a step of y, kept inside the eccentricities that films are solved for."""
+        y = self.y + step
+        size = max(float(np.hypot(*y)), 1e-300)
+        return Place(y * min(1.0, float(np.arctanh(ECCENTRICITY_LIMIT)) / size))
+
+
+@dataclass(frozen=True)
+class Lack:
+    """What a film lacks to bear the load."""
+
+    share: float
+    """Over the load; infinite without one [-]."""
+    step: Array
+    """Change of y that would make up for it, as far as it is linear."""
+
+
+def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> tuple[Array, Array]:
+    """Stiffness and damping in axes of the load, psi²/(B D eta omega_h) times those in c and omega_h, (2, 2).
+
+    Parameters
+    ----------
+    eps
+        Relative eccentricity [-].
+    ratio
+        Width over diameter B/D [-].
+    attitude
+        Angle from the load to the narrowest gap; without grooves the film has its own [rad].
+    feed
+        Grooves and supply pressure.
+
+    Returns
+    -------
+    Both, NaN where the cavities do not settle.
+    """
+    try:
+        film = linear_film(solved_ring(max(eps, _SMALLEST), ratio, feed.placed(attitude), 0.0, *_FINE))
+    except (ArithmeticError, RuntimeError):
+        return np.full((2, 2), np.nan), np.full((2, 2), np.nan)
+    own = float(np.arctan2(-film.force[1], film.force[0]))
+    film = film.turned(attitude if feed.grooves else own)
+    return film.K, film.B
+
+
+def fed_film(So: float, ratio: float, feed: Feed) -> FedFilm | None:
+    """Find the film that bears So; None if there is none or it is not found.
+
+    Parameters
+    ----------
+    So
+        Sommerfeld number F psi²/(B D eta omega_h), 0 or more [-].
+    ratio
+        Width over diameter B/D, 0.01 … 100 [-].
+    feed
+        Grooves and supply pressure.
+    """
+    smallest = 0.0 if feed.pressure > 0 else float(mapped_load(np.array(_SMALLEST), np.array(ratio)))
+    search = Search(max(So, smallest), ratio, feed)
+    try:
+        found = search.found()
+        film = None if found is None else search.extrapolated(*found)
+    except (ArithmeticError, ValueError, RuntimeError):  # the last two: a singular matrix
+        return None
+    return film if film is None or So >= smallest else replace(film, eps=film.eps * So / smallest)
+
+
+@dataclass(frozen=True)
+class Search:
+    """The search for the place at which a film bears a load."""
+
+    load: float
+    """Sommerfeld number [-]."""
+    ratio: float
+    """Width over diameter B/D [-]."""
+    feed: Feed
+    """Grooves, which stand still, or none: then the line that feeds turns with the journal."""
+
+    def found(self) -> tuple[Place, SolvedRing] | None:
+        """The place and its film on the coarse mesh, by Newton's method; steps are halved when it turns back.
+
+        The mesh follows the grooves, so that the force has steps; where the search hunts about one, the place
+        nearest to rest is taken.
+        """
+        place, longest, before = self.start(), _LONGEST, np.zeros(2)
+        best, nearest = None, _HUNTED
+        for _ in range(_STEPS):
+            ring = self.solved(place, _COARSE)
+            lack = self.lack(place, linear_film(ring))
+            distance = float(np.hypot(*lack.step)) / min(1.0, float(np.hypot(*place.y)))
+            if distance <= nearest:
+                best, nearest = (place, ring), distance
+            if lack.share <= _ACCURACY or distance <= _SHORTEST:
+                return place, ring
+            if lack.step @ before < 0:
+                longest /= 2
+            if longest <= _HUNTED and best is not None:
+                break
+            before = lack.step * min(1.0, longest / float(np.hypot(*lack.step)))
+            place = place.moved(before)
+        return best
+
+    def start(self) -> Place:
+        """Where the film map has the journal."""
+        eps = mapped_eccentricity(np.array(self.load), np.array(self.ratio))
+        eps = np.where(np.isnan(eps), ECCENTRICITY_LIMIT, np.maximum(eps, _SMALLEST))
+        attitude = mapped_film(eps, np.array(self.ratio))["attitude"]
+        return Place(np.arctanh(eps) * np.array([np.cos(attitude), np.sin(attitude)]))
+
+    def solved(self, place: Place, mesh: tuple[int, int]) -> SolvedRing:
+        """The film at a place."""
+        return solved_ring(place.eps, self.ratio, self.feed.placed(place.attitude), 0.0, *mesh)
+
+    def lack(self, place: Place, film: LinearFilm) -> Lack:
+        """What the film there lacks; `film` is in axes of the line of centres."""
+        step = self._step_to_grooves if self.feed.grooves else self._step_with_line
+        missing, displacement = step(place, film)
+        share = float(np.hypot(*missing)) / self.load if self.load > 0 else np.inf
+        along, ahead = displacement
+        size = float(np.arctanh(place.eps))
+        radial, turned = place.y / size, np.array([-place.y[1], place.y[0]]) / size
+        return Lack(share, along / (1 - place.eps**2) * radial + ahead * size / place.eps * turned)
+
+    def _step_to_grooves(self, place: Place, film: LinearFilm) -> tuple[Array, Array]:
+        """The force that is missing, and the displacement for it, in axes of the line of centres."""
+        load = self.load * np.array([np.cos(place.attitude), -np.sin(place.attitude)])
+        missing: Array = load - film.force
+        return missing, np.asarray(np.linalg.solve(film.K, missing))
+
+    def _step_with_line(self, place: Place, film: LinearFilm) -> tuple[Array, Array]:
+        """Likewise; only along the line of centres, since the film turns as a whole."""
+        borne = float(np.hypot(*film.force))
+        missing = (self.load - borne) * film.force / borne
+        along = (self.load - borne) / (film.force / borne @ film.K[:, 0])
+        return missing, np.array([max(along, -0.9 * place.eps), 0.0])
+
+    def extrapolated(self, place: Place, ring: SolvedRing) -> FedFilm:
+        """The film there by Richardson from that on the coarse mesh, and the place for what it still lacks.
+
+        Load and peak converge with order 2, shear and flow, which see the front, with 1.
+        """
+        finer = self.solved(place, _FINE)
+        coarse, fine, linear = measured(ring), measured(finer), linear_film(finer)
+        force = linear.force + (linear.force - linear_film(ring).force) / 3
+        final = place.moved(self.lack(place, replace(linear, force=force)).step)
+        turning = force + linear.K[:, 0] * (final.eps - place.eps)
+        friction, side_flow = (2 * getattr(fine, n) - getattr(coarse, n) for n in ("friction", "side_flow"))
+        return FedFilm(
+            eps=final.eps,
+            solved_eps=place.eps,
+            attitude=final.attitude if self.feed.grooves else float(np.arctan2(-turning[1], turning[0])),
+            P_max=fine.P_max + (fine.P_max - coarse.P_max) / 3,
+            peak=_peak(fine),
+            shear=friction + place.eps * force[1] / 2,
+            side_flow=side_flow,
+        )
+
+
+def _peak(film: CavitatingFilm) -> float:
+    """Place of the largest pressure at mid-width, by a parabola through the three nodes about it [rad]."""
+    P = film.P[:, 0]
+    k = min(max(int(P.argmax()), 1), P.size - 2)
+    x = film.phi[k - 1 : k + 2] - film.phi[k]
+    bend, slope, _ = np.polyfit(x / x[2], P[k - 1 : k + 2], 2)
+    return float(film.phi[k] - (x[2] * slope / (2 * bend) if bend < 0 else 0.0))

@@ -1,0 +1,1 @@
+"""Crank mechanism, gas, balance and flywheel."""

@@ -1,0 +1,183 @@
+r"""Balance of a crankshaft with any number of equal cylinders: what their rotation and stroke leave over.
+
+The crank of a cylinder stands at −(firing interval) · (its place in the firing order, from 0), seen when the
+first to fire is at top dead centre, plus the angle of its bank. Phasors are complex: x real, y imaginary, in
+units of mass times omega² r. A piston along its bank's axis is the sum of a phasor that turns with the crank
+and one that turns against it; for cylinders in line the two are equal, and the sum stays in the plane of the
+cylinders. A V engine differs by its bank angles alone.
+
+References
+----------
+S. S. Rao, Singh: DYREMI, Int. J. of Engineering Education 1993/94. Erratum: the paper drops r in the residual
+force m_rec omega² r cos(2 theta)/n.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array, Truth
+from templates.core.language.declare import units
+
+Phasor = NDArray[np.complex128]
+_VANISHES = 1e-12  # of the sum of all sizes; what is left is rounding
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Phasors that turn with the crank and against it."""
+
+    forward: Phasor
+    backward: Phasor
+
+    @property
+    def amplitude(self) -> Array:
+        """The largest size on their way: the half axis of an ellipse."""
+        return np.asarray(np.abs(self.forward) + np.abs(self.backward), dtype=float)
+
+    def at(self, angle: Array) -> Phasor:
+        """Their sum, (…, K), where the crank has turned by `angle` [rad] times the order of the harmonic."""
+        turn = np.exp(1j * angle)
+        return self.forward[..., None] * turn + self.backward[..., None] / turn
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """Cylinders in a row: angle of crank and bank [rad], distance from the reference plane [m], (…, N)."""
+
+    turn: Array
+    bank: Array
+    arm: Array
+
+    def rotating(self, arm: Array | float = 1.0) -> Phasor:
+        """Sum of the cranks' directions, each times its arm."""
+        return _sum(arm, self.bank + self.turn)
+
+    def reciprocating(self, order: int, arm: Array | float = 1.0) -> Pair:
+        """The harmonic of an order of the pistons, each times its arm."""
+        return Pair(
+            _sum(np.asarray(arm) / 2, self.bank + order * self.turn),
+            _sum(np.asarray(arm) / 2, self.bank - order * self.turn),
+        )
+
+
+def _sum(weight: Array | float, angle: Array) -> Phasor:
+    """Sum of weighted directions; exactly none where only rounding is left."""
+    weight = np.broadcast_to(weight, np.shape(weight * angle))
+    total = np.sum(weight * np.exp(1j * angle), axis=-1)
+    vanishes = np.abs(total) <= _VANISHES * np.sum(np.abs(weight), axis=-1)
+    return np.where(vanishes, 0, total)
+
+
+def crank_turns(order: Array, interval: Array | float) -> Array:
+    """Angles of the cranks [rad] by cylinder, (…, N), from the firing order and the interval [rad]."""
+    place = np.argsort(np.atleast_1d(order), axis=-1).astype(float)
+    return np.asarray(-interval * place)
+
+
+def arrangement(strokes: Array, order: Array, bank: Array, places: Array, reference: Array) -> Arrangement:
+    """The cylinders that fire in `order`, at equal intervals, along the axis at `places` [m]."""
+    order, places = np.atleast_1d(order), np.atleast_1d(places)
+    turn = crank_turns(order, np.pi * strokes / order.shape[-1])
+    return Arrangement(turn, np.atleast_1d(bank) + 0 * turn, places - np.asarray(reference)[..., None])
+
+
+@units("m", returns="m", latex=r"\frac{{\min {0}+\max {0}}}{{2}}")
+def mid_plane(places: Array) -> Array:
+    """The plane midway between the outermost cylinders [m]."""
+    places = np.atleast_1d(places)
+    ends = np.min(places, axis=-1), np.max(places, axis=-1)
+    return np.asarray((ends[0] + ends[1]) / 2)[()]
+
+
+@units("1", "1", returns="1")
+def is_firing_order(order: Array, count: Array) -> Truth:
+    """Whether every cylinder from 1 to `count` fires once."""
+    order = np.atleast_1d(order)
+    if order.shape[-1] != count:
+        return False
+    return np.all(np.sort(order, axis=-1) == np.arange(1, order.shape[-1] + 1), axis=-1)
+
+
+@units(None, "1", returns="1")
+def is_one_each(value: Array, count: Array) -> Truth:
+    """Whether there is a value for each cylinder."""
+    return bool(np.atleast_1d(value).shape[-1] == count)
+
+
+@units("kg", "rad/s", "m", None, returns="N")
+def rotating_force(m_rot: Array, omega: Array, r: Array, row: Arrangement) -> Array:
+    """Size of the force of the rotating masses [N]."""
+    return np.abs(m_rot * omega**2 * r) * np.abs(row.rotating())
+
+
+@units("kg", "rad/s", "m", None, returns="N*m")
+def rotating_couple(m_rot: Array, omega: Array, r: Array, row: Arrangement) -> Array:
+    """Size of the couple of the rotating masses about the reference plane [N m]."""
+    return np.abs(m_rot * omega**2 * r) * np.abs(row.rotating(row.arm))
+
+
+@units("kg", "rad/s", "m", "1", None, None, returns="N")
+def reciprocating_force(m: Array, omega: Array, r: Array, n: Array, order: int, row: Arrangement) -> Array:
+    """Amplitude of the primary (1) or secondary (2) force, m ω² r [/n] times the pistons' sum [N]."""
+    return m * omega**2 * r / n ** (order - 1) * row.reciprocating(order).amplitude
+
+
+@units("kg", "rad/s", "m", "1", None, None, returns="N*m")
+def reciprocating_couple(m: Array, omega: Array, r: Array, n: Array, order: int, row: Arrangement) -> Array:
+    """Amplitude of the primary (1) or secondary (2) couple about the reference plane [N m]."""
+    return m * omega**2 * r / n ** (order - 1) * row.reciprocating(order, row.arm).amplitude
+
+
+@units("kg", "kg", "rad/s", "m", "1", None, "rad", returns="N")
+def residual_force_x(
+    m_rot: Array, m_rec: Array, omega: Array, r: Array, n: Array, row: Arrangement, theta: Array
+) -> Array:
+    """Force of all cylinders on the frame along x [N], (…, K), up to the second harmonic."""
+    return _residual(m_rot, m_rec, omega, r, n, row, theta).real
+
+
+@units("kg", "kg", "rad/s", "m", "1", None, "rad", returns="N")
+def residual_force_y(
+    m_rot: Array, m_rec: Array, omega: Array, r: Array, n: Array, row: Arrangement, theta: Array
+) -> Array:
+    """Force of all cylinders on the frame along y [N], (…, K), up to the second harmonic."""
+    return _residual(m_rot, m_rec, omega, r, n, row, theta).imag
+
+
+def _residual(
+    m_rot: Array, m_rec: Array, omega: Array, r: Array, n: Array, row: Arrangement, theta: Array
+) -> Phasor:
+    parts = (
+        (m_rot, row.rotating()[..., None] * np.exp(1j * theta)),
+        (m_rec, row.reciprocating(1).at(theta)),
+        (m_rec / n, row.reciprocating(2).at(2 * theta)),
+    )
+    return np.asarray(sum(np.asarray(m * omega**2 * r)[..., None] * phasor for m, phasor in parts))
+
+
+@dataclass(frozen=True)
+class TwoPlanes:
+    """Phasors of mass that balance, in two planes, cranks of unit mass at unit radius."""
+
+    flywheel: Phasor
+    damper: Phasor
+
+
+def two_planes(row: Arrangement, reference: Array, x_f: Array, x_d: Array) -> TwoPlanes:
+    """What balances the rotating masses, forces and couples, in the planes at x_f and x_d [m]."""
+    place = row.arm + np.asarray(reference)[..., None]
+    x_f, x_d = np.asarray(x_f), np.asarray(x_d)
+    flywheel = row.rotating(place - x_d[..., None]) / (x_d - x_f)
+    damper = row.rotating(place - x_f[..., None]) / (x_f - x_d)
+    return TwoPlanes(flywheel, damper)
+
+
+@units("kg", None, returns="rad", latex=r"\operatorname{{arg}}\left({1}\right)")
+def balance_angle(m_rot: Array, phasor: Phasor) -> Array:
+    """Where a balancing mass stands [rad], from 0 to a turn; nowhere (NaN) if it has no size."""
+    angle = np.angle(m_rot * phasor) % (2 * np.pi)
+    return np.where(np.abs(m_rot * phasor) > 0, angle, np.nan)[()]

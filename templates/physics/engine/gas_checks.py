@@ -1,0 +1,90 @@
+"""Whether the data of a gas cycle are whole and in order: what rules of templates ask."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from templates.core.arrays import Array, Truth
+from templates.core.language.declare import units
+from templates.physics.engine.gas_cycle import Polytropic, wrapped
+from templates.physics.engine.gas_pressure import GasCycle
+
+CYCLES = ("none", "otto", "diesel", "four_stroke", "table")
+POLYTROPIC, GIVEN_PEAK = ("otto", "diesel", "four_stroke"), ("otto", "four_stroke")
+FEWEST = 8  # points of a table
+MOST_VALUES = 2_000_000  # of a curve over all points
+_QUARTER = np.pi / 2
+
+
+@units(None, None, None, returns="1")
+def known_for(name: str, cycles: tuple[str, ...], value: Array) -> Truth:
+    """Whether a value that these cycles need is given at each point, if the cycle is one of them."""
+    return np.logical_or(name not in cycles, ~np.isnan(value))
+
+
+@units(None, "Pa", returns="1")
+def table_is_known(name: str, p: Array) -> Truth:
+    """Whether a table is given, if the cycle is one."""
+    return name != "table" or np.ndim(p) > 0
+
+
+@units("rad", "rad", "rad", "rad", returns="1")
+def valves_in_order(io: Array, ic: Array, eo: Array, ec: Array) -> Truth:
+    """Whether inlet opening and exhaust closing lie within 90° of the dead centre of the exchange."""
+    near = (np.abs(wrapped(io)) <= _QUARTER) & (np.abs(wrapped(ec)) <= _QUARTER)
+    return near & (ic >= _QUARTER) & (eo <= 4 * np.pi - _QUARTER)
+
+
+@units(None, None, returns="1")
+def burns_before_exhaust(name: str, gas: Callable[[], GasCycle]) -> Truth:
+    """Whether combustion ends before the exhaust opens; what is not given is told by other rules."""
+    if name not in POLYTROPIC or not isinstance(made := gas(), Polytropic):
+        return True
+    return ~(made.v_cut >= made.v_opened)
+
+
+@units(None, returns="1")
+def pressure_rises(gas: GasCycle) -> Truth:
+    """Whether combustion does not begin below the pressure of the compression's end."""
+    if not isinstance(gas, Polytropic):
+        return True
+    return gas.charge.combustion >= gas.p_compressed * (1 - 1e-12)
+
+
+@units(None, "rad", "Pa", returns="1")
+def angles_rise(name: str, angle: Array, p: Array) -> Truth:
+    """Whether the angles of a table are one rising list, of as many values as pressures, or not given."""
+    if name != "table" or np.ndim(angle) == 0:
+        return True
+    return np.ndim(angle) == 1 and np.shape(p)[-1:] == angle.shape and bool((np.diff(angle) > 0).all())
+
+
+@units(None, "1", "rad", "Pa", returns="1")
+def full_cycle(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
+    """Whether a table of rising angles covers the cycle: from its end to its begin is at most a step."""
+    if name != "table" or np.ndim(p) == 0 or not angles_rise(name, angle, p):
+        return True  # which another rule tells
+    if np.shape(p)[-1:] < (FEWEST,):
+        return False
+    if np.ndim(angle) == 0:
+        return True
+    left = np.pi * strokes - (angle[-1] - angle[0])
+    return bool(-1e-6 <= left <= 1.001 * np.diff(angle).max())
+
+
+@units(None, "1", "rad", "Pa", returns="1")
+def table_closes(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
+    """Whether a point that repeats the first, a cycle later, repeats its pressure."""
+    if name != "table" or np.ndim(angle) == 0 or not full_cycle(name, strokes, angle, p):
+        return True
+    repeats = np.isclose(angle[-1] - angle[0], np.pi * strokes, rtol=1e-9)
+    return ~repeats | np.isclose(p[..., 0], p[..., -1], rtol=1e-6)
+
+
+@units(None, "1", returns="1")
+def is_manageable(points: tuple[int, ...], steps: Array) -> Truth:
+    """Whether curves of so many steps at points of this shape fit into memory."""
+    return bool(math.prod(points) * steps <= MOST_VALUES)

@@ -1,0 +1,210 @@
+r"""Gas cycles of engines: ideal Otto, ideal Diesel, practical four-stroke, tabulated; for each the work.
+
+One chain of events serves the first three. Between inlet opening and exhaust closing, in either order,
+the pressure goes linearly in crank angle from the exhaust's to the suction's; suction at
+constant pressure until the inlet closes; a polytrope to top dead centre; combustion at constant pressure
+until the volume is `cutoff` times that of the dead centre; a polytrope until the exhaust opens; linearly to
+the exhaust's pressure at bottom dead centre (at once if it opens later); exhaust at constant pressure.
+
+Otto is this with cutoff 1, Diesel with the combustion at the end pressure of the compression, both with
+valves that open and close at dead centres. In two strokes the charge changes at bottom dead centre.
+Polytropes ask for absolute pressures.
+
+References
+----------
+S. S. Rao, Singh: DYREMI, Int. J. of Engineering Education 1993/94, names the parameters of the practical
+cycle; what the pressure does while valves open and overlap is said above, as the source does not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array
+from templates.physics.engine.gas_pressure import GasCycle, NoGas, Tabulated, one_cycle
+from templates.physics.engine.slider_crank import Motion, angle_of_travel, travel_integral
+
+_SAME = 1e-9
+"""Angles closer than this [rad] are one: at an event the pressure after it is told, whatever the rounding."""
+
+
+@dataclass(frozen=True)
+class Valves:
+    """Crank angles [rad], four-stroke: about 0 and 720°, 180°, 540°."""
+
+    inlet_opens: Array
+    inlet_closes: Array
+    exhaust_opens: Array
+    exhaust_closes: Array
+
+
+AT_DEAD_CENTRES = Valves(*(np.asarray(turns * np.pi) for turns in (0, 1, 3, 4)))
+
+
+@dataclass(frozen=True)
+class Charge:
+    """Pressures [Pa], volume ratios and exponents [1] of a cycle."""
+
+    suction: Array
+    exhaust: Array
+    combustion: Array
+    compression_ratio: Array
+    cutoff: Array
+    compression_exponent: Array
+    expansion_exponent: Array
+
+
+@dataclass(frozen=True)
+class Polytropic(GasCycle):
+    """The chain of events, by the crank angles [rad] at which they begin or end; n = l/r [1]."""
+
+    charge: Charge
+    n: Array
+    cycle: float
+    firing: float
+    exchange_begins: Array
+    exchange_ends: Array
+    inlet_closes: Array
+    exhaust_opens: Array
+    emptied: float
+
+    def pressure(self, theta: Array, travel: Array) -> Array:
+        """By the event in which each angle lies."""
+        c = self.charge
+        start = _column(self.exchange_begins)
+        place = (theta - start + _SAME) % self.cycle - _SAME
+
+        def until(angle: Array | float) -> NDArray[np.bool_]:
+            return place < _column(angle) - start - _SAME
+
+        volume = 1 / (_column(c.compression_ratio) - 1) + travel
+        p_s, p_e, p_3, p_o = (_column(p) for p in (c.suction, c.exhaust, c.combustion, self.p_opened))
+        overlap = _column(self.exchange_ends) - start
+        opened = _column(self.exhaust_opens)
+        emptying = np.where(self.emptied > opened, self.emptied - opened, 1)
+        events: list[tuple[Array | float, Array]] = [
+            (self.exchange_ends, p_e + (p_s - p_e) * place / np.where(overlap > 0, overlap, 1)),
+            (self.inlet_closes, p_s),
+            (self.firing, p_s * (_column(self.v_closed) / volume) ** _column(c.compression_exponent)),
+            (self.cut, p_3),
+            (self.exhaust_opens, p_3 * (_column(self.v_cut) / volume) ** _column(c.expansion_exponent)),
+            (self.emptied, p_o + (p_e - p_o) * (place + start - opened) / emptying),
+        ]
+        p = p_e + 0 * volume
+        for end, during in reversed(events):
+            p = np.where(until(end), during, p)
+        return p
+
+    @cached_property
+    def v_dead(self) -> Array:
+        """Volume at top dead centre over the swept volume; all volumes are."""
+        return 1 / (self.charge.compression_ratio - 1)
+
+    @cached_property
+    def v_closed(self) -> Array:
+        """Volume where the inlet closes."""
+        return self.volume(self.inlet_closes)
+
+    @cached_property
+    def v_cut(self) -> Array:
+        """Volume where combustion ends."""
+        return self.charge.cutoff * self.v_dead
+
+    @cached_property
+    def v_opened(self) -> Array:
+        """Volume where the exhaust opens."""
+        return self.volume(self.exhaust_opens)
+
+    @cached_property
+    def p_opened(self) -> Array:
+        """Pressure where the exhaust opens."""
+        c = self.charge
+        return c.combustion * (self.v_cut / self.v_opened) ** c.expansion_exponent
+
+    @cached_property
+    def p_compressed(self) -> Array:
+        """Pressure where compression ends."""
+        return self.charge.suction * (self.v_closed / self.v_dead) ** self.charge.compression_exponent
+
+    @cached_property
+    def cut(self) -> Array:
+        """Crank angle at which combustion ends."""
+        return self.firing + angle_of_travel((self.charge.cutoff - 1) * self.v_dead, self.n)
+
+    def volume(self, angle: Array | float) -> Array:
+        """Volume at an angle for each point."""
+        return self.v_dead + _travel(angle, self.n)
+
+    def mean_effective(self) -> Array:
+        """The work of each event in closed form, over the swept volume."""
+        c, dead = self.charge, self.v_dead
+        end = np.maximum(self.exhaust_opens, self.emptied)
+        return (
+            _linear_work(self.n, self.exchange_begins, self.exchange_ends, c.exhaust, c.suction)
+            + c.suction * (_travel(self.inlet_closes, self.n) - _travel(self.exchange_ends, self.n))
+            + _polytropic_work(c.suction, self.v_closed, dead, c.compression_exponent)
+            + c.combustion * (c.cutoff - 1) * dead
+            + _polytropic_work(c.combustion, self.v_cut, self.v_opened, c.expansion_exponent)
+            + _linear_work(self.n, self.exhaust_opens, end, self.p_opened, c.exhaust)
+            + c.exhaust * (_travel(self.exchange_begins, self.n) - _travel(end, self.n))
+        )
+
+
+def _column(value: Array | float) -> Array:
+    return np.asarray(value)[..., None]
+
+
+def _travel(angle: Array | float, n: Array) -> Array:
+    return Motion(np.asarray(angle), n).travel
+
+
+def _polytropic_work(p_1: Array, v_1: Array, v_2: Array, exponent: Array) -> Array:
+    """Work along p v^k: p_1 v_1 (1 − (v_1/v_2)^(k − 1))/(k − 1), written so that k = 1 is no exception."""
+    power = (exponent - 1) * np.log(v_2 / v_1)
+    mean = np.where(power == 0, 1.0, -np.expm1(-power) / np.where(power == 0, 1.0, power))
+    return p_1 * v_1 * np.log(v_2 / v_1) * mean
+
+
+def _linear_work(n: Array, begin: Array, end: Array, p_1: Array, p_2: Array) -> Array:
+    """Work while the pressure goes linearly in crank angle from p_1 to p_2; none if at once."""
+    angle = end - begin
+    slope = (p_2 - p_1) / np.where(angle > 0, angle, 1)
+    volumes = travel_integral(end, n) - travel_integral(begin, n)
+    work = p_2 * _travel(end, n) - p_1 * _travel(begin, n) - slope * volumes
+    return np.where(angle > 0, work, 0.0)
+
+
+def gas_cycle(
+    name: str, strokes: Array, n: Array, charge: Charge, valves: Valves, angle: Array, p: Array, p_c: Array
+) -> GasCycle:
+    """The gas cycle of a name; `angle` [rad], `p` [Pa] are the table, `p_c` [Pa] is that of the crankcase."""
+    cycle = float(np.pi * strokes)
+    if name == "none":
+        return NoGas(np.asarray(p_c))
+    if name == "table":
+        return Tabulated(*one_cycle(angle, p, cycle), n, cycle)
+    if name != "four_stroke":
+        charge, valves = ideal(name, charge), AT_DEAD_CENTRES
+    if strokes == 2:
+        begins, ends, closes, opens = (np.asarray(turns * np.pi) for turns in (1, 1, 1, 3))
+    else:
+        io, ec = wrapped(valves.inlet_opens), wrapped(valves.exhaust_closes)
+        begins, ends = np.minimum(io, ec), np.maximum(io, ec)
+        closes, opens = valves.inlet_closes, valves.exhaust_opens
+    return Polytropic(charge, n, cycle, 2 * np.pi, begins, ends, closes, opens, 3 * np.pi)
+
+
+def ideal(name: str, charge: Charge) -> Charge:
+    """An ideal Otto cycle burns at top dead centre, a Diesel cycle at the end pressure of its compression."""
+    if name == "otto":
+        return replace(charge, cutoff=np.asarray(1.0))
+    return replace(charge, combustion=charge.suction * charge.compression_ratio**charge.compression_exponent)
+
+
+def wrapped(angle: Array) -> Array:
+    """A crank angle [rad] of a four-stroke cycle, as one from −360° to 360°."""
+    return (angle + 2 * np.pi) % (4 * np.pi) - 2 * np.pi

@@ -1,0 +1,96 @@
+r"""What every gas cycle tells, and the simplest two: no gas at all, and a pressure tabulated over the angle.
+
+The zero of the crank angle: suction begins at 0° and combustion at 360° in a four-stroke engine, combustion
+at 0° in a two-stroke engine. Pressures are arrays over the angle (last axis) for each point.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import units
+from templates.physics.engine.slider_crank import Motion, travel_integral
+
+
+class GasCycle(ABC):
+    """The pressure in a cylinder over one cycle."""
+
+    @abstractmethod
+    def pressure(self, theta: Array, travel: Array) -> Array:
+        """Pressure [Pa] at crank angles theta [rad] and the piston's travel there over its stroke."""
+
+    @abstractmethod
+    def mean_effective(self) -> Array:
+        """Work of the gas in a cycle over the swept volume [Pa], exact, whatever angles are asked for."""
+
+
+@dataclass(frozen=True)
+class NoGas(GasCycle):
+    """The crankcase's pressure above the piston too: no gas force."""
+
+    p_c: Array
+
+    def pressure(self, theta: Array, travel: Array) -> Array:
+        """As in the crankcase."""
+        return self.p_c[..., None] + 0 * travel
+
+    def mean_effective(self) -> Array:
+        """None."""
+        return 0 * self.p_c
+
+
+@dataclass(frozen=True)
+class Tabulated(GasCycle):
+    """Pressures p [Pa], (…, M), at angles [rad], (M,), linear between them and periodic; n = l/r, (…)."""
+
+    angle: Array
+    p: Array
+    n: Array
+    cycle: float
+
+    def pressure(self, theta: Array, travel: Array) -> Array:
+        """Linear between the neighbours."""
+        angle, p = self.angle, self.p
+        place = (theta - angle[0]) % self.cycle + angle[0]
+        left = np.searchsorted(angle, place, side="right") - 1
+        right = (left + 1) % angle.size
+        width = np.diff(angle, append=angle[0] + self.cycle)
+        share = (place - angle[left]) / width[left]
+        return p[..., left] * (1 - share) + p[..., right] * share
+
+    def mean_effective(self) -> Array:
+        """Between two angles, p dV is the change of p V less dp/dθ times the integral of V."""
+        ends = np.append(self.angle, self.angle[0] + self.cycle)
+        volumes = np.diff(travel_integral(ends, self.n[..., None]))
+        slopes = np.diff(self.p, append=self.p[..., :1]) / np.diff(ends)
+        return -np.sum(slopes * volumes, axis=-1)
+
+
+@units(None, None, returns="Pa")
+def pressure_at(gas: GasCycle, motion: Motion) -> Array:
+    """The pressure in the cylinder [Pa] at the angles of a motion, (…, K)."""
+    return gas.pressure(motion.theta, motion.travel)
+
+
+@units(None, returns="Pa")
+def mean_effective(gas: GasCycle) -> Array:
+    """The indicated mean effective pressure [Pa]: the work of a cycle over the swept volume."""
+    return np.asarray(gas.mean_effective())[()]
+
+
+@units(None, "Pa", returns="Pa")
+def peak_pressure(name: str, p: Array) -> Array:
+    """The largest pressure over the cycle [Pa]; none (NaN) where there is no gas."""
+    return np.asarray(np.max(p, axis=-1))[()] if name != "none" else np.full(np.shape(p)[:-1], np.nan)[()]
+
+
+def one_cycle(angle: Array, p: Array, cycle: float) -> tuple[Array, Array]:
+    """Angles [rad] and pressures [Pa] of a table without the repeated last point; equal steps if unsaid."""
+    if np.ndim(angle) == 0:
+        angle = np.arange(p.shape[-1]) * (cycle / p.shape[-1])
+    repeats = np.isclose(angle[-1] - angle[0], cycle, rtol=1e-9)
+    return (angle[:-1], p[..., :-1]) if repeats else (angle, p)

@@ -1,0 +1,121 @@
+r"""Slider-crank: where piston and rod are and how they move, per unit of crank radius and of crank speed.
+
+The axis of the cylinder meets that of the crankshaft. x points from the crankshaft to the cylinder head, y to
+where the crankpin moves first; theta counts from top dead centre, n = l/r, sin(phi) = sin(theta)/n. The rod
+stands at −phi from the x axis, so that at top dead centre it swings against the crank.
+
+With q = n cos(phi) = sqrt(n² − sin²(theta)), all is exact for n > 1. At n = 1 the mechanism locks at 90°.
+
+References
+----------
+S. S. Rao, Singh: DYREMI, Int. J. of Engineering Education 1993/94.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.special import ellipeinc
+
+from templates.core.arrays import Array
+from templates.core.language.declare import units
+
+_ROUNDING = 1e-14
+"""Sines and cosines below it are those of dead centres and right angles, known to no more digits."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A slider-crank at the angles theta [rad], last axis, for ratios n = l/r [1] of shape (…, 1)."""
+
+    theta: Array
+    n: Array
+
+    @cached_property
+    def sin(self) -> Array:
+        """Sine of the crank angle."""
+        return _exact(np.sin(self.theta))
+
+    @cached_property
+    def cos(self) -> Array:
+        """Cosine of the crank angle."""
+        return _exact(np.cos(self.theta))
+
+    @cached_property
+    def q(self) -> Array:
+        """Height of the rod over the crank radius, n cos(phi)."""
+        return np.sqrt((self.n - 1) * (self.n + 1) + self.cos**2)
+
+    @cached_property
+    def tan_phi(self) -> Array:
+        """Tangent of the rod's angle."""
+        return self.sin / self.q
+
+    @cached_property
+    def travel(self) -> Array:
+        """Way of the piston from top dead centre, over the stroke."""
+        return np.sin(self.theta / 2) ** 2 + self.sin**2 / (2 * (self.n + self.q))
+
+    @cached_property
+    def lever(self) -> Array:
+        """Torque over force along the cylinder and crank radius; also −dx/dtheta of the piston over r."""
+        return self.sin + self.cos * self.tan_phi
+
+    @cached_property
+    def acceleration(self) -> Array:
+        """Acceleration of the piston over omega² r."""
+        return piston_acceleration_Rao_Singh_1993(self.sin, self.cos, self.q, self.n)
+
+    @cached_property
+    def rod_velocity(self) -> Array:
+        """d(phi)/d(theta)."""
+        return self.cos / self.q
+
+    @cached_property
+    def rod_acceleration(self) -> Array:
+        """d²(phi)/d(theta)²."""
+        return -(self.n - 1) * (self.n + 1) * self.sin / self.q**3
+
+
+def _exact(value: Array) -> Array:
+    """Zero where no more than rounding is left, so that no load at a dead centre is made of it."""
+    return np.where(np.abs(value) < _ROUNDING, 0.0, value)
+
+
+def piston_acceleration_Rao_Singh_1993(sin: Array, cos: Array, q: Array, n: Array) -> Array:
+    """Acceleration of the piston over omega² r [1], positive to the head; exact.
+
+    a = −[cos θ + ((n² − 1) cos 2θ + cos⁴ θ) / (n³ (1 − sin² θ/n²)^1.5)], where n³ (…)^1.5 = q³.
+    """
+    double = (cos - sin) * (cos + sin)
+    return -(cos + ((n - 1) * (n + 1) * double + cos**4) / q**3)
+
+
+def crank_motion(theta: Array, n: Array) -> Motion:
+    """The motion at crank angles theta [rad], (…, K), for each ratio n [1], (…)."""
+    return Motion(np.asarray(theta, float), np.asarray(n, float)[..., None])
+
+
+def travel_integral(theta: Array, n: Array) -> Array:
+    """The travel over the stroke, integrated over the crank angle from 0 [rad], by the elliptic integral."""
+    return ((1 + n) * theta - np.sin(theta) - n * ellipeinc(theta, 1 / n**2)) / 2
+
+
+def angle_of_travel(travel: Array, n: Array) -> Array:
+    """The crank angle in [0, π] [rad] at which the piston has travelled so much of its stroke."""
+    share = travel * (n - travel) / (1 + n - 2 * travel)
+    return 2 * np.arcsin(np.sqrt(np.clip(share, 0, 1)))
+
+
+@units("1", "rad", returns="rad")
+def crank_angles(strokes: Array, step: Array) -> Array:
+    """The angles of one cycle [rad] of 2 or 4 strokes, (K,); the last point is not repeated."""
+    return np.arange(round(float(np.pi * strokes / step))) * step
+
+
+@units("1", "rad", returns="1")
+def steps_in(strokes: Array, step: Array) -> Array:
+    """How many steps a cycle of 2 or 4 strokes has."""
+    return np.pi * strokes / step

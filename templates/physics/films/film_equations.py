@@ -1,0 +1,129 @@
+r"""The Reynolds equation in finite volumes on a product mesh: one balance of flow a node.
+
+.. math::
+    \partial_\phi(H^3\partial_\phi P) + (D/B)^2\,\partial_\zeta(H^3\partial_\zeta P)
+    = 6\,\partial_\phi H + 12\,\partial_\tau H
+
+written A P = b: A is symmetric and an M-matrix, b is what rotation and squeeze bring to a node.
+All coefficients are products of one factor around and one across, so a perturbation of the gap is
+again a set of such equations.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.films.film_mesh import Mesh
+
+
+def dual_widths(nodes: Array) -> Array:
+    """Lengths of the cells around the nodes, half cells at the ends."""
+    half = np.diff(nodes) / 2
+    return np.concatenate([half, [0.0]]) + np.concatenate([[0.0], half])
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Coefficients of the balance of flow at (n + 1) × (m + 1) nodes."""
+
+    around: Array
+    """(n,) conductance H³/dphi between neighbours around, per unit zeta."""
+    across: Array
+    """(n + 1,) conductance (D/B)² H³ dphi across, times dzeta."""
+    source: Array
+    """(n + 1,) what rotation and squeeze bring to a node, per unit zeta."""
+    zeta: Array
+    """(m + 1,) axial places of the nodes."""
+    ring: bool = False
+    """Whether the last node is the first; else P = 0 at both."""
+
+    def residual(self, P: Array) -> Array:
+        """A P − b: what a node loses by pressure less what it gains by motion, (n + 1, m + 1)."""
+        flow = self.around[:, None] * dual_widths(self.zeta) * np.diff(P, axis=0)
+        axial = self.across[:, None] * np.diff(P, axis=1) / np.diff(self.zeta)
+        excess = -self.source[:, None] * dual_widths(self.zeta)
+        excess[:-1] -= flow
+        excess[1:] += flow
+        excess[:, :-1] -= axial
+        excess[:, 1:] += axial
+        return self._closed(excess)
+
+    def diagonal(self) -> Array:
+        """The diagonal of A, (n + 1, m + 1)."""
+        flow = self.around[:, None] * dual_widths(self.zeta)
+        axial = self.across[:, None] / np.diff(self.zeta)
+        total = np.zeros((self.across.size, self.zeta.size))
+        total[:-1] += flow
+        total[1:] += flow
+        total[:, :-1] += axial
+        total[:, 1:] += axial
+        return self._closed(total)
+
+    def _closed(self, balance: Array) -> Array:
+        """On a ring the last node's cell belongs to the first."""
+        if self.ring:
+            balance[0] += balance[-1]
+            balance[-1] = 0
+        return balance
+
+
+def film_equations(mesh: Mesh, ratio: float, H: Array, H_mid: Array, source: Array) -> Equations:
+    """Balances of flow for a gap that is given at the nodes and between them.
+
+    Parameters
+    ----------
+    mesh
+        The nodes.
+    ratio
+        Width over diameter B/D [-].
+    H
+        (n + 1,) gap at the nodes [-].
+    H_mid
+        (n,) gap midway between the nodes [-].
+    source
+        (n + 1,) what motion brings to the nodes, see `rotation` and `squeeze`.
+    """
+    return Equations(
+        around=H_mid**3 / np.diff(mesh.phi),
+        across=H**3 * dual_widths(mesh.phi) / ratio**2,
+        source=source,
+        zeta=mesh.zeta,
+    )
+
+
+def perturbed_equations(
+    mesh: Mesh, ratio: float, H: Array, H_mid: Array, change: Array, change_mid: Array
+) -> Equations:
+    """The derivative of `film_equations` for a change of the gap, in the direction of that change."""
+    return Equations(
+        around=3 * H_mid**2 * change_mid / np.diff(mesh.phi),
+        across=3 * H**2 * change * dual_widths(mesh.phi) / ratio**2,
+        source=rotation(change_mid),
+        zeta=mesh.zeta,
+    )
+
+
+def source_equations(mesh: Mesh, source: Array) -> Equations:
+    """The derivative of `film_equations` for a change of the motion: a source alone."""
+    nothing = np.zeros_like(mesh.phi)
+    return Equations(nothing[1:], nothing, source, mesh.zeta)
+
+
+def rotation(H_mid: Array) -> Array:
+    """What shear flow brings to each node, −6 dH over its cell; a constant in H_mid is of no account.
+
+    At the ends of the mesh it is the flow onward, or that from before.
+    """
+    flow = 6 * H_mid
+    return np.concatenate([[0.0], flow]) - np.concatenate([flow, [0.0]])
+
+
+def squeeze(mesh: Mesh, H_rate: Array) -> Array:
+    """What a falling gap brings to each node, −12 dH/d(omega_h t) over its cell."""
+    return -12 * H_rate * dual_widths(mesh.phi)
+
+
+def midpoints(nodes: Array) -> Array:
+    """Places midway between the nodes."""
+    return (nodes[:-1] + nodes[1:]) / 2

@@ -1,0 +1,123 @@
+"""What a static film does, integrated from its pressure field: load, friction, flow, peak.
+
+Convention for friction: shear acts over the full circle, as in DIN 31652 and ISO 7902; beside it
+stands the friction with shear by streamers only where the film has ruptured.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.films.complementarity import Rupture
+from templates.physics.films.film_equations import Equations
+from templates.physics.films.film_mesh import Mesh, sommerfeld_angle
+
+
+@dataclass(frozen=True)
+class Film:
+    """What a static film does; every value dimensionless, angles in rad."""
+
+    So: float
+    """Sommerfeld number F psi²/(B D eta omega_h)."""
+    attitude: float
+    """Angle from load to narrowest gap in the sense of rotation [rad]."""
+    P_max: float
+    """Largest pressure p psi²/(eta omega_h)."""
+    peak: float
+    """Its place, from the narrowest gap in the sense of rotation: negative [rad]."""
+    rupture: float
+    """Where the film ruptures at mid-width, from the narrowest gap; good to a mesh width [rad]."""
+    friction: float
+    """Friction on the journal F_f psi/(B D eta omega), shear over the full circle (DIN 31652)."""
+    friction_bearing: float
+    """Friction on the bearing, in the same convention."""
+    friction_streamers: float
+    """Friction on the journal if beyond the rupture only streamers that fill H_rupture/H shear."""
+    side_flow: float
+    """Oil that leaves at both ends, Q/(R³ psi omega_h)."""
+    supply_flow: float
+    """Oil that enters the film at the widest gap, Q/(R³ psi omega_h)."""
+    imbalance: float
+    """Oil lost by the discrete film over the supply: rounding, if the solution is one."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """A pressure field and the discrete film that it solves."""
+
+    eps: float
+    ratio: float
+    mesh: Mesh
+    equations: Equations
+    rupture: Rupture
+
+
+def force(mesh: Mesh, P: Array) -> tuple[float, float]:
+    """So of a pressure along the line of centres (towards the narrowest gap) and ahead of it [-]."""
+    line = P @ mesh.weight_zeta * mesh.weight_phi / 4
+    return float(np.cos(mesh.phi) @ line), float(np.sin(mesh.phi) @ line)
+
+
+def measure(field: Field) -> Film:
+    """Integrate load, friction and flow from the pressure."""
+    along, ahead = force(field.mesh, field.rupture.P)
+    peak, P_max = _peak(field.mesh.phi, field.rupture.P[:, 0])
+    shear, pressure = np.pi / np.sqrt((1 - field.eps) * (1 + field.eps)), -field.eps * ahead / 2
+    end = rupture_angle(field)
+    supply, side, imbalance = _flows(field)
+    return Film(
+        So=float(np.hypot(along, ahead)),
+        attitude=float(np.arctan2(-ahead, along)),
+        P_max=P_max,
+        peak=peak,
+        rupture=float(end[0]),
+        friction=float(shear + pressure),
+        friction_bearing=float(shear - pressure),
+        friction_streamers=float(_streamer_shear(field, end) + pressure),
+        side_flow=side,
+        supply_flow=supply,
+        imbalance=imbalance,
+    )
+
+
+def rupture_angle(field: Field) -> Array:
+    """Where the film ends, (m + 1,), from the last two pressures, which fall with the square [rad]."""
+    phi, P = field.mesh.phi, np.sqrt(np.maximum(field.rupture.P[:, :-1], 0))
+    last = np.maximum(P.shape[0] - 1 - (P[::-1] > 0).argmax(axis=0), 1)
+    column = np.arange(P.shape[1])
+    here, before = P[last, column], P[last - 1, column]
+    drop = np.where(before > here, before - here, np.inf)
+    beyond = np.minimum(here / drop, 1.0) * (phi[last] - phi[last - 1])
+    end = np.where(P.any(axis=0), phi[last] + beyond, 0.0)
+    return np.append(end, end[-1])
+
+
+def _peak(phi: Array, P: Array) -> tuple[float, float]:
+    """Place and height of the largest pressure, by a parabola through the three nodes about it."""
+    k = min(max(int(P.argmax()), 1), P.size - 2)
+    x, y = phi[k - 1 : k + 2] - phi[k], P[k - 1 : k + 2]
+    bend, slope, top = np.polyfit(x / x[2], y, 2)
+    if bend >= 0:
+        return float(phi[k]), float(y[1])
+    return float(phi[k] - x[2] * slope / (2 * bend)), float(top - slope**2 / (4 * bend))
+
+
+def _flows(field: Field) -> tuple[float, float, float]:
+    """Supply and side flow Q/(R³ psi omega_h) by balance of flow, and the imbalance of the film [-]."""
+    excess = field.equations.residual(field.rupture.P)
+    film = field.rupture.film
+    carried = 6 * (1 - field.eps)
+    supply = excess[0].sum() + carried
+    side = -excess[1:-1, -1][film[1:-1, -2]].sum()
+    scale = field.ratio / 6
+    return float(scale * supply), float(scale * side), float(np.abs(excess[film].sum()) / supply)
+
+
+def _streamer_shear(field: Field, end: Array) -> float:
+    """Shear of the full film up to the rupture and beyond it of streamers as wide as H_rupture/H [-]."""
+    eps, gamma = field.eps, sommerfeld_angle(end, field.eps)
+    s = np.sqrt((1 - eps) * (1 + eps))
+    H_end = s**2 / (1 + eps * np.cos(gamma))
+    shear = (gamma + np.pi) / s + H_end * (np.pi - gamma - eps * np.sin(gamma)) / s**3
+    return float(shear @ field.mesh.weight_zeta / 4)

@@ -1,0 +1,160 @@
+r"""Temperature of a journal bearing's film by the global heat balance of ISO 7902-1, bracketed.
+
+.. math:: P(T) = \rho c\,Q(T)\,(T_{out} - T_{supply}) + kA\,(T - T_{ambient}), \quad
+    T = (T_{supply}+T_{out})/2
+
+Power loss P and side flow Q are those of the film map (`film_map`) at the viscosity of T, at every level of
+fidelity: so the temperature, and with it the viscosity, is the same for all of them. Whichever of the two
+terms is not given is left out. P falls and what is carried off rises with T: there is one root, and it lies
+between the colder surrounding and 500 °C, or there is none.
+
+References
+----------
+ISO 7902-1:1998, clause 6.4; DIN 31652-1:1983, section 4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from templates.core.arrays import Array, Mask
+from templates.physics.films.film_map import NARROWEST, WIDEST, mapped_load
+from templates.physics.journals.oil import density, vogel, walther
+from templates.physics.journals.static_journal import static_film_at
+from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
+from templates.physics.numerics.roots import bracketed_root
+
+HOTTEST = 773.15
+"""Highest film temperature that is looked for [K]."""
+_ACCURACY = 1e-13
+
+
+@dataclass(frozen=True)
+class Running:
+    """A bearing at work, in SI; arrays that broadcast together.
+
+    Name the arguments. They may stand in a row only because version 2 of oil_film is released like that.
+    """
+
+    F: Array
+    """Load [N]."""
+    D: Array
+    """Diameter [m]."""
+    W: Array
+    """Width [m]."""
+    psi: Array
+    """Relative clearance [-]."""
+    omega_m: Array
+    """Size of the hydrodynamic speed [rad/s]."""
+    omega_s: Array
+    """Speed of sliding in its sense [rad/s]."""
+    A: Array
+    """Walther's intercept [-]."""
+    B: Array
+    """Walther's slope [-]."""
+    a: Array
+    """Vogel's factor, if the viscosity follows from his law, else NaN [Pa s]."""
+    b: Array
+    """Vogel's slope [K]."""
+    offset: Array
+    """Vogel's offset [K]."""
+    eta: Array
+    """Dynamic viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
+    rho_ref: Array
+    """Density at T_ref [kg/m³]."""
+    T_ref: Array
+    """Temperature of rho_ref [K]."""
+    heat_capacity: Array
+    """Of the oil per volume, rho c [J/(m³ K)]."""
+    T_supply: Array
+    """Temperature of the oil supplied, else NaN [K]."""
+    T_ambient: Array
+    """Temperature of the air, else NaN [K]."""
+    kA: Array
+    """Heat transfer coefficient times area, else NaN [W/K]."""
+
+    def viscosity(self, T: Array) -> Array:
+        """Dynamic viscosity [Pa s] at T [K]."""
+        of_walther = walther(self.A, self.B, T) * density(self.rho_ref, T, self.T_ref)
+        of_vogel = vogel(self.a, self.b, self.offset, T)
+        thin = np.where(np.isnan(self.a), of_walther, of_vogel)
+        return np.where(np.isnan(self.eta), thin, self.eta)
+
+    def power_and_flow(self, T: Array) -> tuple[Array, Array]:
+        """Power loss [W] and side flow [m³/s] at T [K]; at the limit of the map beyond it."""
+        eta, ratio = self.viscosity(T), self.W / self.D
+        scale = self.W * self.D * eta * self.omega_m / self.psi**2
+        inside = (ratio >= NARROWEST) & (ratio <= WIDEST)
+        most = mapped_load(np.asarray(ECCENTRICITY_LIMIT), np.where(inside, ratio, 1.0))
+        film = static_film_at("map", np.minimum(self.F / scale, most * (1 - 1e-9)), ratio)
+        couple = film.eps * film.So * np.sin(film.attitude) / 2
+        half = scale * self.psi * self.D / 2
+        power = half * (film.shear * self.omega_s**2 / self.omega_m + couple * self.omega_m)
+        return power, film.side_flow * (self.D / 2) ** 3 * self.psi * self.omega_m
+
+    def coldest(self) -> Array:
+        """The colder of supply and ambient air, where given [K]."""
+        return np.fmin(self.T_supply, np.where(np.isfinite(self.kA), self.T_ambient, np.nan))
+
+    def heat(self, rise: Array) -> tuple[Array, Array, Array]:
+        """Power, and heat that oil and air carry off, at a rise above the coldest surrounding [K], each [W].
+
+        Differences are taken before the rise is added: a small one would drown in the rounding of T.
+        """
+        coldest = self.coldest()
+        power, flow = self.power_and_flow(coldest + rise)
+        by_oil = self.heat_capacity * flow * 2 * ((coldest - self.T_supply) + rise)
+        by_air = self.kA * ((coldest - self.T_ambient) + rise)
+        return power, np.nan_to_num(by_oil, nan=0.0), np.nan_to_num(by_air, nan=0.0)
+
+    def excess(self, rise: Array) -> Array:
+        """Power less what is carried off, over the power [-]."""
+        power, by_oil, by_air = self.heat(rise)
+        return 1 - (by_oil + by_air) / power
+
+    def residual(self, rise: Array) -> Array:
+        """Power less what is carried off, over the largest of power and what oil or air carry off [-]."""
+        power, by_oil, by_air = self.heat(rise)
+        largest = np.maximum(power, np.maximum(np.abs(by_oil), np.abs(by_air)))
+        return (power - by_oil - by_air) / largest
+
+
+@dataclass(frozen=True)
+class HeatBalance:
+    """The balance found; NaN where it was not asked for."""
+
+    T: Array
+    """Film temperature [K]; infinite where there is no balance below 500 °C."""
+    T_out: Array
+    """Temperature of the oil that leaves; NaN too without a supply [K]."""
+    residual: Array
+    """What is not accounted for, over the largest of power and what oil or air carry off [-]."""
+
+
+def heat_balance(running: Running) -> HeatBalance:
+    """Find the film temperature of every point that has a supply, or air to cool it."""
+    names = [field.name for field in fields(running)]
+    parts = np.broadcast_arrays(*(np.asarray(getattr(running, name), dtype=float) for name in names))
+    everything = Running(**dict(zip(names, parts, strict=True)))
+    asked = asked_for(everything.T_supply, everything.T_ambient, everything.kA)
+    T, residual = np.full(asked.shape, np.nan), np.full(asked.shape, np.nan)
+    if asked.any():
+        point = Running(**{name: part[asked] for name, part in zip(names, parts, strict=True)})
+        T[asked], residual[asked] = _found(point)
+    return HeatBalance(T[()], (2 * T - everything.T_supply)[()], residual[()])
+
+
+def asked_for(T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
+    """Whether a supply temperature, or air and its heat transfer, is given."""
+    return np.asarray(np.isfinite(T_supply) | (np.isfinite(T_ambient) & np.isfinite(kA)))
+
+
+def _found(point: Running) -> tuple[Array, Array]:
+    """Temperature and residual of points in a row; infinite and NaN where there is none, NaN unknown."""
+    coldest = point.coldest()
+    most = HOTTEST - coldest
+    rise = bracketed_root(point.excess, np.zeros_like(coldest), most, _ACCURACY)
+    none = np.isnan(rise) & ~np.isnan(point.excess(most))
+    return np.where(none, np.inf, coldest + rise), point.residual(rise)

@@ -1,0 +1,41 @@
+"""Which temperature a journal bearing's film has: a mean, that of a heat balance, or none that is known."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from templates.core.arrays import Array, Mask
+from templates.core.language.declare import units
+from templates.physics.journals.heat_balance import HeatBalance, asked_for
+
+
+@units("K", None, returns="K", latex=r"{0}\ \text{{or that of the heat balance}}")
+def film_temperature(T_mean: Array, balance: HeatBalance) -> Array:
+    """The heat balance's temperature where there is one, else the mean; NaN if neither is known [K]."""
+    return np.where(np.isnan(balance.T), T_mean, balance.T)[()]
+
+
+@units(None, returns="K", latex=r"T_\mathrm{{out}}")
+def outlet_temperature(balance: HeatBalance) -> Array:
+    """Temperature of the oil that leaves, by the heat balance; NaN without one or without a supply [K]."""
+    return balance.T_out
+
+
+@units("K", "K", returns="K", latex=r"{0}")
+def or_reference(T: Array, T_ref: Array) -> Array:
+    """The temperature T, or where it is not known the reference, which leaves a density as it is [K]."""
+    return np.where(np.isnan(T), T_ref, T)[()]
+
+
+def viscosity_known(
+    eta: Array, T_in: Array, T_out: Array, T_supply: Array, T_ambient: Array, kA: Array
+) -> Mask:
+    """Whether the viscosity is given (NaN: not) or some temperature from which it follows."""
+    means = np.isfinite(T_in) & np.isfinite(T_out)
+    return np.asarray(np.isfinite(eta) | means | asked_for(T_supply, T_ambient, kA))[()]
+
+
+def mean_is_used(T_in: Array, T_out: Array, T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
+    """Whether inlet and outlet temperature, where given, make the film's temperature."""
+    given = np.isfinite(T_in) | np.isfinite(T_out)
+    return np.asarray(~(given & asked_for(T_supply, T_ambient, kA)))[()]

@@ -1,0 +1,50 @@
+"""How well surfaces are parted by a film: the film parameter lambda, and the regime that it stands for.
+
+References
+----------
+Hamrock, Schmid, Jacobson: Fundamentals of Fluid Film Lubrication, 2nd ed. 2004, section 1.3: boundary below
+1, mixed from 1 to 3, a full film above 3.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import units
+
+
+@units("m", "m", "m", returns="1", latex=r"\frac{{{0}}}{{\sqrt{{{1}^2+{2}^2}}}}")
+def film_parameter(h: Array, R_1: Array, R_2: Array) -> Array:
+    """Smallest film h over the composite roughness of both surfaces, root mean squares R_1, R_2 [m]."""
+    roughness = np.hypot(R_1, R_2)
+    return np.where(roughness > 0, h / np.where(roughness > 0, roughness, 1.0), np.nan)[()]
+
+
+@units("1", returns="1")
+def lubrication_regime(parameter: Array) -> Any:
+    """The regime at a film parameter [1]: boundary, mixed or full_film; empty where that is NaN."""
+    parameter = np.asarray(parameter)
+    words = np.select([parameter < 1, parameter <= 3, parameter > 3], ["boundary", "mixed", "full_film"], "")
+    return words if words.ndim else str(words)
+
+
+@units("Pa*s", "rad/s", "m", "m", "N", returns="1", latex=r"\frac{{{0}\,\left|{1}\right|\,{2}\,{3}}}{{{4}}}")
+def duty_parameter(eta: Array, omega: Array, D: Array, W: Array, F: Array) -> Array:
+    """Stribeck's duty parameter eta |omega|/p with p = F/(D W) [1]; NaN without load.
+
+    References
+    ----------
+    R. Stribeck, Z. VDI 46, 1902; M. D. Hersey, 1914 (with revolutions instead of radians).
+    """
+    loaded = np.asarray(F) > 0
+    return np.where(loaded, eta * np.abs(omega) * D * W / np.where(loaded, F, 1.0), np.nan)[()]
+
+
+@units("N*m", "N", "m", returns="1", latex=r"\frac{{{0}}}{{{1}\,{2}/2}}")
+def friction_coefficient(torque: Array, F: Array, D: Array) -> Array:
+    """Friction coefficient of a torque [N m] under a load F [N] at the diameter D [m]; NaN without load."""
+    loaded = np.asarray(F) > 0
+    return np.where(loaded, torque / (np.where(loaded, F, 1.0) * D / 2), np.nan)[()]

@@ -1,0 +1,101 @@
+"""Density and viscosity of lubricating oil over temperature, after Walther (ASTM D341) or Vogel.
+
+Walther: lg lg(nu + 0.7) = A − B lg T, with nu in mm²/s and T in K. Meant for mineral oils between pour point
+and about 200 °C; nu must exceed 0.3 mm²/s, where the inner logarithm vanishes.
+
+Vogel: eta = a exp(b/(t + c)), t in °C: three constants of an oil, or with c = 95 K, which Cameron found to
+serve for mineral oils, two viscosities. It has a pole at t = −c and means nothing below.
+
+References
+----------
+H. Vogel: Physikalische Zeitschrift 22, 1921, p. 645.
+A. Cameron: The Principles of Lubrication, 1966, chapter 1.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import units
+
+MM2_PER_S = 1e-6  # m²/s
+_CELSIUS = 273.15  # K
+
+
+@units("kg/m**3", "K", "K", returns="kg/m**3")
+def density(rho_ref: Array, T: Array, T_ref: Array) -> Array:
+    """Density [kg/m³] at the temperature T [K], falling by 0.07 % of rho_ref [kg/m³] per kelvin above T_ref.
+
+    References
+    ----------
+    Bhadke, Chaudhari, Sharma: IJETR 3(5), 2015.
+    """
+    return rho_ref * (1 - 0.0007 * (T - T_ref))
+
+
+@units("m**2/s", returns="1", latex=r"\lg\lg\left(\frac{{{0}}}{{\mathrm{{mm^2/s}}}}+0.7\right)")
+def double_logarithm(nu: Array) -> Array:
+    """Walther's ordinate lg lg(nu + 0.7) of the kinematic viscosity nu [m²/s]; NaN from 0.3 mm²/s down."""
+    return np.log10(np.log10(nu / MM2_PER_S + 0.7))
+
+
+@units("K", returns="1", latex=r"\lg\frac{{{0}}}{{\mathrm{{K}}}}")
+def temperature_logarithm(T: Array) -> Array:
+    """Walther's abscissa lg T of the absolute temperature T [K]."""
+    return np.log10(T)
+
+
+@units(
+    "1",
+    "1",
+    "K",
+    returns="m**2/s",
+    latex=r"\left(10^{{10^{{{0}-{1}\,\lg {2}}}}}-0.7\right)\mathrm{{\frac{{mm^2}}{{s}}}}",
+)
+def walther(A: Array, B: Array, T: Array) -> Array:
+    """Kinematic viscosity [m²/s] at the temperature T [K] from Walther's constants A, B [1].
+
+    References
+    ----------
+    ASTM D341, Standard Practice for Viscosity–Temperature Equations for Liquid Petroleum Products.
+    """
+    return (10 ** (10 ** (A - B * np.log10(T))) - 0.7) * MM2_PER_S
+
+
+@units("Pa*s", "K", "K", "K", returns="Pa*s", latex=r"{0}\,e^{{{1}/\left({3}/\mathrm{{°C}}+{2}\right)}}")
+def vogel(a: Array, b: Array, c: Array, T: Array) -> Array:
+    """Dynamic viscosity [Pa s] at T [K] by Vogel's a [Pa s], b, c [K]; infinite from the pole −c °C down.
+
+    References
+    ----------
+    H. Vogel: Physikalische Zeitschrift 22, 1921, p. 645.
+    """
+    above = T - _CELSIUS + c
+    with np.errstate(over="ignore"):  # just above the pole it is as good as infinite
+        return np.where(above > 0, a * np.exp(b / np.where(above > 0, above, np.inf)), np.inf)[()]
+
+
+@units("Pa*s", "K", "Pa*s", "K", "K", returns="K")
+def vogel_slope(eta_1: Array, T_1: Array, eta_2: Array, T_2: Array, c: Array) -> Array:
+    """Vogel's b [K] through two viscosities [Pa s] at T_1, T_2 [K]; NaN if one is below its pole."""
+    return np.log(eta_1 / eta_2) / (1 / _above_pole(T_1, c) - 1 / _above_pole(T_2, c))
+
+
+@units("Pa*s", "K", "K", "K", returns="Pa*s")
+def vogel_factor(eta_1: Array, T_1: Array, b: Array, c: Array) -> Array:
+    """Vogel's a [Pa s] from one viscosity [Pa s] at T_1 [K]; NaN from the pole down, or if too small."""
+    a = eta_1 * np.exp(-b / _above_pole(T_1, c))
+    return np.where(a > 0, a, np.nan)[()]
+
+
+def _above_pole(T: Array, c: Array) -> Array:
+    """Distance from Vogel's pole −c °C [K]; NaN below."""
+    above = T - _CELSIUS + c
+    return np.where(above > 0, above, np.nan)
+
+
+@units(None, "Pa*s", "Pa*s", returns="Pa*s", latex=r"{1}\ \text{{(Walther) or}}\ {2}\ \text{{(Vogel)}}")
+def by_law(law: str, of_walther: Array | float, of_vogel: Array) -> Array:
+    """The value [Pa s] that belongs to the law `walther` or `vogel`."""
+    return of_vogel if law == "vogel" else np.asarray(of_walther)[()]

@@ -1,0 +1,226 @@
+"""One journal bearing under static load at every fidelity: from load and width to all that its film does.
+
+Levels, cheapest first. Each states its boundary condition in `BOUNDARY` and its widths in `WIDTHS`.
+
+    short_bearing    Ocvirk's closed form
+    fit              DIN 31652-2 / ISO 7902-2
+    map              the converged Swift–Stieber film, precomputed (`film_map`)
+    reynolds         that film solved afresh on two meshes and extrapolated
+    mass_conserving  cavities after Jakobsson, Floberg and Olsson; grooves and supply pressure
+
+Everything is dimensionless, P = p psi²/(eta omega_h), So = F psi²/(B D eta omega_h). Points without a load
+or width, NaN, or of a width outside the level's range, are NaN; eps is infinite where no film bears the load.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from templates.core.arrays import Array, Mask
+from templates.physics.cavities.fed_film import Feed, fed_film
+from templates.physics.films.film_fit import attitude_ISO_7902, load_ISO_7902
+from templates.physics.films.film_fit_flow import side_flow_ISO_7902
+from templates.physics.films.film_map import mapped_film, mapped_load
+from templates.physics.films.film_map_inverse import mapped_eccentricity
+from templates.physics.films.reynolds import extrapolated_film
+from templates.physics.films.short_bearing import (
+    attitude_Ocvirk_1952,
+    friction_Ocvirk_1952,
+    load_Ocvirk_1952,
+    peak_angle_Ocvirk_1952,
+    peak_pressure_Ocvirk_1952,
+    side_flow_Ocvirk_1952,
+)
+from templates.physics.numerics.eccentricity import eccentricity
+
+WIDTHS = {
+    "short_bearing": (0.01, 100.0),
+    "fit": (0.125, 1.0),
+    "map": (0.01, 100.0),
+    "reynolds": (0.01, 100.0),
+    "mass_conserving": (0.01, 100.0),
+}
+"""Width ratios B/D that each level takes [-]."""
+
+_SWIFT_STIEBER = "Swift-Stieber: p = 0 at the ends and along the widest gap; rupture where p = dp/dn = 0"
+BOUNDARY = {
+    "short_bearing": "Gümbel half film: p = 0 at the ends, at the widest gap and over the diverging half",
+    "fit": f"{_SWIFT_STIEBER} (fitted)",
+    "map": _SWIFT_STIEBER,
+    "reynolds": _SWIFT_STIEBER,
+    "mass_conserving": "Jakobsson-Floberg-Olsson: ambient pressure at the ends and in the cavities, supply "
+    "pressure in the grooves, or along the widest gap where there are none",
+}
+"""What each level takes for the pressure at the film's borders."""
+
+
+_CENTRED = 1e-6
+"""Eccentricity below which a full solution is taken in proportion [-]."""
+
+
+FED = "mass_conserving"
+"""The level that knows grooves and supply pressure."""
+
+
+def is_fed(pressure: Array, grooves: tuple[tuple[float, float], ...]) -> bool:
+    """Whether there is any supply pressure, or a groove."""
+    return bool(grooves) or bool(np.any(np.asarray(pressure) > 0))
+
+
+def ladder(
+    levels: tuple[str, ...], pressure: Array, grooves: tuple[tuple[float, float], ...]
+) -> tuple[str, ...]:
+    """The levels that know how the bearing is fed: all but FED, or only that."""
+    return (FED,) if is_fed(pressure, grooves) else tuple(level for level in levels if level != FED)
+
+
+@dataclass(frozen=True)
+class JournalFilm:
+    """What a static film does; dimensionless arrays of one shape."""
+
+    eps: Array
+    """Relative eccentricity; infinite where no film bears the load."""
+    So: Array
+    """Sommerfeld number F psi²/(B D eta omega_h)."""
+    attitude: Array
+    """Angle from load to narrowest gap in the sense of rotation [rad]."""
+    P_max: Array
+    """Largest pressure p psi²/(eta omega_h); NaN at level fit, which has none."""
+    peak: Array
+    """Its place, from the narrowest gap in the sense of rotation [rad]; likewise."""
+    shear: Array
+    """Shear force on the journal F_s psi/(B D eta (omega_journal − omega_sleeve))."""
+    side_flow: Array
+    """Oil that leaves at both ends, Q/(R³ psi omega_h)."""
+
+    def admitted(self, eps: Array) -> "JournalFilm":
+        """The same film with NaN where eps was not admitted."""
+        return self._each(lambda values: np.where(np.isnan(eps), np.nan, values)[()])
+
+    def _each(self, change: Callable[[Array], Array]) -> "JournalFilm":
+        return replace(self, **{field.name: change(getattr(self, field.name)) for field in fields(self)})
+
+
+def static_film_at(
+    level: str,
+    So: Array,
+    ratio: Array,
+    pressure: Array | float = 0.0,
+    grooves: tuple[tuple[float, float], ...] = (),
+) -> JournalFilm:
+    """The film that bears So, at a level of fidelity.
+
+    Parameters
+    ----------
+    level
+        a key of `WIDTHS`.
+    So
+        Sommerfeld number, 0 or more; any shape that broadcasts with the others [-].
+    ratio
+        Width over diameter B/D [-].
+    pressure
+        Supply pressure above ambient, P = p psi²/(eta omega_h); mass_conserving uses it [-].
+    grooves
+        (angle from the load, width) of each [rad]; mass_conserving uses them.
+
+    Examples
+    --------
+    >>> film = static_film_at("map", 3.5718, 1.0)
+    >>> round(float(film.eps), 3), round(float(np.degrees(film.attitude)), 1)
+    (0.8, 36.2)
+    """
+    So, ratio, pressure = np.broadcast_arrays(*(np.asarray(a, float) for a in (So, ratio, pressure)))
+    low, high = WIDTHS[level]
+    known = np.isfinite(So) & (So >= 0) & (ratio >= low) & (ratio <= high) & np.isfinite(pressure)
+    feeds = [Feed(p, grooves) for p in pressure[known]] if level == "mass_conserving" else []
+    found = SOLVERS[level](So[known], ratio[known], feeds)
+    unborne = replace(found, eps=np.where(np.isnan(found.eps), np.inf, found.eps))
+    return unborne._each(lambda values: _scattered(values, known))
+
+
+def _scattered(values: Array, known: Mask) -> Array:
+    """Values of the known points among NaN; a single one as a number."""
+    whole = np.full(known.shape, np.nan)
+    whole[known] = values
+    return whole[()]
+
+
+def short_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
+    """Ocvirk's film; where no film bears the load NaN."""
+    eps = eccentricity(load_Ocvirk_1952, So, ratio)
+    e = np.where(np.isnan(eps), 0.0, eps)
+    return JournalFilm(
+        eps, So, attitude_Ocvirk_1952(e), peak_pressure_Ocvirk_1952(e, ratio),
+        peak_angle_Ocvirk_1952(e) - np.pi, friction_Ocvirk_1952(e), side_flow_Ocvirk_1952(e, ratio),
+    )  # fmt: skip
+
+
+def fitted_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
+    """The standard's film; shear over the full circle as there."""
+    eps = eccentricity(load_ISO_7902, So, ratio)
+    e, none = np.where(np.isnan(eps), 0.0, eps), np.full_like(eps, np.nan)
+    shear = np.pi / np.sqrt((1 - e) * (1 + e))
+    return JournalFilm(eps, So, attitude_ISO_7902(e, ratio), none, none, shear, side_flow_ISO_7902(e, ratio))
+
+
+def interpolated_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
+    """The map's film."""
+    eps = mapped_eccentricity(So, ratio)
+    return replace(_mapped(np.where(np.isnan(eps), 0.0, eps), ratio), eps=eps, So=So)
+
+
+def _mapped(eps: Array, ratio: Array) -> JournalFilm:
+    """The map's film at an eccentricity."""
+    film = mapped_film(eps, ratio)
+    names = ("So", "attitude", "P_max", "peak", "side_flow")
+    return JournalFilm(eps=eps, shear=np.pi / np.sqrt((1 - eps) * (1 + eps)), **{n: film[n] for n in names})
+
+
+def solved_film(So: Array, ratio: Array, _: list[Feed]) -> JournalFilm:
+    """Film by film solved at the map's eccentricity, and moved from there to the load."""
+    start = mapped_eccentricity(np.maximum(So, mapped_load(np.full_like(So, _CENTRED), ratio)), ratio)
+    return _moved(So, ratio, np.array([_solved(e, b) for e, b in zip(start, ratio, strict=True)]))
+
+
+def _solved(eps: float, ratio: float) -> list[float]:
+    """The fields of `JournalFilm` by full solutions; an eps of NaN gives NaN."""
+    if np.isnan(eps):
+        return [np.nan] * 7
+    film = extrapolated_film(eps, ratio)[0]
+    shear = np.pi / np.sqrt((1 - eps) * (1 + eps))
+    return [eps, film.So, film.attitude, film.P_max, film.peak, shear, film.side_flow]
+
+
+def conserving_film(So: Array, ratio: Array, feeds: list[Feed]) -> JournalFilm:
+    """Film by film with cavities; shear as there is oil; measures moved to the load as the map's would."""
+    films = [fed_film(*point) for point in zip(So, ratio, feeds, strict=True)]
+    found = {
+        name: np.array([np.nan if film is None else getattr(film, name) for film in films])
+        for name in ("eps", "solved_eps", "attitude", "P_max", "peak", "shear", "side_flow")
+    }
+    there, here = (_mapped(np.nan_to_num(found[name]), ratio) for name in ("eps", "solved_eps"))
+    with np.errstate(invalid="ignore"):
+        moved = {n: found[n] * getattr(there, n) / getattr(here, n) for n in ("P_max", "shear", "side_flow")}
+    return JournalFilm(eps=found["eps"], So=So, attitude=found["attitude"], peak=found["peak"], **moved)
+
+
+def _moved(So: Array, ratio: Array, near: Array) -> JournalFilm:
+    """Films near the load wanted, (N, 7), moved there as the map's film would."""
+    film = JournalFilm(*near.reshape(-1, 7).T)
+    known = np.isfinite(film.eps)
+    at = np.where(known, film.eps, 0.5)
+    here = _mapped(at, ratio)
+    there = interpolated_film(np.where(known, So * here.So / np.where(known, film.So, 1.0), 0.0), ratio, [])
+    names = ("attitude", "P_max", "peak", "shear", "side_flow")
+    moved = {name: getattr(film, name) * getattr(there, name) / getattr(here, name) for name in names}
+    return JournalFilm(eps=np.where(known, there.eps, np.nan), So=So, **moved)
+
+
+SOLVERS: dict[str, Callable[[Array, Array, list[Feed]], JournalFilm]] = {
+    "short_bearing": short_film,
+    "fit": fitted_film,
+    "map": interpolated_film,
+    "reynolds": solved_film,
+    "mass_conserving": conserving_film,
+}

@@ -1,0 +1,45 @@
+"""The array type of the physics functions, the refusal of values outside a domain, points and curves."""
+
+import numpy as np
+
+from templates.core.arrays import Array, Mask
+from templates.core.language.declare import units
+
+ECCENTRICITY_LIMIT = 1 - 1e-7
+"""The largest relative eccentricity that any formula here accepts."""
+
+
+def require(accepted: Mask, complaint: str) -> None:
+    """Refuse unless every element is accepted; a NaN never is.
+
+    Raises
+    ------
+    ValueError
+        With the complaint, which names the argument and its limit.
+    """
+    if not np.all(accepted):
+        raise ValueError(complaint)
+
+
+def require_film(eps: Array, ratio: Array) -> None:
+    """Refuse an eccentricity outside [0, 1 − 1e-7] or a width ratio that is not positive and finite.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument and its limit.
+    """
+    eps, ratio = np.asarray(eps), np.asarray(ratio)
+    require((eps >= 0) & (eps <= ECCENTRICITY_LIMIT), "eps must lie in [0, 1 - 1e-7]")
+    require((ratio > 0) & np.isfinite(ratio), "ratio B/D must be positive and finite")
+
+
+def spread(scale: Array, profile: Array) -> Array:
+    """A profile for every point, (..., places): the scale of each times its profile."""
+    return scale[..., None] * profile
+
+
+@units("N", "N", returns="N", latex=r"\max\sqrt{{{0}^2+{1}^2}}")
+def largest_load(x: Array, y: Array) -> Array:
+    """The largest size of a load over the cycle [N]."""
+    return np.asarray(np.sqrt((x * x + y * y).max(axis=-1)))[()]

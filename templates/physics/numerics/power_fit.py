@@ -1,0 +1,32 @@
+"""The fit eps = k1 So^k2 of the relative eccentricity, with the constants that the paper tabulates.
+
+References
+----------
+Bhadke, Chaudhari, Sharma: Study of minimum oil film thickness, IJETR 3(5), 2015; for W/D = 32/85.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import units
+
+_CASES = r"\begin{{cases}}%s & {0}<10\\ %s & 10\le {0}\le 100\\ %s & {0}>100\end{{cases}}"
+
+
+@units("1", returns="1", latex=_CASES % (0.798, 0.897, 0.980))
+def factor_k1(So: Array) -> Array:
+    """Factor k1 of the fit at the Sommerfeld number So [1]; beyond 1 … 200 that of the nearest row."""
+    return _row(So, 0.798, 0.897, 0.980)
+
+
+@units("1", returns="1", latex=_CASES % (0.073, 0.022, 0.0028))
+def exponent_k2(So: Array) -> Array:
+    """Exponent k2 of the fit at the Sommerfeld number So [1]; beyond 1 … 200 that of the nearest row."""
+    return _row(So, 0.073, 0.022, 0.0028)
+
+
+def _row(So: Array, light: float, medium: float, heavy: float) -> Array:
+    """The constant of the row in which So lies: below 10, up to 100, above; a scalar for a scalar."""
+    return np.where(So < 10, light, np.where(So <= 100, medium, heavy))[()]

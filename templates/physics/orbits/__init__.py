@@ -1,0 +1,1 @@
+"""Journals under loads that change over a cycle."""

@@ -1,0 +1,242 @@
+r"""The orbit of a journal under a load that repeats, by the mobility method; many cases at once.
+
+.. math:: d\vec\epsilon/d\theta = S\,\vec M(\vec\epsilon, \vec S) + w\,\hat z\times\vec\epsilon,
+    \quad S = \frac{F\psi^2}{B D\eta\,\Omega},\quad w = \bar\omega/\Omega
+
+theta is the crank angle, which turns with Omega; the load on the journal is linear between its points. The
+film is massless and always full where it bears: what it was before is of no account. Every node of the cycle
+is solved for at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance
+of Newton's method and no cycles are run in. Second order in the step, 1° or less, and a quarter of that where
+the smallest gap would err by more than 0.2 per cent; the difference from twice the step tells the error.
+
+References
+----------
+J. F. Booker, Trans. ASME J. Basic Eng. 87, 1965, p. 537; J. Lubr. Technol. 93, 1971, p. 168.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array, Mask
+from templates.physics.numerics.periodic_steps import differences, imbalance, newton_step
+from templates.physics.orbits.mobility_law import MobilityLaw
+
+LARGEST_STEP = np.radians(1.0)
+"""The largest step of the finest ring of nodes [rad]."""
+TOLERANCE = 1e-5
+"""Largest change over the gap by the last Newton step; it leaves the square, 1e-9 or so [-]."""
+_ROUGH = 1e-3
+"""The same on coarser rings, which only give a start."""
+THINNEST = 2e-6
+"""Gap 1 − eps below which a film is taken to bear nothing: the mobility map ends at half of it [-]."""
+
+_COARSEST = 64
+_LAST = 2
+"""Stride up to which a case that has not settled on a coarser ring is tried again from the start."""
+_MOST_STEPS = 60
+_THINNER, _LONGEST = 0.25, 0.7
+"""A Newton step leaves this share of the gap, and is no longer than this eccentricity."""
+_STUCK = 0.1
+"""A journal at the wall that moves less than this, over its gap, stays there."""
+ROUGHEST = 2e-3
+"""Relative error of the smallest gap by the step, beyond which the steps are made shorter [-]."""
+UNKNOWN = 0.1
+"""The same beyond which an orbit is not taken for one: it may owe its film to the steps [-]."""
+_FINER = 4
+"""How many times: where the film is thin, a degree is a long time."""
+_BLOCK = 1 << 16
+"""Nodes of all cases solved together."""
+
+
+@dataclass(frozen=True)
+class CyclicLoad:
+    """A load on the journal over one cycle, in a frame that may turn itself."""
+
+    angle: Array
+    """(N,) rising crank angles [rad]."""
+    period: float
+    """The cycle [rad]."""
+    S: Array
+    """(2, C, N) load F psi²/(B D eta Omega) along the axes of the frame [-]."""
+    w: Array
+    """(C, N) mean speed of journal and sleeve relative to the frame, over Omega [-]."""
+
+    def of(self, cases: Mask) -> "CyclicLoad":
+        """The same of fewer cases."""
+        return CyclicLoad(self.angle, self.period, self.S[:, cases], self.w[cases])
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A periodic orbit; NaN where there is none."""
+
+    eps: Array
+    """(2, C, N) relative eccentricity along the axes of the frame, at the load's angles [-]."""
+    least_gap: Array
+    """(C,) smallest 1 − |eps| over the cycle, between the load's angles too [-]."""
+    least_angle: Array
+    """(C,) its crank angle [rad]."""
+    step_error: Array
+    """(C,) relative error of the smallest gap by the step; NaN where it is not known [-]."""
+
+
+@dataclass(frozen=True)
+class Ring:
+    """Nodes over the cycle, with load and speed there."""
+
+    place: Array
+    """(K,) crank angles [rad]."""
+    period: float
+    S: Array
+    """(2, C, K)."""
+    w: Array
+    """(C, K)."""
+
+    def steps(self) -> Array:
+        """The step that leads to each node, (K,) [rad]."""
+        return np.diff(self.place, prepend=self.place[-1] - self.period)
+
+    def every(self, stride: int) -> "Ring":
+        """The ring of every stride-th node."""
+        part = slice(None, None, stride)
+        return Ring(self.place[part], self.period, self.S[..., part], self.w[..., part])
+
+    def of(self, cases: Mask) -> "Ring":
+        """The same nodes of fewer cases."""
+        return Ring(self.place, self.period, self.S[:, cases], self.w[cases])
+
+
+def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
+    """The orbit of every case, by the mobility of a law; NaN where none was found.
+
+    Parameters
+    ----------
+    load
+        The cycle; a case without any load has no orbit of its own and is NaN.
+    law
+        Mobility of the same cases.
+    """
+    cases, size = load.w.shape[0], max(1, _BLOCK // node_counts(load).sum())
+    borne = np.isfinite(load.w).all(axis=-1) & np.isfinite(load.S).all(axis=(0, 2)) & load.S.any(axis=(0, 2))
+    whole = Orbit(np.full(load.S.shape, np.nan), *np.full((3, cases), np.nan))
+    for start in range(0, cases, size):
+        part = borne & (np.arange(cases) // size == start // size)
+        _fill(whole, load, law, part, finer=1)
+        if node_counts(load, _FINER).sum() > node_counts(load).sum():
+            _fill(whole, load, law, part & ~(whole.step_error < ROUGHEST), finer=_FINER)
+    unknown = ~(whole.step_error < UNKNOWN)
+    whole.eps[:, unknown] = np.nan
+    for values in (whole.least_gap, whole.least_angle, whole.step_error):
+        values[unknown] = np.nan
+    return whole
+
+
+def node_counts(load: CyclicLoad, finer: int = 1) -> NDArray[np.intp]:
+    """How many steps each interval between the load's angles is divided into, (N,)."""
+    widths = np.diff(load.angle, append=load.angle[0] + load.period)
+    return np.maximum(1, np.ceil(finer * widths / LARGEST_STEP - 1e-6)).astype(np.intp)
+
+
+def ring_of(load: CyclicLoad, finer: int = 1) -> tuple[Ring, NDArray[np.intp]]:
+    """The finest nodes, and which of them are the load's own."""
+    counts = node_counts(load, finer)
+    own = np.cumsum(counts) - counts
+    interval = np.repeat(np.arange(counts.size), counts)
+    part = (np.arange(interval.size) - own[interval]) / counts[interval]
+    after = (interval + 1) % counts.size
+
+    def between(values: Array) -> Array:
+        return np.asarray(values[..., interval] * (1 - part) + values[..., after] * part)
+
+    angle = np.append(load.angle, load.angle[0] + load.period)
+    place = angle[interval] * (1 - part) + angle[interval + 1] * part
+    return Ring(place, load.period, between(load.S), between(load.w)), own
+
+
+def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: int) -> None:
+    """Enter the orbits of those cases of a part that settle."""
+    if not part.any():
+        return
+    ring, own = ring_of(load.of(part), finer)
+    e, settled, error = _nested(ring, law.of(part))
+    found = np.flatnonzero(part)[settled]
+    gap = 1 - np.hypot(*e[:, settled])
+    place = gap.argmin(axis=-1)
+    whole.eps[:, found] = e[:, settled][..., own]
+    whole.least_gap[found] = gap[np.arange(found.size), place]
+    whole.least_angle[found] = ring.place[place]
+    whole.step_error[found] = error[settled]
+
+
+def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array]:
+    """Orbits on the finest ring, from coarser ones; which settled, and the error of the smallest gap."""
+    stride = 1 << max(0, int(np.log2(ring.place.size / _COARSEST)))
+    tolerance = _ROUGH if stride > 1 else TOLERANCE
+    every = np.ones(ring.w.shape[0], bool)
+    e, settled = _settled(ring.every(stride), law, np.zeros_like(ring.S[..., ::stride]), tolerance, every)
+    error = np.full(settled.shape, np.nan)
+    while stride > 1:
+        stride //= 2
+        coarse, known = e, settled
+        finer, tolerance = ring.every(stride), _ROUGH if stride > 1 else TOLERANCE
+        start = np.where(known[:, None], _halved(coarse, finer.place.size), 0.0)
+        e, settled = _settled(finer, law, start, tolerance, known | (stride <= _LAST))
+        shared = 1 - np.hypot(*e[..., ::2]).max(axis=-1)
+        change = shared - (1 - np.hypot(*coarse).max(axis=-1))
+        error = np.where(known, np.abs(change) / (3 * shared), np.nan)
+    return e, settled, error
+
+
+def _halved(e: Array, nodes: int) -> Array:
+    """Values on a ring with a node midway in every step."""
+    finer = np.empty((*e.shape[:-1], nodes))
+    finer[..., ::2] = e
+    finer[..., 1::2] = ((e + np.roll(e, -1, axis=-1)) / 2)[..., : nodes // 2]
+    return finer
+
+
+def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float, tried: Mask) -> tuple[Array, Mask]:
+    """Newton's method from a start, for the cases tried; which have settled away from the wall."""
+    left, settled = tried.copy(), np.zeros(tried.shape, bool)
+    a = differences(ring.steps())
+    for _ in range(_MOST_STEPS if left.any() else 0):
+        some = ring if left.all() else ring.of(left)
+        f, slopes = _rate(some, e[:, left], law if left.all() else law.of(left))
+        change = newton_step(a, imbalance(a, e[:, left], f), slopes)
+        moved, size = _limited(e[:, left], change)
+        e[:, left] = moved
+        thin = 1 - np.hypot(*moved).max(axis=-1) < THINNEST
+        done = (size < tolerance) & ~thin
+        settled[left] = done
+        left[left] = ~(done | (thin & (size < _STUCK)) | ~np.isfinite(size))
+        if not left.any():
+            break
+    return e, settled
+
+
+def _limited(e: Array, change: Array) -> tuple[Array, Array]:
+    """The change made, each node held within its bearing; and its largest size over the gap, (C,)."""
+    gap, length = 1 - np.hypot(*e), np.hypot(*change)
+    share = np.minimum(1.0, _LONGEST / np.maximum(length, _LONGEST))
+    radius = 1 - np.maximum(_THINNER * gap, THINNEST / 2)
+    along, room = (e * change).sum(axis=0), radius**2 - (e**2).sum(axis=0)
+    length2 = np.maximum(length**2, 1e-300)
+    to_wall = (np.sqrt(along**2 + length2 * np.maximum(room, 0)) - along) / length2
+    share = np.minimum(share, np.maximum(to_wall, 0.0))
+    return e + share * change, (share * length / gap).max(axis=-1)
+
+
+def _rate(ring: Ring, e: Array, law: MobilityLaw) -> tuple[Array, Array]:
+    """d(eps)/d(theta), (2, C, K), and its slopes by eps, (2, 2, C, K)."""
+    size = np.hypot(*ring.S)
+    loaded = size > 0
+    c, s = np.where(loaded, ring.S / np.where(loaded, size, 1.0), [[[1.0]], [[0.0]]])
+    M, slopes = law(e[0] * c + e[1] * s, e[1] * c - e[0] * s)
+    turn = np.array([[c, -s], [s, c]])
+    f = size * np.einsum("rsck,sck->rck", turn, M) + ring.w * np.stack([-e[1], e[0]])
+    by_e = size * np.einsum("rack,abck,sbck->rsck", turn, slopes, turn)
+    by_e[0, 1] -= ring.w
+    by_e[1, 0] += ring.w
+    return f, by_e

@@ -1,0 +1,143 @@
+"""The orbit of a journal with mass-conserving cavities, run in until it repeats: the reference level.
+
+The film of `transient_film`, marched over cycle after cycle from the orbit by mobility and a full film.
+Measured by `benchmarks/film_cycle.py` on big ends against twice as fine a mesh and half the step; the cost is
+told there too. Bounded by `MOST_CYCLES`.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.progress import report
+from templates.physics.cavities.transient_balance import Journal, transient_mesh
+from templates.physics.cavities.transient_film import State, stepped
+from templates.physics.films.film_equations import dual_widths
+from templates.physics.orbits.journal_orbit import CyclicLoad
+
+MOST_CYCLES = 8
+"""Cycles after which an orbit that does not repeat is given up."""
+REPEATS = 0.02
+"""Largest difference between two cycles, over the gap, of an orbit that repeats; where the journal is
+nearly centred, the node at which oil is fed may change from cycle to cycle [-]."""
+MOST_NODES = 2000
+"""Steps of a cycle that are taken at most."""
+
+_SUBSTEPS = 4
+_REPORTED = 30  # steps between two reports of progress
+
+
+@dataclass(frozen=True)
+class Marching:
+    """Mesh and step."""
+
+    around: int = 144
+    across: int = 6
+    step: float = np.radians(2.0)
+
+
+@dataclass(frozen=True)
+class TransientOrbit:
+    """One cycle of an orbit that repeats; dimensionless, at equal steps."""
+
+    place: Array
+    """(K,) crank angles [rad]."""
+    eps: Array
+    """(2, K) relative eccentricity along the axes of the frame."""
+    P_max: Array
+    """(K,) largest pressure p psi²/(eta Omega)."""
+    side_flow: Array
+    """(K,) oil that leaves at both ends, Q/(B D c Omega), c the radial clearance."""
+    shear: Array
+    """(K,) shear of the oil that there is; pi/sqrt(1 − eps²) for a full film."""
+    cycles: int
+    """Cycles run."""
+
+
+def transient_orbit(
+    load: CyclicLoad, ratio: float, start: Array, marching: Marching
+) -> TransientOrbit | None:
+    """March one case until it repeats; None where the film is not found or does not repeat.
+
+    Parameters
+    ----------
+    load
+        One case.
+    ratio
+        Width over diameter B/D [-].
+    start
+        (2,) relative eccentricity at the first angle.
+    marching
+        Mesh and step.
+    """
+    count = min(MOST_NODES, int(np.ceil(load.period / marching.step - 1e-9)))
+    place = load.angle[0] + load.period * np.arange(1, count + 1) / count
+    S = np.stack([np.interp(place, load.angle, s, period=load.period) for s in load.S[:, 0]], axis=-1)
+    w = np.interp(place, load.angle, load.w[0], period=load.period)
+    journal = transient_mesh(ratio, marching.around, marching.across)
+    states, before, difference = [_full(journal, start)], None, np.inf
+    for cycle in range(1, MOST_CYCLES + 1):
+        for k in range(count):
+            if k % _REPORTED == 0:
+                _report(cycle, k / count, difference)
+            after = _next(journal, states, S[k], float(w[k]), load.period / count)
+            if after is None:
+                return None
+            states.append(after)
+        eps = np.stack([state.eps for state in states[-count:]], axis=-1)
+        if before is not None:
+            change, gap = np.hypot(*(eps - before)), 1 - np.hypot(*eps)
+            if (change < REPEATS * gap).all():
+                return _measured(journal, place, states[-count:], cycle)
+            difference = float((change / gap).max())
+        before, states = eps, states[-2:]
+    return None
+
+
+def _report(cycle: int, part: float, difference: float) -> None:
+    """Say in which cycle the orbit is, and how far the last two were apart, over the gap."""
+    apart = "" if difference == np.inf else f", difference {difference:.1g} of at most {REPEATS:g}"
+    report((cycle - 1 + part) / MOST_CYCLES, f"cycle {cycle} of at most {MOST_CYCLES}{apart}")
+
+
+def _full(journal: Journal, eps: Array) -> State:
+    """A film that is full, and bears nothing yet."""
+    nothing = np.zeros((journal.phi.size, journal.zeta.size - 1))
+    return State(
+        eps, nothing, nothing, np.broadcast_to(journal.gap(eps, journal.phi)[:, None], nothing.shape)
+    )
+
+
+def _next(journal: Journal, states: list[State], S: Array, w: float, step: float) -> State | None:
+    """One step; where it fails, or at first, of first order, and then in several."""
+    here = states[-1]
+    if len(states) > 1:
+        before = (states[-2].content / 2 - 2 * here.content) / step
+        after = stepped(journal, here, S, w, 1.5 / step, before)
+        if after is not None:
+            return after
+    part, after = step / _SUBSTEPS, here
+    for _ in range(_SUBSTEPS):
+        found = stepped(journal, after, S, w, 1 / part, -after.content / part)
+        if found is None:
+            return None
+        after = found
+    return after
+
+
+def _measured(journal: Journal, place: Array, states: list[State], cycles: int) -> TransientOrbit:
+    """What the states of a cycle do."""
+    step = 2 * np.pi / journal.phi.size
+    width, last = dual_widths(journal.zeta)[:-1], np.diff(journal.zeta)[-1]
+    gaps = [journal.gap(state.eps, journal.phi) for state in states]
+    flows = (H**3 @ state.P[:, -1] for H, state in zip(gaps, states, strict=True))
+    fills = ((1 - state.void) @ width / width.sum() for state in states)
+    return TransientOrbit(
+        place=place,
+        eps=np.stack([state.eps for state in states], axis=-1),
+        P_max=np.array([state.P.max() for state in states]),
+        side_flow=np.array(list(flows)) * step / (24 * journal.ratio**2 * last),
+        shear=np.array([fill @ (1 / H) for fill, H in zip(fills, gaps, strict=True)]) * step / 2,
+        cycles=cycles,
+    )

@@ -1,0 +1,294 @@
+r"""Plane slider pads with a fixed incline, of infinite or finite width, for any number of pads at once.
+
+.. math::
+    \partial_x(H^3\partial_x P) + (2l/b)^2\,\partial_\zeta(H^3\partial_\zeta P) = 6\,dH/dx,
+    \quad H = a - (a-1)x, \quad P = \frac{p\,h_o^2}{\eta U l}
+
+x = 0 (inlet) … 1 (outlet), zeta = 2z/b = −1 … 1; P = 0 (ambient) at all four edges. Isothermal,
+incompressible, rigid, laminar. A diverging film (a < 1) gains oil nowhere, so the complementarity of
+`complementarity` is met by P = 0: all of it is ruptured, it bears nothing, and streamers that fill
+h_i/h of it shear. A parallel film (a = 1) bears nothing either.
+
+The finite width is solved by `pad_equations`, of second order, and extrapolated by Richardson from 32 × 8 and
+64 × 16 intervals. Measured by `benchmarks/slider_bearing.py`, the load errs by 2e-5 up to a film ratio of
+10 and by 2e-4 up to 1000, the pressure by 5e-5 and 3e-4 of its peak, the largest pressure by 3e-4 and 8e-4;
+the flows are less smooth at the corners: that of the inlet errs by 2e-3, the little at the sides of wide
+pads by 1e-2.
+
+References
+----------
+Lord Rayleigh, Phil. Mag. 35, 1918, p. 1; A. G. M. Michell, Z. Math. Phys. 52, 1905, p. 123.
+"""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import units
+from templates.physics.numerics.arrays import require
+from templates.physics.numerics.arrays import spread as spread
+from templates.physics.pads.pad_equations import solved_pads
+from templates.physics.pads.pad_mesh import Grading, grading
+from templates.physics.pads.slider import (
+    centre_of_pressure_Rayleigh_1918,
+    film_velocity,
+    friction_incline_Rayleigh_1918,
+    load_incline_Rayleigh_1918,
+    pressure_incline_Rayleigh_1918,
+)
+
+STEEPEST = 1000.0
+"""The largest film ratio h_i/h_o for which the mesh is made [-]."""
+NARROWEST, WIDEST = 0.01, 100.0
+"""Widths b/l between which the mesh is made [-]."""
+STATIONS = np.linspace(0, 1, 101)
+"""Places x/l at which the pressure along a pad is told [-]."""
+HEIGHTS = np.linspace(0, 1, 41)
+"""Places z/h at which the velocity across the film is told [-]."""
+
+_BLOCK = 512
+
+
+@dataclass(frozen=True)
+class PadFilm(ABC):
+    """What the film under a pad does; every value dimensionless, of the shape of the pads."""
+
+    a: Array
+    """Film ratio h_i/h_o."""
+    load: Array
+    """W h_o²/(6 eta U l² b)."""
+    centre: Array
+    """Centre of pressure from the inlet over l; NaN where the pad bears nothing."""
+    P_max: Array
+    """Largest pressure p h_o²/(6 eta U l)."""
+    peak: Array
+    """Its place from the inlet over l; NaN where the pad bears nothing."""
+    inlet_flow: Array
+    """Flow in at the inlet q/(U h_o b)."""
+    side_flow: Array
+    """Flow out at both sides, likewise."""
+
+    @property
+    def friction_moving(self) -> Array:
+        """Friction on the moving face F h_o/(eta U l b); times U it is the power loss."""
+        return shear_of_wedge(self.a) + 3 * (self.a - 1) * self.load
+
+    @property
+    def friction_fixed(self) -> Array:
+        """Friction on the pad, likewise: less by the pressure on the incline."""
+        return shear_of_wedge(self.a) - 3 * (self.a - 1) * self.load
+
+    @property
+    def friction_coefficient(self) -> Array:
+        """Friction on the moving face over load, times l/h_o; NaN where the pad bears nothing."""
+        load = np.where(self.load > 0, self.load, np.nan)
+        return self.friction_moving / (6 * load)
+
+    @abstractmethod
+    def pressure(self, x: Array) -> Array:
+        """Pressure p h_o²/(6 eta U l) at mid-width and x/l, (..., places)."""
+
+    @abstractmethod
+    def gradient(self, x: Array) -> Array:
+        """Pressure gradient h_o²/(eta U) dp/dx at mid-width and x/l, for one place a pad."""
+
+
+def pad_film(level: str, a: Array, width: Array) -> PadFilm:
+    """The film at a level of fidelity: `infinite`, without side leakage, or `finite`.
+
+    Parameters
+    ----------
+    level
+        Its name.
+    a
+        Film ratio h_i/h_o, above 0 and if finite up to 1000; NaN gives NaN [-].
+    width
+        b/l, if finite 0.01 … 100; NaN gives NaN [-].
+
+    Raises
+    ------
+    ValueError
+        If an argument lies outside its range.
+
+    Examples
+    --------
+    >>> round(float(pad_film("infinite", 2.0, 1.0).load), 8)
+    0.02648051
+    >>> round(float(pad_film("finite", 2.0, 1.0).load), 6)
+    0.011546
+    """
+    a, width = np.asarray(a, float), np.asarray(width, float)
+    require(np.isnan(a) | (a > 0) & np.isfinite(a), "film ratio h_i/h_o must be positive and finite")
+    if level == "infinite":
+        return _infinite(a + 0 * width)
+    require(np.isnan(a) | (a <= STEEPEST), "film ratio h_i/h_o must not be above 1000")
+    inside = (width >= NARROWEST) & (width <= WIDEST)
+    require(np.isnan(width) | inside, "width b/l must lie in [0.01, 100]")
+    return finite_pad(a, width)
+
+
+def shear_of_wedge(a: Array) -> Array:
+    """Friction by the mean velocity gradient alone, F h_o/(eta U l b): ln a/(a − 1), 1 for streamers [-].
+
+    Streamers that carry the inlet's flow fill h_i/h of a diverging film: the mean of h_i h_o/h² is 1.
+
+    Parameters
+    ----------
+    a
+        Film ratio h_i/h_o; below 1 the film is ruptured [-].
+    """
+    return sum(friction_incline_Rayleigh_1918(_bearing(a))) / 2 + 0 * a
+
+
+@units("m", "Pa/m", "Pa*s", "m/s", returns="m/s")
+def velocity_profile(h: Array, pressure_gradient: Array, eta: Array, u_a: Array) -> Array:
+    """Velocity at `HEIGHTS` across the film, (..., 41): see `slider.film_velocity` [m/s].
+
+    Parameters
+    ----------
+    h
+        Film thickness [m].
+    pressure_gradient
+        dp/dx [Pa/m].
+    eta
+        Dynamic viscosity [Pa s].
+    u_a
+        Velocity of the moving face, at z = h [m/s].
+    """
+    h, gradient, eta, u_a = (value[..., None] for value in (h, pressure_gradient, eta, u_a))
+    return film_velocity(HEIGHTS * h, h, gradient, eta, u_a)
+
+
+def _bearing(a: Array) -> Array:
+    """The film ratio of a film that bears: 1 for one that is ruptured, or not a number."""
+    return np.where(a > 1, a, 1.0)
+
+
+@dataclass(frozen=True)
+class InfinitePad(PadFilm):
+    """The closed forms of an incline without side leakage; P = 0 where they would pull."""
+
+    def pressure(self, x: Array) -> Array:
+        """Pressure p h_o²/(6 eta U l) at x/l, (..., places)."""
+        return pressure_incline_Rayleigh_1918(x, _bearing(self.a)[..., None]) + 0 * self.a[..., None]
+
+    def gradient(self, x: Array) -> Array:
+        """Pressure gradient 6 (H − H_m)/H³, where H_m = 2a/(a + 1) carries the flow by shear alone."""
+        a = _bearing(self.a)
+        H = a - (a - 1) * x
+        return 6 * (H - 2 * a / (a + 1)) / H**3 + 0 * self.a
+
+
+def _infinite(a: Array) -> InfinitePad:
+    """The closed forms for pads (...)."""
+    wedge, nothing = _bearing(a), 0 * a
+    bears = a > 1
+    return InfinitePad(
+        a=a,
+        load=load_incline_Rayleigh_1918(wedge) + nothing,
+        centre=np.where(bears, centre_of_pressure_Rayleigh_1918(wedge), np.nan),
+        P_max=(wedge - 1) / (4 * wedge * (wedge + 1)) + nothing,
+        peak=np.where(bears, wedge / (wedge + 1), np.nan),
+        inlet_flow=np.where(bears, wedge / (wedge + 1), a / 2),
+        side_flow=nothing,
+    )
+
+
+@dataclass(frozen=True)
+class FinitePad(PadFilm):
+    """A solved pad of finite width, with its pressure at mid-width."""
+
+    mesh: Grading
+    """Where its nodes stand."""
+    P: Array
+    """(..., n + 1) pressure p h_o²/(6 eta U l) at the nodes, equally spaced in t."""
+
+    def pressure(self, x: Array) -> Array:
+        """Pressure p h_o²/(6 eta U l) at mid-width and x/l, (..., places), by cubics."""
+        return np.maximum(interpolated(self.P, self.mesh.coordinate(x))[0], 0)
+
+    def gradient(self, x: Array) -> Array:
+        """Pressure gradient h_o²/(eta U) dp/dx at mid-width and x/l, one a pad, by the same cubics."""
+        t = self.mesh.coordinate(x[..., None])
+        return (6 * interpolated(self.P, t)[1] / self.mesh.slope(t))[..., 0]
+
+
+def interpolated(values: Array, t: Array) -> tuple[Array, Array]:
+    """Values and slopes d/dt at t by the cubic through four of n + 1 nodes equally spaced in 0 … 1.
+
+    Parameters
+    ----------
+    values
+        (..., n + 1) at the nodes.
+    t
+        (..., places) where they are wanted [-].
+    """
+    n = values.shape[-1] - 1
+    first = np.clip(np.nan_to_num(t * n).astype(int) - 1, 0, n - 3)
+    y = t * n - first
+    values = np.broadcast_to(values, (*first.shape[:-1], n + 1))
+    four = [np.take_along_axis(values, first + k, axis=-1) for k in range(4)]
+    steps = np.diff(four, axis=0)
+    bends = np.diff(steps, axis=0)
+    twist = bends[1] - bends[0]
+    value = four[0] + y * (steps[0] + (y - 1) / 2 * (bends[0] + (y - 2) / 3 * twist))
+    slope = steps[0] + (y - 0.5) * bends[0] + (3 * y**2 - 6 * y + 2) / 6 * twist
+    return value, n * slope
+
+
+def finite_pad(a: Array, width: Array, along: int = 64, across_half: int = 16) -> FinitePad:
+    """The solutions for pads (...), extrapolated from the mesh given and one of half as many intervals.
+
+    Parameters
+    ----------
+    a
+        Film ratio h_i/h_o, above 0 to 1000; NaN gives NaN [-].
+    width
+        b/l, 0.01 … 100; NaN gives NaN [-].
+    along
+        Intervals along the pad, even.
+    across_half
+        Intervals across half the width, even.
+    """
+    a, width = np.broadcast_arrays(a, width)
+    size = along, across_half
+    known = np.isfinite(a * width)
+    wedge, ratio = np.where(known, _bearing(a), 1.0), np.where(known, width, 1.0)
+    blocks = [slice(i, i + _BLOCK) for i in range(0, a.size, _BLOCK)]
+    solved = [_extrapolated(wedge.ravel()[part], ratio.ravel()[part], *size) for part in blocks]
+    measures, P = (np.concatenate(parts).reshape(*a.shape, -1) for parts in zip(*solved, strict=True))
+    load, moment, inlet_flow, side_flow = np.moveaxis(measures, -1, 0)
+    mesh, nothing, bears = grading(wedge, ratio), np.where(known, 0.0, np.nan), known & (a > 1)
+    P_max, peak = _peak(P)
+    return FinitePad(
+        a=a + nothing,
+        load=load + nothing,
+        centre=np.where(bears, moment / np.where(bears, load, 1.0), np.nan),
+        P_max=P_max + nothing,
+        peak=np.where(bears, mesh.place(peak[..., None])[..., 0], np.nan),
+        inlet_flow=np.where(bears, inlet_flow, a / 2) + nothing,
+        side_flow=side_flow + nothing,
+        mesh=mesh,
+        P=P + nothing[..., None],
+    )
+
+
+def _peak(P: Array) -> tuple[Array, Array]:
+    """Height of the largest pressure and its t, by the parabola through the three nodes about it."""
+    n = P.shape[-1] - 1
+    k = np.clip(P.argmax(axis=-1), 1, n - 1)
+    before, top, after = (np.take_along_axis(P, (k + i)[..., None], axis=-1)[..., 0] for i in (-1, 0, 1))
+    bend, slope = before - 2 * top + after, (after - before) / 2
+    shift = -slope / np.where(bend < 0, bend, -1.0)
+    return top + slope * shift / 2, (k + shift) / n
+
+
+def _extrapolated(a: Array, width: Array, along: int, across_half: int) -> tuple[Array, Array]:
+    """Load, moment, inlet and side flow (N, 4), and the pressure at mid-width (N, n + 1), extrapolated."""
+    coarse, P_coarse = solved_pads(a, width, along // 2, across_half // 2)
+    fine, P_fine = solved_pads(a, width, along, across_half)
+    nodes = np.broadcast_to(np.linspace(0, 1, along + 1), P_fine.shape)
+    error, _ = interpolated((P_fine[:, ::2] - P_coarse) / 3, nodes)
+    return fine + (fine - coarse) / 3, P_fine + error

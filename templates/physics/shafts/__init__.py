@@ -1,0 +1,1 @@
+"""Torsion, stress concentration and fatigue of shafts."""

@@ -1,0 +1,112 @@
+"""Fatigue life by stress: Basquin's line, mean stress by Goodman, Gerber or Morrow.
+
+For smooth or notched steel parts under constant amplitude, where stresses stay elastic (beyond some 10³
+cycles). Scatter of life by a factor of three and more is common; no reliability is in these formulas.
+
+A compressive mean stress: Goodman's and Gerber's lines were drawn through tests in tension. Gerber's parabola
+would punish compression as much as tension, Goodman's line would promise life for it; both take it as zero
+here, after Budynas and Nisbett. Morrow's formula is taken as it stands: compression lengthens life (Dowling).
+
+References
+----------
+O. H. Basquin: The exponential law of endurance tests. Proc. ASTM 10, 1910.
+J. Goodman: Mechanics Applied to Engineering, 1899; W. Gerber, Z. Bayer. Archit. Ing.-Ver. 6, 1874.
+J. Morrow: Fatigue Design Handbook, SAE, 1968, section 3.2.
+N. E. Dowling: Mechanical Behavior of Materials, 4th ed. 2013, chapter 9.
+R. G. Budynas, J. K. Nisbett: Shigley's Mechanical Engineering Design, 9th ed. 2011, chapter 6.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import units
+
+GOODMAN, GERBER, MORROW, NONE = "goodman", "gerber", "morrow", "none"
+
+_LONGEST = np.log(1e300)  # of a life that is told as a number
+
+
+@units(None, "Pa", "Pa", "Pa", returns="1", latex=r"c_{{m}}\left({1},{2},{3}\right)")
+def mean_share(correction: str, mean: Array, ultimate: Array, coefficient: Array) -> Array:
+    """What a mean stress [Pa] takes from the amplitude that is borne [1]; 1 takes all of it.
+
+    Goodman: sigma_m/sigma_u. Gerber: (sigma_m/sigma_u)². Morrow: sigma_m/sigma_f'.
+    """
+    if correction == MORROW:
+        return mean / coefficient
+    share = np.maximum(mean, 0) / ultimate
+    return {GOODMAN: share, GERBER: share**2, NONE: 0 * share}[correction]
+
+
+@units("Pa", "Pa", "1", "Pa", returns="1", latex=r"\frac{{1}}{{2}}\left(\frac{{{0}}}{{{1}}}\right)^{{1/{2}}}")
+def cycles_Basquin_1910(amplitude: Array, coefficient: Array, exponent: Array, endurance: Array) -> Array:
+    """Cycles to failure N [1] at a reversed amplitude [Pa], of sigma_ar = sigma_f' (2 N)^b; NaN if endless.
+
+    Endless up to the endurance limit [Pa] (NaN: there is none), without stress, and beyond 1e300 cycles.
+    """
+    with np.errstate(divide="ignore", over="ignore"):
+        logarithm = (np.log(amplitude) - np.log(coefficient)) / exponent - np.log(2)
+    endless = (amplitude <= endurance) | (logarithm > _LONGEST)
+    return np.exp(np.where(endless, np.nan, logarithm))[()]
+
+
+@units("Pa", "Pa", "1", "1", returns="Pa", latex=r"\max\left({1}\,\left(2\,{3}\right)^{{{2}}},{0}\right)")
+def allowable_amplitude(endurance: Array, coefficient: Array, exponent: Array, life: Array) -> Array:
+    """The reversed amplitude [Pa] that is borne for so many cycles, or for ever where no life is asked for.
+
+    The higher of Basquin's line at that life and the endurance limit [Pa]; NaN where neither is known.
+    """
+    return np.fmax(coefficient * (2 * life) ** exponent, endurance)
+
+
+@units(None, "Pa", "Pa", "1", returns="1", latex=r"n\left(\frac{{{1}}}{{{2}}},{3}\right)")
+def load_safety_factor(correction: str, amplitude: Array, allowable: Array, share: Array) -> Array:
+    """By how much amplitude [Pa] and mean stress, with its share [1], may grow together; NaN if without end.
+
+    Goodman and Morrow: 1/n = sigma_a/S + sigma_m/strength. Gerber: n sigma_a/S + (n sigma_m/sigma_u)² = 1
+    (Budynas and Nisbett, chapter 6), solved so that no digit is lost.
+    """
+    used = amplitude / allowable
+    total = (used + np.sqrt(used**2 + 4 * share)) / 2 if correction == GERBER else used + share
+    return np.where(total > 0, 1 / np.where(total > 0, total, 1.0), np.nan)[()]
+
+
+@units("Pa", "Pa", returns="1", latex=r"\frac{{{0}}}{{{1}}}")
+def ratio_or_none(strength: Array, stress: Array) -> Array:
+    """Strength over stress, both in Pa [1]; NaN without stress."""
+    return np.where(stress > 0, strength / np.where(stress > 0, stress, 1.0), np.nan)[()]
+
+
+@units(None, "Pa", returns="1")
+def mean_is_used(correction: str, mean: Array) -> Any:
+    """Whether the correction takes the mean stress [Pa] as it is, not a compressive one as zero."""
+    return ~((mean < 0) & (correction in (GOODMAN, GERBER)))
+
+
+@units(None, "Pa", returns="1")
+def either_is_given(one: Array, other: Array) -> Any:
+    """Whether at least one of two stresses [Pa] is no NaN."""
+    return ~(np.isnan(one) & np.isnan(other))
+
+
+@units("Pa", "Pa", "Pa", returns="1")
+def is_borne_once(amplitude: Array, mean: Array, ultimate: Array) -> Any:
+    """Whether amplitude plus mean is below the ultimate strength [Pa]; what is missing harms nothing."""
+    return ~(amplitude + mean >= ultimate)
+
+
+@units("Pa", "Pa", returns="1")
+def is_below(one: Array, other: Array) -> Any:
+    """Whether one stress [Pa] is below another, or is missing."""
+    return ~(one >= other)
+
+
+@units("1", "Pa", returns="1")
+def life_in_words(cycles: Array, amplitude: Array) -> Any:
+    """Whether a life is finite or endless; empty where the amplitude [Pa] means nothing."""
+    told = np.select([np.isnan(amplitude), np.isnan(cycles)], ["", "endless"], "finite")
+    return told if told.ndim else str(told)

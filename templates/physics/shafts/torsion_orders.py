@@ -1,0 +1,68 @@
+"""Where engine orders meet natural frequencies: critical speeds and the lines of a Campbell diagram.
+
+For `torsional_vibration`. An order is a number of excitations for each turn: a four-stroke engine has whole
+and half orders. Natural frequencies of a chain do not depend on speed: in the diagram they are level.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import units
+
+PLACES = 21
+"""Speeds at which the lines of the diagram are given."""
+
+RPM = 2 * np.pi / 60
+
+
+@units("rad/s", "1", returns="rad/s", latex=r"\frac{{{0}}}{{{1}}}")
+def critical_speeds(omega: Array, orders: Array) -> Array:
+    """Speeds [rad/s; ..., order, mode] at which orders excite the natural frequencies omega [..., mode]."""
+    return omega[..., None, :] / np.atleast_1d(orders)[..., :, None]
+
+
+@units("rad/s", returns="rad/s", latex=r"{0}_1+\frac{{i}}{{20}}\left({0}_2-{0}_1\right)")
+def campbell_speeds(speeds: Array) -> Array:
+    """Equally spaced speeds [rad/s] along the diagram, from the lower to the upper one of [..., 2]."""
+    if not np.ndim(speeds):
+        return np.full(PLACES, np.nan)
+    return np.linspace(speeds[..., 0], speeds[..., -1], PLACES, axis=-1)
+
+
+@units("1", "rad/s", returns="rad/s", latex=r"{0}\,{1}")
+def excitation(orders: Array, speeds: Array) -> Array:
+    """Angular frequencies [rad/s; ..., order, speed] that orders excite at speeds [rad/s; ..., speed]."""
+    return np.atleast_1d(orders)[..., :, None] * speeds[..., None, :]
+
+
+@units("rad/s", returns="1")
+def ascending(speeds: Array) -> bool:
+    """Whether a range [rad/s] has two speeds, the lower one first."""
+    return np.shape(speeds)[-1:] == (2,) and bool(np.all(speeds[..., 0] < speeds[..., 1]))
+
+
+@units("rad/s", "1", "rad/s", returns="1")
+def resonances(critical: Array, orders: Array, speeds: Array) -> Any:
+    """In words, which critical speeds [rad/s; ..., order, mode] lie in the range; empty without a range."""
+    if not np.ndim(speeds) or np.isnan(critical).any():
+        return ""
+    points = np.broadcast_shapes(critical.shape[:-2], speeds.shape[:-1], np.shape(orders)[:-1])
+    told = np.empty(points, dtype=object)
+    each = (np.broadcast_to(critical, (*points, *critical.shape[-2:])),
+            np.broadcast_to(np.atleast_1d(orders), (*points, critical.shape[-2])),
+            np.broadcast_to(speeds, (*points, 2)))  # fmt: skip
+    for point in np.ndindex(points):
+        told[point] = _sentence(*(values[point] for values in each))
+    return told if points else str(told[()])
+
+
+def _sentence(critical: Array, orders: Array, speeds: Array) -> str:
+    """The critical speeds of one chain within the range, ascending; mode 0 of a free chain has none."""
+    inside = (critical >= speeds[0]) & (critical <= speeds[1]) & (critical > 0)
+    found = sorted((critical[order, mode], orders[order], mode) for order, mode in np.argwhere(inside))
+    met = (f"order {order:g} meets mode {mode} at {speed / RPM:.5g} rpm" for speed, order, mode in found)
+    return "; ".join(met) or f"none from {speeds[0] / RPM:.5g} to {speeds[1] / RPM:.5g} rpm"

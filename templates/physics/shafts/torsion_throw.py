@@ -1,0 +1,61 @@
+"""A crank throw in torsion: sections of its parts, and which closed form suits it.
+
+For `crank_stiffness`. Both closed forms are fits to tests: Carter's to throws with slender webs, Ker
+Wilson's to throws whose pin overlaps the journals.
+
+References
+----------
+B. C. Carter: An empirical formula for crankshaft stiffness in torsion. Engineering 126, 1928.
+W. Ker Wilson: Practical Solution of Torsional Vibration Problems, 3rd ed., vol. 1, 1956.
+Punewale, Khobragade, Chaudhari, Khandre, 2015, for the choice between them by overlap.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import units
+
+CARTER, WILSON = "carter", "wilson"
+APART = "pin and journal do not overlap: the webs bend, which Carter's formula allows for"
+OVERLAPPING = "pin and journal overlap: the webs are short and stiff, which Ker Wilson's formula allows for"
+TOO_SHORT = (
+    "pin and journal overlap, so Ker Wilson's formula is the nearer one; but the throw is too short even "
+    "for it (its web term is negative): take finite elements"
+)
+
+
+@units("m", "m", returns="m**4", latex=r"\left({0}^{{4}}-{1}^{{4}}\right)")
+def ring(outer: Array, inner: Array) -> Array:
+    """Difference of the fourth powers of outer and inner diameter [m]; 32/π times the polar moment [m⁴].
+
+    Multiplied out so that thin walls lose no digits.
+    """
+    return (outer - inner) * (outer + inner) * (outer**2 + inner**2)
+
+
+@units("m", returns="1")
+def recommended(overlap: Array) -> Any:
+    """Which formula suits a throw whose pin overlaps the journal by so much [m]: carter or wilson."""
+    return _told([overlap > 0, overlap <= 0], [WILSON, CARTER])
+
+
+@units("m", "m", returns="1")
+def reason(overlap: Array, effective_throw: Array) -> Any:
+    """Why that formula is recommended; the throw [m] is what Ker Wilson leaves of it for the webs."""
+    cases = [(overlap > 0) & (effective_throw < 0), overlap > 0, overlap <= 0]
+    return _told(cases, [TOO_SHORT, OVERLAPPING, APART])
+
+
+@units("m", "N*m/rad", "N*m/rad", returns="N*m/rad", latex=r"{2}\text{{ if }}{0}>0\text{{, else }}{1}")
+def recommended_stiffness(overlap: Array, carter: Array, wilson: Array) -> Array:
+    """The stiffness [N m/rad] after the formula that is recommended at this overlap [m]."""
+    return np.where(overlap > 0, wilson, carter)[()]
+
+
+def _told(cases: list[Any], words: list[str]) -> Any:
+    told = np.select(cases, words, "")
+    return told if told.ndim else str(told)

@@ -1,0 +1,187 @@
+"""SIGTERM ends the server whatever hangs; accepted jobs stay in the queue; a second signal ends at once."""
+
+import os
+import re
+import signal
+import socket
+import sqlite3
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import httpx
+import pytest
+from serving import API, PATIENCE, ServerProcess, alive, descendants, folder_of_models, heard, moody
+
+from app.calculations.schemas import OIL_FILM
+
+DESIGNS = f"{API}/designs"
+CPU = re.compile("(process_cpu_seconds_total|crankwright_children_cpu_seconds) ")
+EVALUATE = f"{API}/templates/oil_film/versions/2/evaluate"
+
+
+def until(condition, seconds=PATIENCE):
+    end = time.monotonic() + seconds
+    while not (found := condition()):
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(0.02)
+    return found
+
+
+class Stopping(ServerProcess):
+    """A server that is asked to stop while something hangs."""
+
+    def __init__(self, tmp_path, drain: float = 3) -> None:
+        folders = f'["{folder_of_models(tmp_path)}"]'
+        super().__init__(
+            tmp_path / "data",
+            CRANKWRIGHT_TEMPLATE_FOLDERS=folders,
+            CRANKWRIGHT_DRAIN_SECONDS=str(drain),
+            CRANKWRIGHT_LOG_LEVEL="info",
+        )
+
+    def __exit__(self, *exception) -> None:
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+
+    def stop(self) -> int:
+        """Ask it to stop; its exit code, when all its processes have ended."""
+        family = descendants(self.process.pid)
+        code = super().stop()
+        until(lambda: not any(alive(pid) for pid in family))
+        return code
+
+    def job(self, link: str) -> dict:
+        return httpx.get(f"{self.url}{link}", timeout=30, trust_env=False).json()
+
+    def running_job(self) -> str:
+        """A job that never ends by itself, and its link."""
+        answer = httpx.post(
+            f"{self.url}{DESIGNS}",
+            json=moody(mood="loops"),
+            headers={"Prefer": "respond-async"},
+            timeout=30,
+            trust_env=False,
+        )
+        link = answer.headers["location"]
+        until(lambda: self.job(link)["state"] == "running")
+        return link
+
+    def states(self) -> list[str]:
+        """The states of all jobs, from the database of a server that has ended."""
+        with sqlite3.connect(self.data / "crankwright.sqlite") as database:
+            return [state for (state,) in database.execute("SELECT state FROM job")]
+
+
+@pytest.fixture
+def server(tmp_path):
+    with Stopping(tmp_path) as server:
+        yield server
+
+
+def test_a_hung_job_goes_back_into_the_queue(server):
+    server.running_job()
+    for pid in descendants(server.process.pid):  # now they ignore every signal but one
+        os.kill(pid, signal.SIGSTOP)
+    assert server.stop() == 0
+    assert server.states() == ["queued"]
+
+
+def test_a_stopped_forkserver_and_a_job_that_waits_for_it(server):
+    forkserver, *_ = (pid for pid in descendants(server.process.pid) if os.getsid(pid) == pid)
+    os.kill(forkserver, signal.SIGSTOP)
+    server.running_job()
+    assert server.stop() == 0
+    assert server.states() == ["queued"]
+
+
+def test_a_long_calculation_is_cut(server):
+    speeds = {"value": [3000.0 + number for number in range(20)], "unit": "rpm"}
+    body = {"inputs": {**OIL_FILM, "speed": speeds}, "level": "mass_conserving"}
+    with ThreadPoolExecutor(1) as pool:
+        calculation = pool.submit(
+            httpx.post, f"{server.url}{EVALUATE}", json=body, timeout=PATIENCE, trust_env=False
+        )
+        until(lambda: calculates(server) or calculation.done())
+        assert not calculation.done(), calculation.result().text[:500]
+        assert server.stop() == 0
+        assert isinstance(calculation.exception(), httpx.TransportError) or calculation.result().is_error
+
+
+def figures(server) -> str:
+    return httpx.get(f"{server.url}/metrics", timeout=30, trust_env=False).text
+
+
+def calculates(server, seconds: float = 0.5) -> bool:
+    """Whether a request is in flight beside this one, on which the processors have worked for so long [s]."""
+    text = figures(server)
+    used = sum(float(line.split()[-1]) for line in text.splitlines() if CPU.match(line))
+    server.idle = min(getattr(server, "idle", used), used)
+    return "crankwright_requests_in_flight 2.0" in text and used > server.idle + seconds
+
+
+def test_streams_end_and_slow_downloads_are_cut(server):
+    with httpx.Client(base_url=server.url, timeout=PATIENCE, trust_env=False) as http:
+        design = http.post(DESIGNS, json={"name": "x", "parameters": {"a": "1"}}).json()["id"]
+        with http.stream("GET", f"{DESIGNS}/{design}/events") as stream, socket.socket() as download:
+            events = heard(stream)
+            next(events)
+            download.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            download.connect(("127.0.0.1", server.port))
+            request = b"GET /openapi.json HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+            download.sendall(request * 20)  # answers of megabytes in all, of which none is read
+            until(lambda: download.recv(1, socket.MSG_PEEK))
+            assert server.stop() == 0
+            assert list(events) == [], "the stream has ended, and not by a broken connection"
+
+
+def test_a_request_that_waits_for_a_job_is_answered(server):
+    answers = []
+    url, document = f"{server.url}{DESIGNS}", moody(mood="loops")
+    headers = {"Prefer": "wait=60"}
+
+    def ask():
+        answers.append(httpx.post(url, json=document, headers=headers, timeout=90, trust_env=False))
+
+    thread = threading.Thread(target=ask)
+    thread.start()
+    until(lambda: [job["state"] for job in server.job(f"{API}/jobs")["items"]] == ["running"])
+    assert server.stop() == 0
+    thread.join(PATIENCE)
+    assert answers[0].status_code in (201, 202)
+    assert answers[0].json()["state"] == "regenerating"
+
+
+def test_what_hangs_beyond_the_time_is_ended_hard(server):
+    """A transaction that waits for another program's lock cannot be hurried."""
+    with sqlite3.connect(server.data / "crankwright.sqlite", isolation_level=None) as other:
+        other.execute("BEGIN IMMEDIATE")
+        with ThreadPoolExecutor(1) as pool:
+            post = pool.submit(
+                httpx.post, f"{server.url}{DESIGNS}", json={"name": "x"}, timeout=PATIENCE, trust_env=False
+            )
+            until(lambda: "crankwright_requests_in_flight 2.0" in figures(server))
+            assert server.stop() == 1
+            assert post.exception() or post.result().status_code >= 500
+    log = server.log.read_text()
+    assert "did not stop in time, ended hard" in log
+    assert "still ran: thread database-writer" in log
+
+
+def test_a_second_signal_ends_at_once(tmp_path):
+    with Stopping(tmp_path, drain=3600) as server:
+        server.running_job()
+        family = descendants(server.process.pid)
+        with httpx.Client(base_url=server.url, timeout=PATIENCE, trust_env=False) as http:
+            body = {"inputs": {**OIL_FILM, "speed": {"value": [3e3] * 20_000, "unit": "rpm"}}}
+            with socket.create_connection(("127.0.0.1", server.port)) as half:
+                head = f"POST {EVALUATE} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
+                half.sendall(f"{head}Content-Length: 100000\r\n\r\n{str(body)[:100]}".encode())
+                assert http.get("/healthz").is_success  # so the half request has come in
+                server.process.send_signal(signal.SIGTERM)
+                until(lambda: "stopping:" in server.log.read_text())
+                server.process.send_signal(signal.SIGTERM)
+                assert server.process.wait(PATIENCE) == 1
+        until(lambda: not any(alive(pid) for pid in family))
+        assert "ended at once by a second signal" in server.log.read_text()
