@@ -1,5 +1,15 @@
 """`python -m app …` is `crankwright …`."""
 
-from app.cli import main
+from app.workers.threads import use_one_thread
 
-main()
+
+def main() -> None:
+    """Run the command line, with one thread for the numerical libraries."""
+    use_one_thread()
+    from app.cli import main as run_command  # imports NumPy, which reads the environment once
+
+    run_command()
+
+
+if __name__ == "__main__":
+    main()

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import socket
 import subprocess
 import sys
@@ -23,7 +22,9 @@ import click
 from app.client import Client, Design
 from app.designs.schemas import PAPER
 
-PATIENCE = 30.0  # for the service to start [s]
+START = 600.0  # for the service to start, which takes minutes on a busy machine with a cold disk [s]
+REMARK = 10.0  # how often to say what the demonstration is waiting for [s]
+END = 30.0  # for the service to stop [s]
 HEADER = f"{'':28}{'before':>14}{'after':>14}"
 
 
@@ -65,18 +66,47 @@ def service(data: Path) -> Iterator[Client]:
             _await(client, process, log)
             yield client
     finally:
-        process.send_signal(signal.SIGTERM)
-        process.wait(PATIENCE)
+        _stop(process)
 
 
 def _await(client: Client, process: subprocess.Popen[bytes], log: Path) -> None:
-    end = time.monotonic() + PATIENCE
+    """Wait until the service answers, as long as its process lives, and say so now and then.
+
+    Raises
+    ------
+    ClickException
+        If the process has ended, or does not answer within `START`.
+    """
+    begin = time.monotonic()
+    remark = begin + REMARK
     while not client.healthy():
-        if process.poll() is not None or time.monotonic() > end:
-            last = log.read_text(errors="replace").strip().splitlines()[-5:]
-            told = f"the service did not start (exit code {process.poll()}); {log.absolute()} ends with"
-            raise click.ClickException("\n  ".join([told, *last]))
+        waited = time.monotonic() - begin
+        if process.poll() is not None:
+            reason = f"the service ended with exit code {process.returncode} before it answered"
+            raise click.ClickException(f"{reason}; {_end_of(log)}")
+        if waited > START:
+            reason = f"the service runs but does not answer after {waited:.0f} s"
+            raise click.ClickException(f"{reason}; {_end_of(log)}")
+        if time.monotonic() > remark:
+            click.echo(f"  waiting for the service, which is loading the geometry kernel ({waited:.0f} s)")
+            remark += REMARK
         time.sleep(0.1)
+
+
+def _stop(process: subprocess.Popen[bytes]) -> None:
+    process.terminate()
+    try:
+        process.wait(END)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
+def _end_of(log: Path) -> str:
+    lines = log.read_text(errors="replace").strip().splitlines()[-5:]
+    if not lines:
+        return f"it wrote nothing to {log.absolute()}"
+    return "\n  ".join([f"{log.absolute()} ends with", *lines])
 
 
 def _created(client: Client) -> Design:

@@ -129,7 +129,10 @@ class JobProcess:
 
 
 class ForkServer:
-    """Starts the forkserver, starts it anew if it has died, and asks it for processes."""
+    """Starts the forkserver, starts it anew if it has died, and asks it for processes.
+
+    Its `environment` holds defaults: what the operator has set in the server's own environment prevails.
+    """
 
     def __init__(self, preload: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
         self._preload = preload
@@ -191,7 +194,7 @@ class ForkServer:
                 [sys.executable, "-c", _BOOT, json.dumps(sys.path), *map(str, ends), *self._preload],
                 pass_fds=ends,
                 stdin=subprocess.DEVNULL,
-                env={**os.environ, **self._environment},
+                env={**self._environment, **os.environ},
                 start_new_session=True,  # Ctrl-C in a terminal is for the server, which ends its jobs itself
             )
         self._lifeline.close_reader()

@@ -8,6 +8,7 @@ from app.workers.base import Limits
 from app.workers.isolated import ForkServer, JobProcess
 from app.workers.messages import Request
 from app.workers.progress import Reporter
+from app.workers.threads import ONE_THREAD
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
@@ -25,7 +26,7 @@ class LocalProcesses:
     """
 
     def __init__(self, preload: Sequence[str] = GEOMETRY) -> None:
-        self._forkserver = ForkServer(preload)
+        self._forkserver = ForkServer(preload, ONE_THREAD)
         self._lock = threading.Lock()
         self._spare = self._forkserver.fork()
 

@@ -8,14 +8,12 @@ from app.workers.base import Limits
 from app.workers.isolated import ForkServer, JobProcess
 from app.workers.messages import Request
 from app.workers.progress import Reporter
+from app.workers.threads import ONE_THREAD
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
 REUSE = 100  # requests that one process takes at most: what leaks in it ends with it
-
-ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-"""As many processes as cores run at the same time; threads of libraries would only get in their way."""
 
 
 class WarmProcesses:

@@ -16,6 +16,7 @@ from textwrap import dedent
 
 import httpx
 import uvicorn
+from patience import GLANCE, patient, until
 
 from app.client import Client
 from app.designs.schemas import PAPER
@@ -24,8 +25,8 @@ from app.server import configuration
 from app.settings import Settings
 
 API = "/api/v1"
-PATIENCE = 60.0  # for a server to start [s]; importing the geometry kernel takes some of it
-HANG = 5.0  # an answer that takes longer hangs [s]
+PATIENCE = patient(60.0)  # for a server to start [s]; importing the geometry kernel takes some of it
+HANG = patient(5.0)  # an answer that takes longer hangs [s]
 
 MOODY = '''
 """A block that misbehaves when it is told to."""
@@ -230,7 +231,7 @@ class ServerProcess:
             while not client.healthy():
                 assert self.process.poll() is None, self.log.read_text()[-2000:]
                 assert time.monotonic() < end, "the server takes too long to start"
-                time.sleep(0.02)
+                time.sleep(GLANCE)
         return self
 
     def kill(self) -> set[int]:
@@ -282,11 +283,21 @@ def _parent(entry: Path) -> int:
 
 def settled(http: httpx.Client, id: str, seconds: float = 60.0) -> dict:
     """The design once nothing of it is being regenerated."""
-    end = time.monotonic() + seconds
-    while (design := http.get(f"{API}/designs/{id}").json())["state"] == "regenerating":
-        assert time.monotonic() < end, f"still regenerating: {design}"
-        time.sleep(0.03)
-    return design
+    ask = lambda: http.get(f"{API}/designs/{id}").json()  # noqa: E731
+    return until(ask, lambda design: design["state"] != "regenerating", seconds)
+
+
+def pages(http: httpx.Client, path: str, limit: int, most: int):
+    """The items of a list, page by page; fail if it goes on beyond so many pages."""
+    cursor = {}
+    for _ in range(most):
+        page = http.get(path, params={"limit": limit, **cursor}).json()
+        assert len(page["items"]) <= limit
+        yield from page["items"]
+        if page["next"] is None:
+            return
+        cursor = {"cursor": page["next"]}
+    raise AssertionError(f"{path} goes on beyond {most} pages of {limit}")
 
 
 def created(http: httpx.Client, document: dict) -> dict:

@@ -14,6 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 import httpx
 import pytest
 from click.testing import CliRunner
+from patience import patient
 from serving import API, created, folder_of_models, moody, revision, serving
 
 from app.cli import main
@@ -318,7 +319,7 @@ def test_a_backup_among_writes_is_complete(folders, tmp_path):
         writers = Writers(server.url)
         with ThreadPoolExecutor(DESIGNS) as pool:
             changing = [pool.submit(writers.change, number) for number in range(DESIGNS)]
-            end = time.monotonic() + 120
+            end = time.monotonic() + patient(120)
             while len(writers.acknowledged) < DESIGNS * EACH // 3:
                 assert time.monotonic() < end, "the writers are stuck"
                 assert not any(future.done() and future.exception() for future in changing)

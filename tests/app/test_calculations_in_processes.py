@@ -5,6 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import httpx
 import pytest
+from click.testing import CliRunner
 from serving import API, faults, heard, problem, serving
 from sleeping import folder_of_sleeper
 from test_workers import alive, eventually
@@ -13,6 +14,7 @@ from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.service import run_evaluate, run_solve
 from app.calculations.worksheet import run_worksheet
 from app.catalogue.finding import find_templates
+from app.cli import main
 from app.client import Client, Problem
 from app.settings import Settings
 
@@ -336,3 +338,31 @@ def test_a_job_runs_again_after_a_restart(tmp_path, monkeypatch, log):
     with serving(chosen) as server, httpx.Client(base_url=server.url, timeout=60, trust_env=False) as http:
         assert ended(http, job)["state"] == "done"
         assert len(begun(log)) == 2
+
+
+def test_the_files_of_a_job_are_checked_and_backed_up(tmp_path, settings):
+    data = tmp_path / "data"
+    with serving(settings.model_copy(update={"data": data})) as server:
+        with httpx.Client(base_url=server.url, timeout=60, trust_env=False) as http:
+            body = {"inputs": FILM.example, "level": "reynolds"}
+            later = http.post(f"{FILM_PLACE}/evaluate", json=body, headers={"Prefer": "respond-async"})
+            assert later.status_code == 202
+            place = later.headers["Location"]
+            eventually(lambda: http.get(place).json()["state"] == "done", 60)
+            link = http.get(place).json()["result"]
+            answer = http.get(link)
+            assert answer.json()["level"] == "reynolds"
+            assert run("backup", tmp_path / "all.tar", "--data", data).exit_code == 0
+            assert run("check", "--data", data).exit_code == 0, "its files have rows"
+            sha = link.rpartition("sha256=")[2]
+            (data / "artifacts" / sha[:2] / sha).unlink()
+            told = problem(http.get(link), 410, "artifact-gone")
+            assert "Send the calculation again" in told["detail"]
+            checked = run("check", "--data", data)
+            assert (checked.exit_code, f"{sha}, answer of" in checked.output) == (1, True), checked.output
+    assert run("restore", tmp_path / "all.tar", "--data", tmp_path / "new").exit_code == 0
+    assert (tmp_path / "new" / "artifacts" / sha[:2] / sha).read_bytes() == answer.content
+
+
+def run(*words):
+    return CliRunner().invoke(main, [str(word) for word in words])

@@ -13,9 +13,9 @@ import time
 
 import httpx
 import pytest
-from serving import API, PATIENCE, ServerProcess, alive, folder_of_models, moody, settled
-
-from app.storage.artifacts import ArtifactStore
+from patience import until
+from seeds import seeded
+from serving import API, PATIENCE, ServerProcess, alive, folder_of_models, moody, pages, settled
 
 DESIGNS = f"{API}/designs"
 WRITERS = 4
@@ -36,7 +36,7 @@ class Writer(threading.Thread):
 
     def run(self) -> None:
         try:
-            with httpx.Client(base_url=self.url, timeout=10, trust_env=False) as self.http:
+            with httpx.Client(base_url=self.url, timeout=PATIENCE / 6, trust_env=False) as self.http:
                 document = moody(f"{10 + self.number} mm", parameters={"counter": "0"}, note="change 0")
                 self.design = self.send("POST", DESIGNS, document, "0", {})["id"]
                 while not self.enough.wait(self.random.uniform(0, 0.1)):
@@ -89,7 +89,7 @@ def battle(data, kills: int, seed: int, changes: int) -> None:
         for writer in writers:
             writer.start()
         for _ in range(kills):
-            time.sleep(chance.uniform(0.01, 0.6))
+            time.sleep(chance.uniform(0.01, 0.6))  # a moment by chance; nothing waits for it
             family |= server.kill()
             server.start()
             if chance.random() < 0.7:  # else it is killed while it starts, or resumes
@@ -122,13 +122,7 @@ def peace(writers: list[Writer]) -> None:
 
 def each_accepted_change_is_one_revision(http, writer: Writer) -> None:
     design = settled(http, writer.design, seconds=120)
-    revisions, cursor = [], None
-    while True:
-        page = {"limit": 100, **({"cursor": cursor} if cursor else {})}
-        told = http.get(f"{DESIGNS}/{writer.design}/revisions", params=page).json()
-        revisions += told["items"]
-        if (cursor := told["next"]) is None:
-            break
+    revisions = list(pages(http, f"{DESIGNS}/{writer.design}/revisions", 100, len(writer.accepted) + 1))
     assert [one["note"] for one in reversed(revisions)] == writer.accepted
     assert [one["number"] for one in reversed(revisions)] == list(range(1, len(revisions) + 1))
     assert design["revision"] == len(writer.accepted)
@@ -137,11 +131,9 @@ def each_accepted_change_is_one_revision(http, writer: Writer) -> None:
 
 
 def each_revision_is_whole(http, one: dict) -> None:
-    end = time.monotonic() + 60
     place = f"{DESIGNS}/{one['design']}/revisions/{one['number']}"
-    while one["state"] == "regenerating" and time.monotonic() < end:
-        time.sleep(0.05)
-        one = http.get(place).json()
+    if one["state"] == "regenerating":
+        one = until(lambda: http.get(place).json(), lambda one: one["state"] != "regenerating")
     assert one["parameters"]["counter"] == str(one["number"] - 1)
     mood = one["models"]["model"]["parameters"]["mood"]["value"]
     if mood == "raises":
@@ -158,27 +150,22 @@ def nothing_is_half_done(http, data) -> None:
     jobs = http.get(f"{API}/jobs", params={"limit": 500}).json()["items"]
     assert {job["state"] for job in jobs} <= {"done", "failed"}
     assert len(http.get(DESIGNS, params={"limit": 500}).json()["items"]) == WRITERS
-    store = ArtifactStore(data / "artifacts")
     files = [file for file in (data / "artifacts").rglob("*") if file.is_file()]
     whole = [file for file in files if len(file.name) == 64]
     assert whole
-    assert all(store.exists(file.name) for file in whole)
+    assert all(hashlib.sha256(file.read_bytes()).hexdigest() == file.name for file in whole)
 
 
 def nothing_lives(family: set[int]) -> None:
-    end = time.monotonic() + 10
-    while (left := {pid for pid in family if alive(pid)}) and time.monotonic() < end:
-        time.sleep(0.05)
-    assert left == set()
+    until(lambda: {pid for pid in family if alive(pid)}, lambda left: left == set(), seconds=20)
 
 
-@pytest.mark.parametrize("seed", [1])
-def test_a_few_kills(tmp_path, seed):
-    battle(tmp_path / "data", kills=8, seed=seed, changes=40)
+def test_a_few_kills(tmp_path):
+    battle(tmp_path / "data", kills=4, seed=1, changes=20)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [2, 3])
+@pytest.mark.parametrize("seed", [seeded(2), seeded(3)])
 def test_dozens_of_kills_during_200_accepted_changes(tmp_path, seed):
     battle(tmp_path / "data", kills=36, seed=seed, changes=200)
 
@@ -193,11 +180,7 @@ def test_a_killed_servers_loop_is_ended_with_it_and_resumed(tmp_path):
     with httpx.Client(base_url=server.url, timeout=30, trust_env=False) as http:
         answer = http.post(DESIGNS, json=moody(mood="loops"), headers={"Prefer": "respond-async"})
         job = answer.headers["location"]
-        end = time.monotonic() + PATIENCE
-        while http.get(job).json()["state"] != "running":
-            assert time.monotonic() < end
-            time.sleep(0.02)
-        time.sleep(0.3)
+        until(lambda: http.get(job).json()["state"], lambda state: state == "running")
         family = server.kill()
         assert family, "the forkserver and the job"
         nothing_lives(family)

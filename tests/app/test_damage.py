@@ -2,10 +2,10 @@
 
 import hashlib
 import os
-import time
 
 import httpx
 import pytest
+from patience import until
 from serving import API, created, folder_of_models, moody, patched, problem, revision, serving
 from sqlalchemy import select, update
 
@@ -261,20 +261,14 @@ class TestAnotherMaker:
 def test_damage_while_serving_is_503_and_not_ready(own):
     served, http, _ = own
     design = created(http, {"name": "bare"})
-    end = time.monotonic() + 60
-    while http.get("/readyz").status_code != 200:  # until the job processes have imported the kernel
-        assert time.monotonic() < end
-        time.sleep(0.1)
+    until(lambda: http.get("/readyz").status_code == 200)  # the job processes have imported the kernel
     served.app.state.database.write(
         lambda session: session.connection().exec_driver_sql("UPDATE revision SET document = '{'")
     )
     told = problem(http.get(f"{API}/designs/{design['id']}"), 503, "database-damaged")
     assert "revision" in told["detail"]
     problem(http.post(f"{API}/designs", json={"name": "more"}), 503, "database-damaged")
-    end = time.monotonic() + 10
-    while (ready := http.get("/readyz")).status_code == 200:
-        assert time.monotonic() < end
-        time.sleep(0.1)
+    ready = until(lambda: http.get("/readyz"), lambda answer: answer.status_code != 200)
     assert [fault["name"] for fault in problem(ready, 503, "not-ready")["errors"]] == ["database"]
     assert http.get("/healthz").status_code == 200
 

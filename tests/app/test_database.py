@@ -11,6 +11,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from patience import until
 from sqlalchemy import delete, event, func, select
 from sqlalchemy.exc import IntegrityError, OperationalError
 
@@ -51,8 +52,7 @@ def together(database):
             pool.submit(database.write, lambda session: (busy.set(), gate.wait(10)))
             assert busy.wait(10)
             futures = [pool.submit(database.write, unit) for unit in units]
-            while database._waiting.qsize() < len(units):
-                time.sleep(0.001)
+            until(lambda: database._waiting.qsize() >= len(units))
             gate.set()
         return futures
 

@@ -5,8 +5,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import click
 import pytest
 from cadquery import importers
+from patience import patient
+
+from app import demo
 
 ROOT = Path(__file__).parents[2]
 
@@ -16,7 +20,7 @@ def shown(tmp_path_factory):
     """What the demonstration prints, and its folder."""
     data = tmp_path_factory.mktemp("demo")
     command = [sys.executable, "-m", "app", "demo", "--data", str(data)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, timeout=120, check=False)
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, timeout=patient(120), check=False)
     assert done.returncode == 0, done.stderr.decode()
     return done.stdout.decode(), data
 
@@ -54,3 +58,63 @@ def test_the_step_file_lies_where_it_says(shown):
     cylinders = importers.importStep(str(file)).faces("%CYLINDER").vals()
     bore = 2 * min(face._geomAdaptor().Cylinder().Radius() for face in cylinders)
     assert bore == pytest.approx(48, abs=1e-6)
+
+
+class Service:
+    """A service that answers after some questions, or never."""
+
+    def __init__(self, answers_after=None):
+        self.left = answers_after
+
+    def healthy(self):
+        if self.left is None:
+            return False
+        self.left -= 1
+        return self.left < 0
+
+
+@pytest.fixture
+def started(tmp_path):
+    """A process in place of the service, its log, and what it wrote there."""
+    log, processes = tmp_path / "service.log", []
+
+    def start(program):
+        with log.open("wb") as output:
+            processes.append(subprocess.Popen([sys.executable, "-c", program], stderr=output))
+        return processes[-1], log
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.wait()
+
+
+@pytest.fixture
+def unhurried(monkeypatch):
+    """Every look at the service is worth a remark."""
+    monkeypatch.setattr(demo, "REMARK", 0.0)
+
+
+def test_it_says_what_it_waits_for_as_long_as_the_service_lives(started, unhurried, capsys):
+    process, log = started("import time; time.sleep(600)")
+    demo._await(Service(answers_after=2), process, log)
+    assert capsys.readouterr().out.count("waiting for the service") == 2
+
+
+def test_a_service_that_ends_without_a_word_is_no_empty_reason(started):
+    process, log = started("raise SystemExit(3)")
+    with pytest.raises(click.ClickException, match=r"exit code 3 .*wrote nothing to .*service\.log"):
+        demo._await(Service(), process, log)
+
+
+def test_the_end_of_the_log_is_shown(started):
+    process, log = started("raise SystemExit('no room\\non the disk')")
+    with pytest.raises(click.ClickException, match=r"(?s)exit code 1 .*ends with\n  no room\n  on the disk"):
+        demo._await(Service(), process, log)
+
+
+def test_there_is_a_limit(started, monkeypatch):
+    monkeypatch.setattr(demo, "START", 0.0)
+    process, log = started("import time; time.sleep(600)")
+    with pytest.raises(click.ClickException, match="does not answer after 0 s; it wrote nothing"):
+        demo._await(Service(), process, log)

@@ -12,6 +12,7 @@ from pathlib import Path
 import httpx
 import pytest
 from fastapi import FastAPI
+from patience import GLANCE, patient
 
 from app.jobs.errors import JobFinished, JobNotFound
 from app.jobs.routes import router
@@ -63,6 +64,26 @@ class Client:
 
     def delete(self, path):
         return asyncio.run(self.send("DELETE", path))
+
+
+class Overheard:
+    """An app, and all bytes of bodies that it has sent."""
+
+    def __init__(self, app):
+        self.app, self.body = app, b""
+
+    async def __call__(self, scope, receive, send):
+        async def overhear(message):
+            self.body += message.get("body", b"")
+            await send(message)
+
+        await self.app(scope, receive, overhear)
+
+    async def sent(self, text):
+        """Wait until the app has sent this text."""
+        async with asyncio.timeout(patient(10)):
+            while text not in self.body:
+                await asyncio.sleep(GLANCE)
 
 
 @pytest.fixture
@@ -125,18 +146,18 @@ def test_a_job_is_watched_to_its_end(client, jobs, database):
     gate = threading.Event()
 
     def gated(job, context):
-        assert gate.wait(10)
+        assert gate.wait(patient(10))
         return handler(job, context)
 
     jobs.register("regenerate", gated)
     id = put(jobs, database)
 
+    overheard = Overheard(client.app)
+
     async def scene():
-        watching = asyncio.create_task(client.send("GET", f"/api/v1/jobs/{id}/events"))
-        while not jobs.events._subscribers:
-            await asyncio.sleep(0.001)
-        for step in (jobs.start, gate.set):
-            await asyncio.sleep(0.2)  # what was told before has been read
+        watching = asyncio.create_task(Client(overheard).send("GET", f"/api/v1/jobs/{id}/events"))
+        for event, step in ((b"event: queued", jobs.start), (b"event: running", gate.set)):
+            await overheard.sent(event)
             step()
         return await watching
 

@@ -1,7 +1,6 @@
 """Requests made up from the interface's own description, and designs made up at random: never a 5xx."""
 
 import json
-import math
 
 import httpx
 import pytest
@@ -17,8 +16,6 @@ from app.settings import Settings
 INTERFACE = schemathesis.openapi.from_dict(create_app(Settings()).openapi()).exclude(path_regex="/events$")
 QUICK = settings(
     max_examples=12,
-    deadline=None,
-    derandomize=True,
     database=None,
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),
@@ -148,7 +145,6 @@ def a_problem_or_fine(answer):
             assert fault["name"]
             assert fault["code"]
             assert fault["detail"]
-    assert math.isfinite(answer.elapsed.total_seconds())
 
 
 def try_design(http, patched, document):

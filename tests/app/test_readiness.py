@@ -4,11 +4,11 @@ import asyncio
 import os
 import signal
 import threading
-import time
 from types import SimpleNamespace
 
 import httpx
 import pytest
+from patience import until
 from serving import problem, serving
 from sqlalchemy import event
 
@@ -16,15 +16,6 @@ from app.readiness import Processes, Readiness, Space, Writing
 from app.settings import Settings
 from app.workers.inline import Inline
 from app.workers.local import LocalProcesses
-
-
-def until(said, wanted, seconds=60.0):
-    """Ask until the answer is as wanted."""
-    end = time.monotonic() + seconds
-    while not wanted(answer := said()):
-        assert time.monotonic() < end, answer
-        time.sleep(0.05)
-    return answer
 
 
 class TestWriting:

@@ -1,7 +1,7 @@
 """Single templates over REST: list, show, evaluate, solve, in any unit, with warnings."""
 
 import pytest
-from serving import API, created, faults, moody, problem
+from serving import API, created, faults, moody, pages, problem
 
 from app.calculations.schemas import OIL_FILM
 
@@ -33,10 +33,7 @@ class TestCatalogue:
 
     def test_pages(self, http):
         whole = http.get(f"{API}/templates").json()["items"]
-        found, cursor = [], "0"
-        while cursor is not None:
-            told = http.get(f"{API}/templates", params={"limit": 1, "cursor": cursor}).json()
-            found, cursor = found + told["items"], told["next"]
+        found = list(pages(http, f"{API}/templates", 1, len(whole)))
         assert found == whole
 
     def test_versions(self, http):

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 import victims
+from patience import GLANCE, patient
 
 from app.workers.base import Limits
 from app.workers.errors import (
@@ -24,7 +25,7 @@ from app.workers.inline import Inline
 from app.workers.local import LocalProcesses
 
 QUICK = Limits(deadline=0.3, memory_mb=512)
-USUAL = Limits(deadline=20, memory_mb=512)
+USUAL = Limits(deadline=patient(20), memory_mb=512)
 
 
 @pytest.fixture(scope="module")
@@ -42,11 +43,12 @@ def alive(pid):
         return False
 
 
-def eventually(condition, seconds=5.0):
-    end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
-        time.sleep(0.01)
-    return condition()
+def eventually(condition, seconds=20.0):
+    """Whether the condition comes true within the time."""
+    end = time.monotonic() + patient(seconds)
+    while not (answer := condition()) and time.monotonic() < end:
+        time.sleep(GLANCE)
+    return answer
 
 
 @pytest.mark.parametrize("inline", [False, True])
@@ -104,7 +106,7 @@ def test_a_deadline_ends_what_never_ends(worker, function):
     start = time.monotonic()
     with pytest.raises(DeadlineExceeded, match=r"0\.3 s"):
         worker.run(function, limits=QUICK)
-    assert 0.3 <= time.monotonic() - start < 5
+    assert time.monotonic() - start >= QUICK.deadline
 
 
 def test_a_memory_bomb_is_refused(worker):

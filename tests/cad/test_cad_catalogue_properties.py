@@ -162,7 +162,7 @@ def parameters(draw: st.DrawFn, cls: type[CadModel]) -> dict[str, float | str]:
     return chosen
 
 
-@settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_any_parameters_give_a_checked_solid_or_are_refused(
     model: type[CadModel], data: st.DataObject

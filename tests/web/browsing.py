@@ -6,6 +6,7 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[1] / "app"))
 
+from patience import until
 from serving import API
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -108,6 +109,9 @@ def created(http, example: str) -> str:
 
 def settled(http, place: str) -> dict:
     """The design of a page once its regeneration has ended."""
-    while (design := http.get(f"{API}{place}").json())["state"] == "regenerating":
+
+    def asked():
         http.get(f"{API}{place}/model.step", headers={"Prefer": "wait=10"})
-    return design
+        return http.get(f"{API}{place}").json()
+
+    return until(asked, lambda design: design["state"] != "regenerating")

@@ -5,6 +5,7 @@ import re
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from browsing import created
+from patience import until
 from playwright.sync_api import expect
 
 from app.web.numbers import aligned, unit
@@ -106,8 +107,12 @@ def test_without_a_script_all_is_readable_and_a_form_saves(plain, http):
     page.get_by_label("scale", exact=True).fill("1")
     page.get_by_role("button", name=re.compile("Save as revision")).click()
     expect(page.locator(".page-head")).to_contain_text("revision 2")
-    while page.locator("[data-design-state]").inner_text() == "regenerating":
+
+    def state():
         page.reload()
+        return page.locator("[data-design-state]").inner_text()
+
+    until(state, lambda shown: shown != "regenerating")
     expect(page.locator('[data-parameter="model.inner_diameter"] .comes-to')).to_have_text("50 → 48 mm")
     page.get_by_label("Radial load").fill("25 mm")
     page.get_by_role("button", name=re.compile("Save as revision")).click()

@@ -30,7 +30,9 @@ def stiffness(step: bytes, asked: Asked) -> Found:
     return analyse(step, Shaft(-54.0, 54.0), asked, ["stiffness"], lambda done, what: None)
 
 
-@pytest.mark.parametrize(("level", "within"), [("default", 5e-3), ("fine", 1e-3)])
+@pytest.mark.parametrize(
+    ("level", "within"), [("default", 5e-3), pytest.param("fine", 1e-3, marks=pytest.mark.slow)]
+)
 def test_the_reference_throw_is_as_stiff_as_it_should_be(step: bytes, level: str, within: float) -> None:
     found = stiffness(step, Asked(level=level)).outputs["stiffness"]
     assert found["value"] == pytest.approx(456_600, rel=within)

@@ -1,0 +1,142 @@
+"""Print the slow test files related to the files that changed, one a line; standard library only.
+
+A slow test is related to every file that it imports, directly or not, and to the data files that these name.
+Tests of a whole server import everything, so a table says which files they are about. The base of comparison
+is `CRANKWRIGHT_CI_BASE`, or else the commit before; if there is none, a fixed selection is printed.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator
+from fnmatch import fnmatch
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+HTTP = ("app/*routes*.py", "app/*schemas*.py", "app/*api/*.py", "app/problems.py", "app/*guard.py")
+ABOUT = {
+    "tests/app/test_crash.py": (
+        *("app/*jobs/*.py", "app/*storage/*.py", "app/*designs/*.py", "app/*workers/*.py"),
+        "app/*idempotency*.py",
+    ),
+    "tests/app/test_contract.py": HTTP,
+    "tests/app/test_openapi_fuzz.py": HTTP,
+}
+"""Patterns of the files that a test of a whole server is about; `*` stands for folders too."""
+ALWAYS = ("tests/physics/test_mobility_map.py", "tests/cad/analysis/test_torsion_reference.py")
+"""What runs if nobody can say what changed: one file for each kind of solver."""
+CATALOGUE = "tests/templates/test_catalogue_properties.py"
+VERSION = re.compile(r"^(?:templates|cad)/\w+/(\w+)_v\d+\.py$")  # found by name, not by an import
+EVERYWHERE = ("constraints.txt", "pyproject.toml", "tests/conftest.py", "tests/*/conftest.py")
+"""Files that all tests depend on."""
+
+
+def changed(base: str) -> list[str] | None:
+    """Return the files that differ from the base, uncommitted ones too; None if Git cannot say."""
+    try:
+        start = git("merge-base", base, "HEAD").strip()
+        return (
+            git("diff", "--name-only", start).split()
+            + git("ls-files", "--others", "--exclude-standard").split()
+        )
+    except (subprocess.CalledProcessError, FileNotFoundError):  # a shallow clone, a first commit, no Git
+        return None
+
+
+def git(*arguments: str) -> str:
+    """Return what Git prints."""
+    done = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+def slow_files() -> list[str]:
+    """Return the test files that hold slow tests."""
+    files = (ROOT / "tests").rglob("test_*.py")
+    return sorted(name(file) for file in files if "mark.slow" in file.read_text(encoding="utf-8"))
+
+
+def name(file: Path) -> str:
+    """Return the name of a file in the repository."""
+    return file.relative_to(ROOT).as_posix()
+
+
+def reach(file: str) -> set[str]:
+    """Return the file and all of ours that it imports, directly or not."""
+    reached, ahead = {file}, [file]
+    while ahead:
+        new = set(imports(ahead.pop())) - reached
+        reached |= new
+        ahead += new
+    return reached
+
+
+@cache
+def imports(file: str) -> tuple[str, ...]:
+    """Return our files that a file imports, wherever in it."""
+    tree = ast.parse((ROOT / file).read_text(encoding="utf-8"))
+    return tuple(found for module in modules(tree) for found in located(module, Path(file).parent))
+
+
+def modules(tree: ast.AST) -> Iterator[str]:
+    """Yield the modules that a file imports, and what may be modules."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def located(module: str, folder: Path) -> Iterator[str]:
+    """Yield the files of a module: of a package of ours, or of a helper beside the test."""
+    path = module.replace(".", "/")
+    for place in (Path(), folder, Path("tests"), Path("tests/app")):
+        for file in (place / f"{path}.py", place / path / "__init__.py"):
+            if (ROOT / file).is_file():
+                yield file.as_posix()
+
+
+def is_related(test: str, files: Iterable[str]) -> bool:
+    """Whether a slow test file should run after changes of these files."""
+    if test in ABOUT:
+        helpers = {file for file in reach(test) if file.startswith("tests/")}
+        return any(file in helpers or fnmatch(file, pattern) for file in files for pattern in ABOUT[test])
+    reached = reach(test)
+    return any(file in reached or is_named(file, test, reached) for file in files)
+
+
+def is_named(file: str, test: str, reached: Iterable[str]) -> bool:
+    """Whether one of these programs names a data file, or the test finds this version in the catalogue."""
+    if version := VERSION.search(file):
+        is_listed = test == CATALOGUE and file.startswith("templates/")
+        return is_listed or version[1] in (ROOT / test).read_text(encoding="utf-8")
+    if file.endswith((".py", ".md")):
+        return False
+    return any(Path(file).name in (ROOT / program).read_text(encoding="utf-8") for program in reached)
+
+
+def selection(files: list[str] | None) -> list[str]:
+    """Return the slow test files to run after changes of these files."""
+    if files is None:
+        return sorted(ALWAYS)
+    related = [test for test in slow_files() if is_related(test, files)]
+    is_everywhere = any(fnmatch(file, pattern) for file in files for pattern in EVERYWHERE)
+    return sorted({*related, *(ALWAYS if is_everywhere else ())})
+
+
+def main() -> None:
+    """Print the selection."""
+    base = os.environ.get("CRANKWRIGHT_CI_BASE") or "HEAD~1"
+    files = changed(base)
+    if files is None:
+        sys.stderr.write(f"Git cannot compare with {base}: a fixed selection of slow tests\n")
+    sys.stdout.writelines(f"{test}\n" for test in selection(files))
+
+
+if __name__ == "__main__":
+    main()

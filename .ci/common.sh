@@ -1,0 +1,128 @@
+# What .ci/run and .ci/nightly share; they source it. Bash.
+#
+# CRANKWRIGHT_CI_CACHE names a folder in which environments are kept, by the hash of what they contain. Without it
+# each run makes a fresh one. PYTHON names the interpreter, python3 if not set.
+
+set -euo pipefail
+set -m # each background job gets a process group, so that it ends with all that it started
+
+PYTHON=${PYTHON:-python3}
+CACHE=${CRANKWRIGHT_CI_CACHE:-}
+scratch=$(mktemp -d)
+jobs_started=()
+failed=()
+
+say() { printf '\n== %s (%s s)\n' "$1" "$SECONDS"; }
+
+# Start a command in the background with its output in a file: start NAME COMMAND…
+start() {
+    local name=$1
+    shift
+    "$@" >"$scratch/$name.log" 2>&1 &
+    printf -v "pid_$name" %s $!
+    jobs_started+=($!)
+}
+
+# Wait for what was started, show its output, and remember a failure: finish NAME
+finish() {
+    local name=$1 pid="pid_$1" status=0
+    wait "${!pid}" || status=$?
+    say "$name"
+    cat "$scratch/$name.log"
+    [ "$status" -eq 0 ] || failed+=("$name")
+}
+
+# Run a command with its output shown, remember a failure: check NAME COMMAND…
+check() {
+    local name=$1 status=0
+    shift
+    say "$name"
+    "$@" & # in the background, so that a signal to this script is handled at once
+    jobs_started+=($!)
+    wait $! || status=$?
+    [ "$status" -eq 0 ] || failed+=("$name")
+}
+
+stop() {
+    local pid
+    trap - EXIT
+    for pid in "${jobs_started[@]}"; do
+        kill -INT -- "-$pid" 2>/dev/null || true # pytest stops its servers
+    done
+    for _ in $(seq 100); do
+        [ -n "$(jobs -rp)" ] || break
+        sleep 0.2
+    done
+    for pid in "${jobs_started[@]}"; do
+        kill -KILL -- "-$pid" 2>/dev/null || true
+    done
+    rm -rf "$scratch"
+}
+trap stop EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM HUP
+
+# The hash of all that an environment contains.
+fingerprint() {
+    "$PYTHON" - <<'PY'
+import hashlib, json, platform, sys, tomllib
+project = tomllib.load(open("pyproject.toml", "rb"))["project"]
+parts = [sys.version, platform.platform(), project["dependencies"], project["optional-dependencies"]]
+print(hashlib.sha256(json.dumps(parts).encode() + open("constraints.txt", "rb").read()).hexdigest()[:16])
+PY
+}
+
+# Make the environment of the README, or take it from the cache; sets `environment`.
+install() {
+    environment=$scratch/environment
+    if [ -n "$CACHE" ]; then
+        mkdir -p "$CACHE"
+        CACHE=$(cd "$CACHE" && pwd)
+        export MYPY_CACHE_DIR=$CACHE/mypy
+        local kept
+        kept=$CACHE/environment-$(fingerprint)
+        exec 9>"$kept.lock"
+        if flock -n 9; then # held until this script ends: the environment refers to this checkout
+            environment=$kept
+            [ -e "$kept/complete" ] || rm -rf "$kept"
+        else
+            echo "another run uses the environment in the cache: this one makes its own"
+        fi
+    fi
+    [ -e "$environment/complete" ] || "$PYTHON" -m venv "$environment"
+    "$environment/bin/pip" install --quiet -c constraints.txt -e ".[test]" 9>&-
+    touch "$environment/complete"
+}
+
+# Chromium and pdftotext, for the tests of the pages; without them these skip, and say so.
+install_browser() {
+    command -v chromium >/dev/null && command -v pdftotext >/dev/null && return
+    local as_root=""
+    [ "$(id -u)" -eq 0 ] || as_root="sudo -n"
+    { $as_root apt-get update -q && $as_root apt-get install -q -y --no-install-recommends chromium poppler-utils; } \
+        >/dev/null 2>&1 || echo "apt-get cannot install chromium: the tests of the pages in a browser will skip"
+}
+
+lint() { "$environment/bin/ruff" check && "$environment/bin/ruff" format --check; }
+types() { "$environment/bin/mypy"; }
+contracts() { PATH="$environment/bin:$PATH" "$environment/bin/lint-imports"; }
+
+start_checks() {
+    start lint lint
+    start types types
+    start contracts contracts
+}
+
+finish_checks() {
+    finish lint
+    finish types
+    finish contracts
+}
+
+# Say what failed, and end with that.
+conclude() {
+    say "done"
+    [ ${#failed[@]} -eq 0 ] && exit 0
+    printf 'failed: %s\n' "${failed[@]}"
+    exit 1
+}

@@ -1,0 +1,88 @@
+"""Imports between the parts of `app`: how many arrows there are, and how many point against the layers.
+
+`python -m benchmarks.structure` prints both counts and every import that points upwards. The layers are
+those of docs/architecture and of the import contracts in pyproject.toml; a module at the top of `app` is a
+part too.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+LAYERS: tuple[frozenset[str], ...] = tuple(
+    map(
+        frozenset,
+        (
+            {"cli", "__main__"},
+            {"main", "demo"},
+            {"web"},
+            {"api"},
+            {"maintenance"},
+            {"reports"},
+            {"designs"},
+            {"solids"},
+            {"calculations"},
+            {"jobs"},
+            {"workers", "storage", "presentation"},
+            {"settings"},
+        ),
+    )
+)
+"""From the top down: a part imports parts of lower layers only."""
+
+APP = Path(__file__).parents[1] / "app"
+
+
+def part_of(module: str) -> str:
+    """The part of `app` to which a module belongs: `app.designs.document` → `designs`."""
+    return module.split(".")[1]
+
+
+def imports(path: Path) -> Iterator[str]:
+    """The modules of `app` that a file imports, wherever in the file."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+            yield from (name for name in names if name.startswith("app."))
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name.startswith("app."))
+
+
+def arrows(app: Path = APP) -> Counter[tuple[str, str]]:
+    """How many imports lead from one part to another."""
+    found: Counter[tuple[str, str]] = Counter()
+    for path in sorted(app.rglob("*.py")):
+        source = part_of("app." + ".".join(path.relative_to(app).with_suffix("").parts))
+        targets = (part_of(module) for module in imports(path))
+        found.update((source, target) for target in targets if target != source)
+    return found
+
+
+def rank(part: str) -> int:
+    """The layer of a part, counted from the top; the lowest for one that no layer names."""
+    return next((number for number, layer in enumerate(LAYERS) if part in layer), len(LAYERS))
+
+
+def upward(counted: Counter[tuple[str, str]]) -> list[tuple[str, str]]:
+    """The arrows that point to the same layer or to a higher one."""
+    return sorted(pair for pair in counted if rank(pair[1]) <= rank(pair[0]))
+
+
+def main() -> None:
+    """Print the counts, and every arrow that points upwards."""
+    counted = arrows()
+    against = upward(counted)
+    print(
+        f"{len(counted)} arrows between the parts of app ({counted.total()} imports), {len(against)} against"
+    )
+    for source, target in against:
+        print(f"  {source} → {target}: {counted[source, target]} imports")
+    sys.exit(bool(against))
+
+
+if __name__ == "__main__":
+    main()

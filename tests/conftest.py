@@ -1,0 +1,50 @@
+"""The lanes of the tests: one thread for numerical libraries, deadlines, and who shares a worker."""
+
+import os
+import time
+
+from app.workers.threads import use_one_thread
+
+use_one_thread()  # before NumPy is imported, here and in the servers that tests start
+
+import pytest  # noqa: E402
+from hypothesis import settings  # noqa: E402
+from lanes import group_of, rank  # noqa: E402
+from patience import BUDGET, FACTOR, SLOW_TEST, TEST  # noqa: E402
+from seeds import CHOSEN, SEED  # noqa: E402
+
+# No timed assertions, and the same examples in every run, unless a seed is chosen.
+settings.register_profile("lanes", deadline=None, derandomize=CHOSEN is None, print_blob=True)
+settings.load_profile("lanes")
+
+if FACTOR != 1:
+    os.environ.setdefault("PYTEST_TIMEOUT", str(TEST))  # prevails over pyproject.toml
+
+
+@pytest.hookimpl(tryfirst=True)  # before Hypothesis reads its option
+def pytest_configure(config):
+    if CHOSEN is not None and config.getoption("--hypothesis-seed") is None:
+        config.option.hypothesis_seed = str(SEED)
+
+
+def pytest_report_header(config):
+    seed = "the usual" if CHOSEN is None else f"CRANKWRIGHT_TEST_SEED={SEED}"
+    return f"lanes: seed {seed}, patience {FACTOR:g}"
+
+
+BEGIN = time.monotonic()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    if BUDGET and item.get_closest_marker("slow") and time.monotonic() - BEGIN > BUDGET:
+        pytest.skip(f"the {BUDGET:g} s for slow tests are over; .ci/nightly runs it")
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the groups
+def pytest_collection_modifyitems(items):
+    for item in items:
+        item.add_marker(pytest.mark.xdist_group(group_of(item)))
+        if item.get_closest_marker("slow") and not item.get_closest_marker("timeout"):
+            item.add_marker(pytest.mark.timeout(SLOW_TEST))
+    items.sort(key=lambda item: rank(group_of(item)))

@@ -1,0 +1,27 @@
+"""Which tests share a worker: those of one file, and those of one server, so that each is started once.
+
+`--dist loadgroup` gives a group to whichever worker is free, in the order of collection. The groups that take
+longest come first, so that both workers end at about the same time. The order is of measured processor times;
+a wrong order costs some balance and nothing else.
+"""
+
+SERVED = "served"  # every test that needs the server of tests/app/conftest.py
+PAGES = "pages"  # every test that needs the server or the browser of tests/web/conftest.py
+
+LONGEST = (PAGES, SERVED)
+"""Groups that begin first, the longest in front."""
+
+
+def group_of(item):
+    """The group of a test: its server's, else its file."""
+    file = item.path.relative_to(item.config.rootpath).as_posix()
+    if file.startswith("tests/web/"):
+        return PAGES
+    if file.startswith("tests/app/") and "served" in item.fixturenames:
+        return SERVED
+    return file
+
+
+def rank(group):
+    """The place of a group in the order."""
+    return LONGEST.index(group) if group in LONGEST else len(LONGEST)

@@ -1,0 +1,28 @@
+"""How long tests wait for a condition: never for a time to pass, and longer on a slow machine by one setting.
+
+`CRANKWRIGHT_TEST_PATIENCE` is a factor on every deadline, 1 if not set: `CRANKWRIGHT_TEST_PATIENCE=5 pytest`
+passes on a machine five times as busy. A deadline only ends a test that would wait for ever: it is generous.
+"""
+
+import os
+import time
+
+FACTOR = float(os.environ.get("CRANKWRIGHT_TEST_PATIENCE", "1"))
+TEST = 300.0 * FACTOR  # for one test with its fixtures [s]
+SLOW_TEST = 3600.0 * FACTOR  # for one of the slow lane [s]
+BUDGET = float(os.environ.get("CRANKWRIGHT_TEST_BUDGET", "0"))  # to begin slow tests in, 0: no end [s]
+GLANCE = 0.02  # between two looks at a condition [s]
+
+
+def patient(seconds):
+    """A deadline on this machine, from what suffices on an idle one [s]."""
+    return seconds * FACTOR
+
+
+def until(ask, wanted=bool, seconds=60.0, glance=GLANCE):
+    """Ask until the answer is as wanted, and return it; fail with the last answer once the time is over."""
+    end = time.monotonic() + patient(seconds)
+    while not wanted(answer := ask()):
+        assert time.monotonic() < end, f"waited {patient(seconds):g} s; last answer: {answer!r}"
+        time.sleep(glance)
+    return answer

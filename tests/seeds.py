@@ -1,0 +1,14 @@
+"""Where random tests begin: the same requests in every run, others by `CRANKWRIGHT_TEST_SEED`.
+
+`.ci/nightly` sets a new seed and prints it. Hypothesis takes it too, unless `--hypothesis-seed` is given.
+"""
+
+import os
+
+CHOSEN = os.environ.get("CRANKWRIGHT_TEST_SEED")
+SEED = int(CHOSEN or "0")
+
+
+def seeded(number):
+    """The seed of one test: its own number, or another one for each seed of the run."""
+    return number + 1000 * SEED

@@ -1,0 +1,107 @@
+"""Which tests run together, which slow ones after a change, and how tests wait."""
+
+import importlib.util
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import patience
+import pytest
+from lanes import PAGES, SERVED, group_of, rank
+from patience import until
+
+ROOT = Path(__file__).parents[1]
+SPEC = importlib.util.spec_from_file_location("changed", ROOT / ".ci" / "changed.py")
+changed = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(changed)
+
+
+def item(file, *fixtures):
+    return SimpleNamespace(
+        path=ROOT / file, config=SimpleNamespace(rootpath=ROOT), fixturenames=["tmp_path", *fixtures]
+    )
+
+
+@pytest.mark.parametrize(
+    ("test", "group"),
+    [
+        (item("tests/web/test_pages.py", "http"), PAGES),
+        (item("tests/app/test_designs.py", "http", "served"), SERVED),
+        (item("tests/app/test_jobs.py"), "tests/app/test_jobs.py"),
+        (item("tests/physics/test_oil.py"), "tests/physics/test_oil.py"),
+    ],
+)
+def test_tests_of_one_server_or_one_file_share_a_worker(test, group):
+    assert group_of(test) == group
+
+
+def test_servers_begin_first():
+    groups = ["tests/physics/test_oil.py", SERVED, PAGES]
+    assert sorted(groups, key=rank) == [PAGES, SERVED, "tests/physics/test_oil.py"]
+
+
+@pytest.mark.parametrize(
+    ("file", "test", "other"),
+    [
+        (
+            "templates/physics/reynolds.py",
+            "tests/physics/test_film_map.py",
+            "tests/cad/test_cranks_random.py",
+        ),
+        ("cad/step.py", "tests/cad/analysis/test_stress.py", "tests/physics/test_film_map.py"),
+        ("cad/models/crank_throw_v1.py", "tests/cad/test_cranks_random.py", "tests/app/test_crash.py"),
+        ("templates/oil_film/oil_film_v2.py", changed.CATALOGUE, "tests/cad/test_cranks_random.py"),
+        ("app/storage/database.py", "tests/app/test_crash.py", "tests/physics/test_film_map.py"),
+        ("tests/app/serving.py", "tests/app/test_contract.py", "tests/physics/test_film_map.py"),
+        ("tests/references/lund_thomsen_1978.csv", "tests/templates/oil_film/test_oil_film_v2.py", "none"),
+    ],
+)
+def test_a_change_selects_the_slow_tests_that_reach_it(file, test, other):
+    assert (ROOT / file).exists()
+    selected = changed.selection([file])
+    assert test in selected
+    assert other not in selected
+
+
+def test_prose_selects_nothing():
+    assert changed.selection(["README.md"]) == []
+
+
+def test_the_fixed_selection_holds_slow_tests():
+    assert set(changed.ALWAYS) < set(changed.slow_files())
+    assert changed.selection(None) == changed.selection(["constraints.txt"]) == sorted(changed.ALWAYS)
+
+
+def test_a_test_of_a_whole_server_is_about_files_that_exist():
+    files = [changed.name(file) for file in (ROOT / "app").rglob("*.py")]
+    for test in changed.ABOUT:
+        assert test in changed.slow_files()
+        assert changed.is_related(test, files)
+        assert not changed.is_related(test, ["app/demo.py"])
+
+
+@pytest.mark.skipif(shutil.which("git") is None, reason="needs git")
+def test_a_clone_without_history_gets_the_fixed_selection(tmp_path):
+    (tmp_path / ".ci").mkdir()
+    script = shutil.copy(ROOT / ".ci" / "changed.py", tmp_path / ".ci")
+    for command in (
+        ["git", "init", "-q", "."],
+        ["git", "-c", "user.name=a", "-c", "user.email=a@b", "commit", "-q", "--allow-empty", "-m", "first"],
+    ):
+        subprocess.run(command, cwd=tmp_path, check=True)
+    done = subprocess.run([sys.executable, script], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == sorted(changed.ALWAYS)
+    assert "cannot compare with HEAD~1" in done.stderr
+
+
+def test_until_returns_the_answer_that_was_wanted():
+    answers = iter([1, 2, 3, 4])
+    assert until(lambda: next(answers), lambda answer: answer > 2) == 3
+
+
+def test_until_fails_with_the_last_answer(monkeypatch):
+    monkeypatch.setattr(patience, "FACTOR", 0.0)
+    with pytest.raises(AssertionError, match="waited 0 s; last answer: 'regenerating'"):
+        until(lambda: "regenerating", lambda answer: answer == "current")
