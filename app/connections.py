@@ -19,6 +19,7 @@ from uvicorn.protocols.http.httptools_impl import STATUS_LINE
 from app import logs, metrics
 from app.heads import LONGEST_HEAD
 from app.targets import WholeTarget
+from app.timeouts import WHOLE
 
 _RESERVE = 64  # connections beyond the limit that are still answered, with 503
 
@@ -111,6 +112,11 @@ class TimedProtocol(WholeTarget):
         """Called by the parser at the end of a head."""
         self._in_head = False
         super().on_headers_complete()
+
+    def on_message_complete(self) -> None:
+        """Called by the parser at the end of a request."""
+        self.scope[WHOLE] = True  # type: ignore[literal-required]
+        super().on_message_complete()
 
     def _head_is_late(self) -> None:
         self._head_timer = None

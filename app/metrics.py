@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache, partial
+from functools import partial
 
 from prometheus_client import (
     CollectorRegistry,
@@ -19,6 +19,7 @@ from prometheus_client import (
     generate_latest,
 )
 
+from app.request_figures import RequestFigures
 from app.workers import family
 
 Census = Sequence[tuple[str, str, int]]
@@ -29,8 +30,7 @@ ProcessCollector(registry=REGISTRY)  # memory, processor time and open files of 
 _counter, _gauge = partial(Counter, registry=REGISTRY), partial(Gauge, registry=REGISTRY)
 _histogram = partial(Histogram, registry=REGISTRY)
 
-REQUESTS = _counter("crankwright_requests_total", "Requests answered", ["route", "method", "status"])
-SECONDS = _histogram("crankwright_request_seconds", "Time to the first byte [s]", ["route", "method"])
+REQUESTS = RequestFigures(REGISTRY)
 IN_FLIGHT = _gauge("crankwright_requests_in_flight", "Requests that are being answered")
 COMMIT = _histogram("crankwright_commit_seconds", "Time of a group of units of work [s]")
 GROUP = _histogram(
@@ -57,19 +57,6 @@ POOL = {
 
 _started: dict[str, float] = {}  # job -> when this run began
 _watched: dict[str, Callable[[], Mapping[str, float]]] = {}
-
-
-@cache
-def _counted(route: str, method: str, status: int) -> tuple[Counter, Histogram]:
-    """To look figures up by their labels costs more than to count."""
-    return REQUESTS.labels(route, method, status), SECONDS.labels(route, method)
-
-
-def answered(route: str, method: str, status: int, seconds: float) -> None:
-    """Count an answer."""
-    count, times = _counted(route, method, status)
-    count.inc()
-    times.observe(seconds)
 
 
 def committed(units: int, seconds: float, failed: bool) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import time
-from dataclasses import dataclass
 
 from fastapi import FastAPI
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -18,22 +17,8 @@ _LONGEST = 200  # characters of a path in the log
 _METHODS = {"GET", "POST", "PUT", "PATCH", "DELETE", "HEAD", "OPTIONS"}
 
 
-@dataclass(frozen=True, slots=True)
-class InFlight:
-    """A request that is being answered."""
-
-    id: str
-    method: str
-    path: str
-    start: float
-
-    def __str__(self) -> str:
-        seconds = time.perf_counter() - self.start
-        return f"{self.method} {self.path[:_LONGEST]} for {seconds:.1f} s [{self.id}]"
-
-
-in_flight: dict[int, InFlight] = {}
-"""What is being answered, by the identity of its scope."""
+in_flight: dict[int, tuple[str, str, str, float]] = {}
+"""What is being answered, by the identity of its scope: id, method, path, start."""
 
 
 metrics.IN_FLIGHT.set_function(lambda: len(in_flight))
@@ -60,10 +45,10 @@ class Observed:
             if message["type"] == "http.response.start":
                 status = message["status"]
                 message["headers"] = [*message.get("headers", ()), header]
-                metrics.answered(_route(scope), _method(scope), status, time.perf_counter() - start)
+                metrics.REQUESTS.add(_route(scope), _method(scope), status, time.perf_counter() - start)
             await send(message)
 
-        in_flight[id(scope)] = InFlight(id_, scope["method"], scope["path"], start)
+        in_flight[id(scope)] = (id_, scope["method"], scope["path"], start)
         try:
             await self.app(scope, receive, observed)
         finally:
@@ -71,6 +56,15 @@ class Observed:
             if status >= 500 or logger.isEnabledFor(logging.INFO):
                 _log(scope, status, time.perf_counter() - start)
             logs.REQUEST_ID.reset(token)
+
+
+def what_is_in_flight() -> list[str]:
+    """Return the requests that are being answered, each in a few words."""
+    now = time.perf_counter()
+    return [
+        f"{method} {path[:_LONGEST]} for {now - start:.1f} s [{id_}]"
+        for id_, method, path, start in list(in_flight.values())
+    ]
 
 
 def install(app: FastAPI) -> None:

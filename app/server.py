@@ -26,7 +26,7 @@ from starlette.types import Receive, Scope, Send
 
 from app import logs, problems
 from app.connections import ConnectionLimits, protocol
-from app.observing import Observed, in_flight
+from app.observing import Observed, what_is_in_flight
 from app.settings import Settings
 from app.workers import family
 
@@ -122,9 +122,8 @@ class Server(uvicorn.Server):
 
 def what_runs() -> list[str]:
     """Return what the server is busy with: requests, threads, processes."""
-    requests = [str(request) for request in list(in_flight.values())]
     count = family.use().count
-    return [*requests, *_busy_threads(), *([f"{count} processes"] if count else [])]
+    return [*what_is_in_flight(), *_busy_threads(), *([f"{count} processes"] if count else [])]
 
 
 def _busy_threads() -> list[str]:
