@@ -57,8 +57,10 @@ stop() {
     for pid in "${jobs_started[@]}"; do
         kill -KILL -- "-$pid" 2>/dev/null || true
     done
-    for pid in $(marked); do # servers of tests have groups of their own
-        kill -KILL "$pid" 2>/dev/null || true
+    for _ in 1 2 3 4 5; do # servers of tests have groups of their own, and start others meanwhile
+        for pid in $(marked); do
+            kill -KILL "$pid" 2>/dev/null || true
+        done
     done
     rm -rf "$scratch"
 }
