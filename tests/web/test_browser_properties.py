@@ -92,7 +92,9 @@ def test_the_first_page_is_light(watched, http):
     sizes = []
     session.on("Network.loadingFinished", lambda event: sizes.append(event["encodedDataLength"]))
     watched.open("/", wait_until="networkidle")
-    assert len(watched.requests) < MOST_REQUESTS, watched.requests
+    # A picture that is still being drawn is asked for again, on a slow machine more often.
+    addresses = {address.partition("?again=")[0] for address in watched.requests}
+    assert len(addresses) < MOST_REQUESTS, addresses
     assert 0 < sum(sizes) < MOST_BYTES
     assert not any("plotly" in address for address in watched.requests)
 
