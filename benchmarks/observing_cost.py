@@ -3,7 +3,6 @@
 python -m benchmarks.observing_cost
 """
 
-import asyncio
 import json
 import statistics
 import time
