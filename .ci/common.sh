@@ -9,6 +9,7 @@ set -m # each background job gets a process group, so that it ends with all that
 PYTHON=${PYTHON:-python3}
 CACHE=${CRANKWRIGHT_CI_CACHE:-}
 scratch=$(mktemp -d)
+export CRANKWRIGHT_CI_RUN=$scratch
 jobs_started=()
 failed=()
 
@@ -56,8 +57,25 @@ stop() {
     for pid in "${jobs_started[@]}"; do
         kill -KILL -- "-$pid" 2>/dev/null || true
     done
+    for _ in 1 2 3 4 5; do # servers of tests have groups of their own, and start others meanwhile
+        for pid in $(marked); do
+            kill -KILL "$pid" 2>/dev/null || true
+        done
+    done
     rm -rf "$scratch"
 }
+
+# The processes that this run started, directly or not: they inherited its mark.
+marked() {
+    local file
+    for file in /proc/[0-9]*/environ; do
+        if tr '\0' '\n' 2>/dev/null <"$file" | grep -qx "CRANKWRIGHT_CI_RUN=$scratch"; then
+            file=${file#/proc/}
+            echo "${file%/environ}"
+        fi
+    done
+} 2>/dev/null
+
 trap stop EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM HUP
