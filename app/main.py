@@ -19,7 +19,7 @@ from app.analyses.routes import router as analyses
 from app.analyses.service import ANALYSIS, Analyses, ModelAnalysis
 from app.cache import results
 from app.calculations.answers import router as answers
-from app.calculations.assembly import LANES, assemble_calculations
+from app.calculations.assembly import assemble_calculations
 from app.calculations.film_pressure import router as film_pressure
 from app.calculations.routes import router as calculations
 from app.calculations.routes import worksheets
@@ -48,6 +48,7 @@ from app.reports.routes import router as reports
 from app.reports.service import Reports
 from app.retention.service import Retention
 from app.settings import Settings
+from app.stopping import StoppingAnswer
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.folder import DataFolder
@@ -120,6 +121,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.add_middleware(BodyLimit, limit=chosen.body_limit, refuse=_too_large)
     app.add_middleware(BodyTime, seconds=chosen.body_seconds, rate=chosen.slowest_rate)
     app.add_middleware(HeadLimit, refuse=_head_too_large)
+    app.add_middleware(StoppingAnswer)
     guard.install(app, Hosts(chosen.allowed_hosts, chosen.host), _refused)
     observing.install(app)  # the outermost: it sees what the others refuse
     app.openapi = partial(describe_interface, app)  # type: ignore[method-assign]
@@ -162,13 +164,13 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     queue = Jobs(database, worker, settings, problems.describe)
     builds = Builds(database, store, settings.template_folders)
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
-    assemble_calculations(app, settings, stack, catalogues.templates, database, store, queue)
+    lanes = assemble_calculations(app, settings, stack, catalogues.templates, database, store, queue)
     regeneration = Regeneration(database, builds, analysing, catalogues, app.state.steps)
     queue.register(REGENERATE, regeneration, Regeneration.failed)
     queue.register(REGENERATE_SLOWLY, regeneration, Regeneration.failed, is_slow=True)
     queue.register(BUILD, ModelBuild(builds, catalogues.models))
     queue.register(ANALYSIS, ModelAnalysis(builds, analysing, catalogues.models), is_slow=True)
-    queue.start(LANES)
+    queue.start(lanes)
     stack.callback(queue.stop)
     app.state.database, app.state.store, app.state.jobs = database, store, queue
     app.state.catalogues, app.state.settings = catalogues, settings

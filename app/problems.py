@@ -129,6 +129,7 @@ HTTP = {
     405: Kind("method-not-allowed", 405, "Method not allowed here", "see the header Allow"),
 }
 
+STOPPING = Kind("stopping", 503, "The service is stopping", "send the request again once it runs")
 CROWDED = Kind("too-many-connections", 503, "Too many connections", "close some, then retry")
 BEFORE_HTTP = (
     CROWDED,
@@ -228,7 +229,7 @@ def explain_problem(slug: str) -> dict[str, Any]:
     """What a kind of problem means, and how to mend it."""
     kinds = {
         kind.slug: kind
-        for kind in (*TABLE.values(), *HTTP.values(), *BEFORE_HTTP, NOT_READY, REBUILDING, INTERNAL)
+        for kind in (*TABLE.values(), *HTTP.values(), *BEFORE_HTTP, STOPPING, NOT_READY, REBUILDING, INTERNAL)
     }
     if slug not in kinds:
         raise HTTPException(404, f"there is no problem {slug[:60]!r}")

@@ -9,7 +9,7 @@ from fastapi import FastAPI
 
 from app import metrics
 from app.calculations.answering import Answering
-from app.calculations.jobs import CALCULATION, THREADS, CalculationJobs
+from app.calculations.jobs import CALCULATION, CalculationJobs
 from app.calculations.pool import CalculationPool
 from app.calculations.sources import source_of
 from app.calculations.steps import Steps, Threads
@@ -23,8 +23,6 @@ from templates.core.catalogue.finding import Catalogue
 from templates.core.language.template import Template
 
 PRELOAD = ("app.calculations.warm",)
-LANES = {CALCULATION: THREADS}
-"""The lane of jobs that are calculations, for `Jobs.start`."""
 
 
 def assemble_calculations(
@@ -35,8 +33,11 @@ def assemble_calculations(
     database: Database,
     store: ArtifactStore,
     jobs: Jobs,
-) -> None:
-    """Make what the routes depend on, and register the job; before the jobs are started."""
+) -> dict[str, int]:
+    """Make what the routes depend on, and register the job; return the lane of such jobs for `Jobs.start`.
+
+    A job of the lane is adopted while it runs, so there is a thread more than calculations that run for jobs.
+    """
     size = settings.calculation_processes or len(os.sched_getaffinity(0))
     limits = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
     processes = WarmProcesses(PRELOAD, spares=size)
@@ -49,3 +50,4 @@ def assemble_calculations(
     jobs.register(CALCULATION, handler, handler.failed, lane=CALCULATION)
     app.state.calculations, app.state.steps, app.state.threads = pool, Steps(pool, sources), Threads()
     app.state.answering = Answering(pool, handler, settings.calculation_deadline)
+    return {CALCULATION: pool.most_jobs + 1}

@@ -25,7 +25,6 @@ from templates.core.errors import TemplateError
 from templates.core.language.template import Template
 
 CALCULATION = "calculation"
-THREADS = 8  # that follow jobs; calculations that were adopted while they ran do not wait behind others
 GLANCE = 0.1  # how often a thread looks whether its job was cancelled [s]
 FAILURES = (TemplateError, HttpError, InvalidBody)
 """What the request itself brings about."""

@@ -77,6 +77,11 @@ class CalculationPool:
             thread.start()
 
     @property
+    def most_jobs(self) -> int:
+        """Calculations that run at the same time as jobs."""
+        return self._capacity["jobs"]
+
+    @property
     def running(self) -> int:
         """Calculations that run."""
         return len(self._active)

@@ -84,6 +84,7 @@ class ArtifactStore:
         if not (self.exists(sha) and self._renewed(target)):
             with self._changing:
                 target.parent.mkdir(exist_ok=True)
+                self._clear(target)
                 _write_whole(target, data)
         # Even for a file found: the writer that renamed it may not have synced its folder yet.
         _sync_folder(target.parent)
@@ -181,6 +182,13 @@ class ArtifactStore:
             return location.open("rb")
         except FileNotFoundError:
             raise ArtifactMissing(sha) from None
+
+    def _clear(self, target: Path) -> None:
+        """Set aside what is no file and has taken the place of one, such as a folder."""
+        if target.is_dir() and not target.is_symlink():
+            aside = self.folder / QUARANTINE / f"{target.name}.folder-{_moment()}"
+            aside.parent.mkdir(exist_ok=True)
+            os.replace(target, aside)
 
     def _unreadable(self, sha: str, file: BufferedReader, error: OSError) -> Exception:
         """A disk that cannot give the bytes back has damaged them; any other error is none of the file's."""

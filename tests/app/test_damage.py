@@ -33,7 +33,12 @@ def truncate(path):
     os.truncate(path, path.stat().st_size // 2)
 
 
-DAMAGES = pytest.mark.parametrize("damage", [delete, flip, truncate])
+def replace_by_folder(path):
+    path.unlink()
+    path.mkdir()
+
+
+DAMAGES = pytest.mark.parametrize("damage", [delete, flip, truncate, replace_by_folder])
 
 
 def place(served, sha):

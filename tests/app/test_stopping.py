@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import httpx
 import pytest
-from serving import API, PATIENCE, ServerProcess, alive, descendants, folder_of_models, heard, moody
+from serving import API, PATIENCE, ServerProcess, alive, descendants, folder_of_models, heard, moody, problem
 
 from app.calculations.schemas import OIL_FILM
 
@@ -106,7 +106,12 @@ def test_a_long_calculation_is_cut(server):
         until(lambda: calculates(server) or calculation.done())
         assert not calculation.done(), calculation.result().text[:500]
         assert server.stop() == 0
-        assert isinstance(calculation.exception(), httpx.TransportError) or calculation.result().is_error
+        answer = calculation.result()
+    told = problem(answer, 503, "stopping")
+    assert int(answer.headers["Retry-After"]) > 0
+    assert answer.headers["X-Request-ID"] == told["request_id"]
+    assert answer.headers["X-Content-Type-Options"] == "nosniff"
+    assert "Traceback" not in server.log.read_text()
 
 
 def figures(server) -> str:
