@@ -37,7 +37,7 @@ HEADERS = (
 )
 """Of every answer, unless its route says something else."""
 
-LOOKED_AT = {b"host", b"origin", b"sec-fetch-site", b"sec-fetch-mode", b"sec-fetch-dest"}
+LOOKED_AT = {b"host", b"origin", b"upgrade", b"sec-fetch-site", b"sec-fetch-mode", b"sec-fetch-dest"}
 Looked = dict[bytes, list[bytes]]
 
 
@@ -130,6 +130,8 @@ def check(scope: Scope, hosts: Hosts) -> None:
         )
     if scope.get("method") in SAFE:
         _check_link(looked)
+        if b"upgrade" in looked:  # a WebSocket: browsers let pages of any site try one
+            _check_origin(looked, asked, scheme, hosts)
     else:
         _check_site(looked)
         _check_origin(looked, asked, scheme, hosts)

@@ -187,7 +187,7 @@ def test_paths_and_methods_of_clients_make_no_new_figures(http):
 
 def test_jobs_commits_and_memory(http):
     before = figures(http)
-    design = created(http, moody("31.5 mm"))
+    design = created(http, moody("31.517 mm"))
     assert design["state"] == "current", design["problem"]
     after = figures(http)
     ended = [key for key in after if key[0] == "crankwright_jobs_ended_total" and "done" in key]

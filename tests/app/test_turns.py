@@ -274,17 +274,17 @@ class TestOverHttp:
             return session.get_one(JobRow, answer.headers["location"].rpartition("/")[2]).client
 
     def test_of_designs(self, http, served):
-        answer = http.post(f"{API}/designs", json=moody("34 mm"), headers=self.HEADERS)
+        answer = http.post(f"{API}/designs", json=moody("34.013 mm"), headers=self.HEADERS)
         assert self.client_of(served, answer) == "name:dora"
 
     def test_of_builds(self, http, served):
-        body = {"parameters": {"size": "34.25 mm"}, "artifacts": []}
+        body = {"parameters": {"size": "34.253 mm"}, "artifacts": []}
         answer = http.post(f"{API}/models/moody/versions/1/build", json=body, headers=self.HEADERS)
         assert self.client_of(served, answer) == "name:dora"
 
     def test_of_analyses(self, http, served):
         body = {
-            "parameters": {"diameter": "20 mm", "length": "44 mm"},
+            "parameters": {"diameter": "20 mm", "length": "44.013 mm"},
             "outputs": ["stiffness"],
             "level": "coarse",
         }
@@ -293,13 +293,13 @@ class TestOverHttp:
         assert self.client_of(served, answer) == "name:dora"
 
     def test_of_files_and_reports(self, http, served):
-        design = created(http, moody("34.5 mm"))
+        design = created(http, moody("34.513 mm"))
         place = f"{API}/designs/{design['id']}"
         assert self.client_of(served, http.get(f"{place}/model.stl", headers=self.HEADERS)) == "name:dora"
         assert self.client_of(served, http.get(f"{place}/report", headers=self.HEADERS)) == "name:dora"
 
     def test_of_cancelling(self, http):
-        place, mood = f"{API}/models/moody/versions/1/build", {"size": "34.75 mm", "mood": "loops"}
+        place, mood = f"{API}/models/moody/versions/1/build", {"size": "34.753 mm", "mood": "loops"}
         body, clients = {"parameters": mood, "artifacts": []}, ("dora", "emil", "fay")
         headers = [{"Crankwright-Client": name, "Prefer": "respond-async"} for name in clients]
         jobs = {http.post(place, json=body, headers=each).headers["location"] for each in headers[:2]}
