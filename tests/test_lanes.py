@@ -46,7 +46,7 @@ def test_servers_begin_first():
     ("file", "test", "other"),
     [
         (
-            "templates/physics/reynolds.py",
+            "templates/physics/films/reynolds.py",
             "tests/physics/test_film_map.py",
             "tests/cad/test_cranks_random.py",
         ),
