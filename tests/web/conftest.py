@@ -1,5 +1,8 @@
 """One server for all tests of the pages, and Chromium where it is installed."""
 
+from contextlib import ExitStack
+from pathlib import Path
+
 import httpx
 import pytest
 from browsing import AWKWARD, CHROMIUM, FLAGS, THIRD, Watched, created
@@ -38,10 +41,23 @@ def browser():
     from playwright.sync_api import expect, sync_playwright
 
     expect.set_options(timeout=20_000)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield browser
-        browser.close()
+    playwright = BROWSER.enter_context(sync_playwright())
+    launched = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+    BROWSER.callback(launched.close)
+    return launched
+
+
+BROWSER = ExitStack()
+
+
+def pytest_runtest_teardown(item, nextitem):
+    """End the browser after the last of these tests.
+
+    Playwright keeps an event loop running in this thread, in which other tests want one of their own.
+    """
+    if nextitem is None or not nextitem.path.is_relative_to(Path(__file__).parent):
+        item.session._setupstate.teardown_exact(nextitem)  # its pages first
+        BROWSER.close()
 
 
 @pytest.fixture
