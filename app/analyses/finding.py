@@ -11,12 +11,12 @@ from app.designs import repository as builds
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.workers.base import Limits, Runner
-from app.workers.progress import report
 from cad.analysis.kinds import SURFACE
 from cad.errors import AnalysisError
 from cad.model import CadModel
 from cad.regenerate import build_key
 from cad.shaft import Shaft
+from templates.core.progress import report
 
 FILE = "file"
 """In an output on its way from the worker: the bytes of what is stored as a file."""

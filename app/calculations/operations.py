@@ -19,9 +19,7 @@ from app.calculations.schemas import Asked, EvaluateIn, SolveIn
 from app.calculations.service import run_evaluate, run_solve
 from app.calculations.sources import Source, loaded
 from app.calculations.worksheet import run_worksheet
-from app.workers.progress import report
 from templates.core.language.template import Template
-from templates.core.progress import reporting
 
 
 @dataclass(frozen=True)
@@ -62,8 +60,7 @@ def answered(source: Source, question: Question) -> bytes:
     """
     operation = OPERATIONS[question.operation]
     body = _read(operation.body, question.body)
-    with reporting(report):
-        return to_json(operation.run(loaded(source), body, question.system))
+    return to_json(operation.run(loaded(source), body, question.system))
 
 
 def _read(model: type[Asked], body: bytes) -> Asked:

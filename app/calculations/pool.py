@@ -16,7 +16,7 @@ from app.calculations.errors import TooManyCalculations
 from app.calculations.turns import Turns, first, last_of_the_greediest
 from app.workers.base import Limits, Worker
 from app.workers.errors import JobCancelled
-from app.workers.progress import Reporter
+from templates.core.progress import Reporter
 
 Ts = TypeVarTuple("Ts")
 Lane = Literal["answers", "jobs"]

@@ -22,10 +22,8 @@ from app.calculations.pool import CalculationPool
 from app.calculations.sources import Source, loaded
 from app.clients import get_client
 from app.waiting import client_left
-from app.workers.progress import report
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.template import Template
-from templates.core.progress import reporting
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -92,8 +90,7 @@ def _evaluated(
     tolerance: float | None,
 ) -> Evaluation:
     """The evaluation, with all that the template has computed: in a calculation process."""
-    with reporting(report):
-        return evaluate(loaded(source), raw, outputs=outputs, level=level, tolerance=tolerance)
+    return evaluate(loaded(source), raw, outputs=outputs, level=level, tolerance=tolerance)
 
 
 @contextmanager

@@ -22,11 +22,11 @@ from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.tables import ArtifactRow
 from app.workers.base import Runner
-from app.workers.progress import report
 from cad.export import derive
 from cad.model import CadModel
 from cad.regenerate import MADE_BY, Build, build_key, regenerate
 from templates.core.catalogue.finding import Catalogue
+from templates.core.progress import report
 
 logger = logging.getLogger(__name__)
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, TypeVar, TypeVarTuple
 
-from app.workers.progress import Reporter
+from templates.core.progress import Reporter
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")

@@ -6,7 +6,7 @@ from typing import TypeVar, TypeVarTuple
 
 from app.workers.base import Limits
 from app.workers.errors import JobCancelled
-from app.workers.progress import Reporter, reporting
+from templates.core.progress import Reporter, reporting
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")

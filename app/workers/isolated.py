@@ -20,7 +20,7 @@ from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed
 from app.workers.lifeline import Lifeline
 from app.workers.messages import Progress, Raised, Request, Returned
-from app.workers.progress import Reporter
+from templates.core.progress import Reporter
 
 _BOOT = (
     "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "

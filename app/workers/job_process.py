@@ -20,7 +20,7 @@ from app.workers.base import Limits
 from app.workers.errors import MemoryExceeded, RemoteError, WorkerError
 from app.workers.lifeline import hang_on, has_hung_up
 from app.workers.messages import Progress, Raised, Request, Returned
-from app.workers.progress import reporting
+from templates.core.progress import reporting
 
 Rehearsal = Callable[[Callable[[], bool]], object]
 """Does some work like a job's; it is given what tells whether the job has come, and then ends soon."""

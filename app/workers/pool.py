@@ -7,8 +7,8 @@ from typing import TypeVar, TypeVarTuple, cast
 from app.workers.base import Limits
 from app.workers.isolated import ForkServer, JobProcess
 from app.workers.messages import Request
-from app.workers.progress import Reporter
 from app.workers.threads import ONE_THREAD
+from templates.core.progress import Reporter
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")

@@ -1,4 +1,4 @@
-"""How a long calculation says how far it is; who listens, if anybody does, is set from outside."""
+"""How a long calculation or a job says how far it is; who listens, if anybody does, is set from outside."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from contextvars import ContextVar
 
 Reporter = Callable[[float, str], None]
 
-_reporter: ContextVar[Reporter | None] = ContextVar("calculation_reporter", default=None)
+_reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 
 
 def report(fraction: float, text: str) -> None:
-    """Say what fraction (0 to 1) of the calculation is done, and what it does next."""
+    """Say what fraction (0 to 1) of the work is done, and what is done next."""
     reporter = _reporter.get()
     if reporter is not None:
         reporter(fraction, text)

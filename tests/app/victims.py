@@ -7,7 +7,7 @@ import subprocess
 import sys
 import time
 
-from app.workers.progress import report
+from templates.core.progress import report
 
 
 class Awkward(Exception):
