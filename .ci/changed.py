@@ -18,7 +18,7 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-HTTP = ("app/*routes*.py", "app/*schemas*.py", "app/*api/*.py", "app/problems.py", "app/*guard.py")
+HTTP = ("app/*routes*.py", "app/*schemas*.py", "app/*api/*.py", "app/api/problems.py", "app/*guard.py")
 ABOUT = {
     "tests/app/test_crash.py": (
         *("app/*jobs/*.py", "app/*storage/*.py", "app/*designs/*.py", "app/*workers/*.py"),

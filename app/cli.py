@@ -13,8 +13,8 @@ from pydantic_settings import SettingsError
 
 from app import server
 from app.calculations import rendering
+from app.calculations.arguments import argument
 from app.catalogue.finding import find_templates
-from app.curves.arguments import argument
 from app.demo import demonstrate
 from app.hosts import is_loopback
 from app.main import create_app

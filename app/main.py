@@ -13,49 +13,52 @@ from typing import Any
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
-from app import docs, guard, health, metrics, observing, problems, readiness
-from app.analyses.finding import Analysing
-from app.analyses.routes import router as analyses
-from app.analyses.service import ANALYSIS, Analyses, ModelAnalysis
-from app.cache import results
-from app.calculations.answers import router as answers
+from app.api import docs, problems, readiness
+from app.api.description import describe_interface
+from app.api.gate import guard, observing
+from app.api.gate.heads import HeadLimit
+from app.api.gate.stopping import StoppingAnswer
+from app.api.gate.streams import Streams
+from app.api.gate.timeouts import BodyTime
+from app.api.reading import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
+from app.api.routes import health
+from app.api.routes.analyses import router as analyses
+from app.api.routes.calculations import router as calculations
+from app.api.routes.calculations import worksheets
+from app.api.routes.curves import router as curves
+from app.api.routes.design_events import router as design_events
+from app.api.routes.design_files import router as design_files
+from app.api.routes.designs import router as designs
+from app.api.routes.evaluations import router as answers
+from app.api.routes.film_pressure import router as film_pressure
+from app.api.routes.jobs import router as jobs
+from app.api.routes.models import router as models
+from app.api.routes.reports import router as reports
+from app.api.routes.templates import router as catalogue
 from app.calculations.assembly import assemble_calculations
-from app.calculations.film_pressure import router as film_pressure
-from app.calculations.routes import router as calculations
-from app.calculations.routes import worksheets
+from app.calculations.cache import results
 from app.catalogue.finding import find_templates
-from app.catalogue.routes import router as catalogue
-from app.curves.routes import router as curves
-from app.description import describe_interface
-from app.designs.events import router as design_events
-from app.designs.files import router as design_files
 from app.designs.graph import Catalogues
 from app.designs.regeneration import Regeneration
-from app.designs.routes import router as designs
 from app.designs.service import REGENERATE, REGENERATE_SLOWLY, Designs
-from app.heads import HeadLimit
 from app.hosts import Hosts
-from app.http import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
-from app.jobs.routes import router as jobs
 from app.jobs.service import Jobs
 from app.jobs.shutdown import on_stop_signal
-from app.models.builds import Builds
-from app.models.healing import Healing
-from app.models.routes import router as models
-from app.models.service import BUILD, ModelBuild, Models
+from app.observation import metrics
 from app.reports.paper import Press
-from app.reports.routes import router as reports
 from app.reports.service import Reports
 from app.retention.service import Retention
 from app.settings import Settings
-from app.stopping import StoppingAnswer
+from app.solids.analyses import ANALYSIS, Analyses, ModelAnalysis
+from app.solids.builds import Builds
+from app.solids.finding import Analysing
+from app.solids.healing import Healing
+from app.solids.models import BUILD, ModelBuild, Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.storage.migrations import migrate
-from app.streams import Streams
-from app.timeouts import BodyTime
 from app.web import assembly as pages
 from app.workers.base import Limits
 from app.workers.local import LocalProcesses

@@ -24,9 +24,10 @@ import uvicorn
 from fastapi import FastAPI
 from starlette.types import Receive, Scope, Send
 
-from app import logs, problems
-from app.connections import ConnectionLimits, protocol
-from app.observing import Observed, what_is_in_flight
+from app.api import problems
+from app.api.gate.connections import ConnectionLimits, protocol
+from app.api.gate.observing import Observed, what_is_in_flight
+from app.observation import logs
 from app.settings import Settings
 from app.workers import family
 

@@ -13,11 +13,11 @@ from typing import Any
 import uvloop
 from starlette.types import ASGIApp, Message
 
+from app.api.gate.observing import Observed
+from app.api.gate.timeouts import WHOLE, BodyTime
 from app.calculations.schemas import OIL_FILM
 from app.main import create_app
-from app.observing import Observed
 from app.settings import Settings
-from app.timeouts import WHOLE, BodyTime
 
 PATH = "/api/v1/templates/oil_film/versions/1/evaluate"
 BODY = json.dumps({"inputs": OIL_FILM, "outputs": ["minimum_film_thickness"]}).encode()

@@ -14,22 +14,23 @@ from collections.abc import Iterator
 from pathlib import Path
 
 LAYERS: tuple[frozenset[str], ...] = tuple(
-    map(
-        frozenset,
-        (
-            {"cli", "__main__"},
-            {"main", "demo"},
-            {"web"},
-            {"api"},
-            {"maintenance"},
-            {"reports"},
-            {"designs"},
-            {"solids"},
-            {"calculations"},
-            {"jobs"},
-            {"workers", "storage", "presentation"},
-            {"settings"},
-        ),
+    frozenset(names.split())
+    for names in (
+        "__main__",
+        "cli",
+        "main demo server",
+        "web",
+        "api",
+        "client maintenance",
+        "reports retention",
+        "designs",
+        "solids",
+        "calculations",
+        "catalogue jobs",
+        "observation",
+        "workers storage presentation schemas",
+        "settings",
+        "hosts",
     )
 )
 """From the top down: a part imports parts of lower layers only."""

@@ -7,13 +7,13 @@ from contextlib import ExitStack
 
 from fastapi import FastAPI
 
-from app import metrics
-from app.calculations.answering import Answering
+from app.api.answering import Answering
 from app.calculations.jobs import CALCULATION, CalculationJobs
 from app.calculations.pool import CalculationPool
 from app.calculations.sources import source_of
 from app.calculations.steps import Steps, Threads
 from app.jobs.service import Jobs
+from app.observation import metrics
 from app.settings import Settings
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database

@@ -11,13 +11,13 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
+from app.api.problems import describe
+from app.api.reading import HttpError
 from app.calculations.errors import InvalidBody
 from app.calculations.operations import Question, answered
 from app.calculations.pool import Calculation, CalculationPool
 from app.calculations.sources import Source
-from app.http import HttpError
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
-from app.problems import describe
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from templates.core.catalogue.finding import Catalogue

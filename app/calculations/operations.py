@@ -13,12 +13,12 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import from_json, to_json
 
-from app.calculations.display import System
 from app.calculations.errors import InvalidBody
 from app.calculations.schemas import Asked, EvaluateIn, SolveIn
 from app.calculations.service import run_evaluate, run_solve
 from app.calculations.sources import Source, loaded
 from app.calculations.worksheet import run_worksheet
+from app.presentation.units import System
 from templates.core.language.template import Template
 
 

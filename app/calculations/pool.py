@@ -92,7 +92,7 @@ class CalculationPool:
         return len(self._queue)
 
     def occupancy(self) -> dict[str, float]:
-        """The figures of the pool for `app.metrics`."""
+        """The figures of the pool for `app.observation.metrics`."""
         return {"running": self.running, "waiting": self.waiting, "size": self.size}
 
     def answers(self) -> bool:

@@ -6,8 +6,8 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, StringConstraints
 
-from app.bounded import Bounded, at_most
-from app.values import Given
+from app.schemas.bounded import Bounded, at_most
+from app.schemas.values import Given
 
 Text = Annotated[str, StringConstraints(max_length=100)]
 MOST_NAMES = 2000  # in one request

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from app.api.reading import TooManyValues
 from app.calculations import rendering
 from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.size import points
-from app.http import TooManyValues
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.solve import solve
 from templates.core.language.template import Template

@@ -17,11 +17,11 @@ from typing import Annotated, Any, ParamSpec, TypeVar
 from anyio import CapacityLimiter, to_thread
 from fastapi import Depends, Request
 
+from app.api.gate.clients import get_client
+from app.api.waiting import client_left
 from app.calculations.cost import EXPENSIVE, estimated_seconds
 from app.calculations.pool import CalculationPool
 from app.calculations.sources import Source, loaded
-from app.clients import get_client
-from app.waiting import client_left
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.template import Template
 

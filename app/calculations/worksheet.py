@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from app.calculations import rendering
-from app.calculations.display import System, converted, shown_unit
 from app.calculations.schemas import EvaluateIn
 from app.calculations.service import evaluated
+from app.presentation.units import System, converted, shown_unit
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.template import Template
 from templates.core.paper import report

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from app.analyses.questions import Question, faults, in_order, no_shaft, question
 from app.designs.document import Model
+from app.solids.questions import Question, faults, in_order, no_shaft, question
 from cad.analysis.kinds import KINDS
 from cad.inspect import MEASURES
 from templates.core.errors import Fault, unknown_name

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from app.analyses.questions import Question
 from app.calculations.size import points, spanned
 from app.designs.analyses import measured_unit
 from app.designs.graph import SOLID, Block, Cell, Graph
 from app.designs.memory import memory
 from app.designs.size import limit_operations, limit_values
+from app.solids.questions import Question
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.language.evaluate import Evaluation

@@ -19,9 +19,9 @@ from pydantic import (
     model_validator,
 )
 
-from app.analyses.questions import Options
-from app.bounded import Bounded, at_most
-from app.values import Given
+from app.schemas.bounded import Bounded, at_most
+from app.schemas.values import Given
+from app.solids.questions import Options
 
 WORD = r"^[A-Za-z][A-Za-z0-9_]{0,63}$"
 Word = Annotated[str, StringConstraints(pattern=WORD)]

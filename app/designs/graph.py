@@ -15,10 +15,10 @@ from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 from typing import Any
 
-from app.analyses.questions import Question
 from app.designs.analyses import is_measured, measured_names, measured_unit, questions, remedy, used
 from app.designs.document import Document
 from app.designs.size import too_many_relations
+from app.solids.questions import Question
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_names

@@ -6,7 +6,7 @@ from collections.abc import Hashable, Mapping
 from hashlib import sha256
 from typing import Any, NamedTuple
 
-from app.cache import Cache, results
+from app.calculations.cache import Cache, results
 from app.calculations.steps import evaluated_step
 from app.designs.graph import Block
 from templates.core.language.evaluate import Evaluation

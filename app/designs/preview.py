@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from app.calculations.display import System, converted
 from app.designs import repository, results
 from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
 from app.designs.graph import Catalogues, build_graph, raise_if
 from app.designs.service import analysed, built, read_document, resolved, starts
 from app.designs.worksheet import previewed
+from app.presentation.units import System, converted
 from app.storage.database import Database
 from templates.core.errors import Fault
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.analyses.finding import Analysing
+from app.api.problems import describe
 from app.calculations.steps import Steps, calling
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
@@ -18,9 +18,9 @@ from app.designs.errors import NotConverged
 from app.designs.graph import SOLID, Catalogues, Graph, build_graph, raise_if
 from app.designs.service import analysed, built, starts
 from app.jobs.service import Completion, Job, JobContext, JobFailed
-from app.models.builds import Builds
-from app.models.errors import CannotRebuild
-from app.problems import describe
+from app.solids.builds import Builds
+from app.solids.errors import CannotRebuild
+from app.solids.finding import Analysing
 from app.storage.database import Database
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
 from cad.errors import AnalysisError, GeometryError

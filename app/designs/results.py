@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from app.analyses.views import in_design
 from app.calculations import rendering
 from app.designs.calculate import Calculation
 from app.designs.graph import Block
+from app.solids.analysis_views import in_design
 from cad.inspect import MEASURES
 from cad.model import CadModel
 from cad.regenerate import build_key

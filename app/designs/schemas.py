@@ -7,10 +7,10 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
-from app.bounded import Bounded
 from app.calculations.schemas import OIL_FILM
 from app.designs.document import NAME, WORD, Document, Iteration, Model, Name, Step
-from app.values import GIVEN
+from app.schemas.bounded import Bounded
+from app.schemas.values import GIVEN
 
 PAPER: dict[str, Any] = {
     "name": "435 cc main bearing",

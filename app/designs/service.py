@@ -9,8 +9,6 @@ from typing import Any
 from pydantic import ValidationError
 from sqlalchemy.orm import Session
 
-from app.analyses import repository as analyses
-from app.analyses.questions import Question, under_load
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
 from app.designs.automap import Proposal, proposals
@@ -19,10 +17,12 @@ from app.designs.document import Document, merge
 from app.designs.errors import StaleRevision
 from app.designs.graph import Catalogues, Graph, build_graph, raise_if
 from app.designs.repository import Written
-from app.idempotency import Once
 from app.jobs.service import Jobs
-from app.models.ages import renew
+from app.solids import analysis_rows as analyses
+from app.solids.ages import renew
+from app.solids.questions import Question, under_load
 from app.storage.database import Database
+from app.storage.idempotency import Once
 from cad.model import CadModel
 from cad.regenerate import build_key
 from templates.core.errors import Fault, FaultyText, InvalidInputs, plain

@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 
 from app.designs import repository, results
 from app.designs.errors import NotFound
-from app.models.service import File
+from app.solids.models import File
 from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow
 
 STEP = "step"

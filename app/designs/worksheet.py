@@ -8,11 +8,11 @@ from typing import Any
 
 from pydantic_core import from_json, to_json
 
-from app.cache import results as kept
-from app.calculations.display import System, converted
+from app.calculations.cache import results as kept
 from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
 from app.designs.calculate import Calculation
+from app.presentation.units import System, converted
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.language.template import Template

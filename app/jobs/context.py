@@ -6,10 +6,10 @@ import time
 from collections.abc import Callable
 from typing import TypeVar, TypeVarTuple
 
-from app import metrics
 from app.jobs import repository
 from app.jobs.events import Events
 from app.jobs.job import Job
+from app.observation import metrics
 from app.storage.database import Database
 from app.workers.base import Limits, Worker
 

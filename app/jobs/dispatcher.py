@@ -10,7 +10,6 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app import logs
 from app.jobs import repository
 from app.jobs.admission import Durations
 from app.jobs.context import JobContext, publish
@@ -18,6 +17,7 @@ from app.jobs.errors import JobFailed
 from app.jobs.events import Events
 from app.jobs.job import Job
 from app.jobs.turns import Lane
+from app.observation import logs
 from app.storage.database import Database
 from app.storage.errors import DatabaseClosed
 from app.workers.base import Limits, Worker

@@ -7,7 +7,6 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app import logs
 from app.jobs import repository, turns
 from app.jobs.admission import admit
 from app.jobs.context import JobContext, publish
@@ -15,6 +14,7 @@ from app.jobs.dispatcher import FAST, SLOW, Completion, Dispatcher, FailureHook,
 from app.jobs.errors import JobFailed, JobFinished, JobNotFound
 from app.jobs.events import Events
 from app.jobs.job import FINAL, Job, State
+from app.observation import logs
 from app.settings import Settings
 from app.storage.clock import operated
 from app.storage.database import Database

@@ -8,14 +8,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TypeVar, TypeVarTuple
 
-from app.analyses import repository as analyses
-from app.analyses.finding import Analysing
 from app.maintenance.check import Findings, Say
 from app.maintenance.rows import Named
-from app.models.builds import Builds
-from app.models.errors import CannotRebuild
-from app.models.shapes import shape_of
 from app.settings import Settings
+from app.solids import analysis_rows as analyses
+from app.solids.builds import Builds
+from app.solids.errors import CannotRebuild
+from app.solids.finding import Analysing
+from app.solids.shapes import shape_of
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.workers.base import Limits

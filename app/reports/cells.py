@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from app.calculations.display import System, converted
-from app.web import numbers
+from app.presentation import numbers
+from app.presentation.units import System, converted
 from app.web.forms import text_of
 from templates.core.units.units import compatible, unit
 

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from sqlalchemy.orm import Session
 
-from app.calculations.display import System
 from app.designs import repository, results
+from app.presentation import numbers
+from app.presentation.units import System
 from app.reports.cells import Cell, shown, typed
 from app.reports.content import File, Line, Mapped, Model, Verdict, Warned
 from app.reports.steps import known, symbol_of, verdicts, version_of, words_of
 from app.reports.typesetting import DRAWING, PICTURE
-from app.web import numbers
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+from app.presentation.environment import pages
 from app.reports.content import Report
-from app.web.environment import pages
 
 
 def display(formula: str) -> Markup:

@@ -15,19 +15,19 @@ from typing import Any
 from pydantic_core import to_json
 from sqlalchemy.orm import Session
 
-from app.calculations.display import System, converted
 from app.designs import repository, views
 from app.designs.graph import Catalogues
 from app.designs.worksheet import worksheets
-from app.models.service import Models
+from app.presentation import numbers
+from app.presentation.units import System, converted
 from app.reports.cells import Cell, cell, clean, typed
 from app.reports.content import Line, Model, Report, Round, Step, Verdict
 from app.reports.models import model_of
 from app.reports.steps import step_of
 from app.reports.typesetting import DRAWING, PICTURE
+from app.solids.models import Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
-from app.web import numbers
 
 PENDING = "its picture and drawing were still being made when this report was written"
 NO_PICTURE = "no picture and drawing could be made of it"

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from app.calculations.display import System
 from app.calculations.rendering import identity
 from app.designs.worksheet import checked
+from app.presentation import numbers
+from app.presentation.units import System
 from app.reports.cells import Cell, cell, in_si, shown
 from app.reports.cells import typed as as_typed
 from app.reports.content import Formula, Identity, Line, Step, Verdict, Warned
-from app.web import numbers
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.language.template import Template

@@ -16,7 +16,7 @@ from typing import Any
 
 import typst
 
-from app.bidi import bare_everywhere
+from app.presentation.bidi import bare_everywhere
 
 PICTURE, DRAWING = "png", "drawing.svg"  # kinds of files that a report shows
 

@@ -191,7 +191,7 @@ class JobRow(Base):
     result: Mapped[str | None]  # a link
     created: Mapped[str]
     updated: Mapped[str]
-    client: Mapped[str] = mapped_column(default="")  # whose turn it takes; see `app.clients`
+    client: Mapped[str] = mapped_column(default="")  # whose turn it takes; see `app.api.gate.clients`
     others: Mapped[list[str]] = mapped_column(Json, default=list)  # clients that wait for it as well
     turn: Mapped[int] = mapped_column(BigInteger, default=0)
     operated: Mapped[int] = mapped_column(BigInteger, default=0)  # queued, then ended [s of operation]
@@ -205,7 +205,7 @@ class IdempotencyRow(Base):
 
     key: Mapped[str] = mapped_column(primary_key=True)
     scope: Mapped[str] = mapped_column(primary_key=True)  # method and path
-    client: Mapped[str] = mapped_column(primary_key=True, default="")  # see `app.clients`
+    client: Mapped[str] = mapped_column(primary_key=True, default="")  # see `app.api.gate.clients`
     fingerprint: Mapped[str]  # SHA-256 of the body
     status: Mapped[int]
     location: Mapped[dict[str, Any]] = mapped_column(Json)  # what to render again

@@ -1,7 +1,7 @@
 """What forms do: each is a call of the REST interface, then the page that shows what came of it.
 
 Without a script in the browser these are all actions there are; with one, `static/design.js` saves by itself.
-`app.guard` refuses a form of another site: a browser would send it without asking anyone.
+`app.api.gate.guard` refuses a form of another site: a browser would send it without asking anyone.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from urllib.parse import quote
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.http import FORM_TYPES, NotForm, check_type
+from app.api.reading import FORM_TYPES, NotForm, check_type
 from app.web.api import Api, Refused, TheApi
 from app.web.design_page import design_page
 from app.web.forms import fields, kept, patch_of, value_of

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import httpx
 from fastapi import Depends, FastAPI, Request
 
-from app.clients import TheClient, from_inside
+from app.api.gate.clients import TheClient, from_inside
 
 BASE = "/api/v1"
 _CLIENT = "crankwright.client"

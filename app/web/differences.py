@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from app.web import numbers
+from app.presentation import numbers
 
 
 class Difference(NamedTuple):

@@ -18,7 +18,7 @@ from urllib.parse import parse_qsl
 from fastapi import Request
 from pydantic_core import from_json
 
-from app.http import BodyTooLarge
+from app.api.reading import BodyTooLarge
 
 OPTIONS = ("level", "tolerance")  # of a step, beside its inputs
 MOST_FIELDS = 20_000

@@ -10,7 +10,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
-from app import problems
+from app.api import problems
 from app.web.api import BASE, Refused
 from app.web.rendering import show
 

@@ -8,9 +8,9 @@ from urllib.parse import urlencode
 from fastapi import Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from app.calculations.display import System
+from app.presentation.environment import pages
+from app.presentation.units import System
 from app.web import plotly
-from app.web.environment import pages
 from app.web.session import keep_session
 
 POLICY = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"

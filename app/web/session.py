@@ -6,7 +6,7 @@ import secrets
 
 from fastapi import Request, Response
 
-from app.clients import COOKIE, is_session
+from app.api.gate.clients import COOKIE, is_session
 
 BYTES = 16  # 128 random bits
 

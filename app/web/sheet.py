@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from app.web import numbers
+from app.presentation import numbers
 from app.web.forms import OPTIONS, text_of
 from templates.core.units.relation import is_relation
 

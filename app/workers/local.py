@@ -16,7 +16,7 @@ Ts = TypeVarTuple("Ts")
 
 # What jobs import: the kernel, every model, and the modules of the job functions. The finite elements are
 # imported by those that need them (0.3 s): NGSolve starts threads at once, which a fork would not have.
-GEOMETRY = ("cad.regenerate", "cad.models", "app.models.builds", "app.analyses.finding")
+GEOMETRY = ("cad.regenerate", "cad.models", "app.solids.builds", "app.solids.finding")
 
 
 class LocalProcesses:

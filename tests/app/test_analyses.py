@@ -9,9 +9,9 @@ import httpx
 import pytest
 from serving import API, faults, folder_of_models, problem, serving
 
-from app.analyses.questions import Options, question, warnings
 from app.client import Client, Problem
 from app.settings import Settings
+from app.solids.questions import Options, question, warnings
 from cad.analysis.levels import LEVELS
 
 BAR = f"{API}/models/bar/versions/1/analyses"

@@ -8,8 +8,8 @@ import pypdf
 import pytest
 from serving import API, created, faults, patched, revision
 
-from app.analyses import repository
-from app.analyses.questions import Options, question
+from app.solids import analysis_rows as repository
+from app.solids.questions import Options, question
 from cad.analysis.levels import LEVELS
 
 DESIGNS = f"{API}/designs"

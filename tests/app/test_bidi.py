@@ -7,7 +7,7 @@ import pypdf
 import pytest
 from serving import API, created, patched
 
-from app.bidi import balanced, bare
+from app.presentation.bidi import balanced, bare
 
 NAME = "front\u202egnp.exe \u2066main\u2069\u2069 <script>alert('1')</script> \"quoted\" & more\u2028line"
 NOTE = "why \u202b<b>not</b>\u2069"

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from pydantic_core import to_json
 
-from app.cache import Cache
+from app.calculations.cache import Cache
+from app.calculations.sizes import size_of
 from app.catalogue.finding import find_templates
 from app.designs import memory as designs
 from app.designs.graph import Block
 from app.designs.memory import Memory
 from app.designs.worksheet import _written_out
-from app.sizes import size_of
 from templates.core.language.evaluate import evaluate
 
 MIB = 2**20

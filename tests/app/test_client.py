@@ -5,9 +5,9 @@ import pytest
 from fastapi import Request
 from serving import free_port, moody, paper
 
+from app.api.gate.clients import HEADER, get_client
 from app.calculations.schemas import OIL_FILM
 from app.client import Client, Problem, user_at_host
-from app.clients import HEADER, get_client
 
 
 def test_templates_evaluate_and_solve(client):

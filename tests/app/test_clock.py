@@ -6,13 +6,13 @@ from types import SimpleNamespace
 import pytest
 from sqlalchemy.exc import OperationalError
 
-from app.idempotency import Once
 from app.jobs import repository
 from app.retention.service import Retention
 from app.settings import Settings
 from app.storage.artifacts import ArtifactStore
 from app.storage.clock import DAY, operated
 from app.storage.database import Database
+from app.storage.idempotency import Once
 
 
 class Monotonic:

@@ -14,7 +14,7 @@ from schemathesis.config import SchemathesisConfig
 from seeds import CHOSEN, seeded
 from serving import API, HANG, created, moody
 
-from app.calculations.film_pressure import TYPICAL
+from app.api.routes.film_pressure import TYPICAL
 from app.main import create_app
 from app.settings import Settings
 

@@ -8,8 +8,9 @@ import pytest
 from fastapi import FastAPI, Request
 from pydantic import ValidationError
 
-from app import guard, problems
-from app.clients import COOKIE, HEADER, TheClient
+from app.api import problems
+from app.api.gate import guard
+from app.api.gate.clients import COOKIE, HEADER, TheClient
 from app.hosts import Authority, Hosts, is_loopback, parse
 from app.main import create_app
 from app.settings import Settings

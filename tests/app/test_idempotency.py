@@ -5,7 +5,7 @@ from serving import API, moody, problem
 from sqlalchemy import update
 
 from app.designs.errors import KeyReused
-from app.idempotency import BEFORE_CLIENTS, Once
+from app.storage.idempotency import BEFORE_CLIENTS, Once
 from app.storage.tables import IdempotencyRow
 
 SCOPE = "POST /designs"

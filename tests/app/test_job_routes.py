@@ -14,11 +14,11 @@ import pytest
 from fastapi import FastAPI
 from patience import GLANCE, patient
 
+from app.api.gate.streams import Streams
+from app.api.routes.jobs import router
 from app.jobs.errors import JobFinished, JobNotFound
-from app.jobs.routes import router
 from app.jobs.service import Jobs
 from app.settings import Settings
-from app.streams import Streams
 from app.workers.inline import Inline
 
 
@@ -183,12 +183,12 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 import uvicorn
 from fastapi import FastAPI
-from app.jobs.routes import router
+from app.api.routes.jobs import router
 from app.jobs.service import Jobs
 from app.jobs.shutdown import on_stop_signal
 from app.settings import Settings
 from app.storage.database import Database
-from app.streams import Streams
+from app.api.gate.streams import Streams
 from app.workers.inline import Inline
 
 @asynccontextmanager

@@ -6,21 +6,21 @@ import pytest
 from scaling import LIMIT, assert_constant, assert_linear, times
 from starlette.requests import cookie_parser
 
-from app import problems
+from app.api import problems
+from app.api.gate.heads import _plain_cookies
+from app.api.paging import page_of
+from app.api.routes.design_files import _accepted
+from app.api.routes.models import BuildIn
+from app.api.routes.reports import REPORTS, _wanted
+from app.api.waiting import patience
+from app.calculations.curves import _NUMBER, LONGEST_LINE, read_curves
 from app.calculations.schemas import OIL_FILM, EvaluateIn
 from app.calculations.size import points
-from app.curves.service import _NUMBER, LONGEST_LINE, read_curves
 from app.designs.document import Document, merge
-from app.designs.files import _accepted
 from app.designs.graph import Catalogues, Graph, build_graph
 from app.designs.size import MOST_RELATION_TEXT
-from app.heads import _plain_cookies
-from app.models.routes import BuildIn
-from app.paging import page_of
+from app.presentation import numbers
 from app.reports.cells import clean
-from app.reports.routes import REPORTS, _wanted
-from app.waiting import patience
-from app.web import numbers
 from app.web.forms import kept, patch_of, text_of, value_of
 from cad.header import LONGEST_HEADER, read_header
 from cad.part21 import description, plain, quoted, tokens

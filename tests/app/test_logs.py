@@ -11,7 +11,7 @@ import pytest
 from prometheus_client.parser import text_string_to_metric_families
 from serving import API, PATIENCE, ServerProcess, created, moody
 
-from app import logs, metrics
+from app.observation import logs, metrics
 
 DESIGNS = f"{API}/designs"
 HARMLESS = re.compile(r"[A-Za-z0-9._-]{1,64}")

@@ -5,8 +5,8 @@ import re
 import pytest
 from serving import API, problem
 
-from app.http import StrictRoute
-from app.problems import HTTP, INTERNAL, TABLE, describe, kind_of
+from app.api.problems import HTTP, INTERNAL, TABLE, describe, kind_of
+from app.api.reading import StrictRoute
 from app.storage.errors import StorageError
 
 KINDS = {kind.slug: kind for kind in (*TABLE.values(), *HTTP.values(), INTERNAL)}

@@ -7,16 +7,16 @@ from sqlalchemy import delete, func, select, update
 from app.designs import repository as designs
 from app.designs.repository import Written
 from app.designs.results import ModelState
-from app.idempotency import Once
 from app.jobs import repository as jobs
 from app.jobs.turns import UNFINISHED
-from app.models.ages import FRESH, is_fresh, renew
 from app.retention import rows, service
 from app.retention.files import Sweep
 from app.retention.service import Retention
 from app.settings import Settings
+from app.solids.ages import FRESH, is_fresh, renew
 from app.storage.artifacts import ArtifactStore
 from app.storage.clock import DAY
+from app.storage.idempotency import Once
 from app.storage.tables import AnalysisRow, ArtifactRow, BuildRow, CounterRow, IdempotencyRow, JobRow
 
 
@@ -322,7 +322,7 @@ class TestService:
             self.vanish(database, key)
             return False
 
-        monkeypatch.setattr("app.models.service.is_fresh", purged)
+        monkeypatch.setattr("app.solids.models.is_fresh", purged)
         again = http.post(place, json=body)
         assert (again.status_code, again.json()["build"]) == (200, key)
 

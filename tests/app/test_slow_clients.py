@@ -10,9 +10,9 @@ import httpx
 import pytest
 from serving import API, HANG, PATIENCE, problem, serving
 
-from app.heads import LONGEST_HEAD
+from app.api.gate.heads import LONGEST_HEAD
+from app.api.gate.streams import Streams, TooManyStreams
 from app.settings import Settings
-from app.streams import Streams, TooManyStreams
 
 EVALUATE = f"{API}/templates/oil_film/versions/1/evaluate"
 JSON = "Content-Type: application/json"

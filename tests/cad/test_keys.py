@@ -4,8 +4,8 @@ from importlib.metadata import version
 
 import pytest
 
-from app.analyses import questions
-from app.analyses.questions import Options, question
+from app.solids import questions
+from app.solids.questions import Options, question
 from cad import regenerate
 from cad.catalogue import models
 from cad.regenerate import build_key

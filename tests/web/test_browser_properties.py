@@ -8,8 +8,8 @@ from browsing import created
 from patience import until
 from playwright.sync_api import expect
 
-from app.web.numbers import aligned, unit
-from app.web.numbers import told as python_told
+from app.presentation.numbers import aligned, unit
+from app.presentation.numbers import told as python_told
 
 SERIOUS = ("serious", "critical")
 NARROW = {"width": 390, "height": 844}

@@ -8,8 +8,8 @@ from browsing import settled
 from playwright.sync_api import expect
 from serving import API
 
-from app.analyses.schemas import THROW
-from app.web.numbers import plain as plain_number
+from app.presentation.numbers import plain as plain_number
+from app.solids.schemas import THROW
 
 PATIENCE = 90_000  # for a solid to be built and analysed [ms]
 SERIOUS = ("serious", "critical")

@@ -7,8 +7,8 @@ from browsing import created, settled
 from patience import until
 from sqlalchemy import text
 
+from app.presentation.numbers import aligned, percent, told, unit
 from app.web.forms import kept, patch_of, text_of, value_of
-from app.web.numbers import aligned, percent, told, unit
 from app.web.rendering import POLICY
 from templates.physics.films.reynolds import extrapolated_film
 

@@ -1,0 +1,1 @@
+"""The REST interface: reading requests, problems, waiting for jobs."""

@@ -1,0 +1,93 @@
+"""How a route waits for an expensive calculation: until it ends, the client leaves, or its time is up."""
+
+from __future__ import annotations
+
+import asyncio
+from concurrent.futures import Future
+from contextlib import suppress
+from typing import Annotated, Any
+
+from fastapi import Depends, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from app.api.gate.clients import get_client
+from app.api.waiting import accepted, client_left, patience
+from app.calculations.jobs import CalculationJobs
+from app.calculations.operations import Question, answered
+from app.calculations.pool import Calculation, CalculationPool
+from app.workers.errors import JobCancelled
+
+
+class Answering:
+    """Answers expensive requests from the pool."""
+
+    def __init__(self, pool: CalculationPool, jobs: CalculationJobs, deadline: float) -> None:
+        self.pool, self.jobs, self.deadline = pool, jobs, deadline
+
+    async def answer(self, request: Request, question: Question) -> Response:
+        """The answer of a calculation process; 202 with a job once nobody waits for it any longer.
+
+        The process is ended if the client leaves.
+
+        Raises
+        ------
+        QueueFull
+            Too many calculations, or jobs, are waiting.
+        Exception
+            What the calculation raises.
+        """
+        cls = self.jobs.catalogue.get(question.template, question.version)
+        client = await get_client(request)
+        seconds = min(self.deadline, patience(request.headers.get("prefer"), self.deadline))
+        if seconds <= 0:
+            return accepted(await run_in_threadpool(self.jobs.create, question, client))
+        calculation = self.pool.submit(client, answered, self.jobs.sources[cls], question)
+        try:
+            ended = await self._ends(request, calculation, seconds)
+        except BaseException:
+            self.pool.cancel(calculation)
+            raise
+        if not ended:
+            return accepted(await run_in_threadpool(self.jobs.create, question, client, calculation))
+        return Response(calculation.future.result(), media_type="application/json")
+
+    async def _ends(self, request: Request, calculation: Calculation, seconds: float) -> bool:
+        """Wait until a calculation ends, at most so long [s]; whether it did.
+
+        Raises
+        ------
+        JobCancelled
+            The client has left.
+        """
+        end = asyncio.create_task(_done(calculation.future))
+        leaving = asyncio.create_task(client_left(request))
+        try:
+            await asyncio.wait({end, leaving}, timeout=seconds, return_when=asyncio.FIRST_COMPLETED)
+            if calculation.future.done():
+                return True
+            if leaving.done():
+                raise JobCancelled
+            return False
+        finally:
+            end.cancel()
+            leaving.cancel()
+
+
+async def _done(future: Future[Any]) -> None:
+    """Wait for a future of threads, without any hold on it."""
+    loop, done = asyncio.get_running_loop(), asyncio.Event()
+
+    def wake(_: Future[Any]) -> None:
+        with suppress(RuntimeError):  # the loop has ended
+            loop.call_soon_threadsafe(done.set)
+
+    future.add_done_callback(wake)
+    await done.wait()
+
+
+async def get_answering(request: Request) -> Answering:
+    """What answers expensive requests."""
+    return request.app.state.answering  # type: ignore[no-any-return]
+
+
+TheAnswering = Annotated[Answering, Depends(get_answering)]

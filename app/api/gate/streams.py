@@ -1,0 +1,63 @@
+"""How many streams of events may be open: each holds memory and a connection as long as its client likes."""
+
+from __future__ import annotations
+
+import threading
+from collections import Counter
+from collections.abc import AsyncIterator
+from typing import Annotated
+
+from fastapi import Depends, Request
+
+from app.api.gate.clients import TheClient
+from app.api.reading import HttpError
+
+
+class TooManyStreams(HttpError):
+    """The client, or all clients together, have as many streams open as there may be."""
+
+    headers = {"Retry-After": "5"}
+
+
+class Streams:
+    """The open streams, by client."""
+
+    def __init__(self, most: int, most_of_client: int) -> None:
+        self.most, self.most_of_client = most, most_of_client
+        self.open: Counter[str] = Counter()
+        self._lock = threading.Lock()
+
+    def enter(self, client: str) -> None:
+        """Count a stream of a client.
+
+        Raises
+        ------
+        TooManyStreams
+            There are as many as there may be.
+        """
+        with self._lock:
+            if self.open[client] >= self.most_of_client:
+                raise TooManyStreams(f"a client may have {self.most_of_client} streams of events open")
+            if self.open.total() >= self.most:
+                raise TooManyStreams(f"{self.most} streams of events are open, which is the most")
+            self.open[client] += 1
+
+    def leave(self, client: str) -> None:
+        """Forget a stream."""
+        with self._lock:
+            self.open[client] -= 1
+            if not self.open[client]:
+                del self.open[client]
+
+
+async def one_stream(request: Request, client: TheClient) -> AsyncIterator[None]:
+    """Hold a place for a stream, from before its first byte to its end."""
+    streams: Streams = request.app.state.streams
+    streams.enter(client)
+    try:
+        yield
+    finally:
+        streams.leave(client)
+
+
+OneStream = Annotated[None, Depends(one_stream)]

@@ -1,0 +1,270 @@
+"""Errors → RFC 9457 problems: one table. The domains know nothing of HTTP; here each error gets its status.
+
+A problem's `type` is a relative link, `/problems/<slug>`, which answers with its meaning and remedy.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from fastapi import APIRouter, FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse, Response
+from starlette.exceptions import HTTPException
+
+from app.api.gate.allow import allowed_methods
+from app.api.gate.guard import BadHost, CrossSite, HostNotAllowed
+from app.api.gate.streams import TooManyStreams
+from app.api.gate.timeouts import BodyTooSlow
+from app.api.reading import (
+    BodyTooLarge,
+    HeadTooLarge,
+    NotCsv,
+    NotForm,
+    NotJson,
+    NotStep,
+    PreconditionRequired,
+    TooIntricate,
+    TooManyValues,
+)
+from app.calculations.errors import InvalidBody
+from app.designs import errors as designs
+from app.jobs import errors as jobs
+from app.observation import logs, metrics
+from app.reports.errors import Unprintable
+from app.solids.errors import CannotRebuild
+from app.storage import errors as storage
+from app.workers import errors as workers
+from cad.errors import AnalysisError, GeometryError, UnreadableStep
+from templates.core import errors as templates
+
+logger = logging.getLogger(__name__)
+
+MEDIA_TYPE = "application/problem+json"
+LONGEST_PLACE = 200  # characters of where in a body something is wrong; its names come from the client
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of problem: its name in the type's link, its status, its title, and what to do."""
+
+    slug: str
+    status: int
+    title: str
+    remedy: str
+
+
+INVALID = Kind("invalid-inputs", 422, "Some inputs are wrong", "mend each of `errors`; nothing was saved")
+INTERNAL = Kind("internal", 500, "The service failed", "this is a fault of the program; please report it")
+
+NOT_READY = Kind("not-ready", 503, "The service is not ready", "see `errors`; ask the operator")
+REBUILDING = Kind("rebuilding", 503, "The file is being made again", "retry after the time in Retry-After")
+
+TABLE: dict[type[Exception], Kind] = {
+    templates.InvalidInputs: INVALID,
+    RequestValidationError: INVALID,
+    InvalidBody: INVALID,
+    templates.UnknownTemplate: Kind("unknown-template", 404, "No such version", "GET the list of versions"),
+    templates.Unreachable: Kind("unreachable", 422, "The target is out of reach", "see `reachable`"),
+    templates.TemplateError: Kind("refused", 422, "The calculation refuses", "see `detail`"),
+    designs.NotFound: Kind("not-found", 404, "Not found", "GET the list to see what there is"),
+    designs.StaleRevision: Kind("stale-revision", 412, "The design has changed", "read it again, then retry"),
+    designs.KeyReused: Kind("idempotency-key-reused", 422, "Idempotency-Key reused", "take a new key"),
+    designs.NotConverged: Kind("not-converged", 422, "The iteration did not settle", "see `rounds`"),
+    PreconditionRequired: Kind("precondition-required", 428, "If-Match is needed", "send the design's ETag"),
+    NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),
+    NotCsv: Kind("not-csv", 415, "The body is not CSV", "send text/csv in UTF-8"),
+    NotStep: Kind("not-step", 415, "The body is not said to be STEP", "send the file as model/step"),
+    NotForm: Kind("not-a-form", 415, "The body is not a form", "send application/x-www-form-urlencoded"),
+    BadHost: Kind("bad-host", 400, "The request names no host", "send one header Host, and the path alone"),
+    HostNotAllowed: Kind(
+        "host-not-allowed",
+        421,
+        "The service does not answer to this host",
+        "ask by localhost or the address it listens on, or let the operator set CRANKWRIGHT_ALLOWED_HOSTS",
+    ),
+    CrossSite: Kind(
+        "cross-site",
+        403,
+        "Another site may not do this",
+        "use the service's own pages, or a client that is no browser",
+    ),
+    BodyTooLarge: Kind("body-too-large", 413, "The body is too large", "send less at once"),
+    HeadTooLarge: Kind("head-too-large", 431, "The headers are too large", "send fewer or shorter headers"),
+    TooIntricate: Kind("body-too-intricate", 413, "The body is too intricate", "send less at once"),
+    TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),
+    BodyTooSlow: Kind("too-slow", 408, "The request comes too slowly", "send it faster, or in parts"),
+    TooManyStreams: Kind("too-many-streams", 429, "Too many streams are open", "close some, then retry"),
+    jobs.JobNotFound: Kind("no-such-job", 404, "No such job", "GET /api/v1/jobs lists them"),
+    jobs.JobFinished: Kind("job-finished", 409, "The job has ended", "nothing is left to cancel"),
+    jobs.JobShared: Kind("job-shared", 409, "Others wait for the job", "leave it to them"),
+    jobs.QueueFull: Kind("queue-full", 429, "Too much is waiting", "retry after the time in Retry-After"),
+    Unprintable: Kind("unprintable", 422, "The report is too long for paper", "ask for text/html"),
+    storage.ArtifactMissing: Kind(
+        "no-such-artifact", 404, "No such artifact", "take the hash from a revision"
+    ),
+    storage.ArtifactDamaged: Kind("artifact-damaged", 503, "The file is damaged", "retry: it is made again"),
+    storage.DatabaseDamaged: Kind(
+        "database-damaged", 503, "The database is damaged", "the operator restores a backup; see `detail`"
+    ),
+    CannotRebuild: Kind(
+        "artifact-gone", 410, "The file is lost", "see `detail` for why, and for what is left"
+    ),
+    storage.StorageError: Kind("storage", 503, "The storage is not available", "retry; ask the operator"),
+    GeometryError: Kind("geometry", 422, "No sound solid came out", "change the parameters in `errors`"),
+    AnalysisError: Kind(
+        "analysis", 422, "The solid could not be analysed", "see `errors`; fillets and less accuracy help"
+    ),
+    UnreadableStep: Kind("unreadable-step", 422, "Not a STEP file", "send a STEP file (ISO 10303-21)"),
+    workers.DeadlineExceeded: Kind("deadline", 422, "The work took too long", "simplify the model"),
+    workers.MemoryExceeded: Kind("memory", 422, "The work took too much memory", "simplify the model"),
+    workers.JobCrashed: Kind("crashed", 422, "The process crashed", "change the inputs"),
+    workers.JobCancelled: Kind("cancelled", 409, "The work was cancelled", "send the change again"),
+}
+HTTP = {
+    404: Kind("no-such-path", 404, "No such path", "GET /openapi.json lists all paths"),
+    405: Kind("method-not-allowed", 405, "Method not allowed here", "see the header Allow"),
+}
+
+STOPPING = Kind("stopping", 503, "The service is stopping", "send the request again once it runs")
+CROWDED = Kind("too-many-connections", 503, "Too many connections", "close some, then retry")
+BEFORE_HTTP = (
+    CROWDED,
+    Kind("not-http", 400, "Not HTTP", "send HTTP/1.1"),
+)
+"""What `app.api.gate.connections` answers before there is a request."""
+
+
+def kind_of(error: Exception) -> Kind:
+    """The kind of problem that an error is: that of its nearest class in the table."""
+    return next((TABLE[cls] for cls in type(error).__mro__ if cls in TABLE), INTERNAL)
+
+
+def describe(error: Exception) -> dict[str, Any]:
+    """An error as a problem (RFC 9457), with all that it carries."""
+    kind = kind_of(error)
+    detail = kind.remedy if kind is INTERNAL else _detail(error)
+    carried = next((tell(error) for cls, tell in _CARRIED.items() if isinstance(error, cls)), {})
+    return {**problem(kind, detail[:2000]), **carried}
+
+
+def _detail(error: Exception) -> str:
+    """The text of an error. FastAPI's own would quote the whole body; `_validation` says it better."""
+    return "" if isinstance(error, RequestValidationError) else str(error)
+
+
+def problem(kind: Kind, detail: str) -> dict[str, Any]:
+    """A problem object."""
+    return {"type": f"/problems/{kind.slug}", "title": kind.title, "status": kind.status, "detail": detail}
+
+
+def _faults(error: templates.InvalidInputs) -> dict[str, Any]:
+    listed = [{"name": fault.name, "code": fault.code, "detail": fault.detail} for fault in error.faults]
+    count = len(listed)
+    return {"errors": listed, "detail": f"{count} {'fault' if count == 1 else 'faults'}: {_short(listed)}"}
+
+
+def _validation(error: RequestValidationError | InvalidBody) -> dict[str, Any]:
+    listed = [_located(found) for found in error.errors()]
+    return {"errors": listed, "detail": _short(listed)}
+
+
+def _located(found: Mapping[str, Any]) -> dict[str, Any]:
+    place = [str(part)[:LONGEST_PLACE] for part in found["loc"]]
+    if found["type"] == "json_invalid":
+        place = ["body"]
+    inside = place[1:] if place[0] in ("body", "query", "path", "header") else place
+    reason = found.get("ctx", {}).get("error", "") if found["type"] == "json_invalid" else ""
+    detail = f"{found['msg']}: {reason}" if reason else found["msg"]
+    return {
+        "name": templates.plain(".".join(inside) or place[0], LONGEST_PLACE),
+        "code": found["type"],
+        "detail": detail,
+    }
+
+
+def _short(listed: Iterable[Mapping[str, Any]]) -> str:
+    return "; ".join(f"{fault['name']}: {fault['detail']}" for fault in listed)[:500]
+
+
+def _unreachable(error: templates.Unreachable) -> dict[str, Any]:
+    ends = [None if end != end else end for end in error.reachable]
+    listed = [{"name": f"target.{error.name}", "code": "unreachable", "detail": str(error)}]
+    return {"reachable": [{"value": end, "unit": error.unit} for end in ends], "errors": listed}
+
+
+def _geometry(error: GeometryError) -> dict[str, Any]:
+    names = error.parameters or ("model",)
+    return {"errors": [{"name": name, "code": error.code, "detail": error.detail} for name in names]}
+
+
+_CARRIED: dict[type[Exception], Callable[[Any], dict[str, Any]]] = {
+    templates.InvalidInputs: _faults,
+    RequestValidationError: _validation,
+    InvalidBody: _validation,
+    templates.Unreachable: _unreachable,
+    GeometryError: _geometry,
+    AnalysisError: lambda error: {
+        "errors": [{"name": error.name, "code": error.code, "detail": error.detail}]
+    },
+    designs.NotConverged: lambda error: {"rounds": error.rounds},
+    CannotRebuild: lambda error: {
+        **error.links,
+        "errors": [{"name": "artifact", "code": error.code, "detail": error.detail}],
+    },
+    workers.WorkerError: lambda error: {
+        "errors": [{"name": "model", "code": kind_of(error).slug, "detail": str(error)}]
+    },
+}
+
+
+router = APIRouter(tags=["problems"])
+
+
+@router.get("/problems/{slug}")
+def explain_problem(slug: str) -> dict[str, Any]:
+    """What a kind of problem means, and how to mend it."""
+    kinds = {
+        kind.slug: kind
+        for kind in (*TABLE.values(), *HTTP.values(), *BEFORE_HTTP, STOPPING, NOT_READY, REBUILDING, INTERNAL)
+    }
+    if slug not in kinds:
+        raise HTTPException(404, f"there is no problem {slug[:60]!r}")
+    return vars(kinds[slug])
+
+
+def answer(about: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
+    """A problem as a response; it carries the id of the request."""
+    about = {**about, "request_id": id_} if (id_ := logs.REQUEST_ID.get()) else about
+    return JSONResponse(dict(about), about["status"], headers=dict(headers or {}), media_type=MEDIA_TYPE)
+
+
+def install(app: FastAPI) -> None:
+    """Let the app answer every error as a problem."""
+    for cls in TABLE:
+        app.add_exception_handler(cls, _handle)
+    app.add_exception_handler(HTTPException, _handle_http)
+    app.add_exception_handler(Exception, _handle_unexpected)
+
+
+async def _handle(request: Request, error: Exception) -> Response:
+    headers = getattr(error, "headers", {})
+    if isinstance(error, jobs.QueueFull):
+        headers = {"Retry-After": str(error.retry_after)}
+    return answer(describe(error), headers)
+
+
+async def _handle_http(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    kind = HTTP.get(error.status_code) or Kind("http", error.status_code, error.detail, "see `detail`")
+    headers = {"Allow": allowed_methods(request)} if error.status_code == 405 else error.headers
+    return answer(problem(kind, f"{request.url.path}: {error.detail}"[:2000]), headers)
+
+
+async def _handle_unexpected(request: Request, error: Exception) -> Response:
+    metrics.FAILURES.labels("internal").inc()
+    logger.error("%s %s failed", request.method, request.url.path, exc_info=error)
+    return answer(describe(error))

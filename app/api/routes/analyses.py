@@ -1,0 +1,144 @@
+"""`POST /models/{id}/versions/{n}/analyses/{kind}`, what was found by it, and its picture's data."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Header, Path, Query, Response
+from fastapi.responses import JSONResponse
+from starlette.concurrency import run_in_threadpool
+
+from app.api import problems
+from app.api.dependencies import TheAnalyses, TheCatalogues, TheHealing, TheJobs, TheStore
+from app.api.gate.clients import TheClient
+from app.api.reading import StrictRoute
+from app.api.routes.models import FOR_EVER
+from app.api.routes.templates import Number
+from app.api.stored import UNAVAILABLE, StoredFile, lost
+from app.api.waiting import LATER, accepted, finished
+from app.designs.errors import NotFound
+from app.presentation.units import System, Units, converted
+from app.solids.questions import DEAR, faults, in_order, load_faults, load_of, no_shaft, offered, question
+from app.solids.schemas import AnalysisIn, SurfaceOut
+from cad.analysis.kinds import KINDS
+from cad.model import CadModel
+from templates.core.errors import Fault, InvalidInputs
+
+router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
+
+Id = Annotated[str, Path(max_length=64, examples=["crank_throw"])]
+Kind = Annotated[str, Path(max_length=64, examples=["torsion"], description="`torsion` or `bending`")]
+
+
+@router.post("/models/{id}/versions/{number}/analyses/{kind}", responses=LATER)
+async def analyse(
+    id: Id,
+    number: Number,
+    kind: Kind,
+    body: AnalysisIn,
+    catalogues: TheCatalogues,
+    analyses: TheAnalyses,
+    jobs: TheJobs,
+    client: TheClient,
+    prefer: Annotated[str | None, Header()] = None,
+    units: Units = "si",
+) -> Response:
+    """Build a model, then find stiffness, frequency or stress on its solid. An equal question is asked once.
+
+    The shaft is held at one end; at the other acts a torque about z (`torsion`), or a moment about y in the
+    plane of the throw (`bending`). Stress is the greatest von Mises stress under `load`, of 1 N·m if
+    none is given.
+    """
+    if kind not in KINDS:
+        raise NotFound(f"there is no analysis {kind[:60]!r}; there are {', '.join(KINDS)}")
+    cls = catalogues.models.get(id, number)
+    outputs = _checked(cls, kind, body)
+    shape, asked = cls.from_quantities(body.parameters), question(kind, body)
+    job = await run_in_threadpool(analyses.request, shape, asked, outputs, client)
+    if not await finished(jobs, job, prefer):
+        return accepted(job, await run_in_threadpool(analyses.show, shape, asked, ()))
+    if failed := await run_in_threadpool(jobs.problem, job):
+        return problems.answer(failed)
+    return JSONResponse(converted(await run_in_threadpool(analyses.show, shape, asked, outputs), units))
+
+
+@router.get("/analyses/{key}")
+def show_analysis(
+    key: str,
+    analyses: TheAnalyses,
+    load: Annotated[str, Query(max_length=60, description="under which stress is told")] = "1 N*m",
+    units: Units = "si",
+) -> dict[str, Any]:
+    """All that was found for one question about one solid. It was found once for all loads."""
+    wrong = load_faults(load)
+    told: dict[str, Any] = analyses.show_all(key, 1.0 if wrong else load_of(load))  # 404 comes first
+    if wrong:
+        raise InvalidInputs(wrong)
+    shown: dict[str, Any] = converted(told, units)
+    return shown
+
+
+@router.get("/builds/{key}/analyses")
+def analyses_of_build(key: str, analyses: TheAnalyses, units: Units = "si") -> dict[str, Any]:
+    """All that was found of one solid: every question that was asked about it, its answers under 1 N·m."""
+    told: dict[str, Any] = converted({"items": analyses.of_build(key)}, units)
+    return told
+
+
+@router.get(
+    "/analyses/{key}/surface",
+    response_model=SurfaceOut,
+    responses={304: {"description": "as it was when the ETag of If-None-Match was sent"}, **UNAVAILABLE},
+)
+async def show_surface(
+    key: str,
+    analyses: TheAnalyses,
+    store: TheStore,
+    healing: TheHealing,
+    jobs: TheJobs,
+    units: Units = "si",
+    if_none_match: Annotated[str | None, Header(description="the ETag of a surface that is at hand")] = None,
+    prefer: Annotated[str | None, Header()] = None,
+) -> Response:
+    """The solid's surface under a load of 1 N·m: how far every point moves, how it turns, how it is stressed.
+
+    For a picture: the corners of plane triangles, with a value at each. It never changes. It is there once an
+    analysis was asked for `"outputs": ["surface"]`, whose answer links to it.
+    """
+    file = await run_in_threadpool(analyses.surface, key)
+    shown = "" if units == "si" else f"-{units}"
+    headers = {"ETag": f'"{file.sha256}{shown}"', "Cache-Control": FOR_EVER}
+    if if_none_match and headers["ETag"] in if_none_match:
+        return Response(status_code=304, headers=headers)
+    if answer := await lost(file.sha256, healing, jobs, prefer):
+        return answer
+    file = await run_in_threadpool(analyses.surface, key)
+    headers["ETag"] = f'"{file.sha256}{shown}"'
+    if shown:
+        return await run_in_threadpool(_converted, store.read, file.sha256, units, headers)
+    return StoredFile(store, file.sha256, "application/json", headers)
+
+
+def _converted(read: Callable[[str], bytes], sha256: str, units: System, headers: dict[str, str]) -> Response:
+    return JSONResponse(converted(json.loads(read(sha256)), units), headers=headers)
+
+
+def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...]:
+    """The outputs to find, if nothing in the body is wrong beside its parameters."""
+    asked = [name for name in KINDS[kind] if name not in DEAR] if body.outputs is None else body.outputs
+    known = ", ".join(offered(kind))
+    wrong = faults(body)
+    wrong += [
+        Fault("outputs", "unknown_name", f"{name[:40]!r} is none of {known}")
+        for name in asked
+        if name not in offered(kind)
+    ]
+    if not asked:
+        wrong.append(Fault("outputs", "empty", f"name at least one of {known}"))
+    if reason := no_shaft(cls):
+        wrong.append(Fault("model", "no_shaft", reason))
+    if wrong:
+        raise InvalidInputs(wrong)
+    return in_order(kind, asked)

@@ -1,0 +1,33 @@
+"""`/curves`: a CSV file, as the inputs of templates take it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter, Request
+from starlette.concurrency import run_in_threadpool
+
+from app.api.reading import NotCsv, StrictRoute
+from app.calculations.curves import read_curves
+
+router = APIRouter(prefix="/api/v1", tags=["curves"], route_class=StrictRoute)
+
+EXAMPLE = "crank angle [deg], pressure [bar]\n0, 1.0\n180, 1.0\n360, 60.0\n540, 3.5\n"
+BODY = {
+    "content": {"text/csv": {"schema": {"type": "string", "minLength": 1, "examples": [EXAMPLE]}}},
+    "required": True,
+}
+
+
+@router.post("/curves", openapi_extra={"requestBody": BODY})
+async def read(request: Request) -> dict[str, Any]:
+    """Read a table of curves, such as an indicator diagram: `{"curves": {"pressure": {"value", "unit"}}}`.
+
+    The body is the file itself: a header with names and units, a row for each point. Each curve can be pasted
+    into `inputs` under the name wanted there. Nothing is stored.
+    """
+    kind, _, extra = request.headers.get("content-type", "").lower().partition(";")
+    charset = extra.partition("charset=")[2].strip(' "') or "utf-8"
+    if kind.strip() != "text/csv" or charset not in ("utf-8", "us-ascii"):
+        raise NotCsv("send the file itself as text/csv, in UTF-8")
+    return {"curves": await run_in_threadpool(read_curves, await request.body())}

@@ -1,0 +1,243 @@
+"""`/designs`: create, change, preview, map, explain, copy, restore, list revisions."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Body, Header, Path, Query, Request, Response
+from fastapi.responses import JSONResponse
+from pydantic import WithJsonSchema
+from starlette.concurrency import run_in_threadpool
+
+from app.api.dependencies import TheCatalogues, TheDatabase, TheDesigns, TheJobs, TheOnce
+from app.api.paging import Cursor, Limit, page
+from app.api.reading import StrictRoute
+from app.api.waiting import LATER, finished
+from app.calculations.steps import ExpensiveSteps, TheThreads
+from app.designs import repository, views
+from app.designs.explain import explain
+from app.designs.preview import preview
+from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn, RestoreIn
+from app.designs.service import Designs, Saved
+from app.jobs.service import Jobs
+from app.presentation.units import Units, converted
+from templates.core.errors import Fault, InvalidInputs
+
+router = APIRouter(
+    prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
+)
+
+Id = Annotated[str, Path(max_length=64)]
+Number = Annotated[int, Path(ge=1, le=10**9)]
+Prefer = Annotated[str | None, Header(description="`wait=5` or `respond-async`")]
+IfMatch = Annotated[str | None, Header(description='the ETag of the design that was read, such as `"3"`')]
+Patch = Annotated[
+    dict[str, Any],
+    Body(description="a merge patch of the design, with an optional `note`; null removes"),
+    WithJsonSchema(PATCH),
+]
+MERGE_PATCH: dict[str, Any] = {
+    "requestBody": {"content": {"application/merge-patch+json": {"schema": PATCH}}}
+}
+
+
+@router.post("", status_code=201, responses=LATER)
+async def create_design(
+    body: DesignIn,
+    designs: TheDesigns,
+    threads: TheThreads,
+    jobs: TheJobs,
+    once: TheOnce,
+    prefer: Prefer = None,
+) -> Response:
+    """A new design; its models are built. 201 when they are ready, 202 while they are being built."""
+    raw = body.model_dump()  # not in JSON's mode, which hides a NaN as null
+    note = raw.pop("note")
+    raw.pop("model")
+    saved = await threads.run(designs.create, raw, note, once)
+    return await _answer(designs, jobs, saved, prefer)
+
+
+@router.get("")
+def list_designs(database: TheDatabase, limit: Limit = 50, cursor: Cursor = None) -> dict[str, Any]:
+    """All designs, newest first."""
+    with database.read() as session:
+        rows = repository.designs(session, limit, cursor)
+        return page(
+            rows,
+            limit,
+            lambda row: views.listed(row, repository.revision(session, row.id, row.head)),
+            lambda row: row.id,
+        )
+
+
+@router.get("/{id}")
+def show_design(id: Id, designs: TheDesigns) -> Response:
+    """A design as of its newest revision; the ETag is that revision."""
+    return _shown(designs, id, None, 200)
+
+
+@router.patch("/{id}", responses=LATER, openapi_extra=MERGE_PATCH)
+async def change_design(
+    id: Id,
+    body: Patch,
+    designs: TheDesigns,
+    threads: TheThreads,
+    jobs: TheJobs,
+    once: TheOnce,
+    if_match: IfMatch = None,
+    prefer: Prefer = None,
+) -> Response:
+    """A new revision; models are rebuilt only where one of their parameters changed."""
+    patch, note = _noted(body)
+    saved = await threads.run(designs.change, id, patch, note, if_match, once)
+    return await _answer(designs, jobs, saved, prefer)
+
+
+@router.delete("/{id}", status_code=204)
+def delete_design(id: Id, designs: TheDesigns) -> Response:
+    """Take a design from the lists; its revisions are kept."""
+    designs.delete(id)
+    return Response(status_code=204)
+
+
+@router.post("/{id}/preview")
+async def preview_design(
+    id: Id,
+    body: Patch,
+    database: TheDatabase,
+    catalogues: TheCatalogues,
+    threads: TheThreads,
+    request: Request,
+    worksheet: Annotated[bool, Query(description="also every step, its formulas written out")] = False,
+    units: Units = "si",
+) -> dict[str, Any]:
+    """What a change would do to outputs and model parameters; nothing is saved."""
+    patch, _ = _noted(body)
+    return await threads.run_for(
+        request, preview, database, catalogues, id, patch, worksheet=worksheet, system=units
+    )
+
+
+@router.post("/{id}/auto-map", responses=LATER)
+async def auto_map(
+    id: Id,
+    designs: TheDesigns,
+    threads: TheThreads,
+    jobs: TheJobs,
+    once: TheOnce,
+    apply: Annotated[bool, Query(description="save the proposals as a new revision")] = False,
+    if_match: IfMatch = None,
+    prefer: Prefer = None,
+) -> Response:
+    """Proposals for model parameters that are not set, by name and unit."""
+    found, saved = await threads.run(designs.auto_map, id, apply, if_match, once)
+    told = {"proposals": [vars(proposal) for proposal in found]}
+    return await _answer(designs, jobs, saved, prefer, told) if saved else JSONResponse(told)
+
+
+@router.post("/{id}/copy", status_code=201, responses=LATER)
+async def copy_design(
+    id: Id,
+    designs: TheDesigns,
+    threads: TheThreads,
+    jobs: TheJobs,
+    once: TheOnce,
+    body: CopyIn | None = None,
+    prefer: Prefer = None,
+) -> Response:
+    """A new design with the newest document of this one."""
+    saved = await threads.run(designs.copy, id, body.name if body else None, once)
+    return await _answer(designs, jobs, saved, prefer)
+
+
+@router.post("/{id}/revisions/{number}/restore", responses=LATER)
+async def restore_revision(
+    id: Id,
+    number: Number,
+    designs: TheDesigns,
+    threads: TheThreads,
+    jobs: TheJobs,
+    once: TheOnce,
+    body: RestoreIn | None = None,
+    if_match: IfMatch = None,
+    prefer: Prefer = None,
+) -> Response:
+    """A new revision equal to an old one."""
+    note = body.note if body else None
+    saved = await threads.run(designs.restore, id, number, note, if_match, once)
+    return await _answer(designs, jobs, saved, prefer)
+
+
+@router.get("/{id}/revisions")
+def list_revisions(
+    id: Id,
+    database: TheDatabase,
+    limit: Limit = 50,
+    cursor: Annotated[int | None, Query(ge=1, le=10**9)] = None,
+) -> dict[str, Any]:
+    """The revisions of a design, newest first."""
+    with database.read() as session:
+        repository.design(session, id)
+        rows = repository.revisions(session, id, limit, cursor)
+        return page(rows, limit, lambda row: views.revision(session, row), lambda row: str(row.number))
+
+
+@router.get("/{id}/revisions/{number}")
+def show_revision(id: Id, number: Number, database: TheDatabase) -> dict[str, Any]:
+    """A revision: its inputs never change, its results are attached once."""
+    with database.read() as session:
+        return views.revision(session, repository.revision(session, id, number))
+
+
+@router.get("/{id}/measurements")
+def measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str, Any]:
+    """What the newest good models measure, their dimensions read back from the STEP files."""
+    with database.read() as session:
+        told: dict[str, Any] = converted(views.measurements(session, id), units)
+        return told
+
+
+@router.get("/{id}/explain/{parameter}")
+async def explain_parameter(
+    id: Id, parameter: Id, designs: TheDesigns, threads: TheThreads, request: Request
+) -> dict[str, Any]:
+    """Where a model parameter comes from: dimension ← relation ← output ← formula ← inputs."""
+
+    def told() -> dict[str, Any]:
+        with designs.database.read() as session:
+            document = repository.head(session, id).document
+        return explain(designs.prepare(document)[1], parameter)
+
+    return await threads.run_for(request, told)
+
+
+def _noted(body: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
+    """A patch and its note."""
+    patch = {key: value for key, value in body.items() if key != "note"}
+    note = body.get("note")
+    if note is not None and not (isinstance(note, str) and len(note) <= LONGEST_NOTE):
+        raise InvalidInputs([Fault("note", "string", f"a note is a text of at most {LONGEST_NOTE} letters")])
+    return patch, note
+
+
+async def _answer(
+    designs: Designs, jobs: Jobs, saved: Saved, prefer: str | None, more: dict[str, Any] | None = None
+) -> Response:
+    """The design itself, whether its job ended in time (200, 201) or goes on (202, the job in Location)."""
+    done = await finished(jobs, saved.job, prefer)
+    status = (201 if saved.created else 200) if done else 202
+    place = f"/api/v1/jobs/{saved.job}" if saved.job and not done else f"/api/v1/designs/{saved.design}"
+    answer = await run_in_threadpool(_shown, designs, saved.design, saved.revision, status, more)
+    answer.headers["Location"] = place
+    return answer
+
+
+def _shown(
+    designs: Designs, id: str, number: int | None, status: int, more: dict[str, Any] | None = None
+) -> Response:
+    with designs.database.read() as session:
+        row = repository.design(session, id)
+        revision = repository.revision(session, id, number or row.head)
+        body = {**views.design(row, revision), **(more or {})}
+    return JSONResponse(body, status, headers={"ETag": f'"{revision.number}"'})

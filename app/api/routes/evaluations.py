@@ -1,0 +1,36 @@
+"""`/evaluations/{job}`: the answer of a calculation that went on as a job."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Response
+
+from app.api import problems
+from app.api.dependencies import TheJobs, TheStore
+from app.api.waiting import LATER, accepted
+from app.calculations.jobs import CALCULATION
+from app.jobs.errors import JobNotFound
+from app.solids.errors import CannotRebuild
+from app.storage.errors import ArtifactDamaged, ArtifactMissing
+
+router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
+
+
+@router.get("/{job}", responses=LATER)
+def answer(job: Annotated[str, Path(max_length=64)], jobs: TheJobs, store: TheStore) -> Response:
+    """What `evaluate`, `solve` or `worksheet` would have answered; 202 while the job goes on."""
+    found = jobs.get(job)
+    if found.kind != CALCULATION:
+        raise JobNotFound(job)
+    if not found.finished:
+        return accepted(job)
+    if found.result is None:
+        problem = found.problem or problems.problem(problems.INTERNAL, "the job left no answer")
+        return problems.answer(problem)
+    sha = found.result.rpartition("sha256=")[2]
+    try:
+        return Response(store.read(sha), media_type="application/json")
+    except (ArtifactMissing, ArtifactDamaged) as error:
+        detail = f"the answer of job {job} was lost. Send the calculation again, or restore a backup"
+        raise CannotRebuild("answer_lost", detail) from error

@@ -1,0 +1,53 @@
+"""Jobs over HTTP: look, list, cancel, watch."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from typing import Any
+
+from fastapi import APIRouter, Depends
+from fastapi.sse import EventSourceResponse, ServerSentEvent
+
+from app.api.dependencies import TheJobs
+from app.api.gate.clients import TheClient
+from app.api.gate.streams import OneStream
+from app.api.paging import Cursor, Limit, page
+from app.jobs.job import Job
+from app.jobs.schemas import JobList, JobOut
+
+router = APIRouter(prefix="/api/v1/jobs", tags=["jobs"])
+
+
+@router.get("", response_model=JobList)
+def list_jobs(jobs: TheJobs, limit: Limit = 50, cursor: Cursor = None) -> dict[str, Any]:
+    """List jobs, newest first."""
+    return page(jobs.page(limit + 1, before=cursor), limit, show=lambda job: job, cursor=lambda job: job.id)
+
+
+@router.get("/{id}", response_model=JobOut)
+def read_job(id: str, jobs: TheJobs) -> Job:
+    """Show a job."""
+    return jobs.get(id)
+
+
+@router.delete("/{id}", response_model=JobOut)
+def cancel_job(id: str, jobs: TheJobs, client: TheClient) -> Job:
+    """Cancel a job that is queued or running; one that another client asked for too goes on for that."""
+    return jobs.cancel(id, client)
+
+
+@router.get("/{id}/events", response_class=EventSourceResponse, dependencies=[Depends(read_job)])
+async def watch_job(id: str, jobs: TheJobs, place: OneStream) -> AsyncIterator[ServerSentEvent]:
+    """Stream the events of a job until it has ended: its state with the whole job, and its progress."""
+    async with jobs.events.subscribe(f"job:{id}") as events:
+        job = await asyncio.to_thread(jobs.get, id)
+        yield _state(job)
+        while not job.finished and (event := await anext(events, None)):
+            if event["event"] == "progress":
+                yield ServerSentEvent(event="progress", data=event)
+            else:
+                job = await asyncio.to_thread(jobs.get, id)
+                yield _state(job)
+
+
+def _state(job: Job) -> ServerSentEvent:
+    return ServerSentEvent(event=job.state, data=JobOut.model_validate(job))

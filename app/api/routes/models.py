@@ -1,0 +1,188 @@
+"""`/models`, `/builds`, `/artifacts` and `/verify`."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Header, Path, Request, Response
+from fastapi.responses import FileResponse, JSONResponse
+from pydantic import ConfigDict, Field, WithJsonSchema
+from starlette.concurrency import run_in_threadpool
+
+from app.api import problems
+from app.api.dependencies import TheCatalogues, TheHealing, TheJobs, TheModels, TheStore
+from app.api.gate.clients import TheClient
+from app.api.paging import Cursor, Limit, page_of
+from app.api.reading import StrictRoute, require_step
+from app.api.routes.templates import Number, summary
+from app.api.stored import UNAVAILABLE, StoredFile, lost
+from app.api.waiting import LATER, accepted, finished
+from app.schemas.bounded import Bounded
+from app.schemas.values import Parameters
+from app.solids.questions import what_can_be_asked
+from app.storage.artifacts import ArtifactStore
+from cad.export import DRAWINGS, MEDIA_TYPES
+from cad.inspect import MEASURES
+from cad.regenerate import build_key
+from templates.core.errors import Fault, InvalidInputs
+from templates.core.paper.schema import describe
+
+router = APIRouter(prefix="/api/v1", tags=["models"], route_class=StrictRoute)
+
+Id = Annotated[str, Path(max_length=64, examples=["ball_bearing"])]
+FOR_EVER = "public, max-age=31536000, immutable"
+
+
+FileKind = Annotated[str, WithJsonSchema({"type": "string", "enum": list(MEDIA_TYPES)})]
+
+
+class BuildIn(Bounded):
+    """Build a model from parameters."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={
+            "examples": [{"parameters": {"inner_diameter": "48 mm"}, "artifacts": ["step", "glb"]}]
+        },
+    )
+
+    parameters: Parameters = Field(description='quantities by name: `"48 mm"`; the others have defaults')
+    artifacts: list[FileKind] = Field(
+        [kind for kind in MEDIA_TYPES if kind not in DRAWINGS],
+        max_length=50,
+        description="the kinds of files wanted; without it all but dimensioned drawings",
+    )
+
+
+@router.get("/models")
+def list_models(catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None) -> dict[str, Any]:
+    """Every version of every CAD model."""
+    return page_of(list(catalogues.models), limit, cursor, lambda cls: summary(cls, catalogues.models))
+
+
+@router.get("/models/{id}")
+def list_model_versions(id: Id, catalogues: TheCatalogues) -> dict[str, Any]:
+    """The versions of one model."""
+    versions = list(catalogues.models.of(id).values())
+    return {"id": id, **page_of(versions, len(versions), None, lambda cls: summary(cls, catalogues.models))}
+
+
+@router.get("/models/{id}/versions/{number}")
+def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, Any]:
+    """One model: its parameters as JSON Schema, what is measured on its solid, how that can be analysed.
+
+    `film_bore` names the parameter of a plain bearing that is the bore with the oil film.
+    """
+    cls = catalogues.models.get(id, number)
+    told = describe(cls)
+    return {
+        **told,
+        "parameters": told.pop("inputs"),
+        "measures": MEASURES,
+        "analyses": what_can_be_asked(cls),
+        "film_bore": cls.film_bore,
+        "picture": f"/api/v1/models/{id}/versions/{number}/picture",
+    }
+
+
+@router.get(
+    "/models/{id}/versions/{number}/picture",
+    response_class=FileResponse,
+    responses={200: {"content": {"image/png": {}}}, **LATER, **UNAVAILABLE},
+)
+async def picture(
+    id: Id,
+    number: Number,
+    catalogues: TheCatalogues,
+    models: TheModels,
+    store: TheStore,
+    jobs: TheJobs,
+    client: TheClient,
+    prefer: Annotated[str | None, Header()] = None,
+) -> Response:
+    """A picture (PNG) of the model's example."""
+    cls = catalogues.models.get(id, number)
+    shape = cls.from_quantities(cls.example)
+    job = await run_in_threadpool(models.request, shape, ("step", "png"), client)
+    if not await finished(jobs, job, prefer):
+        return accepted(job)
+    if failed := await run_in_threadpool(jobs.problem, job):
+        return problems.answer(failed)
+    return send_file(store, await run_in_threadpool(models.file, build_key(shape), "png"))
+
+
+@router.post("/models/{id}/versions/{number}/build", responses=LATER)
+async def build(
+    id: Id,
+    number: Number,
+    body: BuildIn,
+    catalogues: TheCatalogues,
+    models: TheModels,
+    jobs: TheJobs,
+    client: TheClient,
+    prefer: Annotated[str | None, Header()] = None,
+) -> Response:
+    """Build a model, check it, measure it on the finished STEP file. Equal parameters are built once."""
+    unknown = [kind for kind in body.artifacts if kind not in MEDIA_TYPES]
+    if unknown:
+        known = ", ".join(MEDIA_TYPES)
+        raise InvalidInputs(
+            Fault("artifacts", "unknown_name", f"{k[:40]!r} is none of {known}") for k in unknown
+        )
+    shape = catalogues.models.get(id, number).from_quantities(body.parameters)
+    kinds = tuple(dict.fromkeys(("step", *body.artifacts)))
+    job = await run_in_threadpool(models.request, shape, kinds, client)
+    if not await finished(jobs, job, prefer):
+        return accepted(job, {"build": build_key(shape), "artifacts": {}, "measurements": None})
+    if job and (failed := await run_in_threadpool(lambda: jobs.get(job).problem)):
+        return problems.answer(failed)
+    return JSONResponse(await run_in_threadpool(models.show, build_key(shape)))
+
+
+@router.get("/builds/{key}")
+def show_build(key: str, models: TheModels) -> dict[str, Any]:
+    """A build: its files and what was measured on it."""
+    return models.show(key)
+
+
+@router.get(
+    "/artifacts/{sha256}",
+    response_class=FileResponse,
+    responses={200: {"content": {"application/octet-stream": {}}}, **UNAVAILABLE},
+)
+async def artifact(
+    sha256: str,
+    store: TheStore,
+    healing: TheHealing,
+    jobs: TheJobs,
+    prefer: Annotated[str | None, Header()] = None,
+) -> Response:
+    """The bytes of this hash; they never change. A file that was lost is made again from its row."""
+    if answer := await lost(sha256, healing, jobs, prefer, same=True):
+        return answer
+    headers = {"ETag": f'"{sha256}"', "Cache-Control": FOR_EVER}
+    return StoredFile(store, sha256, "application/octet-stream", headers)
+
+
+STEP_FILE: dict[str, Any] = {"type": "string", "format": "binary"}
+STEP_BODY: dict[str, Any] = {"content": {"model/step": {"schema": STEP_FILE}}, "required": True}
+
+
+@router.post("/verify", openapi_extra={"requestBody": STEP_BODY})
+async def verify(request: Request, models: TheModels) -> dict[str, Any]:
+    """From which build a STEP file is, and which revisions use it.
+
+    The body is the file itself, sent as `model/step`; `application/step` and `application/p21` mean the same.
+    Which build it is stands in its header, within the first 64 KiB.
+    """
+    require_step(request)
+    return await run_in_threadpool(models.verify, await request.body())
+
+
+def send_file(
+    store: ArtifactStore, file: Any, headers: dict[str, str] | None = None, name: str | None = None
+) -> Response:
+    """A stored file with its hash as ETag."""
+    sent = {"ETag": f'"{file.sha256}"', **(headers or {})}
+    return StoredFile(store, file.sha256, MEDIA_TYPES[file.kind], sent, name)

@@ -1,0 +1,179 @@
+"""`/designs/{id}/report` (HTML, PDF) and `/designs/{id}/worksheet` (JSON, CSV, XLSX), of any revision."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Header, Request, Response
+from fastapi.responses import JSONResponse
+from starlette.concurrency import run_in_threadpool
+
+from app.api.dependencies import TheJobs
+from app.api.gate.clients import TheClient
+from app.api.reading import StrictRoute
+from app.api.routes.designs import Id, Number, Prefer
+from app.api.waiting import accepted_kinds, finished
+from app.calculations.steps import ExpensiveSteps, TheThreads
+from app.designs.errors import NotFound
+from app.jobs.service import Jobs
+from app.presentation.units import Units
+from app.reports import tables
+from app.reports.content import Report
+from app.reports.paper import Press
+from app.reports.screen import page
+from app.reports.service import Reports, tag
+from app.web.rendering import POLICY
+
+router = APIRouter(
+    prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
+)
+
+REPORTS = {"html": "text/html", "pdf": "application/pdf"}
+TABLES = {
+    "json": "application/json",
+    "csv": "text/csv",
+    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+}
+PATIENCE = 15.0  # s that a report waits for its pictures, unless the client says otherwise
+WEIGHT = re.compile(r"\bq=([01](?:\.[0-9]{0,3})?)")
+
+
+def _described(kinds: Mapping[str, str], *, later: bool = False) -> dict[str, Any]:
+    content: dict[str, Any] = {media: {} for media in kinds.values()}
+    told = "the report without the pictures that are still being made; their job is in the header Location"
+    more = {202: {"description": told, "content": content}} if later else {}
+    unchanged = {304: {"description": "as it was when the ETag of If-None-Match was sent"}}
+    return {"response_class": Response, "responses": {200: {"content": content}, **unchanged, **more}}
+
+
+async def get_reports(request: Request) -> Reports:
+    """The reports."""
+    return request.app.state.reports  # type: ignore[no-any-return]
+
+
+async def get_press(request: Request) -> Press:
+    """What sets reports on paper."""
+    return request.app.state.press  # type: ignore[no-any-return]
+
+
+TheReports = Annotated[Reports, Depends(get_reports)]
+ThePress = Annotated[Press, Depends(get_press)]
+Accept = Annotated[str | None, Header(description="the kind wanted; the first if none is known")]
+IfNoneMatch = Annotated[str | None, Header(description="the ETag of a report that is at hand")]
+
+
+@router.get("/{id}/report", **_described(REPORTS, later=True))
+@router.get("/{id}/report.{kind}", **_described(REPORTS, later=True))
+@router.get("/{id}/revisions/{number}/report", **_described(REPORTS, later=True))
+@router.get("/{id}/revisions/{number}/report.{kind}", **_described(REPORTS, later=True))
+async def report(
+    id: Id,
+    reports: TheReports,
+    press: ThePress,
+    jobs: TheJobs,
+    client: TheClient,
+    threads: TheThreads,
+    request: Request,
+    number: Number | None = None,
+    kind: Id | None = None,
+    units: Units = "si",
+    accept: Accept = None,
+    prefer: Prefer = None,
+    if_none_match: IfNoneMatch = None,
+) -> Response:
+    """The calculation report of a revision, the newest if none is named: on the screen or on paper."""
+    wanted = _wanted("report", kind, accept, REPORTS)
+    revision = await run_in_threadpool(reports.number, id, number)
+    job = await _waited(reports, jobs, id, revision, prefer, client)
+    told = await threads.run_for(request, reports.gather, id, revision, units, pending=job is not None)
+    headers = _headers(told, wanted, job)
+    if job is None and if_none_match and headers["ETag"] in if_none_match:
+        return Response(status_code=304, headers=headers)
+    if wanted == "html":
+        body: str | bytes = await run_in_threadpool(page, told)
+    else:
+        pictures = await run_in_threadpool(reports.pictures, told)
+        body = await run_in_threadpool(press.print, asdict(told), pictures)
+    return Response(body, 202 if job else 200, headers, media_type=REPORTS[wanted])
+
+
+@router.get("/{id}/worksheet", **_described(TABLES))
+@router.get("/{id}/worksheet.{kind}", **_described(TABLES))
+@router.get("/{id}/revisions/{number}/worksheet", **_described(TABLES))
+@router.get("/{id}/revisions/{number}/worksheet.{kind}", **_described(TABLES))
+async def worksheet(
+    id: Id,
+    reports: TheReports,
+    threads: TheThreads,
+    request: Request,
+    number: Number | None = None,
+    kind: Id | None = None,
+    units: Units = "si",
+    accept: Accept = None,
+) -> Response:
+    """Inputs and outputs of a revision, the newest if none is named.
+
+    As JSON with every formula of its steps written out (symbol = expression = numbers = result), or as a
+    table.
+    """
+    wanted = _wanted("worksheet", kind, accept, TABLES)
+    revision = await run_in_threadpool(reports.number, id, number)
+    told = await threads.run_for(request, reports.told, id, revision, units)
+    headers = {"Vary": "Accept", "Design-Revision": str(revision)}
+    if wanted == "json":
+        return JSONResponse(told, headers=headers)
+    write = tables.write_csv if wanted == "csv" else tables.write_xlsx
+    headers["Content-Disposition"] = f'attachment; filename="design_{_plain(id)}_r{revision}.{wanted}"'
+    table = await run_in_threadpool(lambda: write(tables.of(told)))
+    return Response(table, headers=headers, media_type=TABLES[wanted])
+
+
+async def _waited(
+    reports: Reports, jobs: Jobs, id: str, number: int, prefer: str | None, client: str
+) -> str | None:
+    """The job that still makes pictures of this revision when the client's patience ends, if any does."""
+    for job in await run_in_threadpool(reports.request_pictures, id, number, client):
+        if not await finished(jobs, job, prefer or f"wait={PATIENCE:g}"):
+            return job
+    return None
+
+
+def _headers(told: Report, kind: str, job: str | None) -> dict[str, str]:
+    name = f"design_{_plain(told.design)}_r{told.revision}.{kind}"
+    headers = {
+        "Design-Revision": str(told.revision),
+        "Vary": "Accept",
+        "Cache-Control": "no-store" if job else "no-cache",
+        "Content-Security-Policy": POLICY,
+        "X-Content-Type-Options": "nosniff",
+        "Content-Disposition": f'inline; filename="{name}"',
+    }
+    return {**headers, "Location": f"/api/v1/jobs/{job}"} if job else {**headers, "ETag": tag(told, kind)}
+
+
+def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str, str]) -> str:
+    """The kind that the path names, else that which the client likes best; the first by default.
+
+    Raises
+    ------
+    NotFound
+        If there is no such kind.
+    """
+    if kind is not None:
+        if kind not in kinds:
+            raise NotFound(f"there is no {what}.{kind[:20]}; there are {', '.join(kinds)}")
+        return kind
+    weights = {media: _weight(more) for media, more in accepted_kinds(accept)}
+    return max(kinds, key=lambda name: weights.get(kinds[name], 0.0))
+
+
+def _weight(parameters: str) -> float:
+    found = WEIGHT.search(parameters)
+    return float(found[1]) if found else 1.0
+
+
+def _plain(id: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_-]", "", id)

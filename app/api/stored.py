@@ -1,0 +1,98 @@
+"""Answers with stored files: verified while they are sent, made again when they are missing or damaged."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+
+from anyio import to_thread
+from fastapi import Response
+from fastapi.responses import FileResponse
+from starlette.types import Message, Receive, Scope, Send
+
+from app.api import problems
+from app.api.waiting import finished
+from app.jobs.service import Jobs
+from app.solids.healing import Healing, other_bytes
+from app.storage.artifacts import ArtifactStore
+from app.storage.errors import ArtifactDamaged
+from app.storage.verified import Opened
+
+RETRY_AFTER = 2  # s
+GONE = 410
+
+UNAVAILABLE: dict[int | str, dict[str, object]] = {
+    410: {"description": "the file is lost and cannot be made again under its hash; the problem says why"},
+    503: {"description": "the file is being made again: retry after `Retry-After`; its job is in `Location`"},
+}
+"""What a route that serves stored files says of its answers."""
+
+
+async def lost(
+    sha: str, healing: Healing, jobs: Jobs, prefer: str | None, *, same: bool = False
+) -> Response | None:
+    """None once an artifact is good; the answer in its place if it is still being made again, or cannot be.
+
+    `same` asks for these very bytes; otherwise a row that names other bytes by now is good as well.
+    """
+    if await to_thread.run_sync(healing.is_good, sha):
+        return None
+    if refused := healing.refused(sha):
+        return problems.answer(refused)
+    job = await to_thread.run_sync(healing.request, sha)
+    if not await finished(jobs, job, prefer):
+        return _rebuilding(sha, job)
+    if problem := await to_thread.run_sync(jobs.problem, job):
+        if problem["status"] == GONE:
+            healing.refuse(sha, problem)
+        return problems.answer(problem)
+    if same and not await to_thread.run_sync(healing.is_good, sha):
+        return problems.answer(problems.describe(other_bytes(sha)))
+    return None
+
+
+def _rebuilding(sha: str, job: str) -> Response:
+    about = problems.problem(problems.REBUILDING, f"artifact {sha} was missing or damaged and is made again")
+    place = f"/api/v1/jobs/{job}"
+    return problems.answer({**about, "job": place}, {"Retry-After": str(RETRY_AFTER), "Location": place})
+
+
+class StoredFile(FileResponse):
+    """A verified artifact: the open file stays the one that was verified, and is watched while it is sent."""
+
+    def __init__(
+        self,
+        store: ArtifactStore,
+        sha: str,
+        media_type: str,
+        headers: Mapping[str, str],
+        filename: str | None = None,
+    ) -> None:
+        super().__init__(sha, media_type=media_type, headers=headers, filename=filename)
+        self._store, self._sha = store, sha
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send the file; an answer that has begun breaks off if the bytes change meanwhile."""
+        opened = await to_thread.run_sync(self._store.open, self._sha)
+        with opened:
+            descriptor = opened.file.fileno()
+            self.path = f"/dev/fd/{descriptor}"  # this file, whatever takes its name
+            self.stat_result = os.fstat(descriptor)
+            self.set_stat_headers(self.stat_result)
+            await super().__call__(scope, receive, self._watched(opened, send))
+
+    def _watched(self, opened: Opened, send: Send) -> Send:
+        async def watched(message: Message) -> None:
+            nonlocal opened
+            if not opened.is_unchanged():
+                opened = await to_thread.run_sync(self._verified_again, opened)
+            await send(message)
+
+        return watched
+
+    def _verified_again(self, opened: Opened) -> Opened:
+        """The file after a change that left its bytes as they were, such as a later time."""
+        with self._store.open(self._sha) as again:
+            if again.stamp.inode != opened.stamp.inode:
+                raise ArtifactDamaged(self._sha, "it changed while it was being sent")
+            return Opened(opened.file, again.stamp)

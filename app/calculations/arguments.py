@@ -1,0 +1,48 @@
+"""Inputs as they are written on a command line: quantities, lists, and curves from files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from app.calculations.curves import read_curves
+from templates.core.errors import Fault, InvalidInputs
+
+
+def argument(name: str, text: str) -> Any:
+    """The value of an input: `25 kN`, `[1, 3, 4, 2]`, `@diagram.csv` or `@diagram.csv:column`.
+
+    Of a file, the column named as the input is taken unless another is named.
+
+    Raises
+    ------
+    InvalidInputs
+        If a file or its column cannot be read, or a list is none.
+    """
+    if text.startswith("@"):
+        return _curve(name, text[1:])
+    if not text.startswith(("[", "{")):
+        return text
+    try:
+        return json.loads(text)
+    except ValueError as error:
+        raise _wrong(name, "not_json", f"{text[:60]!r} is no list or object of JSON: {error}") from None
+
+
+def _curve(name: str, text: str) -> Any:
+    path, _, column = text.rpartition(":") if not Path(text).exists() else (text, "", "")
+    try:
+        curves = read_curves(Path(path or text).read_bytes())
+    except OSError as error:
+        raise _wrong(name, "unreadable", f"{path or text} cannot be read: {error.strerror}") from None
+    except InvalidInputs as error:
+        raise InvalidInputs(fault.within(path or text) for fault in error.faults) from None
+    if (column or name) not in curves:
+        told = f"{path} has no column {column or name}; take one of them by {text}:{next(iter(curves))}"
+        raise _wrong(name, "no_such_column", f"{told} (it has {', '.join(curves)})")
+    return curves[column or name]
+
+
+def _wrong(name: str, code: str, detail: str) -> InvalidInputs:
+    return InvalidInputs([Fault(name, code, detail)])

@@ -1,1 +1,0 @@
-"""Curves from files: indicator diagrams and the like, as quantities that inputs take."""

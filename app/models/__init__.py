@@ -1,1 +1,0 @@
-"""CAD models on their own: build, artifacts, verify."""

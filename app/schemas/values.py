@@ -1,0 +1,27 @@
+"""How the description of the interface describes a value that a user gives.
+
+Only its form: which units fit, and which names a choice has, is in the schema of each template and model.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import Field, WithJsonSchema
+
+from app.schemas.bounded import at_most
+
+GIVEN: dict[str, Any] = {
+    "description": 'a quantity, `"25 kN"` or `{"value": 25, "unit": "kN"}`; a number of unit 1; a choice',
+    "anyOf": [
+        {"type": "string", "minLength": 1},
+        {"type": "number"},
+        {"type": "array", "minItems": 1},
+        {"type": "object", "properties": {"value": {}, "unit": {"type": "string"}}, "required": ["value"]},
+    ],
+}
+Given = Annotated[Any, WithJsonSchema(GIVEN)]
+"""A value as typed: the domain reads it and says what is wrong."""
+
+Parameters = Annotated[dict[str, Given], Field(max_length=500), at_most(500)]
+"""Parameters of a model by name."""

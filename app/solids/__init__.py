@@ -1,0 +1,1 @@
+"""What a build's key finds: builds, their files, measurements and analyses."""

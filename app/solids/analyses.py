@@ -1,0 +1,185 @@
+"""Analyses of CAD models on their own, outside of any design."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from app.api.problems import describe
+from app.designs import repository as builds
+from app.designs.errors import NotFound
+from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.solids import analysis_rows as repository
+from app.solids.ages import is_fresh, renew
+from app.solids.analysis_views import shown
+from app.solids.builds import Builds
+from app.solids.errors import CannotRebuild
+from app.solids.finding import Analysing, is_known, shaft_of
+from app.solids.models import FAILURES, File
+from app.solids.questions import Question, under_load
+from app.solids.shapes import shape_of
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from cad.analysis.kinds import SURFACE
+from cad.errors import AnalysisError
+from cad.model import CadModel
+from cad.regenerate import as_text, build_key
+from templates.core.catalogue.finding import Catalogue
+
+ANALYSIS = "analysis"
+
+
+class Analyses:
+    """Questions about models, and what was found."""
+
+    def __init__(self, database: Database, store: ArtifactStore, jobs: Jobs) -> None:
+        self.database, self.store, self.jobs = database, store, jobs
+
+    def request(
+        self, shape: CadModel, question: Question, outputs: tuple[str, ...], client: str = ""
+    ) -> str | None:
+        """The job that builds and analyses a model, or None if all outputs are known.
+
+        Raises
+        ------
+        AnalysisError
+            If the model is no shaft.
+        """
+        shaft_of(shape)
+        build = build_key(shape)
+        with self.database.read() as session:
+            found = repository.found(session, question.key(build))
+            fresh = is_fresh(session, [build])
+        there = all(is_known(found, name, self.store) for name in outputs)
+        return None if there and fresh else self._enqueued(shape, question, outputs, client, there=there)
+
+    def request_surface(self, key: str, catalogue: Catalogue[CadModel]) -> str:
+        """The job that finds the lost surface of an analysis again.
+
+        Raises
+        ------
+        CannotRebuild
+            If this program keeps the answer to the same question under another key; that one is on its way.
+        """
+        with self.database.read() as session:
+            build, question, _ = repository.asked(session, key)
+            shape = shape_of(session, catalogue, build)
+        job, now = self._enqueued(shape, question, (SURFACE,), ""), question.key(build_key(shape))
+        assert job is not None, "nothing is said to be there"
+        if now == key:
+            return job
+        links = {"analysis": f"/api/v1/analyses/{now}", "job": f"/api/v1/jobs/{job}"}
+        detail = (
+            f"the surface of analysis {key} was found by another version of the kernel, the solver or the "
+            "recipe. Restore the file from a backup, or take the new analysis"
+        )
+        raise CannotRebuild("other_recipe", detail, links)
+
+    def _enqueued(
+        self,
+        shape: CadModel,
+        question: Question,
+        outputs: tuple[str, ...],
+        client: str,
+        *,
+        there: bool = False,
+    ) -> str | None:
+        """The job; None if all outputs were there, and their build was not purged meanwhile."""
+        payload = {
+            "model": shape.id,
+            "version": shape.version,
+            "parameters": as_text(shape),
+            "question": question.kept(),
+            "outputs": [*outputs],
+        }
+
+        def unit(session: Session) -> str | None:
+            if renew(session, [build_key(shape)]) and there:
+                return None
+            return self.jobs.request(session, ANALYSIS, payload, client)
+
+        job = self.database.write(unit)
+        self.jobs.wake()
+        return job
+
+    def show(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> dict[str, Any]:
+        """The asked outputs, as far as they are known."""
+        build = build_key(shape)
+        with self.database.read() as session:
+            known = repository.found(session, question.key(build))
+        told = under_load(question, {name: known[name] for name in outputs if name in known})
+        return shown({"id": shape.id, "version": shape.version}, build, question, told)
+
+    def show_all(self, key: str, load: float) -> dict[str, Any]:
+        """All that is known to a question about a build, under a load [N·m].
+
+        Raises
+        ------
+        NotFound
+            If there is none of this key.
+        """
+        with self.database.read() as session:
+            build, question, known = repository.asked(session, key)
+            question = replace(question, load=load)
+            return shown(_model_of(session, build), build, question, under_load(question, known))
+
+    def of_build(self, build: str) -> list[dict[str, Any]]:
+        """All that is known of a build, under 1 N·m.
+
+        Raises
+        ------
+        NotFound
+            If it was not made.
+        """
+        with self.database.read() as session:
+            model = _model_of(session, build)
+            return [shown(model, build, *told) for told in repository.of_build(session, build)]
+
+    def surface(self, key: str) -> File:
+        """The surface that an analysis found.
+
+        Raises
+        ------
+        NotFound
+            If it was not asked for.
+        """
+        with self.database.read() as session:
+            _, question, known = repository.asked(session, key)
+        if SURFACE not in known:
+            detail = f"this analysis has no {SURFACE} yet: ask for it by name in `outputs` of {question.kind}"
+            raise NotFound(detail)
+        return File("json", known[SURFACE]["sha256"])
+
+
+def _model_of(session: Session, build: str) -> dict[str, Any]:
+    row = builds.build(session, build)
+    if row is None:
+        raise NotFound(f"there is no build {build[:80]!r}")
+    return {"id": row.model, "version": row.version}
+
+
+class ModelAnalysis:
+    """The handler of jobs of the kind `analysis`: build the model, then find what was asked."""
+
+    def __init__(self, builds: Builds, analysing: Analysing, catalogue: Catalogue[CadModel]) -> None:
+        self.builds, self.analysing, self.catalogue = builds, analysing, catalogue
+
+    def __call__(self, job: Job, context: JobContext) -> Completion:
+        """Build and analyse.
+
+        Raises
+        ------
+        JobFailed
+            With the problem, for anything that the model itself brings about.
+        """
+        asked = job.payload
+        shape = self.catalogue.get(asked["model"], asked["version"]).from_quantities(asked["parameters"])
+        question = Question(**asked["question"])
+        try:
+            self.builds.make(shape, context)
+            self.analysing.find(shape, question, tuple(asked["outputs"]), context)
+        except (*FAILURES, AnalysisError) as error:
+            raise JobFailed(describe(error)) from error
+        return lambda session: f"/api/v1/analyses/{question.key(build_key(shape))}"

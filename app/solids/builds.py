@@ -1,0 +1,140 @@
+"""Builds, made in a worker process and recorded with their STEP files; other files only when asked for.
+
+A file that a row names and that is missing or damaged is made again: equal rows give equal bytes, so the hash
+in the row proves it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from app.designs import repository, results
+from app.solids.ages import is_fresh, renew
+from app.solids.errors import CannotRebuild
+from app.solids.shapes import made_otherwise, shape_of
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.storage.tables import ArtifactRow
+from app.workers.base import Runner
+from cad.export import derive
+from cad.model import CadModel
+from cad.regenerate import MADE_BY, Build, build_key, regenerate
+from templates.core.catalogue.finding import Catalogue
+from templates.core.progress import report
+
+logger = logging.getLogger(__name__)
+
+STEP = "step"
+
+
+class Builds:
+    """Makes builds in a worker process and records them with their STEP files."""
+
+    def __init__(self, database: Database, store: ArtifactStore, folders: tuple[Path, ...]) -> None:
+        self.database, self.store, self.folders = database, store, folders
+
+    def make(self, shape: CadModel, context: Runner) -> None:
+        """Build a model unless it is built already and its STEP file is good.
+
+        Raises
+        ------
+        GeometryError
+            If the kernel fails, or makes anything but what was asked for.
+        CannotRebuild
+            If the build is recorded, its file is lost, and what comes out now is another one.
+        DeadlineExceeded, MemoryExceeded, JobCrashed, JobCancelled
+            If the process was stopped, or stopped itself.
+        """
+        row = self._row(build_key(shape), STEP)
+        if row and self.store.exists(row.sha256) and self.keep([shape]):
+            return
+        made = context.run(build_in_worker, shape.id, shape.version, shape.inputs_si(), self.folders)
+        if row and hashlib.sha256(made.step).hexdigest() != row.sha256:
+            raise _changed(shape, row)
+        sha = self.store.put(made.step)
+        if row is None:
+            self.database.write(lambda session: self._record(session, shape, made, sha))
+
+    def keep(self, shapes: Iterable[CadModel]) -> bool:
+        """Keep builds for as long as the job that counts on them runs; return whether all are there."""
+        keys = [build_key(shape) for shape in shapes]
+        with self.database.read() as session:
+            if is_fresh(session, keys):
+                return True
+        return self.database.write(lambda session: renew(session, keys))
+
+    def restore(self, key: str, catalogue: Catalogue[CadModel], context: Runner) -> None:
+        """Have the STEP file of a recorded build good; raises as `make` does."""
+        row = self._row(key, STEP)
+        if row and self.store.exists(row.sha256):
+            return
+        with self.database.read() as session:
+            shape = shape_of(session, catalogue, key)
+            if build_key(shape) != key:
+                raise made_otherwise(session, key, shape)
+        self.make(shape, context)
+
+    def derive(self, key: str, kind: str, context: Runner) -> None:
+        """Make a file of another kind from the good STEP file of a build, unless it is there and good.
+
+        A derived file depends on libraries that the build's key does not name. If its bytes come out
+        otherwise than before, it is another artifact, and the row names that one.
+        """
+        row, step = self._row(key, kind), self._row(key, STEP)
+        if row and self.store.exists(row.sha256):
+            return
+        assert step is not None, "a build has its STEP file from its first moment"
+        made = context.run(derive, self.store.read(step.sha256), kind)
+        sha = self.store.put(made)
+        if row and row.sha256 != sha:
+            logger.warning("%s of build %s: artifact %s is lost, now it is %s", kind, key, row.sha256, sha)
+        if row is None or row.sha256 != sha:
+            self.database.write(lambda session: repository.add_artifact(session, key, kind, sha, len(made)))
+
+    def _row(self, key: str, kind: str) -> ArtifactRow | None:
+        with self.database.read() as session:
+            return repository.artifact(session, key, kind)
+
+    def _record(self, session: Session, shape: CadModel, made: Build, sha: str) -> None:
+        parameters = results.parameters(shape)
+        units = {name: declared.meaning.unit for name, declared in shape.inputs.items()}
+        dimensions = {n: {"value": value, "unit": units[n]} for n, value in made.dimensions.items()}
+        measured = {"measures": made.measures, "dimensions": dimensions}
+        repository.add_build(session, made.key, made.model, made.version, parameters, measured, MADE_BY)
+        repository.add_artifact(session, made.key, STEP, sha, len(made.step))
+
+
+def _changed(shape: CadModel, row: ArtifactRow) -> CannotRebuild:
+    detail = (
+        f"the STEP file of build {row.build_key} is lost, and model {shape.id} version {shape.version} makes "
+        "other bytes now: its file has been changed since. Put the old file back, or restore artifact "
+        f"{row.sha256} from a backup"
+    )
+    return CannotRebuild("model_changed", detail)
+
+
+def build_in_worker(id: str, version: int, parameters: Mapping[str, Any], folders: tuple[Path, ...]) -> Build:
+    """`cad.regenerate.regenerate` with progress told to the job; runs in the worker's process."""
+    return regenerate(id, version, parameters, folders=folders, report=report)
+
+
+def rehearse(called: Callable[[], bool]) -> None:
+    """Build something small, in a worker's process that waits: a first build takes twice as long as a second.
+
+    Raises
+    ------
+    InterruptedError
+        Between two of its steps, once it is called to its job; the kernel may word it as a GeometryError.
+    """
+
+    def give_way(_done: float, _what: str) -> None:
+        if called():
+            raise InterruptedError
+
+    regenerate("ball_bearing", 1, {"inner_diameter": 0.05}, report=give_way)

@@ -1,0 +1,108 @@
+"""Analyses made in a worker process, and recorded: one output is found once for one solid and question."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from app.designs import repository as builds
+from app.solids import analysis_rows as repository
+from app.solids.questions import Question
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.workers.base import Limits, Runner
+from cad.analysis.kinds import SURFACE
+from cad.errors import AnalysisError
+from cad.model import CadModel
+from cad.regenerate import build_key
+from cad.shaft import Shaft
+from templates.core.progress import report
+
+FILE = "file"
+"""In an output on its way from the worker: the bytes of what is stored as a file."""
+
+
+class Analysing:
+    """Analyses built solids in a worker process and records what was found."""
+
+    def __init__(self, database: Database, store: ArtifactStore, limits: Limits) -> None:
+        self.database, self.store, self.limits = database, store, limits
+
+    def find(self, shape: CadModel, question: Question, outputs: tuple[str, ...], context: Runner) -> None:
+        """Find those outputs of a built model that are not known yet.
+
+        Raises
+        ------
+        AnalysisError
+            If the solid cannot be analysed as asked.
+        DeadlineExceeded, MemoryExceeded, JobCrashed, JobCancelled
+            If the process was stopped, or stopped itself.
+        """
+        build = build_key(shape)
+        with self.database.read() as session:
+            known = repository.found(session, question.key(build))
+            elsewhere = repository.stresses(session, build, question)
+            step = builds.artifact(session, build, "step")
+        missing = [name for name in outputs if not is_known(known, name, self.store)]
+        if not missing:
+            return
+        found = {name: elsewhere[name] for name in missing if name in elsewhere}
+        if unknown := tuple(name for name in missing if name not in found):
+            assert step is not None, "a build has its STEP file from its first moment"
+            bytes_ = self.store.read(step.sha256)
+            told = context.run(
+                analyse_in_worker, bytes_, shaft_of(shape), question, unknown, limits=self.limits
+            )
+            found |= {name: self._stored(output) for name, output in told.items()}
+        self.database.write(lambda session: repository.add(session, build, question, found))
+
+    def _stored(self, output: dict[str, Any]) -> dict[str, Any]:
+        """An output as its row holds it: of one that is a file, what the store calls it."""
+        if FILE not in output:
+            return output
+        rest = {name: part for name, part in output.items() if name != FILE}
+        return {"sha256": self.store.put(output[FILE]), "size": len(output[FILE]), **rest}
+
+
+def is_known(found: repository.Found, output: str, store: ArtifactStore) -> bool:
+    """Whether an output has been found, and its file, if it is one, is good."""
+    return output in found and (output != SURFACE or store.exists(found[output]["sha256"]))
+
+
+def shaft_of(shape: CadModel) -> Shaft:
+    """How a model is held and loaded.
+
+    Raises
+    ------
+    AnalysisError
+        `no_shaft`.
+    """
+    shaft = shape.shaft()
+    if shaft is None:
+        raise AnalysisError("no_shaft", f"{shape.id} is no shaft with these parameters")
+    return shaft
+
+
+def analyse_in_worker(
+    step: bytes, shaft: Shaft, question: Question, outputs: tuple[str, ...]
+) -> dict[str, dict[str, Any]]:
+    """`cad.analysis.analyse.analyse` with progress told to the job; runs in the worker's process."""
+    from cad.analysis.analyse import Asked, analyse  # the server, which imports this module, needs no solver
+
+    asked = Asked(question.kind, question.boundary, question.level, question.tolerance)  # type: ignore[arg-type]
+    try:
+        found = analyse(step, shaft, asked, outputs, report).outputs
+        return {name: _packed(told) if name == SURFACE else told for name, told in found.items()}
+    except (AnalysisError, MemoryError):
+        raise
+    except Exception as error:
+        detail = f"the analysis failed: {type(error).__name__}: {error}"
+        raise AnalysisError("solver", detail) from error
+
+
+def _packed(told: dict[str, Any]) -> dict[str, Any]:
+    """A surface as the bytes of its JSON; how many triangles it has is told beside it."""
+    surface = told["value"]
+    rest = {name: part for name, part in told.items() if name != "value"}
+    written = json.dumps(surface.told(), separators=(",", ":"), allow_nan=False)
+    return {FILE: written.encode(), "triangles": len(surface.triangles), **rest}

@@ -1,0 +1,92 @@
+"""Files that rows name and that are missing or damaged: which job makes them again."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from app.designs import repository
+from app.solids import analysis_rows as analyses
+from app.solids.analyses import Analyses
+from app.solids.errors import CannotRebuild
+from app.solids.models import Models
+from app.solids.shapes import made_otherwise, shape_of
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.storage.errors import ArtifactMissing
+from cad.regenerate import build_key
+
+REMEMBERED = 1000  # artifacts that could not be rebuilt; asked for again, they start no other job
+
+
+class Healing:
+    """Rebuilds artifacts from their rows."""
+
+    def __init__(self, database: Database, store: ArtifactStore, models: Models, analyses: Analyses) -> None:
+        self.database, self.store, self.models, self.analyses = database, store, models, analyses
+        self._refused: OrderedDict[str, dict[str, Any]] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def is_good(self, sha: str) -> bool:
+        """Whether an artifact is there with the right bytes; otherwise what is there has been set aside."""
+        return self.store.exists(sha)
+
+    def request(self, sha: str) -> str:
+        """The job that makes an artifact again.
+
+        Raises
+        ------
+        ArtifactMissing
+            No row names the artifact.
+        CannotRebuild
+            It cannot be made again under its hash; what is made instead is on its way.
+        """
+        with self.database.read() as session:
+            row = repository.artifact_named(session, sha)
+            surface = None if row else analyses.key_of_surface(session, sha)
+        if row:
+            return self._build(row.build_key, row.kind)
+        if surface:
+            return self.analyses.request_surface(surface, self.models.catalogue)
+        raise ArtifactMissing(sha)
+
+    def refused(self, sha: str) -> dict[str, Any] | None:
+        """The problem for which an artifact could not be made again since the service started."""
+        with self._lock:
+            return self._refused.get(sha)
+
+    def refuse(self, sha: str, problem: dict[str, Any]) -> None:
+        """Remember why an artifact cannot be made again: nothing but a new start with other files helps."""
+        with self._lock:
+            self._refused[sha] = problem
+            while len(self._refused) > REMEMBERED:
+                self._refused.popitem(last=False)
+
+    def _build(self, key: str, kind: str) -> str:
+        with self.database.read() as session:
+            if not self._needs_another(session, key):
+                return self.models.request_file(key, kind)
+            shape = shape_of(session, self.models.catalogue, key)
+            error = made_otherwise(session, key, shape)
+        if job := self.models.request(shape, ("step",)):
+            error.links["job"] = f"/api/v1/jobs/{job}"
+        raise error
+
+    def _needs_another(self, session: Session, key: str) -> bool:
+        """Whether a build's STEP file is lost, and this program makes another build of its parameters."""
+        step = repository.artifact(session, key, "step")
+        if step and self.store.exists(step.sha256):
+            return False
+        return build_key(shape_of(session, self.models.catalogue, key)) != key
+
+
+def other_bytes(sha: str) -> CannotRebuild:
+    """An artifact that was made again, and is another one now."""
+    detail = (
+        f"artifact {sha} is lost. It was made again from its row and has other bytes now, because libraries "
+        "have changed since: GET the build, the revision or the analysis that names it for the new hash"
+    )
+    return CannotRebuild("other_bytes", detail)

@@ -1,0 +1,170 @@
+"""CAD models on their own, and the files of builds."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from app.api.problems import describe
+from app.designs import repository, results
+from app.designs.errors import NotFound
+from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.solids.ages import is_fresh, renew
+from app.solids.builds import Builds
+from app.solids.errors import CannotRebuild
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.workers.errors import DeadlineExceeded, MemoryExceeded
+from cad.errors import GeometryError
+from cad.export import DERIVED
+from cad.header import read_header
+from cad.model import CadModel
+from cad.regenerate import as_text, build_key
+from templates.core.catalogue.finding import Catalogue
+from templates.core.errors import TemplateError
+
+BUILD = "build"
+FAILURES = (TemplateError, GeometryError, DeadlineExceeded, MemoryExceeded, CannotRebuild)
+"""What a model brings about."""
+
+
+@dataclass(frozen=True)
+class File:
+    """A stored file of a build."""
+
+    kind: str
+    sha256: str
+
+
+class Models:
+    """Builds outside of any design, and files of builds inside and outside."""
+
+    def __init__(
+        self, database: Database, store: ArtifactStore, jobs: Jobs, catalogue: Catalogue[CadModel]
+    ) -> None:
+        self.database, self.store, self.jobs, self.catalogue = database, store, jobs, catalogue
+
+    def request(self, shape: CadModel, kinds: tuple[str, ...], client: str = "") -> str | None:
+        """The job that makes a build and its files, or None if all are there."""
+        key = build_key(shape)
+        with self.database.read() as session:
+            there = repository.artifacts(session, key)
+            fresh = is_fresh(session, [key])
+        is_there = all(kind in there and self.store.exists(there[kind]) for kind in kinds)
+        if is_there and fresh:
+            return None
+        payload = {
+            "model": shape.id,
+            "version": shape.version,
+            "parameters": as_text(shape),
+            "kinds": [*kinds],
+        }
+
+        def unit(session: Session) -> str | None:
+            if renew(session, [key]) and is_there:  # it did not go meanwhile
+                return None
+            return self.jobs.request(session, BUILD, payload, client)
+
+        job = self.database.write(unit)
+        self.jobs.wake()
+        return job
+
+    def request_file(self, key: str, kind: str, client: str = "") -> str:
+        """The job that makes a file of a finished build, whichever recipe it was made by."""
+        return self.request_files(key, (kind,), client)
+
+    def request_files(self, key: str, kinds: tuple[str, ...], client: str = "") -> str:
+        """The job that makes several files of a finished build."""
+        payload = {"build": key, "kinds": [*kinds]}
+
+        def unit(session: Session) -> str:
+            renew(session, [key])
+            return self.jobs.request(session, BUILD, payload, client)
+
+        job = self.database.write(unit)
+        self.jobs.wake()
+        return job
+
+    def show(self, key: str) -> dict[str, Any]:
+        """A build: its files and what was measured on it.
+
+        Raises
+        ------
+        NotFound
+            If it was not made.
+        """
+        with self.database.read() as session:
+            row = repository.build(session, key)
+            if row is None:
+                raise NotFound(f"there is no build {key[:80]!r}")
+            measured = results.measurements(**row.measurements)
+            return {
+                "build": key,
+                "model": {"id": row.model, "version": row.version},
+                "parameters": row.parameters,
+                "artifacts": repository.artifacts(session, key),
+                "measurements": measured,
+            }
+
+    def file(self, key: str, kind: str) -> File | None:
+        """A file of a build, or None if it is not made yet."""
+        with self.database.read() as session:
+            row = repository.artifact(session, key, kind)
+        return File(kind, row.sha256) if row else None
+
+    def verify(self, step: bytes) -> dict[str, Any]:
+        """From which build a STEP file is, which revisions use it, and whether its bytes are still those.
+
+        Raises
+        ------
+        NotFound
+            If it does not say, or the build is not known here.
+        """
+        header = read_header(step)
+        if header is None:
+            raise NotFound("this file does not say that it is one of ours")
+        told = self.show(header.build)
+        with self.database.read() as session:
+            users = repository.users_of(session, header.build)
+        intact = hashlib.sha256(step).hexdigest() == told["artifacts"]["step"]
+        return {"build": header.build, "model": told["model"], "revisions": users, "intact": intact}
+
+
+class ModelBuild:
+    """The handler of jobs of the kind `build`: a build and the files of it that are asked for."""
+
+    def __init__(self, builds: Builds, catalogue: Catalogue[CadModel]) -> None:
+        self.builds, self.catalogue = builds, catalogue
+
+    def __call__(self, job: Job, context: JobContext) -> Completion:
+        """Build, then derive.
+
+        Raises
+        ------
+        JobFailed
+            With the problem, for anything that the model itself brings about.
+        """
+        asked = job.payload
+        if "build" in asked:
+            return self._derived(asked["build"], asked["kinds"], context)
+        shape = self.catalogue.get(asked["model"], asked["version"]).from_quantities(asked["parameters"])
+        key = build_key(shape)
+        try:
+            self.builds.make(shape, context)
+        except FAILURES as error:
+            raise JobFailed(describe(error)) from error
+        return self._derived(key, asked["kinds"], context)
+
+    def _derived(self, key: str, kinds: Iterable[str], context: JobContext) -> Completion:
+        try:
+            self.builds.restore(key, self.catalogue, context)
+            for kind in kinds:
+                if kind in DERIVED:
+                    self.builds.derive(key, kind, context)
+        except FAILURES as error:
+            raise JobFailed(describe(error)) from error
+        return lambda session: f"/api/v1/builds/{key}"

@@ -1,0 +1,51 @@
+"""The model of a build, from its row."""
+
+from __future__ import annotations
+
+from sqlalchemy.orm import Session
+
+from app.designs import repository
+from app.designs.errors import NotFound
+from app.solids.errors import CannotRebuild
+from cad.model import CadModel
+from cad.regenerate import MADE_BY, build_key
+from templates.core.catalogue.finding import Catalogue
+from templates.core.errors import TemplateError, UnknownTemplate
+
+OLDER = "an older version of this program"
+
+
+def shape_of(session: Session, catalogue: Catalogue[CadModel], key: str) -> CadModel:
+    """The model of a build, with its parameters; its key may be another, if another recipe made the build.
+
+    Raises
+    ------
+    NotFound
+        If there is no such build.
+    CannotRebuild
+        If the model is gone, or refuses the parameters that it took.
+    """
+    row = repository.build(session, key)
+    if row is None:
+        raise NotFound(f"there is no build {key[:80]!r}")
+    given = {n: p if "unit" in p else p["value"] for n, p in row.parameters.items()}
+    name = f"model {row.model} version {row.version}, which made build {key},"
+    try:
+        return catalogue.get(row.model, row.version).from_quantities(given)
+    except UnknownTemplate:
+        detail = f"{name} is not in the catalogue; put its file back and start the service again"
+        raise CannotRebuild("model_gone", detail) from None
+    except TemplateError as error:
+        detail = f"{name} has been changed and refuses its parameters now: {error}"
+        raise CannotRebuild("model_changed", detail) from None
+
+
+def made_otherwise(session: Session, key: str, shape: CadModel) -> CannotRebuild:
+    """Why a build cannot be made again by this program; the link leads to the build that it makes instead."""
+    row = repository.build(session, key)
+    maker = (row.made_by if row else "") or OLDER
+    detail = (
+        f"build {key} was made by {maker}; this program ({MADE_BY}) makes another build of the same "
+        "parameters. Restore the file from a backup, or take the new build"
+    )
+    return CannotRebuild("other_recipe", detail, {"build": f"/api/v1/builds/{build_key(shape)}"})
