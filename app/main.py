@@ -13,12 +13,11 @@ from typing import Any
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
-from app.api import docs, problems, readiness
+from app.api import docs, problems
 from app.api.description import describe_interface
 from app.api.gate import guard, observing
 from app.api.gate.heads import HeadLimit
 from app.api.gate.stopping import StoppingAnswer
-from app.api.gate.streams import Streams
 from app.api.gate.timeouts import BodyTime
 from app.api.reading import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
 from app.api.routes import health
@@ -35,34 +34,11 @@ from app.api.routes.jobs import router as jobs
 from app.api.routes.models import router as models
 from app.api.routes.reports import router as reports
 from app.api.routes.templates import router as catalogue
-from app.calculations.assembly import assemble_calculations
-from app.calculations.cache import results
-from app.catalogue.finding import find_templates
-from app.designs.graph import Catalogues
-from app.designs.regeneration import Regeneration
-from app.designs.service import REGENERATE, REGENERATE_SLOWLY, Designs
+from app.assembly import assemble
 from app.hosts import Hosts
-from app.jobs.service import Jobs
 from app.jobs.shutdown import on_stop_signal
-from app.observation import metrics
-from app.reports.paper import Press
-from app.reports.service import Reports
-from app.retention.service import Retention
 from app.settings import Settings
-from app.solids.analyses import ANALYSIS, Analyses, ModelAnalysis
-from app.solids.builds import Builds
-from app.solids.finding import Analysing
-from app.solids.healing import Healing
-from app.solids.models import BUILD, ModelBuild, Models
-from app.storage.artifacts import ArtifactStore
-from app.storage.database import Database
-from app.storage.folder import DataFolder
-from app.storage.integrity import refuse_damage
-from app.storage.migrations import migrate
 from app.web import assembly as pages
-from app.workers.base import Limits
-from app.workers.local import LocalProcesses
-from cad.catalogue import models as find_models
 
 logger = logging.getLogger(__name__)
 
@@ -80,8 +56,9 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         with ExitStack() as stack:
-            assemble(app, chosen, stack)
-            stack.enter_context(on_stop_signal(app.state.jobs.drain))
+            services = assemble(chosen, stack)
+            app.state.services = services
+            stack.enter_context(on_stop_signal(services.jobs.drain))
             stack.enter_context(spared_by_collections())
             yield
 
@@ -116,7 +93,6 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     ):
         app.include_router(router)
     app.include_router(health.router)
-    app.include_router(readiness.router)
     app.include_router(problems.router)
     problems.install(app)
     docs.install(app)
@@ -143,56 +119,6 @@ def spared_by_collections() -> Iterator[None]:
         yield
     finally:
         gc.unfreeze()
-
-
-def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
-    """Make what the routes depend on; the stack undoes it in reverse order."""
-    folder = DataFolder(settings.data)
-    stack.callback(folder.release)
-    url = settings.database_url or folder.database_url
-    refuse_damage(url)  # before anything is written to it
-    migrate(url)
-    database = Database(url, on_commit=metrics.committed)
-    stack.callback(database.close)
-    store = ArtifactStore(folder.artifacts)
-    results.limit(settings.cache_mb)
-    retention = Retention(database, store, settings)
-    retention.start()
-    stack.callback(retention.stop)
-    catalogues = Catalogues(
-        find_templates(settings.template_folders), find_models(*settings.template_folders)
-    )
-    worker = LocalProcesses()
-    stack.callback(worker.close)
-    queue = Jobs(database, worker, settings, problems.describe)
-    builds = Builds(database, store, settings.template_folders)
-    analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
-    lanes = assemble_calculations(app, settings, stack, catalogues.templates, database, store, queue)
-    regeneration = Regeneration(database, builds, analysing, catalogues, app.state.steps)
-    queue.register(REGENERATE, regeneration, Regeneration.failed)
-    queue.register(REGENERATE_SLOWLY, regeneration, Regeneration.failed, is_slow=True)
-    queue.register(BUILD, ModelBuild(builds, catalogues.models))
-    queue.register(ANALYSIS, ModelAnalysis(builds, analysing, catalogues.models), is_slow=True)
-    queue.start(lanes)
-    stack.callback(queue.stop)
-    app.state.database, app.state.store, app.state.jobs = database, store, queue
-    app.state.catalogues, app.state.settings = catalogues, settings
-    app.state.streams = Streams(settings.streams, settings.streams_per_client)
-    app.state.designs = Designs(database, queue, catalogues)
-    app.state.models = Models(database, store, queue, catalogues.models)
-    app.state.analyses = Analyses(database, store, queue)
-    app.state.healing = Healing(database, store, app.state.models, app.state.analyses)
-    app.state.reports = Reports(database, store, app.state.models, catalogues)
-    app.state.readiness = readiness.Readiness(
-        {
-            "database": readiness.Writing(database),
-            "space": readiness.Space(folder.path, settings.minimum_free_mb),
-            "processes": readiness.Processes(worker),
-            "calculations": readiness.Processes(app.state.calculations),
-        }
-    )
-    limits = Limits(settings.job_deadline, settings.job_memory_mb)
-    app.state.press = Press(worker, limits, settings.workers)
 
 
 def _too_large(told: str) -> Response:

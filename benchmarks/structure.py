@@ -19,6 +19,7 @@ LAYERS: tuple[frozenset[str], ...] = tuple(
         "__main__",
         "cli",
         "main demo server",
+        "assembly",
         "web",
         "api",
         "client maintenance",

@@ -5,9 +5,9 @@ from __future__ import annotations
 import asyncio
 from concurrent.futures import Future
 from contextlib import suppress
-from typing import Annotated, Any
+from typing import Any
 
-from fastapi import Depends, Request, Response
+from fastapi import Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.gate.clients import get_client
@@ -83,11 +83,3 @@ async def _done(future: Future[Any]) -> None:
 
     future.add_done_callback(wake)
     await done.wait()
-
-
-async def get_answering(request: Request) -> Answering:
-    """What answers expensive requests."""
-    return request.app.state.answering  # type: ignore[no-any-return]
-
-
-TheAnswering = Annotated[Answering, Depends(get_answering)]

@@ -1,19 +1,28 @@
-"""What routes ask for, by annotation; all of it is made once, in `main.lifespan`.
+"""What routes use, by annotation: a part of `Services`, and what a request says beside its body.
 
-The functions are async although they do nothing to wait for: FastAPI runs sync ones in a thread each.
+The functions are async although they wait for nothing: FastAPI runs sync ones in a thread each.
 """
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import AsyncIterator, Awaitable, Callable
+from typing import Annotated, Any
 
-from fastapi import Depends, Header, Request
+from fastapi import Depends, Header, Query, Request
 
+from app.api.answering import Answering
 from app.api.gate.clients import TheClient
+from app.api.readiness import Readiness
 from app.api.reading import fingerprint
+from app.api.services import Services
+from app.api.threads import Threads
+from app.calculations.steps import Caller, call_as
 from app.designs.graph import Catalogues
 from app.designs.service import Designs
 from app.jobs.service import Jobs
+from app.presentation.units import System
+from app.reports.paper import Press
+from app.reports.service import Reports
 from app.solids.analyses import Analyses
 from app.solids.healing import Healing
 from app.solids.models import Models
@@ -22,44 +31,38 @@ from app.storage.database import Database
 from app.storage.idempotency import Once
 
 
-async def get_catalogues(request: Request) -> Catalogues:
-    """Templates and models."""
-    return request.app.state.catalogues  # type: ignore[no-any-return]
+def services_of(request: Request) -> Services:
+    """The parts of the service that answers a request."""
+    services: Services = request.app.state.services
+    return services
 
 
-async def get_database(request: Request) -> Database:
-    """The database."""
-    return request.app.state.database  # type: ignore[no-any-return]
+def _part(name: str) -> Callable[[Request], Awaitable[Any]]:
+    """The dependency that gives a part of the services by its name."""
+
+    async def part(request: Request) -> Any:
+        return getattr(services_of(request), name)
+
+    return part
 
 
-async def get_store(request: Request) -> ArtifactStore:
-    """The artifacts."""
-    return request.app.state.store  # type: ignore[no-any-return]
+TheCatalogues = Annotated[Catalogues, Depends(_part("catalogues"))]
+TheDatabase = Annotated[Database, Depends(_part("database"))]
+TheStore = Annotated[ArtifactStore, Depends(_part("store"))]
+TheJobs = Annotated[Jobs, Depends(_part("jobs"))]
+TheThreads = Annotated[Threads, Depends(_part("threads"))]
+TheAnswering = Annotated[Answering, Depends(_part("answering"))]
+TheDesigns = Annotated[Designs, Depends(_part("designs"))]
+TheModels = Annotated[Models, Depends(_part("models"))]
+TheAnalyses = Annotated[Analyses, Depends(_part("analyses"))]
+TheHealing = Annotated[Healing, Depends(_part("healing"))]
+TheReports = Annotated[Reports, Depends(_part("reports"))]
+ThePress = Annotated[Press, Depends(_part("press"))]
+TheReadiness = Annotated[Readiness, Depends(_part("readiness"))]
 
-
-async def get_jobs(request: Request) -> Jobs:
-    """The jobs."""
-    return request.app.state.jobs  # type: ignore[no-any-return]
-
-
-async def get_designs(request: Request) -> Designs:
-    """The designs."""
-    return request.app.state.designs  # type: ignore[no-any-return]
-
-
-async def get_models(request: Request) -> Models:
-    """The CAD models and builds."""
-    return request.app.state.models  # type: ignore[no-any-return]
-
-
-async def get_analyses(request: Request) -> Analyses:
-    """The analyses of solids."""
-    return request.app.state.analyses  # type: ignore[no-any-return]
-
-
-async def get_healing(request: Request) -> Healing:
-    """What makes lost files again."""
-    return request.app.state.healing  # type: ignore[no-any-return]
+Units = Annotated[
+    System, Query(description="`us`: lengths in inches, forces in pounds, … instead of as declared")
+]
 
 
 async def get_once(
@@ -69,17 +72,29 @@ async def get_once(
         str | None, Header(min_length=1, max_length=200, description="the same key, the same change: once")
     ] = None,
 ) -> Once:
-    """How to tell a repeated request."""
+    """How to recognise a repeated request."""
     return Once(idempotency_key, f"{request.method} {request.url.path}", await fingerprint(request), client)
 
 
-TheCatalogues = Annotated[Catalogues, Depends(get_catalogues)]
-TheDatabase = Annotated[Database, Depends(get_database)]
-TheStore = Annotated[ArtifactStore, Depends(get_store)]
-TheJobs = Annotated[Jobs, Depends(get_jobs)]
-TheDesigns = Annotated[Designs, Depends(get_designs)]
-TheModels = Annotated[Models, Depends(get_models)]
-TheAnalyses = Annotated[Analyses, Depends(get_analyses)]
-TheHealing = Annotated[Healing, Depends(get_healing)]
 TheOnce = Annotated[Once, Depends(get_once)]
-JobsDependency = TheJobs
+
+
+async def expensive_steps(request: Request, client: TheClient) -> None:
+    """Let a route evaluate expensive steps in the pool; a dependency of routers."""
+    call_as(Caller(services_of(request).steps, client))
+
+
+ExpensiveSteps = Depends(expensive_steps)
+
+
+async def one_stream(request: Request, client: TheClient) -> AsyncIterator[None]:
+    """Hold a place for a stream, from before its first byte to its end."""
+    streams = services_of(request).streams
+    streams.enter(client)
+    try:
+        yield
+    finally:
+        streams.leave(client)
+
+
+OneStream = Annotated[None, Depends(one_stream)]

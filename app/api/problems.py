@@ -28,9 +28,8 @@ from app.api.reading import (
     NotStep,
     PreconditionRequired,
     TooIntricate,
-    TooManyValues,
 )
-from app.calculations.errors import InvalidBody
+from app.calculations.errors import InvalidBody, TooManyValues
 from app.designs import errors as designs
 from app.jobs import errors as jobs
 from app.observation import logs, metrics
@@ -70,9 +69,9 @@ TABLE: dict[type[Exception], Kind] = {
     templates.UnknownTemplate: Kind("unknown-template", 404, "No such version", "GET the list of versions"),
     templates.Unreachable: Kind("unreachable", 422, "The target is out of reach", "see `reachable`"),
     templates.TemplateError: Kind("refused", 422, "The calculation refuses", "see `detail`"),
-    designs.NotFound: Kind("not-found", 404, "Not found", "GET the list to see what there is"),
+    storage.NotFound: Kind("not-found", 404, "Not found", "GET the list to see what there is"),
     designs.StaleRevision: Kind("stale-revision", 412, "The design has changed", "read it again, then retry"),
-    designs.KeyReused: Kind("idempotency-key-reused", 422, "Idempotency-Key reused", "take a new key"),
+    storage.KeyReused: Kind("idempotency-key-reused", 422, "Idempotency-Key reused", "take a new key"),
     designs.NotConverged: Kind("not-converged", 422, "The iteration did not settle", "see `rounds`"),
     PreconditionRequired: Kind("precondition-required", 428, "If-Match is needed", "send the design's ETag"),
     NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),

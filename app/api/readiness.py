@@ -11,18 +11,13 @@ import time
 from collections.abc import Awaitable, Callable, Mapping
 from concurrent.futures import Future
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
-from fastapi import APIRouter, Request, Response
-from fastapi.responses import JSONResponse
 from sqlalchemy import update
 from sqlalchemy.orm import Session
 
-from app.api import problems
 from app.storage.database import Database
 from app.storage.tables import CounterRow
-
-router = APIRouter(tags=["health"])
 
 KEPT = 1.0  # for how long an answer is given again [s]
 PATIENCE = 2.0  # with the writer [s]
@@ -122,16 +117,3 @@ class Processes:
                 return "no job process answers: they are being started, or hang"
             await asyncio.sleep(_GLANCE)
         return None
-
-
-@router.get("/readyz", responses={503: {"description": "not ready; `errors` names each check that fails"}})
-async def readyz(request: Request) -> Response:
-    """The service can write, has space, and its job processes answer. At most once a second it looks anew."""
-    readiness: Readiness = request.app.state.readiness
-    said = await readiness.failures()
-    listed = [{"name": n, "code": "not_ready", "detail": text} for n, text in said.items() if text]
-    if not listed:
-        return JSONResponse({"status": "ready", "checks": dict.fromkeys(said, "ok")})
-    detail = "; ".join(f"{fault['name']}: {fault['detail']}" for fault in listed)
-    about: dict[str, Any] = {**problems.problem(problems.NOT_READY, detail[:2000]), "errors": listed}
-    return problems.answer(about, {"Retry-After": "2"})

@@ -41,10 +41,6 @@ class HeadTooLarge(HttpError):
     """The address and the headers are longer than the service takes."""
 
 
-class TooManyValues(HttpError):
-    """The answer would hold more values than the service gives at once."""
-
-
 class TooIntricate(HttpError):
     """The body nests or names more than any design or table does."""
 

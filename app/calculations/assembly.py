@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import os
 from contextlib import ExitStack
+from dataclasses import dataclass
 
-from fastapi import FastAPI
-
-from app.api.answering import Answering
 from app.calculations.jobs import CALCULATION, CalculationJobs
 from app.calculations.pool import CalculationPool
 from app.calculations.sources import source_of
-from app.calculations.steps import Steps, Threads
+from app.calculations.steps import Steps
 from app.jobs.service import Jobs
 from app.observation import metrics
 from app.settings import Settings
@@ -25,19 +23,33 @@ from templates.core.language.template import Template
 PRELOAD = ("app.calculations.warm",)
 
 
+@dataclass(frozen=True)
+class Calculations:
+    """The pool, and what evaluates in it."""
+
+    pool: CalculationPool
+    steps: Steps
+    jobs: CalculationJobs
+
+    @property
+    def lanes(self) -> dict[str, int]:
+        """The threads of the lane of such jobs, for `Jobs.start`.
+
+        A job of the lane is adopted while it runs, so there is a thread more than calculations that run for
+        jobs.
+        """
+        return {CALCULATION: self.pool.most_jobs + 1}
+
+
 def assemble_calculations(
-    app: FastAPI,
     settings: Settings,
     stack: ExitStack,
     catalogue: Catalogue[Template],
     database: Database,
     store: ArtifactStore,
     jobs: Jobs,
-) -> dict[str, int]:
-    """Make what the routes depend on, and register the job; return the lane of such jobs for `Jobs.start`.
-
-    A job of the lane is adopted while it runs, so there is a thread more than calculations that run for jobs.
-    """
+) -> Calculations:
+    """Make the pool, and register the jobs that use it; the stack ends it."""
     size = settings.calculation_processes or len(os.sched_getaffinity(0))
     limits = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
     processes = WarmProcesses(PRELOAD, spares=size)
@@ -48,6 +60,4 @@ def assemble_calculations(
     sources = {cls: source_of(cls) for cls in catalogue}
     handler = CalculationJobs(pool, catalogue, sources, database, store, jobs)
     jobs.register(CALCULATION, handler, handler.failed, lane=CALCULATION)
-    app.state.calculations, app.state.steps, app.state.threads = pool, Steps(pool, sources), Threads()
-    app.state.answering = Answering(pool, handler, settings.calculation_deadline)
-    return {CALCULATION: pool.most_jobs + 1}
+    return Calculations(pool, Steps(pool, sources), handler)

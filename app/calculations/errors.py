@@ -21,6 +21,10 @@ class TooManyCalculations(QueueFull):
         return f"Too many calculations are waiting. Try again in {self.retry_after} s."
 
 
+class TooManyValues(Exception):
+    """The answer would hold more values than the service gives at once."""
+
+
 class InvalidBody(Exception):
     """A body that is not what the operation takes; `errors()` are in pydantic's form."""
 

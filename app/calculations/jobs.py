@@ -11,9 +11,7 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.api.problems import describe
-from app.api.reading import HttpError
-from app.calculations.errors import InvalidBody
+from app.calculations.errors import InvalidBody, TooManyValues
 from app.calculations.operations import Question, answered
 from app.calculations.pool import Calculation, CalculationPool
 from app.calculations.sources import Source
@@ -26,7 +24,7 @@ from templates.core.language.template import Template
 
 CALCULATION = "calculation"
 GLANCE = 0.1  # how often a thread looks whether its job was cancelled [s]
-FAILURES = (TemplateError, HttpError, InvalidBody)
+FAILURES = (TemplateError, TooManyValues, InvalidBody)
 """What the request itself brings about."""
 
 
@@ -87,7 +85,7 @@ class CalculationJobs:
             calculation.listen(context.progress)
             answer = self._outcome(calculation, context)
         except FAILURES as error:
-            raise JobFailed(describe(error)) from error
+            raise JobFailed(error) from error
         link = f"/api/v1/evaluations/{job.id}?sha256={self.store.put(answer)}"
         return lambda session: link
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.api.reading import TooManyValues
 from app.calculations import rendering
+from app.calculations.errors import TooManyValues
 from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.size import points
 from templates.core.language.evaluate import Evaluation, evaluate

@@ -1,9 +1,7 @@
 """What can be wrong with a request about designs, beyond wrong inputs.
 
 DesignError
-    NotFound            no such design, revision, model or artifact
     StaleRevision       the design has changed since the client read it
-    KeyReused           an Idempotency-Key came again with another request
     NotConverged        a declared iteration did not settle within its limit
 """
 
@@ -17,10 +15,6 @@ class DesignError(Exception):
     """Anything that designs refuse, beyond wrong inputs."""
 
 
-class NotFound(DesignError):
-    """No such design, revision, model or artifact."""
-
-
 class StaleRevision(DesignError):
     """The design has changed since the client read it."""
 
@@ -30,13 +24,6 @@ class StaleRevision(DesignError):
             f"the design is at revision {head}, not at {expected}; read it again, then send your change "
             f'with If-Match: "{head}"'
         )
-
-
-class KeyReused(DesignError):
-    """An Idempotency-Key came again with another request."""
-
-    def __init__(self, key: str) -> None:
-        super().__init__(f"the Idempotency-Key {key[:80]!r} was used for a different request; take a new one")
 
 
 class NotConverged(DesignError):

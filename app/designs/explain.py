@@ -9,8 +9,8 @@ import numpy as np
 from app.calculations import rendering
 from app.designs.analyses import measured_unit
 from app.designs.calculate import Calculation
-from app.designs.errors import NotFound
 from app.designs.graph import SOLID
+from app.storage.errors import NotFound
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Derived, Formula
 from templates.core.paper.schema import formula_on_paper

@@ -14,6 +14,7 @@ from app.designs.graph import Catalogues, build_graph, raise_if
 from app.designs.service import analysed, built, read_document, resolved, starts
 from app.designs.worksheet import previewed
 from app.presentation.units import System, converted
+from app.solids import measures
 from app.storage.database import Database
 from templates.core.errors import Fault
 
@@ -121,7 +122,7 @@ def _model_parameters(old: Calculation, new: Calculation, mismatched: Mapping[st
 
 def _parameters(calculation: Calculation, model: str) -> dict[str, Any]:
     shape = calculation.shapes.get(model)
-    return results.parameters(shape) if shape else {}
+    return measures.parameters(shape) if shape else {}
 
 
 def _status(new: Calculation, model: str, name: str, before: Any, after: Any, mismatch: bool) -> str:

@@ -8,7 +8,6 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.api.problems import describe
 from app.calculations.steps import Steps, calling
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
@@ -65,7 +64,7 @@ class Regeneration:
             with calling(self.steps, f"design:{id}"):
                 calculation, rounds = self._settled(document, context)
         except FAILURES as error:
-            raise JobFailed(describe(error)) from error
+            raise JobFailed(error) from error
         told = results.told(calculation, rounds)
         models = results.models(calculation)
 

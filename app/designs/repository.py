@@ -1,19 +1,18 @@
-"""All SQL of designs, revisions and builds."""
+"""All SQL of designs and revisions."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.designs.errors import NotFound
 from app.designs.results import ModelState
-from app.storage.clock import operated
+from app.storage.errors import NotFound
 from app.storage.identity import new_id, now
-from app.storage.tables import ArtifactRow, BuildRow, DesignRow, RevisionModelRow, RevisionRow
+from app.storage.tables import BuildRow, DesignRow, RevisionModelRow, RevisionRow
 
 
 @dataclass(frozen=True)
@@ -147,56 +146,6 @@ def delete(session: Session, id: str) -> None:
     design(session, id).deleted = now()
 
 
-def build(session: Session, key: str) -> BuildRow | None:
-    """A build by its key, if it was made."""
-    return session.get(BuildRow, key)
-
-
-def artifact(session: Session, key: str, kind: str) -> ArtifactRow | None:
-    """One artifact of a build, if it was made."""
-    return session.get(ArtifactRow, (key, kind))
-
-
-def artifact_named(session: Session, sha256: str) -> ArtifactRow | None:
-    """An artifact by the hash of its bytes; several builds may have files of equal bytes."""
-    return session.scalar(select(ArtifactRow).where(ArtifactRow.sha256 == sha256).limit(1))
-
-
-def artifacts(session: Session, key: str | None) -> dict[str, str]:
-    """The SHA-256 of every artifact of a build, by kind."""
-    rows = session.scalars(select(ArtifactRow).where(ArtifactRow.build_key == key))
-    return {row.kind: row.sha256 for row in rows}
-
-
-def add_build(
-    session: Session,
-    key: str,
-    model: str,
-    version: int,
-    parameters: dict[str, Any],
-    measured: dict[str, Any],
-    made_by: str,
-) -> None:
-    """Record a build; the same build made twice is one."""
-    row = BuildRow(
-        key=key,
-        model=model,
-        version=version,
-        parameters=parameters,
-        measurements=measured,
-        created=now(),
-        operated=operated(session),
-        made_by=made_by,
-    )
-    session.merge(row)
-    session.flush()
-
-
-def add_artifact(session: Session, key: str, kind: str, sha256: str, size: int) -> None:
-    """Record an artifact of a build."""
-    session.merge(ArtifactRow(build_key=key, kind=kind, sha256=sha256, size=size, created=now()))
-
-
 def newest_good(session: Session, id: str, model: str, until: int) -> RevisionModelRow | None:
     """The newest revision, up to this one, whose model of this name was built and accepted."""
     query = (
@@ -222,15 +171,3 @@ def changed_since_good(session: Session, id: str, number: int) -> list[str]:
         before = good.parameters if good else {}
         changed += (f"{model.name}.{n}" for n, v in model.parameters.items() if before.get(n) != v)
     return changed
-
-
-def users_of(session: Session, key: str) -> list[Mapping[str, Any]]:
-    """The revisions that use a build, oldest first, and whether each is its design's newest."""
-    query = (
-        select(RevisionModelRow.design_id, RevisionModelRow.number, DesignRow.head)
-        .join(DesignRow, DesignRow.id == RevisionModelRow.design_id)
-        .where(RevisionModelRow.build_key == key)
-        .order_by(RevisionModelRow.design_id, RevisionModelRow.number)
-    )
-    rows = session.execute(query).all()
-    return [{"design": id, "revision": number, "current": number == head} for id, number, head in rows]

@@ -19,6 +19,7 @@ from app.designs.graph import Catalogues, Graph, build_graph, raise_if
 from app.designs.repository import Written
 from app.jobs.service import Jobs
 from app.solids import analysis_rows as analyses
+from app.solids import rows
 from app.solids.ages import renew
 from app.solids.questions import Question, under_load
 from app.storage.database import Database
@@ -260,7 +261,7 @@ def built(database: Database) -> Measured:
 
     def measured(shape: CadModel) -> Measures | None:
         with database.read() as session:
-            row = repository.build(session, build_key(shape))
+            row = rows.build(session, build_key(shape))
             return row.measurements["measures"] if row else None
 
     return measured

@@ -6,9 +6,10 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.designs import repository, results
-from app.designs.errors import NotFound
+from app.designs import repository
+from app.solids import measures, rows
 from app.solids.models import File
+from app.storage.errors import NotFound
 from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow
 
 STEP = "step"
@@ -77,7 +78,7 @@ def _model(session: Session, row: RevisionModelRow) -> dict[str, Any]:
         "parameters": row.parameters,
         "relations": row.relations,
         "build": row.build_key,
-        "artifacts": repository.artifacts(session, row.build_key),
+        "artifacts": rows.artifacts(session, row.build_key),
     }
 
 
@@ -89,12 +90,12 @@ def measurements(session: Session, id: str) -> dict[str, Any]:
         good = repository.newest_good(session, id, model.name, head.number)
         if good is None or good.build_key is None:
             continue
-        row = repository.build(session, good.build_key)
+        row = rows.build(session, good.build_key)
         assert row is not None
         told[model.name] = {
             "revision": good.number,
             "build": row.key,
-            **results.measurements(**row.measurements),
+            **measures.measurements(**row.measurements),
             "analyses": _analyses(repository.revision(session, id, good.number), model.name),
         }
     return told
@@ -128,7 +129,7 @@ def good_model(session: Session, id: str, name: str | None, number: int | None) 
         found = repository.newest_good(session, id, wanted, head.number)
     else:
         found = next(model for model in head.models if model.name == wanted)
-        found = found if repository.build(session, found.build_key or "") else None
+        found = found if rows.build(session, found.build_key or "") else None
     if found is None:
         raise NotFound(f"design {id}: {wanted} has no finished solid yet; {_why(head)}")
     return found
@@ -144,5 +145,5 @@ def _why(row: RevisionRow) -> str:
 
 def file(session: Session, model: RevisionModelRow, kind: str) -> File | None:
     """A file of a model's build, or None if it is not made yet."""
-    row = repository.artifact(session, model.build_key or "", kind)
+    row = rows.artifact(session, model.build_key or "", kind)
     return File(kind, row.sha256) if row else None

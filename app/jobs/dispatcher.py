@@ -176,7 +176,7 @@ class Dispatcher:
         except JobCrashed as error:
             self._crashed(job, context, error)
         except JobFailed as verdict:
-            self._fail(job, context, verdict.problem, verdict.completion)
+            self._fail(job, context, self._describe(verdict.cause), verdict.completion)
         except (DeadlineExceeded, MemoryExceeded) as error:
             self._fail(job, context, self._describe(error))
         except Exception as error:

@@ -5,11 +5,10 @@ JobError
  ├── JobFinished    the job has ended, so it cannot be cancelled
  ├── JobShared      several clients wait for the job, so a further one cannot cancel it
  ├── QueueFull      too many jobs are waiting
- └── JobFailed      raised by a handler: the job ends with this problem
+ └── JobFailed      raised by a handler: the job ends with this error
 """
 
 from collections.abc import Callable
-from typing import Any
 
 from sqlalchemy.orm import Session
 
@@ -55,9 +54,9 @@ class QueueFull(JobError):
 
 
 class JobFailed(JobError):
-    """A handler's verdict: the job ends with this problem, and `completion` runs in the same transaction."""
+    """A handler's verdict: the job ends by an error, and `completion` runs in the same transaction."""
 
-    def __init__(self, problem: dict[str, Any], completion: Callable[[Session], None] | None = None) -> None:
-        super().__init__(problem)
-        self.problem = problem
+    def __init__(self, cause: Exception, completion: Callable[[Session], None] | None = None) -> None:
+        super().__init__(cause)
+        self.cause = cause
         self.completion = completion

@@ -1,4 +1,4 @@
-"""Jinja as pages and report use it: everything is escaped, formulas become MathML, numbers are aligned."""
+"""Jinja as pages and reports use it: everything is escaped, formulas become MathML, numbers are aligned."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ def isolated(text: object) -> Markup:
     return Markup("<bdi>{}</bdi>").format(balanced(str(text)))
 
 
-def pages(*more: Path) -> Environment:
-    """The environment of the pages; `more` folders hold pages of other parts."""
-    made = Environment(
-        loader=FileSystemLoader([PAGES, *more]),
+def environment(folder: Path) -> Environment:
+    """Jinja for the pages in a folder, which may extend the frame of every page, `base.html`."""
+    jinja = Environment(
+        loader=FileSystemLoader([PAGES, folder]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -57,5 +57,5 @@ def pages(*more: Path) -> Environment:
         "rough": numbers.rough,
         "told": numbers.told,
     }
-    made.filters.update(filters)
-    return made
+    jinja.filters.update(filters)
+    return jinja

@@ -5,17 +5,11 @@ Values are calculated in SI whatever is shown; what was typed is never converted
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
-
-from fastapi import Query
+from typing import Any, Literal
 
 from templates.core.units.units import unit
 
 System = Literal["si", "us"]
-Units = Annotated[
-    System, Query(description="`us`: lengths in inches, forces in pounds, … instead of as declared")
-]
-
 US = {
     "m": "ft", "mm": "inch", "um": "thou", "mm**2": "inch**2", "mm**3": "inch**3",
     "N": "lbf", "kN": "lbf", "N*m": "lbf*ft", "N/m": "lbf/inch", "N*s/m": "lbf*s/inch",

@@ -9,8 +9,8 @@ from functools import lru_cache
 from typing import Any
 
 from app.presentation import numbers
+from app.presentation.typed import text_of
 from app.presentation.units import System, converted
-from app.web.forms import text_of
 from templates.core.units.units import compatible, unit
 
 DIGITS_TYPED = 12  # of a number that a user typed: as many as are kept

@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 from sqlalchemy.orm import Session
 
-from app.designs import repository, results
+from app.designs import repository
 from app.presentation import numbers
 from app.presentation.units import System
 from app.reports.cells import Cell, shown, typed
 from app.reports.content import File, Line, Mapped, Model, Verdict, Warned
 from app.reports.steps import known, symbol_of, verdicts, version_of, words_of
 from app.reports.typesetting import DRAWING, PICTURE
+from app.solids import measures, rows
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
@@ -37,8 +38,8 @@ def model_of(
 ) -> Model:
     """One model of a revision, compared with the newest good one before it."""
     cls = known(catalogue, told)
-    row = repository.build(session, told["build"] or "")
-    measured = results.measurements(**row.measurements) if row else {}
+    row = rows.build(session, told["build"] or "")
+    measured = measures.measurements(**row.measurements) if row else {}
     before = repository.newest_good(session, design, name, number - 1)
     files = told["artifacts"]
     return Model(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from app.presentation.environment import pages
+from app.presentation.environment import environment
 from app.reports.content import Report
 
 
@@ -15,13 +15,13 @@ def display(formula: str) -> Markup:
     return Markup(formula.replace('display="inline"', 'display="block"', 1))
 
 
-environment = pages(Path(__file__).with_name("pages"))
-environment.filters["display"] = display
+jinja = environment(Path(__file__).with_name("pages"))
+jinja.filters["display"] = display
 
 
 def page(report: Report) -> str:
     """A report as HTML."""
     base = f"/api/v1/designs/{report.design}/revisions/{report.revision}"
-    return environment.get_template("report.html").render(
+    return jinja.get_template("report.html").render(
         report=report, units=report.units, path=f"{base}/report", base=base
     )

@@ -25,6 +25,7 @@ from app.reports.content import Line, Model, Report, Round, Step, Verdict
 from app.reports.models import model_of
 from app.reports.steps import step_of
 from app.reports.typesetting import DRAWING, PICTURE
+from app.solids import rows
 from app.solids.models import Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
@@ -68,8 +69,8 @@ class Reports:
         """The jobs that make what a report shows of every built model; none if all is there."""
         with self.database.read() as session:
             row = repository.revision(session, id, number)
-            keys = {m.build_key for m in row.models if m.build_key and repository.build(session, m.build_key)}
-            there = {key: repository.artifacts(session, key) for key in sorted(keys)}
+            keys = {m.build_key for m in row.models if m.build_key and rows.build(session, m.build_key)}
+            there = {key: rows.artifacts(session, key) for key in sorted(keys)}
         missing = {key: self._missing(files) for key, files in there.items()}
         return [self.models.request_files(key, kinds, client) for key, kinds in missing.items() if kinds]
 
@@ -123,7 +124,7 @@ class Reports:
         self, session: Session, id: str, number: int, name: str, told: Any, system: System, pending: bool
     ) -> Model:
         missing = self._missing(told["artifacts"])
-        has_all = not told["build"] or not repository.build(session, told["build"]) or not missing
+        has_all = not told["build"] or not rows.build(session, told["build"]) or not missing
         told = {**told, "artifacts": {k: sha for k, sha in told["artifacts"].items() if k not in missing}}
         remark = "" if has_all else (PENDING if pending else NO_PICTURE)
         return model_of(session, id, number, name, told, self.catalogues.models, system, remark)

@@ -20,7 +20,7 @@ from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE, Cell  # type: ignore[impor
 from openpyxl.styles import Font  # type: ignore[import-untyped]
 from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untyped]
 
-from app.web.forms import text_of
+from app.presentation.typed import text_of
 from templates.core.errors import FaultyText
 from templates.core.units.quantity import read_any
 from templates.core.units.relation import is_relation

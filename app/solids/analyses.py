@@ -7,11 +7,9 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.api.problems import describe
-from app.designs import repository as builds
-from app.designs.errors import NotFound
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.solids import analysis_rows as repository
+from app.solids import rows
 from app.solids.ages import is_fresh, renew
 from app.solids.analysis_views import shown
 from app.solids.builds import Builds
@@ -22,6 +20,7 @@ from app.solids.questions import Question, under_load
 from app.solids.shapes import shape_of
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.storage.errors import NotFound
 from cad.analysis.kinds import SURFACE
 from cad.errors import AnalysisError
 from cad.model import CadModel
@@ -154,7 +153,7 @@ class Analyses:
 
 
 def _model_of(session: Session, build: str) -> dict[str, Any]:
-    row = builds.build(session, build)
+    row = rows.build(session, build)
     if row is None:
         raise NotFound(f"there is no build {build[:80]!r}")
     return {"id": row.model, "version": row.version}
@@ -181,5 +180,5 @@ class ModelAnalysis:
             self.builds.make(shape, context)
             self.analysing.find(shape, question, tuple(asked["outputs"]), context)
         except (*FAILURES, AnalysisError) as error:
-            raise JobFailed(describe(error)) from error
+            raise JobFailed(error) from error
         return lambda session: f"/api/v1/analyses/{question.key(build_key(shape))}"

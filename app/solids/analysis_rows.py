@@ -8,8 +8,8 @@ from typing import Any
 from sqlalchemy import Text, select, type_coerce
 from sqlalchemy.orm import Session
 
-from app.designs.errors import NotFound
 from app.solids.questions import Question, in_order
+from app.storage.errors import NotFound
 from app.storage.identity import now
 from app.storage.tables import AnalysisRow
 from cad.analysis.kinds import STRESSES, SURFACE

@@ -14,7 +14,7 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.designs import repository, results
+from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.errors import CannotRebuild
 from app.solids.shapes import made_otherwise, shape_of
@@ -95,19 +95,19 @@ class Builds:
         if row and row.sha256 != sha:
             logger.warning("%s of build %s: artifact %s is lost, now it is %s", kind, key, row.sha256, sha)
         if row is None or row.sha256 != sha:
-            self.database.write(lambda session: repository.add_artifact(session, key, kind, sha, len(made)))
+            self.database.write(lambda session: rows.add_artifact(session, key, kind, sha, len(made)))
 
     def _row(self, key: str, kind: str) -> ArtifactRow | None:
         with self.database.read() as session:
-            return repository.artifact(session, key, kind)
+            return rows.artifact(session, key, kind)
 
     def _record(self, session: Session, shape: CadModel, made: Build, sha: str) -> None:
-        parameters = results.parameters(shape)
+        parameters = measures.parameters(shape)
         units = {name: declared.meaning.unit for name, declared in shape.inputs.items()}
         dimensions = {n: {"value": value, "unit": units[n]} for n, value in made.dimensions.items()}
         measured = {"measures": made.measures, "dimensions": dimensions}
-        repository.add_build(session, made.key, made.model, made.version, parameters, measured, MADE_BY)
-        repository.add_artifact(session, made.key, STEP, sha, len(made.step))
+        rows.add_build(session, made.key, made.model, made.version, parameters, measured, MADE_BY)
+        rows.add_artifact(session, made.key, STEP, sha, len(made.step))
 
 
 def _changed(shape: CadModel, row: ArtifactRow) -> CannotRebuild:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from app.designs import repository as builds
 from app.solids import analysis_rows as repository
+from app.solids import rows
 from app.solids.questions import Question
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
@@ -42,7 +42,7 @@ class Analysing:
         with self.database.read() as session:
             known = repository.found(session, question.key(build))
             elsewhere = repository.stresses(session, build, question)
-            step = builds.artifact(session, build, "step")
+            step = rows.artifact(session, build, "step")
         missing = [name for name in outputs if not is_known(known, name, self.store)]
         if not missing:
             return

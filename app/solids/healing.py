@@ -8,8 +8,8 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.designs import repository
 from app.solids import analysis_rows as analyses
+from app.solids import rows
 from app.solids.analyses import Analyses
 from app.solids.errors import CannotRebuild
 from app.solids.models import Models
@@ -45,7 +45,7 @@ class Healing:
             It cannot be made again under its hash; what is made instead is on its way.
         """
         with self.database.read() as session:
-            row = repository.artifact_named(session, sha)
+            row = rows.artifact_named(session, sha)
             surface = None if row else analyses.key_of_surface(session, sha)
         if row:
             return self._build(row.build_key, row.kind)
@@ -77,7 +77,7 @@ class Healing:
 
     def _needs_another(self, session: Session, key: str) -> bool:
         """Whether a build's STEP file is lost, and this program makes another build of its parameters."""
-        step = repository.artifact(session, key, "step")
+        step = rows.artifact(session, key, "step")
         if step and self.store.exists(step.sha256):
             return False
         return build_key(shape_of(session, self.models.catalogue, key)) != key

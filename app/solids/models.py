@@ -9,15 +9,14 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.api.problems import describe
-from app.designs import repository, results
-from app.designs.errors import NotFound
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.builds import Builds
 from app.solids.errors import CannotRebuild
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.storage.errors import NotFound
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
 from cad.errors import GeometryError
 from cad.export import DERIVED
@@ -52,7 +51,7 @@ class Models:
         """The job that makes a build and its files, or None if all are there."""
         key = build_key(shape)
         with self.database.read() as session:
-            there = repository.artifacts(session, key)
+            there = rows.artifacts(session, key)
             fresh = is_fresh(session, [key])
         is_there = all(kind in there and self.store.exists(there[kind]) for kind in kinds)
         if is_there and fresh:
@@ -98,22 +97,22 @@ class Models:
             If it was not made.
         """
         with self.database.read() as session:
-            row = repository.build(session, key)
+            row = rows.build(session, key)
             if row is None:
                 raise NotFound(f"there is no build {key[:80]!r}")
-            measured = results.measurements(**row.measurements)
+            measured = measures.measurements(**row.measurements)
             return {
                 "build": key,
                 "model": {"id": row.model, "version": row.version},
                 "parameters": row.parameters,
-                "artifacts": repository.artifacts(session, key),
+                "artifacts": rows.artifacts(session, key),
                 "measurements": measured,
             }
 
     def file(self, key: str, kind: str) -> File | None:
         """A file of a build, or None if it is not made yet."""
         with self.database.read() as session:
-            row = repository.artifact(session, key, kind)
+            row = rows.artifact(session, key, kind)
         return File(kind, row.sha256) if row else None
 
     def verify(self, step: bytes) -> dict[str, Any]:
@@ -129,7 +128,7 @@ class Models:
             raise NotFound("this file does not say that it is one of ours")
         told = self.show(header.build)
         with self.database.read() as session:
-            users = repository.users_of(session, header.build)
+            users = rows.users_of(session, header.build)
         intact = hashlib.sha256(step).hexdigest() == told["artifacts"]["step"]
         return {"build": header.build, "model": told["model"], "revisions": users, "intact": intact}
 
@@ -156,7 +155,7 @@ class ModelBuild:
         try:
             self.builds.make(shape, context)
         except FAILURES as error:
-            raise JobFailed(describe(error)) from error
+            raise JobFailed(error) from error
         return self._derived(key, asked["kinds"], context)
 
     def _derived(self, key: str, kinds: Iterable[str], context: JobContext) -> Completion:
@@ -166,5 +165,5 @@ class ModelBuild:
                 if kind in DERIVED:
                     self.builds.derive(key, kind, context)
         except FAILURES as error:
-            raise JobFailed(describe(error)) from error
+            raise JobFailed(error) from error
         return lambda session: f"/api/v1/builds/{key}"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from sqlalchemy.orm import Session
 
-from app.designs import repository
-from app.designs.errors import NotFound
+from app.solids import rows
 from app.solids.errors import CannotRebuild
+from app.storage.errors import NotFound
 from cad.model import CadModel
 from cad.regenerate import MADE_BY, build_key
 from templates.core.catalogue.finding import Catalogue
@@ -25,7 +25,7 @@ def shape_of(session: Session, catalogue: Catalogue[CadModel], key: str) -> CadM
     CannotRebuild
         If the model is gone, or refuses the parameters that it took.
     """
-    row = repository.build(session, key)
+    row = rows.build(session, key)
     if row is None:
         raise NotFound(f"there is no build {key[:80]!r}")
     given = {n: p if "unit" in p else p["value"] for n, p in row.parameters.items()}
@@ -42,7 +42,7 @@ def shape_of(session: Session, catalogue: Catalogue[CadModel], key: str) -> CadM
 
 def made_otherwise(session: Session, key: str, shape: CadModel) -> CannotRebuild:
     """Why a build cannot be made again by this program; the link leads to the build that it makes instead."""
-    row = repository.build(session, key)
+    row = rows.build(session, key)
     maker = (row.made_by if row else "") or OLDER
     detail = (
         f"build {key} was made by {maker}; this program ({MADE_BY}) makes another build of the same "

@@ -71,6 +71,17 @@ class DatabaseDamaged(StorageError):
         )
 
 
+class NotFound(StorageError):
+    """No row of this name or number, such as a design, a revision or a build."""
+
+
+class KeyReused(StorageError):
+    """An Idempotency-Key came again with another request."""
+
+    def __init__(self, key: str) -> None:
+        super().__init__(f"the Idempotency-Key {key[:80]!r} was used for a different request; take a new one")
+
+
 class ArtifactMissing(StorageError):
     """No artifact has this hash."""
 

@@ -11,8 +11,8 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.designs.errors import KeyReused
 from app.storage.clock import operated
+from app.storage.errors import KeyReused
 from app.storage.identity import now
 from app.storage.tables import IdempotencyRow
 

@@ -14,9 +14,10 @@ from urllib.parse import quote
 from fastapi import APIRouter, Depends, Request, Response
 
 from app.api.reading import FORM_TYPES, NotForm, check_type
+from app.presentation.typed import value_of
 from app.web.api import Api, Refused, TheApi
 from app.web.design_page import design_page
-from app.web.forms import fields, kept, patch_of, value_of
+from app.web.forms import fields, kept, patch_of
 from app.web.gallery import GALLERY
 from app.web.rendering import go
 from app.web.routes import Id, Number

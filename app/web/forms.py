@@ -9,7 +9,6 @@ the form itself (`note`) or a property of HTML's forms (`length`).
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Set
 from math import isfinite
 from typing import Any
@@ -19,6 +18,7 @@ from fastapi import Request
 from pydantic_core import from_json
 
 from app.api.reading import BodyTooLarge
+from app.presentation.typed import text_of, value_of
 
 OPTIONS = ("level", "tolerance")  # of a step, beside its inputs
 MOST_FIELDS = 20_000
@@ -37,33 +37,6 @@ async def fields(request: Request) -> dict[str, str]:
         return dict(parse_qsl(body, keep_blank_values=True, max_num_fields=MOST_FIELDS))
     except ValueError:
         raise BodyTooLarge(f"a form has at most {MOST_FIELDS} fields") from None
-
-
-def value_of(text: str) -> Any:
-    """What a field means: a text as it is; a list `[1, 2] mm`, or an object of JSON, as such."""
-    stripped = text.strip()
-    if not stripped.startswith(("[", "{")):
-        return stripped
-    end = stripped.rfind("]" if stripped[0] == "[" else "}") + 1
-    try:
-        # Not json.loads, which takes NaN for a number and does not survive deep nesting.
-        inside = from_json(stripped[:end], allow_inf_nan=False)
-        unit = stripped[end:].strip()
-    except ValueError:
-        return stripped  # the interface says what is wrong with it
-    return {"value": inside, "unit": unit} if unit else inside
-
-
-def text_of(value: Any) -> str:
-    """How a value as typed stands in a field."""
-    if value is None:
-        return ""
-    if isinstance(value, Mapping) and set(value) == {"value", "unit"}:
-        inside = value["value"] if isinstance(value["value"], str) else json.dumps(value["value"])
-        return f"{inside} {value['unit']}" if value["unit"] != "1" else inside
-    if isinstance(value, float):
-        return f"{value:.17g}" if value.is_integer() else repr(value)
-    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
 
 
 def patch_of(design: Mapping[str, Any], typed: Mapping[str, str]) -> dict[str, Any]:

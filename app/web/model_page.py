@@ -7,9 +7,9 @@ from typing import Any
 
 from fastapi import Request, Response
 
+from app.presentation.typed import text_of, value_of
 from app.web import sheet
 from app.web.api import Api, Refused
-from app.web.forms import text_of, value_of
 from app.web.rendering import show, units_of
 from cad.export import MEDIA_TYPES
 

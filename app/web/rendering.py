@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, get_args
 from urllib.parse import urlencode
 
 from fastapi import Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from app.presentation.environment import pages
+from app.api.gate.guard import PAGE_POLICY
+from app.presentation.environment import environment
 from app.presentation.units import System
 from app.web import plotly
 from app.web.session import keep_session
 
-POLICY = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
-"""No inline script or style, no eval, no outside address: on every page, without an exception."""
-
 HEADERS = {
-    "Content-Security-Policy": POLICY,
+    "Content-Security-Policy": PAGE_POLICY,
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "same-origin",
     "Cache-Control": "no-store",  # going back shows what is, not what was
@@ -25,8 +24,8 @@ HEADERS = {
 }
 YEAR = 365 * 24 * 3600  # s
 
-environment = pages()
-environment.globals["ids_of_styles"] = plotly.ids_of_styles
+jinja = environment(Path(__file__).with_name("pages"))
+jinja.globals["ids_of_styles"] = plotly.ids_of_styles
 
 
 def units_of(request: Request) -> System:
@@ -38,7 +37,7 @@ def units_of(request: Request) -> System:
 def show(request: Request, name: str, status: int = 200, **context: Any) -> Response:
     """A page."""
     units = units_of(request)
-    page = environment.get_template(name)
+    page = jinja.get_template(name)
     told = page.render(units=units, path=request.url.path, query=_beside_units(request), **context)
     answer = HTMLResponse(told, status, headers=HEADERS)
     if "units" in request.query_params:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.presentation import numbers
-from app.web.forms import OPTIONS, text_of
+from app.presentation.typed import text_of
+from app.web.forms import OPTIONS
 from templates.core.units.relation import is_relation
 
 

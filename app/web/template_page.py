@@ -7,10 +7,11 @@ from typing import Any
 
 from fastapi import Request, Response
 
+from app.presentation.typed import value_of
 from app.web import sheet
 from app.web.accuracy import table
 from app.web.api import Api, Refused
-from app.web.forms import OPTIONS, option_of, value_of
+from app.web.forms import OPTIONS, option_of
 from app.web.pictures import pictures
 from app.web.rendering import show, units_of
 

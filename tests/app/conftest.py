@@ -39,7 +39,7 @@ def served(tmp_path_factory):
     )
     with serving(settings) as server:
         # Answers may take 5 s; on a busy machine the calculation processes take as long to be there.
-        server.app.state.calculations.submit("tests", os.getpid).future.result(60)
+        server.app.state.services.calculations.submit("tests", os.getpid).future.result(60)
         yield server
 
 

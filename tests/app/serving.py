@@ -176,7 +176,7 @@ class Served:
 
     @property
     def jobs(self):
-        return self.app.state.jobs
+        return self.app.state.services.jobs
 
 
 @contextmanager

@@ -304,7 +304,7 @@ class TestRuns:
         none = {"value": None, "unit": "MPa", "error": 0.2, "reason": "it has no limit", "level": None}
         none["convergence"] = [{"elements": 100, "value": 1.0}, {"elements": 200, "value": 1.2}]
         asked = question("torsion", Options(level="coarse"))
-        served.app.state.database.write(
+        served.app.state.services.database.write(
             lambda session: repository.add(session, key, asked, {"maximum_stress": none})
         )
         document = train("19 mm", "5 kN*m/rad")

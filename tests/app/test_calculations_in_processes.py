@@ -47,7 +47,7 @@ def settings(tmp_path_factory, log):
 @pytest.fixture(scope="module")
 def server(settings):
     with serving(settings) as server:
-        pool = server.app.state.calculations
+        pool = server.app.state.services.calculations
         assert pool.submit("tests", os.getpid).future.result(60) != os.getpid()  # they have been imported
         yield server
 
@@ -62,7 +62,7 @@ def http(server):
 def quiet(server, log):
     log.write_text("")
     yield
-    pool = server.app.state.calculations
+    pool = server.app.state.services.calculations
     assert eventually(lambda: pool.running == pool.waiting == 0, 20)
 
 

@@ -131,10 +131,10 @@ class TestServe:
         assert f"{server.port}/docs" in server.log.read_text()
 
     def test_a_second_server_on_one_folder_is_refused(self, served):
-        refused = run("serve", "--data", str(served.app.state.settings.data))
+        refused = run("serve", "--data", str(served.app.state.services.settings.data))
         assert refused.exit_code == 1
         assert refused.output.startswith("Error: ")
-        assert str(served.app.state.settings.data) in refused.output
+        assert str(served.app.state.services.settings.data) in refused.output
 
     def test_a_folder_that_is_a_file(self, tmp_path):
         (tmp_path / "file").write_text("")

@@ -42,7 +42,7 @@ DAMAGES = pytest.mark.parametrize("damage", [delete, flip, truncate, replace_by_
 
 
 def place(served, sha):
-    return served.app.state.store.folder / sha[:2] / sha
+    return served.app.state.services.store.folder / sha[:2] / sha
 
 
 def files(http, design):
@@ -91,7 +91,7 @@ class TestServed:
         flip(place(served, sha))
         damaged = place(served, sha).read_bytes()
         http.get(f"{API}/artifacts/{sha}", headers=WAIT)
-        aside = served.app.state.store.folder.glob(f"quarantine/{sha}.damaged-*")
+        aside = served.app.state.services.store.folder.glob(f"quarantine/{sha}.damaged-*")
         assert damaged in [path.read_bytes() for path in aside]
 
     def test_the_picture_of_a_model(self, served, http):
@@ -157,12 +157,12 @@ class TestServed:
         assert "stiffness" in http.post(path, json=body, headers=WAIT).json()["outputs"]
 
     def test_a_damaged_file_that_no_row_names_is_not_served(self, served, http):
-        sha = served.app.state.store.put(b"nobody's")
+        sha = served.app.state.services.store.put(b"nobody's")
         flip(place(served, sha))
         problem(http.get(f"{API}/artifacts/{sha}"), 404, "no-such-artifact")
 
     def test_a_file_that_changes_after_it_was_looked_at(self, served, http, monkeypatch):
-        store = served.app.state.store
+        store = served.app.state.services.store
         sha = store.put(os.urandom(2**20))
         opening = store.open
 
@@ -191,7 +191,7 @@ class TestAnotherMaker:
         served, http, _ = own
         design = created(http, moody("12 mm"))
         sha, new = files(http, design)["step"], revision(http, design)["models"]["model"]["build"]
-        with served.app.state.database.read() as session:
+        with served.app.state.services.database.read() as session:
             assert session.scalar(select(BuildRow.made_by)) == MADE_BY
 
         def older(session):
@@ -199,7 +199,7 @@ class TestAnotherMaker:
             session.execute(update(BuildRow).values(key="0" * 64, made_by="Old Kernel 1, recipe 1"))
             session.execute(update(ArtifactRow).values(build_key="0" * 64))
 
-        served.app.state.database.write(older)
+        served.app.state.services.database.write(older)
         flip(place(served, sha))
         told = problem(http.get(f"{API}/artifacts/{sha}", headers=WAIT), 410, "artifact-gone")
         assert "Old Kernel 1, recipe 1" in told["detail"]
@@ -228,7 +228,7 @@ class TestAnotherMaker:
         served, http, _ = own
         design = created(http, moody("14 mm"))
         sha = files(http, design)["step"]
-        served.app.state.database.write(
+        served.app.state.services.database.write(
             lambda session: session.execute(update(BuildRow).values(model="gone"))
         )
         delete(place(served, sha))
@@ -240,9 +240,9 @@ class TestAnotherMaker:
         served, http, _ = own
         design = created(http, moody("15 mm"))
         first = http.get(f"{API}/designs/{design['id']}/model.png", headers=WAIT)
-        old = served.app.state.store.put(b"as an older library painted it")
+        old = served.app.state.services.store.put(b"as an older library painted it")
         change = update(ArtifactRow).where(ArtifactRow.kind == "png").values(sha256=old)
-        served.app.state.database.write(lambda session: session.execute(change))
+        served.app.state.services.database.write(lambda session: session.execute(change))
         delete(place(served, old))
         problem(http.get(f"{API}/artifacts/{old}", headers=WAIT), 410, "artifact-gone")
         assert http.get(f"{API}/designs/{design['id']}/model.png", headers=WAIT).content == first.content
@@ -255,7 +255,7 @@ class TestAnotherMaker:
             "outputs": ["surface"],
         }
         found = http.post(f"{API}/models/bar/versions/1/analyses/torsion", json=body, headers=WAIT).json()
-        served.app.state.database.write(
+        served.app.state.services.database.write(
             lambda session: session.execute(update(AnalysisRow).values(key="0" * 64))
         )
         delete(place(served, found["outputs"]["surface"]["sha256"]))
@@ -267,7 +267,7 @@ def test_damage_while_serving_is_503_and_not_ready(own):
     served, http, _ = own
     design = created(http, {"name": "bare"})
     until(lambda: http.get("/readyz").status_code == 200)  # the job processes have imported the kernel
-    served.app.state.database.write(
+    served.app.state.services.database.write(
         lambda session: session.connection().exec_driver_sql("UPDATE revision SET document = '{'")
     )
     told = problem(http.get(f"{API}/designs/{design['id']}"), 503, "database-damaged")
@@ -279,7 +279,7 @@ def test_damage_while_serving_is_503_and_not_ready(own):
 
 
 def test_a_read_verifies_by_itself(served):
-    store = served.app.state.store
+    store = served.app.state.services.store
     sha = store.put(b"read me")
     flip(place(served, sha))
     with pytest.raises(ArtifactDamaged):

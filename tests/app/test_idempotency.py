@@ -4,7 +4,7 @@ import pytest
 from serving import API, moody, problem
 from sqlalchemy import update
 
-from app.designs.errors import KeyReused
+from app.storage.errors import KeyReused
 from app.storage.idempotency import BEFORE_CLIENTS, Once
 from app.storage.tables import IdempotencyRow
 
@@ -64,5 +64,5 @@ class TestOverHttp:
     def test_a_request_of_before_the_upgrade_is_repeated_after_it(self, http, served):
         first = self.post(http, "cara", key="old-key")
         old = update(IdempotencyRow).where(IdempotencyRow.key == "old-key").values(client=BEFORE_CLIENTS)
-        served.app.state.database.write(lambda session: session.execute(old).rowcount)
+        served.app.state.services.database.write(lambda session: session.execute(old).rowcount)
         assert self.post(http, "cara", key="old-key").json()["id"] == first.json()["id"]

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
+from types import SimpleNamespace
 
 import httpx
 import pytest
@@ -43,7 +44,7 @@ def jobs(database):
 def app(jobs):
     app = FastAPI()
     app.include_router(router)
-    app.state.jobs, app.state.streams = jobs, Streams(most=5, most_of_client=5)
+    app.state.services = SimpleNamespace(jobs=jobs, streams=Streams(most=5, most_of_client=5))
     return app
 
 
@@ -181,6 +182,7 @@ SERVER = """
 import sys
 from contextlib import asynccontextmanager
 from pathlib import Path
+from types import SimpleNamespace
 import uvicorn
 from fastapi import FastAPI
 from app.api.routes.jobs import router
@@ -194,8 +196,8 @@ from app.workers.inline import Inline
 @asynccontextmanager
 async def lifespan(app):
     database = Database(sys.argv[1])
-    app.state.streams = Streams(most=5, most_of_client=5)
-    app.state.jobs = jobs = Jobs(database, Inline(), Settings(), lambda error: {})
+    jobs = Jobs(database, Inline(), Settings(), lambda error: {})
+    app.state.services = SimpleNamespace(jobs=jobs, streams=Streams(most=5, most_of_client=5))
     with on_stop_signal(jobs.drain):
         yield
     jobs.stop()

@@ -20,8 +20,9 @@ from app.designs.document import Document, merge
 from app.designs.graph import Catalogues, Graph, build_graph
 from app.designs.size import MOST_RELATION_TEXT
 from app.presentation import numbers
+from app.presentation.typed import text_of, value_of
 from app.reports.cells import clean
-from app.web.forms import kept, patch_of, text_of, value_of
+from app.web.forms import kept, patch_of
 from cad.header import LONGEST_HEADER, read_header
 from cad.part21 import description, plain, quoted, tokens
 from templates.core.catalogue.finding import Catalogue

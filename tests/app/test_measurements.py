@@ -1,6 +1,6 @@
 """What a solid measures, as the interface tells it: also of builds that an older recipe made."""
 
-from app.designs.results import measurements
+from app.solids.measures import measurements
 from cad.inspect import MEASURES
 
 ALL = {name: float(i) for i, name in enumerate(MEASURES)}

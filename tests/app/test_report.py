@@ -10,7 +10,7 @@ import pytest
 from serving import API, created, moody, paper, patched, problem
 
 from app.designs.schemas import PAPER
-from app.web.rendering import POLICY
+from app.api.gate.guard import PAGE_POLICY
 from app.workers.errors import DeadlineExceeded
 
 DESIGNS = f"{API}/designs"
@@ -182,7 +182,7 @@ class TestConditions:
 
     def test_strict_policy(self, http, bearing):
         answer = read(http, bearing)
-        assert answer.headers["content-security-policy"] == POLICY
+        assert answer.headers["content-security-policy"] == PAGE_POLICY
         page = Page(answer.text)
         assert "style" not in page.tags
         assert "script" not in page.tags
@@ -237,7 +237,7 @@ class TestPaper:
             def run(self, function, *args, limits):
                 raise DeadlineExceeded(limits.deadline)
 
-        monkeypatch.setattr(served.app.state.press, "_worker", Slow())
+        monkeypatch.setattr(served.app.state.services.press, "_worker", Slow())
         answer = http.get(f"{DESIGNS}/{bearing['id']}/report.pdf")
         assert "14 formulas" in problem(answer, 422, "unprintable")["detail"]
         assert http.get(f"{DESIGNS}/{bearing['id']}/report.html").status_code == 200

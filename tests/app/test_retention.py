@@ -282,7 +282,7 @@ class TestService:
 
     def test_a_design_whose_build_goes_while_it_is_saved_is_built_again(self, http, served, monkeypatch):
         key = revision(http, created(http, moody("31.25 mm")))["models"]["model"]["build"]
-        database, service = served.app.state.database, served.app.state.designs
+        database, service = served.app.state.database, served.app.state.services.designs
         calculated = service._written
 
         def and_then_purged(raw, note):
@@ -303,7 +303,7 @@ class TestService:
             {"parameters": {"size": "31.5 mm"}, "artifacts": []},
         )
         key = http.post(place, json=body).json()["build"]
-        database = served.app.state.database
+        database = served.app.state.services.database
         self.age(database, key)
         assert http.post(place, json=body).status_code == 200
         with database.read() as session:
@@ -314,7 +314,7 @@ class TestService:
             f"{API}/models/moody/versions/1/build",
             {"parameters": {"size": "31.75 mm"}, "artifacts": []},
         )
-        database = served.app.state.database
+        database = served.app.state.services.database
         key = http.post(place, json=body).json()["build"]
         self.age(database, key)
 

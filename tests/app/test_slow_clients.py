@@ -197,7 +197,7 @@ def test_too_many_streams_of_one_client(slow):
             with http.stream("GET", watched, headers=other) as third:
                 assert third.is_success
                 problem(http.get(watched, headers=other), 429, "too-many-streams")
-        streams, end = slow.app.state.streams, time.monotonic() + PATIENCE
+        streams, end = slow.app.state.services.streams, time.monotonic() + PATIENCE
         while streams.open:
             assert time.monotonic() < end, "the places are free again"
             time.sleep(0.01)

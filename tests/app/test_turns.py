@@ -270,7 +270,7 @@ class TestOverHttp:
 
     def client_of(self, served, answer):
         assert answer.status_code == 202, answer.text
-        with served.app.state.database.read() as session:
+        with served.app.state.services.database.read() as session:
             return session.get_one(JobRow, answer.headers["location"].rpartition("/")[2]).client
 
     def test_of_designs(self, http, served):

@@ -35,7 +35,7 @@ def test_it_can_be_stopped(watched, served):
     progress.get_by_role("button", name="Cancel").click()
     expect(progress).to_be_hidden()
     expect(watched.page.locator("[data-state]")).to_contain_text("cancelled")
-    assert eventually(lambda: served.app.state.calculations.running == 0)
+    assert eventually(lambda: served.app.state.services.calculations.running == 0)
 
 
 def test_who_types_something_else_stops_it(watched, served):
@@ -46,7 +46,7 @@ def test_who_types_something_else_stops_it(watched, served):
     watched.page.get_by_label("duration").first.fill("1 ms")
     expect(progress).to_be_hidden()
     expect(watched.page.locator("[data-state]")).to_have_text("")
-    assert eventually(lambda: served.app.state.calculations.running == 0)
+    assert eventually(lambda: served.app.state.services.calculations.running == 0)
 
 
 def test_who_leaves_the_page_stops_it(watched, served):
@@ -55,7 +55,7 @@ def test_who_leaves_the_page_stops_it(watched, served):
     watched.page.get_by_label("duration").first.fill("60 s")
     expect(progress).to_contain_text("half asleep")
     watched.open("/templates/third/1")
-    assert eventually(lambda: served.app.state.calculations.running == 0)
+    assert eventually(lambda: served.app.state.services.calculations.running == 0)
 
 
 def test_a_page_whose_address_asks_for_a_long_calculation_follows_it(watched):

@@ -7,9 +7,10 @@ from browsing import created, settled
 from patience import until
 from sqlalchemy import text
 
+from app.api.gate.guard import PAGE_POLICY
 from app.presentation.numbers import aligned, percent, told, unit
-from app.web.forms import kept, patch_of, text_of, value_of
-from app.web.rendering import POLICY
+from app.presentation.typed import text_of, value_of
+from app.web.forms import kept, patch_of
 from templates.physics.films.reynolds import extrapolated_film
 
 HOSTILE = "<script>alert(1)</script>&\"'"
@@ -29,9 +30,9 @@ def test_a_page_is_shown_under_the_strict_policy(http, path):
     answer = http.get(path)
     assert answer.status_code == 200
     assert answer.headers["content-type"].startswith("text/html")
-    assert answer.headers["content-security-policy"] == POLICY
-    assert POLICY.startswith("default-src 'self';")
-    assert "unsafe" not in POLICY
+    assert answer.headers["content-security-policy"] == PAGE_POLICY
+    assert PAGE_POLICY.startswith("default-src 'self';")
+    assert "unsafe" not in PAGE_POLICY
     assert 'style="' not in answer.text
     assert "<script>" not in answer.text
 
@@ -281,7 +282,7 @@ def test_a_revision_made_by_an_older_recipe_gives_its_other_files(http, served, 
         for statement in statements:
             session.execute(text(statement), {n: v for n, v in names.items() if f":{n}" in statement})
 
-    served.app.state.database.write(age)
+    served.app.state.services.database.write(age)
     answer = http.get(f"/api/v1{paper}/model.stl", headers={"Prefer": "wait=60"})
     assert (answer.status_code, answer.headers["content-type"]) == (200, "model/stl")
 

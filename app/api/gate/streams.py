@@ -4,12 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
-from collections.abc import AsyncIterator
-from typing import Annotated
 
-from fastapi import Depends, Request
-
-from app.api.gate.clients import TheClient
 from app.api.reading import HttpError
 
 
@@ -48,16 +43,3 @@ class Streams:
             self.open[client] -= 1
             if not self.open[client]:
                 del self.open[client]
-
-
-async def one_stream(request: Request, client: TheClient) -> AsyncIterator[None]:
-    """Hold a place for a stream, from before its first byte to its end."""
-    streams: Streams = request.app.state.streams
-    streams.enter(client)
-    try:
-        yield
-    finally:
-        streams.leave(client)
-
-
-OneStream = Annotated[None, Depends(one_stream)]

@@ -11,17 +11,17 @@ from fastapi.responses import JSONResponse
 from starlette.concurrency import run_in_threadpool
 
 from app.api import problems
-from app.api.dependencies import TheAnalyses, TheCatalogues, TheHealing, TheJobs, TheStore
+from app.api.dependencies import TheAnalyses, TheCatalogues, TheHealing, TheJobs, TheStore, Units
 from app.api.gate.clients import TheClient
 from app.api.reading import StrictRoute
 from app.api.routes.models import FOR_EVER
 from app.api.routes.templates import Number
 from app.api.stored import UNAVAILABLE, StoredFile, lost
 from app.api.waiting import LATER, accepted, finished
-from app.designs.errors import NotFound
-from app.presentation.units import System, Units, converted
+from app.presentation.units import System, converted
 from app.solids.questions import DEAR, faults, in_order, load_faults, load_of, no_shaft, offered, question
 from app.solids.schemas import AnalysisIn, SurfaceOut
+from app.storage.errors import NotFound
 from cad.analysis.kinds import KINDS
 from cad.model import CadModel
 from templates.core.errors import Fault, InvalidInputs

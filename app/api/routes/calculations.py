@@ -14,8 +14,7 @@ from fastapi import APIRouter, Header, Request, Response
 from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
 
-from app.api.answering import Answering, TheAnswering
-from app.api.dependencies import TheCatalogues
+from app.api.dependencies import TheAnswering, TheCatalogues, Units, services_of
 from app.api.reading import StrictRequest, StrictRoute
 from app.api.routes.templates import Id, Number
 from app.api.waiting import LATER
@@ -25,7 +24,7 @@ from app.calculations.schemas import Asked, EvaluateIn, SolveIn
 from app.calculations.service import run_evaluate, run_solve
 from app.calculations.size import points
 from app.calculations.worksheet import run_worksheet
-from app.presentation.units import System, Units
+from app.presentation.units import System
 
 LONGEST_ID, PLAIN_NUMBER = 64, re.compile("[1-9][0-9]{0,5}")
 FEW = 100  # points and names that are taken in the event loop, if every level is quick: a thread costs more
@@ -50,8 +49,7 @@ class LargeRoute(StrictRoute):
             return None
         id, number = request.path_params["id"], int(request.path_params["number"])
         question = Question(id, number, self.path.rpartition("/")[2], await request.body(), system)
-        answering: Answering = request.app.state.answering
-        return await answering.answer(request, question)
+        return await services_of(request).answering.answer(request, question)
 
 
 class PlainRoute(LargeRoute):
@@ -71,9 +69,9 @@ class PlainRoute(LargeRoute):
             body = self.asked.model_validate(await request.json())
         except ValueError:  # no JSON, or not what is asked for
             return None
-        id, number, state = request.path_params["id"], request.path_params["number"], request.app.state
+        id, number, services = request.path_params["id"], request.path_params["number"], services_of(request)
         answer: Response = await self.endpoint(
-            id, int(number), body, state.catalogues, state.answering, request
+            id, int(number), body, services.catalogues, services.answering, request
         )
         return answer
 

@@ -8,8 +8,7 @@ from fastapi import APIRouter, Depends
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
-from app.api.dependencies import TheDesigns, TheJobs
-from app.api.gate.streams import OneStream
+from app.api.dependencies import OneStream, TheDesigns, TheJobs
 from app.api.reading import StrictRoute
 from app.api.routes.designs import Id, show_design
 

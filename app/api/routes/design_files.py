@@ -18,7 +18,7 @@ from app.api.routes.models import send_file
 from app.api.stored import UNAVAILABLE, lost
 from app.api.waiting import LATER, accepted, accepted_kinds, finished
 from app.designs import views
-from app.designs.errors import NotFound
+from app.storage.errors import NotFound
 from cad.export import MEDIA_TYPES
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)

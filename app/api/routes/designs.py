@@ -9,18 +9,26 @@ from fastapi.responses import JSONResponse
 from pydantic import WithJsonSchema
 from starlette.concurrency import run_in_threadpool
 
-from app.api.dependencies import TheCatalogues, TheDatabase, TheDesigns, TheJobs, TheOnce
+from app.api.dependencies import (
+    ExpensiveSteps,
+    TheCatalogues,
+    TheDatabase,
+    TheDesigns,
+    TheJobs,
+    TheOnce,
+    TheThreads,
+    Units,
+)
 from app.api.paging import Cursor, Limit, page
 from app.api.reading import StrictRoute
 from app.api.waiting import LATER, finished
-from app.calculations.steps import ExpensiveSteps, TheThreads
 from app.designs import repository, views
 from app.designs.explain import explain
 from app.designs.preview import preview
 from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn, RestoreIn
 from app.designs.service import Designs, Saved
 from app.jobs.service import Jobs
-from app.presentation.units import Units, converted
+from app.presentation.units import converted
 from templates.core.errors import Fault, InvalidInputs
 
 router = APIRouter(

@@ -15,8 +15,9 @@ from fastapi import APIRouter
 from pydantic import ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
+from app.api.dependencies import Units
 from app.api.reading import StrictRoute
-from app.presentation.units import Units, converted
+from app.presentation.units import converted
 from app.schemas.bounded import Bounded
 from app.schemas.values import GIVEN
 from templates.core.errors import Fault, InvalidInputs

@@ -1,12 +1,15 @@
-"""`/healthz` and `/metrics`, at the root; `/readyz` is in `app.api.readiness`."""
+"""`/healthz`, `/readyz` and `/metrics`, at the root."""
 
 from __future__ import annotations
 
+from typing import Any
+
 from fastapi import APIRouter, Response
-from fastapi.responses import PlainTextResponse
+from fastapi.responses import JSONResponse, PlainTextResponse
 from prometheus_client import CONTENT_TYPE_LATEST
 
-from app.api.dependencies import TheDatabase, TheJobs
+from app.api import problems
+from app.api.dependencies import TheDatabase, TheJobs, TheReadiness
 from app.observation import metrics
 
 router = APIRouter(tags=["health"])
@@ -16,6 +19,18 @@ router = APIRouter(tags=["health"])
 async def healthz() -> dict[str, str]:
     """The process is alive."""
     return {"status": "ok"}
+
+
+@router.get("/readyz", responses={503: {"description": "not ready; `errors` names each check that fails"}})
+async def readyz(readiness: TheReadiness) -> Response:
+    """The service can write, has space, and its job processes answer. At most once a second it looks anew."""
+    said = await readiness.failures()
+    listed = [{"name": n, "code": "not_ready", "detail": text} for n, text in said.items() if text]
+    if not listed:
+        return JSONResponse({"status": "ready", "checks": dict.fromkeys(said, "ok")})
+    detail = "; ".join(f"{fault['name']}: {fault['detail']}" for fault in listed)
+    about: dict[str, Any] = {**problems.problem(problems.NOT_READY, detail[:2000]), "errors": listed}
+    return problems.answer(about, {"Retry-After": "2"})
 
 
 @router.get("/metrics", name="metrics", response_class=PlainTextResponse)

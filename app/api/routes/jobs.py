@@ -7,9 +7,8 @@ from typing import Any
 from fastapi import APIRouter, Depends
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
-from app.api.dependencies import TheJobs
+from app.api.dependencies import OneStream, TheJobs
 from app.api.gate.clients import TheClient
-from app.api.gate.streams import OneStream
 from app.api.paging import Cursor, Limit, page
 from app.jobs.job import Job
 from app.jobs.schemas import JobList, JobOut

@@ -7,25 +7,22 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, Request, Response
+from fastapi import APIRouter, Header, Request, Response
 from fastapi.responses import JSONResponse
 from starlette.concurrency import run_in_threadpool
 
-from app.api.dependencies import TheJobs
+from app.api.dependencies import ExpensiveSteps, TheJobs, ThePress, TheReports, TheThreads, Units
 from app.api.gate.clients import TheClient
+from app.api.gate.guard import PAGE_POLICY
 from app.api.reading import StrictRoute
 from app.api.routes.designs import Id, Number, Prefer
 from app.api.waiting import accepted_kinds, finished
-from app.calculations.steps import ExpensiveSteps, TheThreads
-from app.designs.errors import NotFound
 from app.jobs.service import Jobs
-from app.presentation.units import Units
 from app.reports import tables
 from app.reports.content import Report
-from app.reports.paper import Press
 from app.reports.screen import page
 from app.reports.service import Reports, tag
-from app.web.rendering import POLICY
+from app.storage.errors import NotFound
 
 router = APIRouter(
     prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
@@ -49,18 +46,6 @@ def _described(kinds: Mapping[str, str], *, later: bool = False) -> dict[str, An
     return {"response_class": Response, "responses": {200: {"content": content}, **unchanged, **more}}
 
 
-async def get_reports(request: Request) -> Reports:
-    """The reports."""
-    return request.app.state.reports  # type: ignore[no-any-return]
-
-
-async def get_press(request: Request) -> Press:
-    """What sets reports on paper."""
-    return request.app.state.press  # type: ignore[no-any-return]
-
-
-TheReports = Annotated[Reports, Depends(get_reports)]
-ThePress = Annotated[Press, Depends(get_press)]
 Accept = Annotated[str | None, Header(description="the kind wanted; the first if none is known")]
 IfNoneMatch = Annotated[str | None, Header(description="the ETag of a report that is at hand")]
 
@@ -147,7 +132,7 @@ def _headers(told: Report, kind: str, job: str | None) -> dict[str, str]:
         "Design-Revision": str(told.revision),
         "Vary": "Accept",
         "Cache-Control": "no-store" if job else "no-cache",
-        "Content-Security-Policy": POLICY,
+        "Content-Security-Policy": PAGE_POLICY,
         "X-Content-Type-Options": "nosniff",
         "Content-Disposition": f'inline; filename="{name}"',
     }

@@ -1,0 +1,46 @@
+"""All that the routes use, made once in `app.assembly` and kept in `app.state.services`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.api.answering import Answering
+from app.api.gate.streams import Streams
+from app.api.readiness import Readiness
+from app.api.threads import Threads
+from app.calculations.pool import CalculationPool
+from app.calculations.steps import Steps
+from app.designs.graph import Catalogues
+from app.designs.service import Designs
+from app.jobs.service import Jobs
+from app.reports.paper import Press
+from app.reports.service import Reports
+from app.settings import Settings
+from app.solids.analyses import Analyses
+from app.solids.healing import Healing
+from app.solids.models import Models
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+
+
+@dataclass(frozen=True)
+class Services:
+    """What the service consists of; each part ends with the application."""
+
+    settings: Settings
+    catalogues: Catalogues
+    database: Database
+    store: ArtifactStore
+    jobs: Jobs
+    calculations: CalculationPool
+    steps: Steps
+    threads: Threads
+    answering: Answering
+    designs: Designs
+    models: Models
+    analyses: Analyses
+    healing: Healing
+    reports: Reports
+    press: Press
+    streams: Streams
+    readiness: Readiness

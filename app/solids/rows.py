@@ -1,0 +1,75 @@
+"""All SQL of builds and their artifacts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.storage.clock import operated
+from app.storage.identity import now
+from app.storage.tables import ArtifactRow, BuildRow, DesignRow, RevisionModelRow
+
+
+def build(session: Session, key: str) -> BuildRow | None:
+    """A build by its key, if it was made."""
+    return session.get(BuildRow, key)
+
+
+def artifact(session: Session, key: str, kind: str) -> ArtifactRow | None:
+    """One artifact of a build, if it was made."""
+    return session.get(ArtifactRow, (key, kind))
+
+
+def artifact_named(session: Session, sha256: str) -> ArtifactRow | None:
+    """An artifact by the hash of its bytes; several builds may have files of equal bytes."""
+    return session.scalar(select(ArtifactRow).where(ArtifactRow.sha256 == sha256).limit(1))
+
+
+def artifacts(session: Session, key: str | None) -> dict[str, str]:
+    """The SHA-256 of every artifact of a build, by kind."""
+    rows = session.scalars(select(ArtifactRow).where(ArtifactRow.build_key == key))
+    return {row.kind: row.sha256 for row in rows}
+
+
+def add_build(
+    session: Session,
+    key: str,
+    model: str,
+    version: int,
+    parameters: dict[str, Any],
+    measured: dict[str, Any],
+    made_by: str,
+) -> None:
+    """Record a build; the same build made twice is one."""
+    row = BuildRow(
+        key=key,
+        model=model,
+        version=version,
+        parameters=parameters,
+        measurements=measured,
+        created=now(),
+        operated=operated(session),
+        made_by=made_by,
+    )
+    session.merge(row)
+    session.flush()
+
+
+def add_artifact(session: Session, key: str, kind: str, sha256: str, size: int) -> None:
+    """Record an artifact of a build."""
+    session.merge(ArtifactRow(build_key=key, kind=kind, sha256=sha256, size=size, created=now()))
+
+
+def users_of(session: Session, key: str) -> list[Mapping[str, Any]]:
+    """The revisions that use a build, oldest first, and whether each is its design's newest."""
+    query = (
+        select(RevisionModelRow.design_id, RevisionModelRow.number, DesignRow.head)
+        .join(DesignRow, DesignRow.id == RevisionModelRow.design_id)
+        .where(RevisionModelRow.build_key == key)
+        .order_by(RevisionModelRow.design_id, RevisionModelRow.number)
+    )
+    rows = session.execute(query).all()
+    return [{"design": id, "revision": number, "current": number == head} for id, number, head in rows]
