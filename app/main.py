@@ -8,13 +8,12 @@ from collections.abc import AsyncIterator, Iterator
 from contextlib import ExitStack, asynccontextmanager, contextmanager
 from functools import partial
 from importlib.metadata import version
-from typing import Any
 
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
 from app.api import docs, problems
-from app.api.description import describe_interface
+from app.api.description import describe_interface, operation_id
 from app.api.gate import guard, observing
 from app.api.gate.heads import HeadLimit
 from app.api.gate.stopping import StoppingAnswer
@@ -37,6 +36,7 @@ from app.api.routes.templates import router as catalogue
 from app.assembly import assemble
 from app.hosts import Hosts
 from app.jobs.shutdown import on_stop_signal
+from app.schemas.problems import PROBLEM_CONTENT
 from app.settings import Settings
 from app.web import assembly as pages
 
@@ -71,9 +71,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         redoc_url=None,
         telemetry={"tracing": False, "metrics": False, "logs": False},  # /metrics counts
         swagger_ui_parameters={"validatorUrl": None},  # the default one asks an outside address
-        responses={
-            "4XX": {"description": "a problem", "content": {problems.MEDIA_TYPE: {"schema": PROBLEM}}}
-        },
+        responses={"4XX": {"description": "a problem", "content": PROBLEM_CONTENT}},
+        generate_unique_id_function=operation_id,
     )
     # Routers are tried one after another; that of `evaluate`, which is called most, is the first.
     for router in (
@@ -131,23 +130,3 @@ def _refused(error: HttpError) -> Response:
 
 def _head_too_large(told: str) -> Response:
     return _refused(HeadTooLarge(told))
-
-
-PROBLEM: dict[str, Any] = {
-    "type": "object",
-    "required": ["type", "title", "status", "detail"],
-    "properties": {
-        "type": {"type": "string"},
-        "title": {"type": "string"},
-        "status": {"type": "integer"},
-        "detail": {"type": "string"},
-        "request_id": {"type": "string", "description": "as in the header X-Request-ID and in the log"},
-        "errors": {
-            "type": "array",
-            "items": {
-                "type": "object",
-                "properties": {part: {"type": "string"} for part in ("name", "code", "detail")},
-            },
-        },
-    },
-}

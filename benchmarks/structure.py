@@ -29,7 +29,8 @@ LAYERS: tuple[frozenset[str], ...] = tuple(
         "calculations",
         "catalogue jobs",
         "observation",
-        "workers storage presentation schemas",
+        "workers storage schemas",
+        "presentation",
         "settings",
         "hosts",
     )

@@ -2,7 +2,8 @@
 
 FastAPI derives it from the routes. It is wrong in four things, which are corrected here: a parameter of
 a path, query or header has no null; a change needs If-Match; a name that does not fit the pattern of names is
-refused; `itemSchema` is OpenAPI 3.2.
+refused; `itemSchema` is OpenAPI 3.2. Problems that follow from what an operation takes are added here as well;
+a route declares those of its own.
 """
 
 from __future__ import annotations
@@ -11,12 +12,22 @@ from collections.abc import Iterator
 from typing import Any
 
 from fastapi import FastAPI
+from fastapi.routing import APIRoute
 
-NEEDED, STALE = "428", "412"
-PRECONDITIONS = {
-    STALE: "the design has changed since the revision that If-Match names",
-    NEEDED: "a change needs If-Match",
-}
+from app.schemas.problems import Fault, Problem, refusals
+
+REFERENCE = "#/components/schemas/{model}"
+
+
+def operation_id(route: APIRoute) -> str:
+    """The name of an operation in a generated client: `evaluate_template`, `show_report_of_revision_as`.
+
+    It is the name of the route's function; one that serves several paths says which.
+    """
+    if not route.name.endswith(("_report", "_worksheet", "_file")):
+        return route.name
+    ends = (("/revisions/{number}", "_of_revision"), ("/models/{name}", "_of_model"), (".{kind}", "_as"))
+    return route.name + "".join(end for part, end in ends if part in route.path)
 
 
 def describe_interface(app: FastAPI) -> dict[str, Any]:
@@ -28,6 +39,11 @@ def describe_interface(app: FastAPI) -> dict[str, Any]:
             _drop_item_schemas(operation)
             _drop_nulls(operation)
             _declare_preconditions(method, operation)
+            _declare_problems(operation)
+        schemas = app.openapi_schema["components"]["schemas"]
+        for model in (Problem, Fault):
+            schemas[model.__name__] = model.model_json_schema(ref_template=REFERENCE)
+            schemas[model.__name__].pop("$defs", None)
         for schema in app.openapi_schema["components"]["schemas"].values():
             _close(schema)
     return app.openapi_schema
@@ -60,10 +76,22 @@ def _declare_preconditions(method: str, operation: dict[str, Any]) -> None:
     if not matching:
         return
     matching[0]["required"] = method == "patch"
-    responses = operation["responses"]
-    statuses = (STALE, NEEDED) if method == "patch" else (STALE,)
-    for status in statuses:
-        responses[status] = {**responses["4XX"], "description": PRECONDITIONS[status]}
+    _refused(operation, *((412, 428) if method == "patch" else (412,)))
+
+
+def _declare_problems(operation: dict[str, Any]) -> None:
+    """What every operation refuses that takes a body or a parameter, or works with stored rows."""
+    if "requestBody" in operation:
+        _refused(operation, 408, 413, 415, 422)
+    if operation.get("parameters"):
+        _refused(operation, 422)
+    if operation["tags"] != ["health"] and operation["tags"] != ["problems"]:
+        _refused(operation, 503)
+
+
+def _refused(operation: dict[str, Any], *statuses: int) -> None:
+    for status, response in refusals(*statuses).items():
+        operation["responses"].setdefault(str(status), response)
 
 
 def _close(schema: Any) -> None:

@@ -34,6 +34,7 @@ from app.designs import errors as designs
 from app.jobs import errors as jobs
 from app.observation import logs, metrics
 from app.reports.errors import Unprintable
+from app.schemas.problems import MEDIA_TYPE, ProblemKind, refusals
 from app.solids.errors import CannotRebuild
 from app.storage import errors as storage
 from app.workers import errors as workers
@@ -42,7 +43,6 @@ from templates.core import errors as templates
 
 logger = logging.getLogger(__name__)
 
-MEDIA_TYPE = "application/problem+json"
 LONGEST_PLACE = 200  # characters of where in a body something is wrong; its names come from the client
 
 
@@ -223,16 +223,16 @@ _CARRIED: dict[type[Exception], Callable[[Any], dict[str, Any]]] = {
 router = APIRouter(tags=["problems"])
 
 
-@router.get("/problems/{slug}")
-def explain_problem(slug: str) -> dict[str, Any]:
-    """What a kind of problem means, and how to mend it."""
+@router.get("/problems/{slug}", responses=refusals(404))
+def explain_problem(slug: str) -> ProblemKind:
+    """What a kind of problem means, and what helps."""
     kinds = {
         kind.slug: kind
         for kind in (*TABLE.values(), *HTTP.values(), *BEFORE_HTTP, STOPPING, NOT_READY, REBUILDING, INTERNAL)
     }
     if slug not in kinds:
         raise HTTPException(404, f"there is no problem {slug[:60]!r}")
-    return vars(kinds[slug])
+    return ProblemKind(**vars(kinds[slug]))
 
 
 def answer(about: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:

@@ -85,7 +85,13 @@ class StrictRequest(Request):
 
 
 class StrictRoute(APIRoute):
-    """A route that checks precondition and content type, in this order, before anything else."""
+    """A route that checks precondition and content type, in this order, before anything else.
+
+    Its answers leave out the fields that nobody has set.
+    """
+
+    def __init__(self, path: str, endpoint: Callable[..., Any], **options: Any) -> None:
+        super().__init__(path, endpoint, **{**options, "response_model_exclude_unset": True})
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
         """FastAPI's handler behind the checks."""

@@ -13,6 +13,7 @@ from starlette.types import Message, Receive, Scope, Send
 from app.api import problems
 from app.api.waiting import finished
 from app.jobs.service import Jobs
+from app.schemas.problems import refusals
 from app.solids.healing import Healing, other_bytes
 from app.storage.artifacts import ArtifactStore
 from app.storage.errors import ArtifactDamaged
@@ -21,10 +22,7 @@ from app.storage.verified import Opened
 RETRY_AFTER = 2  # s
 GONE = 410
 
-UNAVAILABLE: dict[int | str, dict[str, object]] = {
-    410: {"description": "the file is lost and cannot be made again under its hash; the problem says why"},
-    503: {"description": "the file is being made again: retry after `Retry-After`; its job is in `Location`"},
-}
+UNAVAILABLE = refusals(410, 503)
 """What a route that serves stored files says of its answers."""
 
 

@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Any
 
 from fastapi import Request
-from fastapi.responses import JSONResponse, Response
+from fastapi.responses import Response
 
 from app.jobs.service import Jobs
+from app.schemas.answers import Accepted, Answer
 
 LONGEST = 60.0  # s
 LATER: dict[int | str, dict[str, Any]] = {
-    202: {"description": "as far as it is known: the work goes on, its job is in the header Location"}
+    202: {"description": "the work goes on; its job is in the header Location", "model": Accepted}
 }
-"""What a route that may wait for a job says of its answers."""
+"""What a route says of its answers that may become a job."""
+
+
+def later(answer: type[Answer]) -> dict[int | str, dict[str, Any]]:
+    """What a route says of its answers whose 202 holds as much of the answer as there is."""
+    described = "the answer as far as it goes: the work goes on, and its job is in the header Location"
+    return {202: {"description": described, "model": answer}}
+
 
 MOST_ACCEPTED = 50  # kinds in one Accept; browsers send up to ten
 
@@ -50,7 +59,13 @@ async def client_left(request: Request) -> None:
         pass
 
 
-def accepted(job: str | None, body: dict[str, Any] | None = None) -> Response:
+def accepted(job: str | None, answer: Answer | None = None) -> Response:
     """202: the work goes on; the job is in Location."""
     place = f"/api/v1/jobs/{job}"
-    return JSONResponse(body or {"job": place}, 202, headers={"Location": place})
+    return written(answer or Accepted(job=place), 202, {"Location": place})
+
+
+def written(answer: Answer, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
+    """An answer as JSON, without the fields that it leaves out."""
+    body = answer.model_dump_json(exclude_unset=True)
+    return Response(body, status, media_type="application/json", headers=dict(headers or {}))

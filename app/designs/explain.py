@@ -81,7 +81,7 @@ class _Telling:
         name, _, kind = node.partition(SOLID)
         if not kind:
             return {"kind": "measured"}
-        return {"kind": "analysis", "analysis": self.graph.blocks[name].analyses[kind].told()}
+        return {"kind": "analysis", "analysis": self.graph.blocks[name].analyses[kind].shown()}
 
     def _declared(self, head: str, tail: str) -> dict[str, Any]:
         cls = self.graph.blocks[head].cls

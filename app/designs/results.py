@@ -40,7 +40,7 @@ def analyses(calculation: Calculation) -> dict[str, Any]:
                 build_key(calculation.shapes[block.name]),
                 question,
                 calculation.analyses.get(f"{block.name}.{kind}", {}),
-            )
+            ).model_dump(exclude_unset=True)
             for kind, question in block.analyses.items()
         }
         for block in calculation.graph.blocks.values()

@@ -95,7 +95,7 @@ def measurements(session: Session, id: str) -> dict[str, Any]:
         told[model.name] = {
             "revision": good.number,
             "build": row.key,
-            **measures.measurements(**row.measurements),
+            **measures.measurements(**row.measurements).model_dump(exclude_unset=True),
             "analyses": _analyses(repository.revision(session, id, good.number), model.name),
         }
     return told

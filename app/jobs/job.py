@@ -1,9 +1,10 @@
 """A job as its handler and the API see it."""
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
-State = Literal["queued", "running", "done", "failed", "cancelled"]
+from app.schemas.jobs import State
+
 FINAL: frozenset[State] = frozenset({"done", "failed", "cancelled"})
 
 

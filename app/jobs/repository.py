@@ -9,8 +9,9 @@ from typing import Any, cast
 from sqlalchemy import ColumnElement, and_, func, select, update
 from sqlalchemy.orm import Session
 
-from app.jobs.job import Job, State
+from app.jobs.job import Job
 from app.jobs.turns import ALL_KINDS, UNFINISHED, Lane
+from app.schemas.jobs import State
 from app.storage.clock import operated
 from app.storage.identity import new_id, now
 from app.storage.tables import JobRow

@@ -13,8 +13,9 @@ from app.jobs.context import JobContext, publish
 from app.jobs.dispatcher import FAST, SLOW, Completion, Dispatcher, FailureHook, Handler, Kind, Problem
 from app.jobs.errors import JobFailed, JobFinished, JobNotFound
 from app.jobs.events import Events
-from app.jobs.job import FINAL, Job, State
+from app.jobs.job import FINAL, Job
 from app.observation import logs
+from app.schemas.jobs import State
 from app.settings import Settings
 from app.storage.clock import operated
 from app.storage.database import Database

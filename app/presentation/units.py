@@ -39,9 +39,14 @@ def converted(told: Any, system: System) -> Any:
     return {name: converted(item, system) for name, item in told.items()}
 
 
+def shown_value(value: Any, declared: str, system: System) -> Any:
+    """A magnitude of any shape, given in a declared unit, in the unit in which it is shown."""
+    return _value(value, declared) if system == "us" and declared in US else value
+
+
 def _value(value: Any, declared: str) -> Any:
-    if isinstance(value, list):
-        return [_value(item, declared) for item in value]
+    if isinstance(value, list | tuple):
+        return type(value)(_value(item, declared) for item in value)
     if value is None:
         return None
     return float(unit(US[declared]).from_si(unit(declared).to_si(float(value))))

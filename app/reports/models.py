@@ -39,7 +39,7 @@ def model_of(
     """One model of a revision, compared with the newest good one before it."""
     cls = known(catalogue, told)
     row = rows.build(session, told["build"] or "")
-    measured = measures.measurements(**row.measurements) if row else {}
+    measured = measures.measurements(**row.measurements).model_dump(exclude_unset=True) if row else {}
     before = repository.newest_good(session, design, name, number - 1)
     files = told["artifacts"]
     return Model(

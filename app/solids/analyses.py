@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 from sqlalchemy.orm import Session
 
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.schemas.analyses import Analysis
+from app.schemas.answers import Version
 from app.solids import analysis_rows as repository
 from app.solids import rows
 from app.solids.ages import is_fresh, renew
@@ -103,15 +104,15 @@ class Analyses:
         self.jobs.wake()
         return job
 
-    def show(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> dict[str, Any]:
-        """The asked outputs, as far as they are known."""
+    def show(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> Analysis:
+        """The outputs that were asked for, as far as they are known."""
         build = build_key(shape)
         with self.database.read() as session:
             known = repository.found(session, question.key(build))
-        told = under_load(question, {name: known[name] for name in outputs if name in known})
-        return shown({"id": shape.id, "version": shape.version}, build, question, told)
+        known_outputs = under_load(question, {name: known[name] for name in outputs if name in known})
+        return shown(Version(id=shape.id, version=shape.version), build, question, known_outputs)
 
-    def show_all(self, key: str, load: float) -> dict[str, Any]:
+    def show_all(self, key: str, load: float) -> Analysis:
         """All that is known to a question about a build, under a load [N·m].
 
         Raises
@@ -124,7 +125,7 @@ class Analyses:
             question = replace(question, load=load)
             return shown(_model_of(session, build), build, question, under_load(question, known))
 
-    def of_build(self, build: str) -> list[dict[str, Any]]:
+    def of_build(self, build: str) -> list[Analysis]:
         """All that is known of a build, under 1 N·m.
 
         Raises
@@ -152,11 +153,11 @@ class Analyses:
         return File("json", known[SURFACE]["sha256"])
 
 
-def _model_of(session: Session, build: str) -> dict[str, Any]:
+def _model_of(session: Session, build: str) -> Version:
     row = rows.build(session, build)
     if row is None:
         raise NotFound(f"there is no build {build[:80]!r}")
-    return {"id": row.model, "version": row.version}
+    return Version(id=row.model, version=row.version)
 
 
 class ModelAnalysis:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
+from app.schemas.answers import Quantity, Triple
+from app.schemas.solids import BoundingBox, Inertia, Measurements
 from cad.inspect import MEASURES
 from cad.model import CadModel
 
 
 def parameters(shape: CadModel) -> dict[str, Any]:
-    """Every parameter of a model in its declared unit, defaults included."""
+    """Every parameter of a model in its declared unit, defaults included, as rows keep it."""
     return {name: shown(shape, name, value) for name, value in shape.inputs_si().items()}
 
 
@@ -24,21 +24,23 @@ def shown(shape: CadModel, name: str, si: Any) -> dict[str, Any]:
     return {"value": float(f"{meaning.scale.from_si(float(si)):.12g}"), "unit": meaning.unit}
 
 
-def measurements(measures: Mapping[str, float], dimensions: Mapping[str, Any]) -> dict[str, Any]:
-    """What a solid measures, as `GET …/measurements` shows it; builds of an older recipe measured less."""
-    told = {n: {"value": measures[n], "unit": unit} for n, unit in MEASURES.items() if n in measures}
-    inertia = ("xx", "yy", "zz", "xy", "xz", "yz")
-    return {
-        "bounding_box": {side: _vector(told, side) for side in ("low", "high")},
-        "volume": told["volume"],
-        "mass": told["mass"],
-        "centre": _vector(told, "centre"),
-        "inertia": {axes: told[f"inertia_{axes}"] for axes in inertia},
-        **{name: told[name] for name in ("polar_inertia",) if name in told},
-        "dimensions": dict(dimensions),
-    }
+def measurements(measures: Mapping[str, float], dimensions: Mapping[str, Any]) -> Measurements:
+    """What a solid measures; builds of an older recipe measured less."""
 
+    def one(name: str) -> Quantity:
+        return Quantity(value=measures[name], unit=MEASURES[name])
 
-def _vector(told: Mapping[str, Any], name: str) -> dict[str, Any]:
-    values = [told[f"{name}_{axis}"]["value"] for axis in "xyz"]
-    return {"value": np.asarray(values).tolist(), "unit": told[f"{name}_x"]["unit"]}
+    def along_axes(name: str) -> Triple:
+        x, y, z = (measures[f"{name}_{axis}"] for axis in "xyz")
+        return Triple(value=(x, y, z), unit=MEASURES[f"{name}_x"])
+
+    later = {"polar_inertia": one("polar_inertia")} if "polar_inertia" in measures else {}
+    return Measurements(
+        bounding_box=BoundingBox(low=along_axes("low"), high=along_axes("high")),
+        volume=one("volume"),
+        mass=one("mass"),
+        centre=along_axes("centre"),
+        inertia=Inertia(**{axes: one(f"inertia_{axes}") for axes in ("xx", "yy", "zz", "xy", "xz", "yz")}),
+        dimensions={name: Quantity.model_validate(size) for name, size in dimensions.items()},
+        **later,
+    )

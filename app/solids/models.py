@@ -5,11 +5,12 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 from sqlalchemy.orm import Session
 
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.schemas.answers import Shown, Version
+from app.schemas.solids import Build, BuildUse, Verification
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.builds import Builds
@@ -88,26 +89,25 @@ class Models:
         self.jobs.wake()
         return job
 
-    def show(self, key: str) -> dict[str, Any]:
+    def show(self, key: str) -> Build:
         """A build: its files and what was measured on it.
 
         Raises
         ------
         NotFound
-            If it was not made.
+            If there is none.
         """
         with self.database.read() as session:
             row = rows.build(session, key)
             if row is None:
                 raise NotFound(f"there is no build {key[:80]!r}")
-            measured = measures.measurements(**row.measurements)
-            return {
-                "build": key,
-                "model": {"id": row.model, "version": row.version},
-                "parameters": row.parameters,
-                "artifacts": rows.artifacts(session, key),
-                "measurements": measured,
-            }
+            return Build(
+                build=key,
+                model=Version(id=row.model, version=row.version),
+                parameters={name: Shown.model_validate(value) for name, value in row.parameters.items()},
+                artifacts=rows.artifacts(session, key),
+                measurements=measures.measurements(**row.measurements),
+            )
 
     def file(self, key: str, kind: str) -> File | None:
         """A file of a build, or None if it is not made yet."""
@@ -115,22 +115,23 @@ class Models:
             row = rows.artifact(session, key, kind)
         return File(kind, row.sha256) if row else None
 
-    def verify(self, step: bytes) -> dict[str, Any]:
+    def verify(self, step: bytes) -> Verification:
         """From which build a STEP file is, which revisions use it, and whether its bytes are still those.
 
         Raises
         ------
         NotFound
-            If it does not say, or the build is not known here.
+            If it does not say, or there is no such build here.
         """
         header = read_header(step)
         if header is None:
             raise NotFound("this file does not say that it is one of ours")
-        told = self.show(header.build)
+        build = self.show(header.build)
+        assert build.model is not None, "a recorded build has its model"
         with self.database.read() as session:
-            users = rows.users_of(session, header.build)
-        intact = hashlib.sha256(step).hexdigest() == told["artifacts"]["step"]
-        return {"build": header.build, "model": told["model"], "revisions": users, "intact": intact}
+            uses = [BuildUse.model_validate(use) for use in rows.users_of(session, header.build)]
+        intact = hashlib.sha256(step).hexdigest() == build.artifacts["step"]
+        return Verification(build=header.build, model=build.model, revisions=uses, intact=intact)
 
 
 class ModelBuild:

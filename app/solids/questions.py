@@ -86,7 +86,7 @@ class Question:
         """The question as it is kept with its answers, without the load."""
         return {name: value for name, value in asdict(self).items() if name != "load"}
 
-    def told(self) -> dict[str, Any]:
+    def shown(self) -> dict[str, Any]:
         """The question as it is shown."""
         return {**asdict(self), "load": {"value": self.load, "unit": "N*m"}}
 

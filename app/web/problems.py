@@ -10,7 +10,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
-from app.api import problems
+from app.schemas.problems import MEDIA_TYPE
 from app.web.api import BASE, Refused
 from app.web.rendering import show
 
@@ -45,7 +45,7 @@ async def _refused(request: Request, error: Exception) -> Response:
     """What the interface refused under a page."""
     assert isinstance(error, Refused)
     if not _is_page(request):
-        return JSONResponse(dict(error.problem), error.status, media_type=problems.MEDIA_TYPE)
+        return JSONResponse(dict(error.problem), error.status, media_type=MEDIA_TYPE)
     return _page(request, error.status, error.problem.get("detail", ""), error.problem.get("title"))
 
 

@@ -24,7 +24,8 @@ from app.workers.inline import Inline
 
 
 def describe(error):
-    return {"type": type(error).__name__, "detail": str(error)}
+    kind = type(error).__name__
+    return {"type": kind, "title": kind, "status": 422, "detail": str(error)}
 
 
 def handler(job, context):

@@ -139,16 +139,17 @@ def test_a_job_is_rolled_back_with_its_unit(jobs, database):
 
 def test_a_typed_failure_is_stored_with_its_completion(make, database, failures):
     def handler(job, context):
-        raise JobFailed({"type": "bore"}, lambda session: session.add(build("verdict")))
+        raise JobFailed(ValueError("bore"), lambda session: session.add(build("verdict")))
 
     jobs = make()
     jobs.register(KIND, handler, failures)
     jobs.start()
     job = ended(jobs, put(jobs, database))
-    assert (job.state, job.problem) == ("failed", {"type": "bore"})
-    assert jobs.problem(job.id) == {"type": "bore"}
+    problem = {"type": "ValueError", "detail": "bore"}
+    assert (job.state, job.problem) == ("failed", problem)
+    assert jobs.problem(job.id) == problem
     assert builds(database) == ["failure of a", "verdict"]
-    assert failures == [(job.id, {"type": "bore"})]
+    assert failures == [(job.id, problem)]
 
 
 def test_an_unexpected_failure_is_logged_and_reaches_the_hook(make, database, failures, caplog):

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Header, Path, Query, Response
-from fastapi.responses import JSONResponse
 from starlette.concurrency import run_in_threadpool
 
 from app.api import problems
@@ -17,10 +15,12 @@ from app.api.reading import StrictRoute
 from app.api.routes.models import FOR_EVER
 from app.api.routes.templates import Number
 from app.api.stored import UNAVAILABLE, StoredFile, lost
-from app.api.waiting import LATER, accepted, finished
-from app.presentation.units import System, converted
+from app.api.waiting import accepted, finished, later, written
+from app.presentation.units import System
+from app.schemas.analyses import Analysis, AnalysisList, Surface
+from app.schemas.problems import refusals
 from app.solids.questions import DEAR, faults, in_order, load_faults, load_of, no_shaft, offered, question
-from app.solids.schemas import AnalysisIn, SurfaceOut
+from app.solids.schemas import AnalysisIn
 from app.storage.errors import NotFound
 from cad.analysis.kinds import KINDS
 from cad.model import CadModel
@@ -32,8 +32,12 @@ Id = Annotated[str, Path(max_length=64, examples=["crank_throw"])]
 Kind = Annotated[str, Path(max_length=64, examples=["torsion"], description="`torsion` or `bending`")]
 
 
-@router.post("/models/{id}/versions/{number}/analyses/{kind}", responses=LATER)
-async def analyse(
+@router.post(
+    "/models/{id}/versions/{number}/analyses/{kind}",
+    response_model=Analysis,
+    responses={**later(Analysis), **refusals(404, 429)},
+)
+async def analyse_model(
     id: Id,
     number: Number,
     kind: Kind,
@@ -61,36 +65,39 @@ async def analyse(
         return accepted(job, await run_in_threadpool(analyses.show, shape, asked, ()))
     if failed := await run_in_threadpool(jobs.problem, job):
         return problems.answer(failed)
-    return JSONResponse(converted(await run_in_threadpool(analyses.show, shape, asked, outputs), units))
+    analysis = await run_in_threadpool(analyses.show, shape, asked, outputs)
+    return written(analysis.in_units(units))
 
 
-@router.get("/analyses/{key}")
+@router.get("/analyses/{key}", responses=refusals(404))
 def show_analysis(
     key: str,
     analyses: TheAnalyses,
-    load: Annotated[str, Query(max_length=60, description="under which stress is told")] = "1 N*m",
+    load: Annotated[str, Query(max_length=60, description="the load of the stress")] = "1 N*m",
     units: Units = "si",
-) -> dict[str, Any]:
-    """All that was found for one question about one solid. It was found once for all loads."""
+) -> Analysis:
+    """All outputs of one question about one solid. They were computed once for all loads."""
     wrong = load_faults(load)
-    told: dict[str, Any] = analyses.show_all(key, 1.0 if wrong else load_of(load))  # 404 comes first
+    analysis = analyses.show_all(key, 1.0 if wrong else load_of(load))  # 404 comes first
     if wrong:
         raise InvalidInputs(wrong)
-    shown: dict[str, Any] = converted(told, units)
-    return shown
+    return analysis.in_units(units)
 
 
-@router.get("/builds/{key}/analyses")
-def analyses_of_build(key: str, analyses: TheAnalyses, units: Units = "si") -> dict[str, Any]:
-    """All that was found of one solid: every question that was asked about it, its answers under 1 N·m."""
-    told: dict[str, Any] = converted({"items": analyses.of_build(key)}, units)
-    return told
+@router.get("/builds/{key}/analyses", responses=refusals(404))
+def list_analyses_of_build(key: str, analyses: TheAnalyses, units: Units = "si") -> AnalysisList:
+    """All analyses of one solid: every question that was asked about it, its answers under 1 N·m."""
+    return AnalysisList(items=analyses.of_build(key)).in_units(units)
 
 
 @router.get(
     "/analyses/{key}/surface",
-    response_model=SurfaceOut,
-    responses={304: {"description": "as it was when the ETag of If-None-Match was sent"}, **UNAVAILABLE},
+    response_model=Surface,
+    responses={
+        304: {"description": "as it was when the ETag of If-None-Match was sent"},
+        **UNAVAILABLE,
+        **refusals(404),
+    },
 )
 async def show_surface(
     key: str,
@@ -122,7 +129,8 @@ async def show_surface(
 
 
 def _converted(read: Callable[[str], bytes], sha256: str, units: System, headers: dict[str, str]) -> Response:
-    return JSONResponse(converted(json.loads(read(sha256)), units), headers=headers)
+    surface = Surface.model_validate_json(read(sha256)).in_units(units)
+    return written(surface, headers=headers)
 
 
 def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...]:

@@ -91,7 +91,7 @@ router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=P
 
 
 @router.post("/{id}/versions/{number}/evaluate", responses=LATER)
-async def evaluate(
+async def evaluate_template(
     id: Id,
     number: Number,
     body: EvaluateIn,
@@ -110,7 +110,7 @@ async def evaluate(
 
 
 @router.post("/{id}/versions/{number}/solve", responses=LATER)
-async def solve(
+async def solve_template(
     id: Id,
     number: Number,
     body: SolveIn,
@@ -131,7 +131,7 @@ worksheets = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_cla
 
 
 @worksheets.post("/{id}/versions/{number}/worksheet", response_model=None, responses=LATER)
-async def worksheet(
+async def write_worksheet(
     id: Id,
     number: Number,
     body: EvaluateIn,

@@ -20,7 +20,7 @@ BODY = {
 
 
 @router.post("/curves", openapi_extra={"requestBody": BODY})
-async def read(request: Request) -> dict[str, Any]:
+async def read_curve_table(request: Request) -> dict[str, Any]:
     """Read a table of curves, such as an indicator diagram: `{"curves": {"pressure": {"value", "unit"}}}`.
 
     The body is the file itself: a header with names and units, a row for each point. Each curve can be pasted

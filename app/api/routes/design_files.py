@@ -39,7 +39,7 @@ Accept = Annotated[str | None, Header(description=", ".join(MEDIA_TYPES.values()
 @router.get("/{id}/revisions/{number}/model.{kind}", **FILES)
 @router.get("/{id}/revisions/{number}/models/{name}/model", **FILES)
 @router.get("/{id}/revisions/{number}/models/{name}/model.{kind}", **FILES)
-async def model_file(
+async def read_model_file(
     id: Id,
     database: TheDatabase,
     store: TheStore,

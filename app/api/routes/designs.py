@@ -128,7 +128,7 @@ async def preview_design(
 
 
 @router.post("/{id}/auto-map", responses=LATER)
-async def auto_map(
+async def map_design(
     id: Id,
     designs: TheDesigns,
     threads: TheThreads,
@@ -199,7 +199,7 @@ def show_revision(id: Id, number: Number, database: TheDatabase) -> dict[str, An
 
 
 @router.get("/{id}/measurements")
-def measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str, Any]:
+def show_measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str, Any]:
     """What the newest good models measure, their dimensions read back from the STEP files."""
     with database.read() as session:
         told: dict[str, Any] = converted(views.measurements(session, id), units)

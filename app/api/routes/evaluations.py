@@ -18,7 +18,7 @@ router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
 
 
 @router.get("/{job}", responses=LATER)
-def answer(job: Annotated[str, Path(max_length=64)], jobs: TheJobs, store: TheStore) -> Response:
+def show_evaluation(job: Annotated[str, Path(max_length=64)], jobs: TheJobs, store: TheStore) -> Response:
     """What `evaluate`, `solve` or `worksheet` would have answered; 202 while the job goes on."""
     found = jobs.get(job)
     if found.kind != CALCULATION:

@@ -70,7 +70,7 @@ class FilmPressureIn(Bounded):
 
 
 @router.post("/film-pressure")
-async def film_pressure(body: FilmPressureIn, units: Units = "si") -> dict[str, Any]:
+async def show_film_pressure(body: FilmPressureIn, units: Units = "si") -> dict[str, Any]:
     """Pressure [place along the shaft][angle from the narrowest gap, in the sense of rotation]."""
     return converted(await run_in_threadpool(solved, body.inputs), units)  # type: ignore[no-any-return]
 

@@ -5,35 +5,38 @@ from __future__ import annotations
 from typing import Any
 
 from fastapi import APIRouter, Response
-from fastapi.responses import JSONResponse, PlainTextResponse
+from fastapi.responses import PlainTextResponse
 from prometheus_client import CONTENT_TYPE_LATEST
 
 from app.api import problems
 from app.api.dependencies import TheDatabase, TheJobs, TheReadiness
+from app.api.waiting import written
 from app.observation import metrics
+from app.schemas.health import Health, Ready
+from app.schemas.problems import refusals
 
 router = APIRouter(tags=["health"])
 
 
 @router.get("/healthz")
-async def healthz() -> dict[str, str]:
+async def show_health() -> Health:
     """The process is alive."""
-    return {"status": "ok"}
+    return Health(status="ok")
 
 
-@router.get("/readyz", responses={503: {"description": "not ready; `errors` names each check that fails"}})
-async def readyz(readiness: TheReadiness) -> Response:
+@router.get("/readyz", response_model=Ready, responses=refusals(503))
+async def show_readiness(readiness: TheReadiness) -> Response:
     """The service can write, has space, and its job processes answer. At most once a second it looks anew."""
     said = await readiness.failures()
     listed = [{"name": n, "code": "not_ready", "detail": text} for n, text in said.items() if text]
     if not listed:
-        return JSONResponse({"status": "ready", "checks": dict.fromkeys(said, "ok")})
+        return written(Ready(status="ready", checks=dict.fromkeys(said, "ok")))
     detail = "; ".join(f"{fault['name']}: {fault['detail']}" for fault in listed)
     about: dict[str, Any] = {**problems.problem(problems.NOT_READY, detail[:2000]), "errors": listed}
     return problems.answer(about, {"Retry-After": "2"})
 
 
-@router.get("/metrics", name="metrics", response_class=PlainTextResponse)
+@router.get("/metrics", response_class=PlainTextResponse)
 def show_metrics(database: TheDatabase, jobs: TheJobs) -> Response:
     """Figures for Prometheus."""
     with database.read() as session:

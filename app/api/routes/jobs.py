@@ -10,10 +10,13 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 from app.api.dependencies import OneStream, TheJobs
 from app.api.gate.clients import TheClient
 from app.api.paging import Cursor, Limit, page
+from app.api.reading import StrictRoute
 from app.jobs.job import Job
-from app.jobs.schemas import JobList, JobOut
+from app.schemas.jobs import Job as JobAnswer
+from app.schemas.jobs import JobList
+from app.schemas.problems import refusals
 
-router = APIRouter(prefix="/api/v1/jobs", tags=["jobs"])
+router = APIRouter(prefix="/api/v1/jobs", tags=["jobs"], route_class=StrictRoute)
 
 
 @router.get("", response_model=JobList)
@@ -22,19 +25,24 @@ def list_jobs(jobs: TheJobs, limit: Limit = 50, cursor: Cursor = None) -> dict[s
     return page(jobs.page(limit + 1, before=cursor), limit, show=lambda job: job, cursor=lambda job: job.id)
 
 
-@router.get("/{id}", response_model=JobOut)
-def read_job(id: str, jobs: TheJobs) -> Job:
+@router.get("/{id}", responses=refusals(404), response_model=JobAnswer)
+def show_job(id: str, jobs: TheJobs) -> Job:
     """Show a job."""
     return jobs.get(id)
 
 
-@router.delete("/{id}", response_model=JobOut)
+@router.delete("/{id}", responses=refusals(404, 409), response_model=JobAnswer)
 def cancel_job(id: str, jobs: TheJobs, client: TheClient) -> Job:
     """Cancel a job that is queued or running; one that another client asked for too goes on for that."""
     return jobs.cancel(id, client)
 
 
-@router.get("/{id}/events", response_class=EventSourceResponse, dependencies=[Depends(read_job)])
+@router.get(
+    "/{id}/events",
+    response_class=EventSourceResponse,
+    dependencies=[Depends(show_job)],
+    responses=refusals(404, 429),
+)
 async def watch_job(id: str, jobs: TheJobs, place: OneStream) -> AsyncIterator[ServerSentEvent]:
     """Stream the events of a job until it has ended: its state with the whole job, and its progress."""
     async with jobs.events.subscribe(f"job:{id}") as events:
@@ -49,4 +57,4 @@ async def watch_job(id: str, jobs: TheJobs, place: OneStream) -> AsyncIterator[S
 
 
 def _state(job: Job) -> ServerSentEvent:
-    return ServerSentEvent(event=job.state, data=JobOut.model_validate(job))
+    return ServerSentEvent(event=job.state, data=JobAnswer.model_validate(job))

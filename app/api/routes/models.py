@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Request, Response
-from fastapi.responses import FileResponse, JSONResponse
+from fastapi.responses import FileResponse
 from pydantic import ConfigDict, Field, WithJsonSchema
 from starlette.concurrency import run_in_threadpool
 
@@ -16,8 +16,10 @@ from app.api.paging import Cursor, Limit, page_of
 from app.api.reading import StrictRoute, require_step
 from app.api.routes.templates import Number, summary
 from app.api.stored import UNAVAILABLE, StoredFile, lost
-from app.api.waiting import LATER, accepted, finished
+from app.api.waiting import LATER, accepted, finished, later, written
 from app.schemas.bounded import Bounded
+from app.schemas.problems import refusals
+from app.schemas.solids import Build, Verification
 from app.schemas.values import Parameters
 from app.solids.questions import what_can_be_asked
 from app.storage.artifacts import ArtifactStore
@@ -89,9 +91,9 @@ def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, A
 @router.get(
     "/models/{id}/versions/{number}/picture",
     response_class=FileResponse,
-    responses={200: {"content": {"image/png": {}}}, **LATER, **UNAVAILABLE},
+    responses={200: {"content": {"image/png": {}}}, **LATER, **UNAVAILABLE, **refusals(404, 429)},
 )
-async def picture(
+async def show_picture(
     id: Id,
     number: Number,
     catalogues: TheCatalogues,
@@ -112,8 +114,12 @@ async def picture(
     return send_file(store, await run_in_threadpool(models.file, build_key(shape), "png"))
 
 
-@router.post("/models/{id}/versions/{number}/build", responses=LATER)
-async def build(
+@router.post(
+    "/models/{id}/versions/{number}/build",
+    response_model=Build,
+    responses={**later(Build), **refusals(404, 429)},
+)
+async def build_model(
     id: Id,
     number: Number,
     body: BuildIn,
@@ -134,14 +140,14 @@ async def build(
     kinds = tuple(dict.fromkeys(("step", *body.artifacts)))
     job = await run_in_threadpool(models.request, shape, kinds, client)
     if not await finished(jobs, job, prefer):
-        return accepted(job, {"build": build_key(shape), "artifacts": {}, "measurements": None})
+        return accepted(job, Build(build=build_key(shape), artifacts={}, measurements=None))
     if job and (failed := await run_in_threadpool(lambda: jobs.get(job).problem)):
         return problems.answer(failed)
-    return JSONResponse(await run_in_threadpool(models.show, build_key(shape)))
+    return written(await run_in_threadpool(models.show, build_key(shape)))
 
 
-@router.get("/builds/{key}")
-def show_build(key: str, models: TheModels) -> dict[str, Any]:
+@router.get("/builds/{key}", responses=refusals(404))
+def show_build(key: str, models: TheModels) -> Build:
     """A build: its files and what was measured on it."""
     return models.show(key)
 
@@ -149,9 +155,9 @@ def show_build(key: str, models: TheModels) -> dict[str, Any]:
 @router.get(
     "/artifacts/{sha256}",
     response_class=FileResponse,
-    responses={200: {"content": {"application/octet-stream": {}}}, **UNAVAILABLE},
+    responses={200: {"content": {"application/octet-stream": {}}}, **UNAVAILABLE, **refusals(404)},
 )
-async def artifact(
+async def read_artifact(
     sha256: str,
     store: TheStore,
     healing: TheHealing,
@@ -169,8 +175,8 @@ STEP_FILE: dict[str, Any] = {"type": "string", "format": "binary"}
 STEP_BODY: dict[str, Any] = {"content": {"model/step": {"schema": STEP_FILE}}, "required": True}
 
 
-@router.post("/verify", openapi_extra={"requestBody": STEP_BODY})
-async def verify(request: Request, models: TheModels) -> dict[str, Any]:
+@router.post("/verify", openapi_extra={"requestBody": STEP_BODY}, responses=refusals(404))
+async def verify_step(request: Request, models: TheModels) -> Verification:
     """From which build a STEP file is, and which revisions use it.
 
     The body is the file itself, sent as `model/step`; `application/step` and `application/p21` mean the same.

@@ -54,7 +54,7 @@ IfNoneMatch = Annotated[str | None, Header(description="the ETag of a report tha
 @router.get("/{id}/report.{kind}", **_described(REPORTS, later=True))
 @router.get("/{id}/revisions/{number}/report", **_described(REPORTS, later=True))
 @router.get("/{id}/revisions/{number}/report.{kind}", **_described(REPORTS, later=True))
-async def report(
+async def show_report(
     id: Id,
     reports: TheReports,
     press: ThePress,
@@ -89,7 +89,7 @@ async def report(
 @router.get("/{id}/worksheet.{kind}", **_described(TABLES))
 @router.get("/{id}/revisions/{number}/worksheet", **_described(TABLES))
 @router.get("/{id}/revisions/{number}/worksheet.{kind}", **_described(TABLES))
-async def worksheet(
+async def show_worksheet(
     id: Id,
     reports: TheReports,
     threads: TheThreads,

@@ -28,7 +28,7 @@ def list_templates(catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor
 
 
 @router.get("/{id}")
-def list_versions(id: Id, catalogues: TheCatalogues) -> dict[str, Any]:
+def list_template_versions(id: Id, catalogues: TheCatalogues) -> dict[str, Any]:
     """The versions of one template."""
     versions = list(catalogues.templates.of(id).values())
     return {
@@ -38,7 +38,7 @@ def list_versions(id: Id, catalogues: TheCatalogues) -> dict[str, Any]:
 
 
 @router.get("/{id}/versions/{number}")
-def show_version(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, Any]:
+def show_template(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, Any]:
     """One version: inputs and outputs as JSON Schema, formulas on paper, limits, references, errata."""
     cls = catalogues.templates.get(id, number)
     return {**describe(cls), "latest": cls is catalogues.templates.latest(id)}

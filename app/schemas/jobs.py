@@ -1,13 +1,18 @@
-"""Jobs as the API shows them."""
+"""Jobs as the interface shows them."""
 
-from typing import Any
+from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict, Field
+from typing import Literal
 
-from app.jobs.job import State
+from pydantic import ConfigDict, Field
+
+from app.schemas.answers import Answer, Page
+from app.schemas.problems import Problem
+
+State = Literal["queued", "running", "done", "failed", "cancelled"]
 
 
-class JobOut(BaseModel):
+class Job(Answer):
     """A piece of long work."""
 
     model_config = ConfigDict(from_attributes=True)
@@ -19,14 +24,11 @@ class JobOut(BaseModel):
     revision: int | None = Field(description="the revision of that design")
     progress: float = Field(ge=0, le=1)
     log: list[str] = Field(description="what it has done, one line a step")
-    problem: dict[str, Any] | None = Field(description="why it failed (RFC 9457)")
-    result: str | None = Field(description="link to what it has made")
+    problem: Problem | None = Field(description="why it failed")
+    result: str | None = Field(description="link to its result")
     created: str
     updated: str
 
 
-class JobList(BaseModel):
+class JobList(Page[Job]):
     """A page of jobs, newest first."""
-
-    items: list[JobOut]
-    next: str | None = Field(description="cursor of the next page")

@@ -1,0 +1,64 @@
+"""Problems (RFC 9457): the answer to every request that is refused, and how routes declare theirs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+MEDIA_TYPE = "application/problem+json"
+
+
+class Fault(BaseModel):
+    """One thing that is wrong."""
+
+    name: str = Field(description="the input, parameter or part of the request")
+    code: str
+    detail: str = Field(description="what is wrong, in which unit, and what would be right")
+
+
+class Problem(BaseModel):
+    """Why a request was refused; some kinds carry more, such as the range that a target can reach."""
+
+    model_config = ConfigDict(extra="allow")
+
+    type: str = Field(description="link to the meaning of the kind and what helps")
+    title: str
+    status: int
+    detail: str
+    request_id: str | None = Field(None, description="as in the header X-Request-ID and in the log")
+    errors: list[Fault] = Field([], description="every fault at once, where there are several")
+
+
+class ProblemKind(BaseModel):
+    """What a kind of problem means."""
+
+    slug: str
+    status: int
+    title: str
+    remedy: str
+
+
+PROBLEM_CONTENT: dict[str, Any] = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
+
+MEANINGS = {
+    400: "the host or the path cannot be read",
+    403: "a page of another site sent the request",
+    404: "there is nothing of this name, number or version",
+    408: "the body came too slowly",
+    409: "the state of the job or the design does not allow it",
+    410: "the file is lost and cannot be made again under its hash; the problem says why",
+    412: "the design has changed since the revision that If-Match names",
+    413: "the body or the answer is too large",
+    415: "the content type is not one that the path takes",
+    422: "an input is wrong; `errors` names each one",
+    428: "a change needs If-Match",
+    429: "too much is waiting; retry after `Retry-After`",
+    431: "the headers are too large",
+    503: "the service stops, its storage fails, or a file is being made again; retry after `Retry-After`",
+}
+
+
+def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Declare problems of a route, for its `responses`."""
+    return {status: {"description": MEANINGS[status], "content": PROBLEM_CONTENT} for status in statuses}

@@ -1,0 +1,75 @@
+"""Builds of CAD models as the interface shows them: parameters, files, measurements."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from app.schemas.answers import Answer, Quantity, Shown, Triple, Version
+
+
+class BoundingBox(Answer):
+    """The smallest box along the axes that holds the solid."""
+
+    low: Triple = Field(description="its corner of smallest coordinates, in mm")
+    high: Triple = Field(description="its corner of largest coordinates, in mm")
+
+
+class Inertia(Answer):
+    """The inertia tensor about the centre of mass, in kg*m**2; inertia_xy = -∫ x y dm."""
+
+    xx: Quantity
+    yy: Quantity
+    zz: Quantity
+    xy: Quantity
+    xz: Quantity
+    yz: Quantity
+
+
+class Measurements(Answer):
+    """What was measured on the finished STEP file."""
+
+    bounding_box: BoundingBox
+    volume: Quantity = Field(description="in mm**3")
+    mass: Quantity = Field(description="in kg")
+    centre: Triple = Field(description="centre of mass, in mm")
+    inertia: Inertia
+    polar_inertia: Quantity | None = Field(
+        None, description="about the z axis, in kg*m**2; builds of an older recipe do not have it"
+    )
+    dimensions: dict[str, Quantity] = Field(description="the model's dimensions, read back from the solid")
+
+
+class Build(Answer):
+    """A solid of a model: equal parameters are built once."""
+
+    build: str = Field(description="key of the build: model, version, parameters, kernel and recipe")
+    model: Version | None = Field(None, description="absent while the build goes on")
+    parameters: dict[str, Shown] | None = Field(None, description="every parameter, defaults included")
+    artifacts: dict[str, str] = Field(description="SHA-256 of every file, by kind")
+    measurements: Measurements | None = Field(description="null while the build goes on")
+
+
+class BuildUse(Answer):
+    """A revision that uses a build."""
+
+    design: str
+    revision: int
+    current: bool = Field(description="whether it is the newest revision of its design")
+
+
+class Verification(Answer):
+    """From which build a STEP file is."""
+
+    build: str
+    model: Version
+    revisions: list[BuildUse]
+    intact: bool = Field(description="whether the bytes are still those that were written")
+
+
+class Analysable(Answer):
+    """What finite elements can compute of a model's solid."""
+
+    outputs: dict[str, str | None] = Field(description="outputs with their units; a surface has none")
+    boundaries: list[str]
+    levels: list[str]
+    default_level: str
