@@ -7,25 +7,28 @@ from typing import Annotated, Any, TypeVar
 
 from fastapi import Query
 
+from app.schemas.answers import Page
+
 T = TypeVar("T")
+Pages = TypeVar("Pages", bound=Page[Any])
 
 Limit = Annotated[int, Query(ge=1, le=500, description="items in one page")]
 Cursor = Annotated[str | None, Query(max_length=200, description="`next` of the page before")]
 
 
 def page(
-    rows: Sequence[T], limit: int, show: Callable[[T], Any], cursor: Callable[[T], str]
-) -> dict[str, Any]:
+    kind: type[Pages], rows: Sequence[T], limit: int, show: Callable[[T], Any], cursor: Callable[[T], str]
+) -> Pages:
     """One page from rows of which one more than `limit` was asked for, to see whether there are more."""
     items = rows[:limit]
     following = cursor(items[-1]) if len(rows) > limit else None
-    return {"items": [show(row) for row in items], "next": following}
+    return kind(items=[show(row) for row in items], next=following)
 
 
 def page_of(
-    everything: Sequence[T], limit: int, after: str | None, show: Callable[[T], Any]
-) -> dict[str, Any]:
+    kind: type[Pages], everything: Sequence[T], limit: int, after: str | None, show: Callable[[T], Any]
+) -> Pages:
     """One page of a short list that is known whole; the cursor is the place in it."""
     start = int(after) if after and after.isdecimal() and len(after) < 9 else 0
     following = str(start + limit) if start + limit < len(everything) else None
-    return {"items": [show(row) for row in everything[start : start + limit]], "next": following}
+    return kind(items=[show(row) for row in everything[start : start + limit]], next=following)

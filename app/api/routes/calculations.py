@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from functools import cached_property
-from typing import Annotated, Any, cast, get_type_hints
+from typing import Annotated, cast, get_type_hints
 
 from fastapi import APIRouter, Header, Request, Response
 from pydantic_core import to_json
@@ -25,12 +25,15 @@ from app.calculations.service import run_evaluate, run_solve
 from app.calculations.size import points
 from app.calculations.worksheet import run_worksheet
 from app.presentation.units import System
+from app.schemas.evaluations import Evaluation, Solution, Worksheet
+from app.schemas.problems import refusals
 
 LONGEST_ID, PLAIN_NUMBER = 64, re.compile("[1-9][0-9]{0,5}")
 FEW = 100  # points and names that are taken in the event loop, if every level is quick: a thread costs more
 LARGE = 256 * 1024  # bytes of a body that is read in the process that calculates
 SYSTEMS: dict[str | None, System] = {None: "si", "si": "si", "us": "us"}
 
+DECLARED = {**LATER, **refusals(404, 429)}
 Prefer = Annotated[
     str | None, Header(description="`wait=5` or `respond-async`, for what takes long: it goes on as a job")
 ]
@@ -90,7 +93,7 @@ def _is_plain(request: Request) -> bool:
 router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=PlainRoute)
 
 
-@router.post("/{id}/versions/{number}/evaluate", responses=LATER)
+@router.post("/{id}/versions/{number}/evaluate", response_model=Evaluation, responses=DECLARED)
 async def evaluate_template(
     id: Id,
     number: Number,
@@ -109,7 +112,7 @@ async def evaluate_template(
     return _json(await run_in_threadpool(lambda: to_json(run_evaluate(cls, body))))
 
 
-@router.post("/{id}/versions/{number}/solve", responses=LATER)
+@router.post("/{id}/versions/{number}/solve", response_model=Solution, responses=DECLARED)
 async def solve_template(
     id: Id,
     number: Number,
@@ -130,7 +133,7 @@ async def solve_template(
 worksheets = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=LargeRoute)
 
 
-@worksheets.post("/{id}/versions/{number}/worksheet", response_model=None, responses=LATER)
+@worksheets.post("/{id}/versions/{number}/worksheet", response_model=Worksheet, responses=DECLARED)
 async def write_worksheet(
     id: Id,
     number: Number,
@@ -140,13 +143,13 @@ async def write_worksheet(
     request: Request,
     units: Units = "si",
     prefer: Prefer = None,
-) -> dict[str, Any] | Response:
+) -> Response:
     """Evaluate a template, with every formula written out: symbol = expression = numbers = result."""
     cls = catalogues.templates.get(id, number)
     seconds = estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs)
     if seconds + writing_seconds(cls, body.outputs) > EXPENSIVE:
         return await answering.answer(request, Question(id, number, "worksheet", await request.body(), units))
-    return await run_in_threadpool(run_worksheet, cls, body, units)
+    return _json(await run_in_threadpool(lambda: to_json(run_worksheet(cls, body, units))))
 
 
 def _json(content: bytes) -> Response:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from fastapi import APIRouter, Request
 from starlette.concurrency import run_in_threadpool
 
 from app.api.reading import NotCsv, StrictRoute
 from app.calculations.curves import read_curves
+from app.schemas.curves import Curves
 
 router = APIRouter(prefix="/api/v1", tags=["curves"], route_class=StrictRoute)
 
@@ -20,7 +19,7 @@ BODY = {
 
 
 @router.post("/curves", openapi_extra={"requestBody": BODY})
-async def read_curve_table(request: Request) -> dict[str, Any]:
+async def read_curve_table(request: Request) -> Curves:
     """Read a table of curves, such as an indicator diagram: `{"curves": {"pressure": {"value", "unit"}}}`.
 
     The body is the file itself: a header with names and units, a row for each point. Each curve can be pasted
@@ -30,4 +29,5 @@ async def read_curve_table(request: Request) -> dict[str, Any]:
     charset = extra.partition("charset=")[2].strip(' "') or "utf-8"
     if kind.strip() != "text/csv" or charset not in ("utf-8", "us-ascii"):
         raise NotCsv("send the file itself as text/csv, in UTF-8")
-    return {"curves": await run_in_threadpool(read_curves, await request.body())}
+    curves = await run_in_threadpool(read_curves, await request.body())
+    return Curves.model_validate({"curves": curves})

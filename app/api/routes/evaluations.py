@@ -11,13 +11,15 @@ from app.api.dependencies import TheJobs, TheStore
 from app.api.waiting import LATER, accepted
 from app.calculations.jobs import CALCULATION
 from app.jobs.errors import JobNotFound
+from app.schemas.evaluations import AnyCalculation
+from app.schemas.problems import refusals
 from app.solids.errors import CannotRebuild
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 
 router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
 
 
-@router.get("/{job}", responses=LATER)
+@router.get("/{job}", response_model=AnyCalculation, responses={**LATER, **refusals(404, 410)})
 def show_evaluation(job: Annotated[str, Path(max_length=64)], jobs: TheJobs, store: TheStore) -> Response:
     """What `evaluate`, `solve` or `worksheet` would have answered; 202 while the job goes on."""
     found = jobs.get(job)

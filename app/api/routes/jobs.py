@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import AsyncIterator
-from typing import Any
 
 from fastapi import APIRouter, Depends
 from fastapi.sse import EventSourceResponse, ServerSentEvent
@@ -19,10 +18,11 @@ from app.schemas.problems import refusals
 router = APIRouter(prefix="/api/v1/jobs", tags=["jobs"], route_class=StrictRoute)
 
 
-@router.get("", response_model=JobList)
-def list_jobs(jobs: TheJobs, limit: Limit = 50, cursor: Cursor = None) -> dict[str, Any]:
+@router.get("")
+def list_jobs(jobs: TheJobs, limit: Limit = 50, cursor: Cursor = None) -> JobList:
     """List jobs, newest first."""
-    return page(jobs.page(limit + 1, before=cursor), limit, show=lambda job: job, cursor=lambda job: job.id)
+    rows = jobs.page(limit + 1, before=cursor)
+    return page(JobList, rows, limit, show=JobAnswer.model_validate, cursor=lambda job: job.id)
 
 
 @router.get("/{id}", responses=refusals(404), response_model=JobAnswer)

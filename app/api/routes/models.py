@@ -12,14 +12,15 @@ from starlette.concurrency import run_in_threadpool
 from app.api import problems
 from app.api.dependencies import TheCatalogues, TheHealing, TheJobs, TheModels, TheStore
 from app.api.gate.clients import TheClient
-from app.api.paging import Cursor, Limit, page_of
+from app.api.paging import Cursor, Limit
 from app.api.reading import StrictRoute, require_step
-from app.api.routes.templates import Number, summary
+from app.api.routes.templates import Number, listed, versions_of
 from app.api.stored import UNAVAILABLE, StoredFile, lost
 from app.api.waiting import LATER, accepted, finished, later, written
 from app.schemas.bounded import Bounded
 from app.schemas.problems import refusals
 from app.schemas.solids import Build, Verification
+from app.schemas.templates import Model, TemplateList, TemplateVersions
 from app.schemas.values import Parameters
 from app.solids.questions import what_can_be_asked
 from app.storage.artifacts import ArtifactStore
@@ -58,34 +59,33 @@ class BuildIn(Bounded):
 
 
 @router.get("/models")
-def list_models(catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None) -> dict[str, Any]:
+def list_models(catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None) -> TemplateList:
     """Every version of every CAD model."""
-    return page_of(list(catalogues.models), limit, cursor, lambda cls: summary(cls, catalogues.models))
+    return listed(catalogues.models, limit, cursor)
 
 
-@router.get("/models/{id}")
-def list_model_versions(id: Id, catalogues: TheCatalogues) -> dict[str, Any]:
+@router.get("/models/{id}", responses=refusals(404))
+def list_model_versions(id: Id, catalogues: TheCatalogues) -> TemplateVersions:
     """The versions of one model."""
-    versions = list(catalogues.models.of(id).values())
-    return {"id": id, **page_of(versions, len(versions), None, lambda cls: summary(cls, catalogues.models))}
+    return versions_of(catalogues.models, id)
 
 
-@router.get("/models/{id}/versions/{number}")
-def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, Any]:
-    """One model: its parameters as JSON Schema, what is measured on its solid, how that can be analysed.
-
-    `film_bore` names the parameter of a plain bearing that is the bore with the oil film.
-    """
+@router.get("/models/{id}/versions/{number}", responses=refusals(404))
+def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> Model:
+    """One model: its parameters as JSON Schema, what is measured on its solid, how that can be analysed."""
     cls = catalogues.models.get(id, number)
-    told = describe(cls)
-    return {
-        **told,
-        "parameters": told.pop("inputs"),
-        "measures": MEASURES,
-        "analyses": what_can_be_asked(cls),
-        "film_bore": cls.film_bore,
-        "picture": f"/api/v1/models/{id}/versions/{number}/picture",
-    }
+    described = describe(cls)
+    parameters = described.pop("inputs")
+    return Model.model_validate(
+        {
+            **described,
+            "parameters": parameters,
+            "measures": MEASURES,
+            "analyses": what_can_be_asked(cls),
+            "film_bore": cls.film_bore,
+            "picture": f"/api/v1/models/{id}/versions/{number}/picture",
+        }
+    )
 
 
 @router.get(

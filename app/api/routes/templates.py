@@ -9,6 +9,9 @@ from fastapi import APIRouter, Path
 from app.api.dependencies import TheCatalogues
 from app.api.paging import Cursor, Limit, page_of
 from app.api.reading import StrictRoute
+from app.schemas.problems import refusals
+from app.schemas.templates import Accuracy, TemplateList, TemplateSummary, TemplateVersions
+from app.schemas.templates import Template as TemplateAnswer
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import UnknownTemplate
 from templates.core.language.levels import accuracy
@@ -22,45 +25,59 @@ Id = Annotated[str, Path(max_length=64, examples=["oil_film"])]
 
 
 @router.get("")
-def list_templates(catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None) -> dict[str, Any]:
+def list_templates(catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None) -> TemplateList:
     """Every version of every template."""
-    return page_of(list(catalogues.templates), limit, cursor, lambda cls: summary(cls, catalogues.templates))
+    return listed(catalogues.templates, limit, cursor)
 
 
-@router.get("/{id}")
-def list_template_versions(id: Id, catalogues: TheCatalogues) -> dict[str, Any]:
+@router.get("/{id}", responses=refusals(404))
+def list_template_versions(id: Id, catalogues: TheCatalogues) -> TemplateVersions:
     """The versions of one template."""
-    versions = list(catalogues.templates.of(id).values())
-    return {
-        "id": id,
-        **page_of(versions, len(versions), None, lambda cls: summary(cls, catalogues.templates)),
-    }
+    return versions_of(catalogues.templates, id)
 
 
-@router.get("/{id}/versions/{number}")
-def show_template(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, Any]:
+@router.get("/{id}/versions/{number}", responses=refusals(404))
+def show_template(id: Id, number: Number, catalogues: TheCatalogues) -> TemplateAnswer:
     """One version: inputs and outputs as JSON Schema, formulas on paper, limits, references, errata."""
     cls = catalogues.templates.get(id, number)
-    return {**describe(cls), "latest": cls is catalogues.templates.latest(id)}
+    is_latest = cls is catalogues.templates.latest(id)
+    return TemplateAnswer.model_validate({**describe(cls), "latest": is_latest})
 
 
-@router.get("/{id}/versions/{number}/accuracy")
-def show_accuracy(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str, Any]:
+@router.get("/{id}/versions/{number}/accuracy", responses=refusals(404))
+def show_accuracy(id: Id, number: Number, catalogues: TheCatalogues) -> Accuracy:
     """Measured cost and error of each level over the parameter plane; 404 where none was measured."""
     cls = catalogues.templates.get(id, number)
     measured = accuracy(cls)
     if measured is None:
         raise UnknownTemplate(id, f"the error of {id} version {number} is not measured")
-    return measured.told
+    return Accuracy.model_validate(measured.told)
 
 
-def summary(cls: type[Template], catalogue: Catalogue[Any]) -> dict[str, Any]:
+def listed(catalogue: Catalogue[Any], limit: int, cursor: str | None) -> TemplateList:
+    """One page of all versions in a catalogue."""
+    return page_of(TemplateList, list(catalogue), limit, cursor, lambda cls: summary(cls, catalogue))
+
+
+def versions_of(catalogue: Catalogue[Any], id: str) -> TemplateVersions:
+    """All versions of one template or model.
+
+    Raises
+    ------
+    UnknownTemplate
+        If there is none.
+    """
+    items = [summary(cls, catalogue) for cls in catalogue.of(id).values()]
+    return TemplateVersions(id=id, items=items, next=None)
+
+
+def summary(cls: type[Template], catalogue: Catalogue[Any]) -> TemplateSummary:
     """One version in a list."""
-    return {
-        "id": cls.id,
-        "version": cls.version,
-        "title": cls.title(),
-        "summary": cls.summary(),
-        "status": "withdrawn" if cls.withdrawn else "released",
-        "latest": cls is catalogue.latest(cls.id),
-    }
+    return TemplateSummary(
+        id=cls.id,
+        version=cls.version,
+        title=cls.title(),
+        summary=cls.summary(),
+        status="withdrawn" if cls.withdrawn else "released",
+        latest=cls is catalogue.latest(cls.id),
+    )

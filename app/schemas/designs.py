@@ -1,0 +1,227 @@
+"""Designs and revisions as the interface shows them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, WithJsonSchema
+
+from app.schemas.analyses import ModelAnalysis
+from app.schemas.answers import Answer, Page, Quantity, Shown, Version, Warning
+from app.schemas.evaluations import CalculatedBy, Evaluated, Level, Output, UsedInput, WorkedFormula
+from app.schemas.problems import Problem
+from app.schemas.solids import Measurements
+from app.schemas.values import GIVEN
+
+State = Literal["current", "regenerating", "failed"]
+"""`current`: the results belong to the inputs; `regenerating`: they are on their way; `failed`: see `problem`."""
+
+Typed = Annotated[Any, WithJsonSchema(GIVEN)]
+"""A value as its user typed it; a relation begins with `=`."""
+
+
+class Step(Answer):
+    """A template at work in a design."""
+
+    template: str
+    version: int
+    level: str | None = None
+    tolerance: float | None = None
+    inputs: dict[str, Typed]
+    outputs: list[str] | None = Field(None, description="only these are computed; null for all")
+
+
+class AnalysisOptions(Answer):
+    """How an analysis is done of which a relation uses an output."""
+
+    boundary: str = "free_end"
+    level: str | None = None
+    tolerance: float | None = None
+    load: Typed = None
+
+
+class Model(Answer):
+    """A CAD model in a design."""
+
+    id: str
+    version: int
+    parameters: dict[str, Typed]
+    analyses: dict[str, AnalysisOptions] = Field({}, description="absent where there are none")
+
+
+class Iteration(Answer):
+    """A loop that the design allows."""
+
+    through: str = Field(description="the measure or analysis output of a solid, such as `model.mass`")
+    start: Typed
+    tolerance: float = Field(description="relative")
+    limit: int = Field(description="rounds")
+
+
+class DesignSummary(Answer):
+    """A design in a list."""
+
+    id: str
+    name: str
+    revision: int
+    state: State
+    created: str
+    changed: str
+
+
+class DesignList(Page[DesignSummary]):
+    """A page of designs, newest first."""
+
+
+class Design(Answer):
+    """A design as of its newest revision: what its user wrote, and how its regeneration stands."""
+
+    id: str
+    name: str
+    revision: int
+    state: State
+    parameters: dict[str, Typed]
+    steps: dict[str, Step]
+    models: dict[str, Model]
+    iterations: list[Iteration]
+    problem: Problem | None = Field(description="why the regeneration failed")
+    created: str
+    changed: str
+
+
+class Proposal(Answer):
+    """A relation for a model parameter that is not set."""
+
+    target: str
+    relation: str
+    reason: str
+
+
+class Mapping(Answer):
+    """Proposals for model parameters that are not set."""
+
+    proposals: list[Proposal]
+
+
+class MappedDesign(Design, Mapping):
+    """A design with the proposals that were applied."""
+
+
+class RevisionStep(Answer):
+    """A step with its results, or as typed while it waits for a solid."""
+
+    template: CalculatedBy
+    inputs: dict[str, UsedInput | Typed]
+    outputs: dict[str, Output]
+    level: Level = None
+    error: dict[str, Any]
+    warnings: list[Warning]
+    relations: dict[str, Typed] = Field({}, description="inputs that are relations, as typed")
+    pending: bool = Field(False, description="whether it waits for a solid; absent if it does not")
+
+
+class RevisionModel(Answer):
+    """A model with its parameters resolved."""
+
+    id: str
+    version: int
+    parameters: dict[str, Shown]
+    relations: dict[str, Typed]
+    build: str | None = Field(description="key of its build; null while parameters are missing")
+    artifacts: dict[str, str] = Field(description="SHA-256 of every file, by kind")
+    analyses: dict[str, ModelAnalysis]
+
+
+class Round(Answer):
+    """One round of an iteration."""
+
+    assumed: float
+    measured: float
+    unit: str
+
+
+class IterationRun(Answer):
+    """How an iteration settled."""
+
+    through: str
+    rounds: list[Round]
+
+
+class Revision(Answer):
+    """A revision: its inputs never change, its results are attached once."""
+
+    design: str
+    number: int
+    note: str | None
+    created: str
+    state: State
+    problem: Problem | None
+    name: str
+    parameters: dict[str, Typed]
+    steps: dict[str, RevisionStep]
+    models: dict[str, RevisionModel]
+    iterations: list[IterationRun]
+
+
+class RevisionList(Page[Revision]):
+    """A page of revisions, newest first."""
+
+
+class ModelMeasurements(Measurements):
+    """What the newest good solid of a model measures."""
+
+    revision: int
+    build: str
+    analyses: dict[str, ModelAnalysis]
+
+
+class Change(Answer):
+    """A value before and after a change; null where there is none."""
+
+    old: Output | None
+    new: Output | None
+
+
+class ParameterChange(Answer):
+    """A model parameter before and after a change."""
+
+    old: Shown | None
+    new: Shown | None
+    status: Literal["ok", "unchanged", "missing", "pending", "unit_mismatch"]
+    detail: str | None = Field(None, description="what is wrong with its unit")
+
+
+class PreviewedStep(RevisionStep):
+    """A step with its formulas written out."""
+
+    formulas: list[WorkedFormula]
+
+
+class Preview(Answer):
+    """What a change would do; nothing is saved."""
+
+    revision: int = Field(description="with which revision it is compared")
+    outputs: dict[str, Change]
+    warnings: list[Warning]
+    model_parameters: dict[str, ParameterChange]
+    steps: dict[str, PreviewedStep] | None = None
+    parameters: dict[str, Shown] | None = Field(None, description="values of the design's own parameters")
+
+
+class Explanation(Answer):
+    """What a name is, and what it follows from."""
+
+    name: str
+    kind: str
+    value: Shown | None = None
+    relation: Typed = None
+    typed: Typed = None
+    template: CalculatedBy | Version | None = None
+    text: str | None = None
+    latex: str | None = None
+    mathml: str | None = None
+    source: str | None = None
+    analysis: dict[str, Any] | None = None
+    because: list[Explanation] | None = None
+
+

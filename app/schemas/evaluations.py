@@ -1,0 +1,105 @@
+"""Evaluations of templates as the interface shows them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field, JsonValue, WithJsonSchema
+
+from app.schemas.answers import Answer, Measured, Shown, Value, Version, Warning
+
+
+class CalculatedBy(Version):
+    """The version that calculated, with the digests of its code."""
+
+    digest: str | None = Field(None, description="absent in revisions of program version 0.1")
+    content_digest: str | None = Field(None, description="absent in revisions of program version 0.1")
+
+
+class UsedInput(Answer):
+    """An input as it was used."""
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    value: Value
+    unit: str | None = None
+    source: Literal["given", "default"] = Field(alias="from")
+    plus: JsonValue = Field(None, description="tolerance upwards, if one was given")
+    minus: JsonValue = Field(None, description="tolerance downwards, if one was given")
+
+
+class Output(Measured):
+    """An output; null where there is none, with the reason."""
+
+    value: Value
+    unit: str | None = Field(None, description="absent for a text")
+    reason: str | None = Field(None, description="why there is no value")
+    reasons: list[Any] | None = Field(None, description="of an array: the reason at each point, or null")
+
+
+ERROR: dict[str, Any] = {
+    "description": "estimated relative error, of the shape of the output; null where none was measured",
+    "anyOf": [{"type": "number"}, {"type": "array", "items": {}}, {"type": "null"}],
+}
+Error = Annotated[Any, WithJsonSchema(ERROR)]
+LEVEL: dict[str, Any] = {
+    "description": "the level of fidelity; an array where it changes from point to point",
+    "anyOf": [{"type": "string"}, {"type": "array", "items": {}}, {"type": "null"}],
+}
+Level = Annotated[Any, WithJsonSchema(LEVEL)]
+
+
+class Evaluated(Answer):
+    """Inputs as they were used, and the outputs that follow."""
+
+    template: CalculatedBy
+    inputs: dict[str, UsedInput]
+    outputs: dict[str, Output]
+    level: Level
+    error: dict[str, Error]
+    warnings: list[Warning]
+
+
+class Evaluation(Evaluated):
+    """The answer to `evaluate`."""
+
+    seconds: float = Field(description="time that the evaluation took, in s")
+
+
+class Solution(Answer):
+    """The input that gives a wanted output."""
+
+    unknown: Shown
+    warnings: list[Warning]
+    evaluation: Evaluation
+
+
+class FormulaMathML(Answer):
+    """The parts of a formula in MathML; empty where there is none."""
+
+    lead: str = Field(description="symbol = expression")
+    numbers: str = Field(description="= the expression with numbers")
+    result: str = Field(description="= the result with its unit")
+
+
+class WorkedFormula(Answer):
+    """One formula written out: symbol = expression = numbers = result, in LaTeX and MathML."""
+
+    name: str
+    words: str
+    symbol: str
+    expression: str
+    numbers: str = Field(description="empty where an array has no single value")
+    result: str
+    source: str | None
+    mathml: FormulaMathML
+
+
+class Worksheet(Evaluation):
+    """An evaluation with every formula written out."""
+
+    formulas: list[WorkedFormula]
+
+
+AnyCalculation = Solution | Worksheet | Evaluation
+"""What a calculation that went on as a job answers."""

@@ -1,0 +1,115 @@
+"""Templates and CAD models as the interface describes them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import ConfigDict, Field, JsonValue
+
+from app.schemas.answers import Answer, Page
+from app.schemas.solids import Analysable
+
+Schema = dict[str, JsonValue]
+"""A JSON Schema. It holds units, symbols and bounds beside each property."""
+
+
+class TemplateSummary(Answer):
+    """One version in a list."""
+
+    id: str
+    version: int
+    title: str
+    summary: str
+    status: Literal["released", "withdrawn"]
+    latest: bool
+
+
+class TemplateList(Page[TemplateSummary]):
+    """Versions of templates or models."""
+
+
+class TemplateVersions(TemplateList):
+    """The versions of one template or model."""
+
+    id: str
+
+
+class Formula(Answer):
+    """One formula, in words and on paper."""
+
+    name: str = Field(description="the output that it gives")
+    text: str
+    latex: str
+    mathml: str
+    source: str | None = Field(description="where the formula comes from")
+    uses: list[str] = Field(description="the inputs and outputs that it follows from")
+
+
+class Limit(Answer):
+    """Where a value is refused, or carries a warning."""
+
+    text: str
+    name: str | None = Field(None, description="the value; absent for a limit of the whole template")
+    kind: Literal["refused_unless", "warned_unless"] | None = None
+    source: str | None = None
+
+
+class Described(Answer):
+    """What a version takes and gives, with its sources."""
+
+    id: str
+    version: int
+    title: str
+    summary: str
+    status: Literal["released", "withdrawn"]
+    withdrawn: str | None = Field(description="why it was withdrawn")
+    digest: str = Field(description="SHA-256 of the code, import lines included")
+    content_digest: str = Field(description="SHA-256 of the code without the paths of its imports")
+    outputs: Schema = Field(description="JSON Schema of the object `outputs`")
+    formulas: list[Formula]
+    levels: list[str] = Field(description="levels of fidelity, the cheapest first")
+    default_level: str | None
+    limits: list[Limit]
+    references: list[str]
+    errata: list[str]
+    example: dict[str, JsonValue] = Field(description="inputs that can be sent as they are")
+
+
+class Template(Described):
+    """One version of a template."""
+
+    inputs: Schema = Field(description="JSON Schema of the object `inputs`")
+    latest: bool
+
+
+class Model(Described):
+    """One version of a CAD model."""
+
+    parameters: Schema = Field(description="JSON Schema of the object `parameters`")
+    measures: dict[str, str] = Field(description="what is measured on its solid, with units")
+    analyses: dict[str, Analysable] = Field(description="finite-element analyses by kind")
+    film_bore: str | None = Field(description="the parameter that is the bore with the oil film")
+    picture: str = Field(description="path of a picture of the example")
+
+
+class Axis(Answer):
+    """One axis of the plane over which errors were measured."""
+
+    model_config = ConfigDict(extra="allow")
+
+    attribute: str
+    name: str
+    values: list[float] = Field(description="the ends of the cells")
+
+
+class Accuracy(Answer):
+    """Measured cost and error of every level; what else a measurement says depends on the template."""
+
+    model_config = ConfigDict(extra="allow")
+
+    made_by: str = Field(description="the command that measured it")
+    truth: str = Field(description="with which solution the levels are compared")
+    error: str = Field(description="what the errors are")
+    cost: str = Field(description="what the costs are")
+    axes: list[Axis]
+    levels: dict[str, JsonValue] = Field(description="cost, and error by output and cell")
