@@ -21,6 +21,7 @@ from app.cache import results
 from app.calculations.answers import router as answers
 from app.calculations.assembly import assemble_calculations
 from app.calculations.film_pressure import router as film_pressure
+from app.calculations.jobs import CALCULATION, PREVIEW
 from app.calculations.routes import router as calculations
 from app.calculations.routes import worksheets
 from app.catalogue.finding import find_templates
@@ -30,9 +31,10 @@ from app.description import describe_interface
 from app.designs.events import router as design_events
 from app.designs.files import router as design_files
 from app.designs.graph import Catalogues
+from app.designs.previewing import Previews
 from app.designs.regeneration import Regeneration
 from app.designs.routes import router as designs
-from app.designs.service import REGENERATE, REGENERATE_SLOWLY, Designs
+from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.heads import HeadLimit
 from app.hosts import Hosts
 from app.http import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
@@ -166,8 +168,11 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
     lanes = assemble_calculations(app, settings, stack, catalogues.templates, database, store, queue)
     regeneration = Regeneration(database, builds, analysing, catalogues, app.state.steps)
-    queue.register(REGENERATE, regeneration, Regeneration.failed)
-    queue.register(REGENERATE_SLOWLY, regeneration, Regeneration.failed, is_slow=True)
+    queue.register(REGENERATE, regeneration, regeneration.failed)
+    queue.register(REGENERATE_SLOWLY, regeneration, regeneration.failed, is_slow=True)
+    queue.register(CALCULATE, regeneration, regeneration.failed, lane=CALCULATION)
+    previews = app.state.previews = Previews(database, catalogues, store, queue, app.state.steps)
+    queue.register(PREVIEW, previews, previews.failed, lane=CALCULATION)
     queue.register(BUILD, ModelBuild(builds, catalogues.models))
     queue.register(ANALYSIS, ModelAnalysis(builds, analysing, catalogues.models), is_slow=True)
     queue.start(lanes)

@@ -1,4 +1,4 @@
-"""`/evaluations/{job}`: the answer of a calculation that went on as a job."""
+"""`/evaluations/{job}`: the answer of a calculation, or of a preview, that went on as a job."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 
 from app import problems
-from app.calculations.jobs import CALCULATION
+from app.calculations.jobs import CALCULATION, PREVIEW
 from app.dependencies import TheJobs, TheStore
 from app.jobs.errors import JobNotFound
 from app.models.errors import CannotRebuild
@@ -19,9 +19,9 @@ router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
 
 @router.get("/{job}", responses=LATER)
 def answer(job: Annotated[str, Path(max_length=64)], jobs: TheJobs, store: TheStore) -> Response:
-    """What `evaluate`, `solve` or `worksheet` would have answered; 202 while the job goes on."""
+    """What `evaluate`, `solve`, `worksheet` or `preview` would have answered; 202 while the job goes on."""
     found = jobs.get(job)
-    if found.kind != CALCULATION:
+    if found.kind not in (CALCULATION, PREVIEW):
         raise JobNotFound(job)
     if not found.finished:
         return accepted(job)

@@ -48,6 +48,7 @@ def assemble_calculations(
     sources = {cls: source_of(cls) for cls in catalogue}
     handler = CalculationJobs(pool, catalogue, sources, database, store, jobs)
     jobs.register(CALCULATION, handler, handler.failed, lane=CALCULATION)
-    app.state.calculations, app.state.steps, app.state.threads = pool, Steps(pool, sources), Threads()
+    app.state.steps = Steps(pool, sources, settings.calculation_deadline)
+    app.state.calculations, app.state.threads = pool, Threads()
     app.state.answering = Answering(pool, handler, settings.calculation_deadline)
     return {CALCULATION: pool.most_jobs + 1}

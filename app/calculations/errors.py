@@ -2,6 +2,7 @@
 
 QueueFull
  └── TooManyCalculations   as many wait as may
+StepDeferred               an expensive step was not calculated in the time that its caller waits
 InvalidBody                a body that was read in a calculation process is not what the operation takes
 """
 
@@ -19,6 +20,10 @@ class TooManyCalculations(QueueFull):
 
     def __str__(self) -> str:
         return f"Too many calculations are waiting. Try again in {self.retry_after} s."
+
+
+class StepDeferred(Exception):
+    """An expensive step was not calculated in the time that its caller waits; a job is to do it."""
 
 
 class InvalidBody(Exception):

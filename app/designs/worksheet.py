@@ -10,6 +10,7 @@ from pydantic_core import from_json, to_json
 
 from app.cache import results as kept
 from app.calculations.display import System, converted
+from app.calculations.errors import StepDeferred
 from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
 from app.designs.calculate import Calculation
@@ -60,7 +61,7 @@ def _formulas(
 def _again(
     told: Mapping[str, Any], catalogue: Catalogue[Template], system: System
 ) -> tuple[list[dict[str, Any]], list[Check]]:
-    """Formulas and checks of a step that has results, calculated as its job did."""
+    """Formulas and checks of a step that has results, calculated as its job did; none if it is deferred."""
     if not told["outputs"]:
         return [], []
     level = told["level"] if isinstance(told["level"], str) else None
@@ -69,6 +70,8 @@ def _again(
         cls: Any = catalogue.get(told["template"]["id"], told["template"]["version"])
         return _written_out(cls, to_json(inputs), tuple(told["outputs"]), level, system)
     except TemplateError:  # the file of this version was taken away, or changed: its results stay
+        return [], []
+    except StepDeferred:
         return [], []
 
 

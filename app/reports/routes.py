@@ -16,7 +16,7 @@ from app.calculations.steps import ExpensiveSteps, TheThreads
 from app.clients import TheClient
 from app.dependencies import TheJobs
 from app.designs.errors import NotFound
-from app.designs.routes import Id, Number, Prefer
+from app.designs.routes import Id, Number, Prefer, Within
 from app.http import StrictRoute
 from app.jobs.service import Jobs
 from app.reports import tables
@@ -112,6 +112,7 @@ async def worksheet(
     number: Number | None = None,
     kind: Id | None = None,
     units: Units = "si",
+    within: Within = None,
     accept: Accept = None,
 ) -> Response:
     """Inputs and outputs of a revision, the newest if none is named.
@@ -121,7 +122,10 @@ async def worksheet(
     """
     wanted = _wanted("worksheet", kind, accept, TABLES)
     revision = await run_in_threadpool(reports.number, id, number)
-    told = await threads.run_for(request, reports.told, id, revision, units)
+    if within is None:
+        told = await threads.run_for(request, reports.told, id, revision, units)
+    else:
+        told = await threads.run_within(within, request, reports.told, id, revision, units)
     headers = {"Vary": "Accept", "Design-Revision": str(revision)}
     if wanted == "json":
         return JSONResponse(told, headers=headers)
