@@ -12,6 +12,7 @@ from app.analyses.views import in_design
 from app.calculations import rendering
 from app.designs.calculate import Calculation
 from app.designs.graph import Block
+from app.designs.worksheet import remember
 from cad.inspect import MEASURES
 from cad.model import CadModel
 from cad.regenerate import build_key
@@ -64,7 +65,9 @@ def _step(calculation: Calculation, block: Block) -> dict[str, Any]:
     relations = {n: cell.raw for n, cell in block.cells.items() if cell.relations}
     if block.name not in calculation.evaluations:
         return {"template": rendering.identity(block.cls), "relations": relations, "state": "pending"}
-    told = rendering.evaluation(calculation.evaluations[block.name])
+    evaluation = calculation.evaluations[block.name]
+    told = rendering.evaluation(evaluation)
+    remember(told, evaluation)
     del told["seconds"]  # equal revisions are equal
     return {**told, "relations": relations}
 
