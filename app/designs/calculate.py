@@ -1,4 +1,4 @@
-"""Calculate a design: every value that can be known now, what waits for a solid, and what is wrong.
+"""Calculate a design: every value that can be known now, what waits for a solid or a job, and what is wrong.
 
 Nothing stops at the first fault, so that a user sees all of them at once.
 """

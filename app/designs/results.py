@@ -53,7 +53,7 @@ def analyses(calculation: Calculation) -> dict[str, Any]:
 
 
 def steps(calculation: Calculation) -> dict[str, Any]:
-    """Every step: its evaluation, or that it waits for a solid."""
+    """Every step: its evaluation, or that it waits for a solid or for its job."""
     return {
         name: _step(calculation, block)
         for name, block in calculation.graph.blocks.items()

@@ -89,7 +89,7 @@ class _Question(NamedTuple):
     def of(cls, told: Mapping[str, Any]) -> Self:
         given = {name: _retyped(value) for name, value in told["inputs"].items() if value["from"] == "given"}
         level = told["level"] if isinstance(told["level"], str) else None
-        return cls(given, tuple(told["outputs"]), level)
+        return cls(given, tuple(sorted(told["outputs"])), level)  # as the database has them
 
     def key(self, *more: Hashable) -> Hashable:
         return (_Question, fingerprint(self.inputs), self.outputs, self.level, *more)

@@ -287,6 +287,17 @@ def test_a_worksheet_does_not_calculate_its_steps_again(http, log):
     assert len(begun(log)) == 1
 
 
+def test_so_does_one_of_a_revision_that_comes_from_the_database(http, served, monkeypatch):
+    film = served.app.state.catalogues.templates.get("oil_film", 2)
+    step = {"template": "oil_film", "version": 2, "level": "mass_conserving", "inputs": dict(film.example)}
+    made = http.post(DESIGNS, json={"name": "film", "steps": {"film": step}}, headers={"Prefer": "wait=60"})
+    design = settled(http, made.json()["id"])
+    monkeypatch.setattr(served.app.state.calculations, "submit", None)  # whoever calculates fails
+    written = http.get(f"{DESIGNS}/{design['id']}/worksheet")
+    assert written.status_code == 200
+    assert len(written.json()["steps"]["film"]["formulas"]) > 10
+
+
 def test_proposals_calculate_nothing(http, log):
     answer = http.post(DESIGNS, json=sleeping(60), headers=AT_ONCE)
     proposed = http.post(f"{DESIGNS}/{answer.json()['id']}/auto-map")
