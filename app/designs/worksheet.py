@@ -91,7 +91,7 @@ class _Question(NamedTuple):
         level = told["level"] if isinstance(told["level"], str) else None
         return cls(given, tuple(sorted(told["outputs"])), level)  # as the database has them
 
-    def key(self, *more: Hashable) -> Hashable:
+    def key(self, *more: Any) -> Hashable:
         return (_Question, fingerprint(self.inputs), self.outputs, self.level, *more)
 
 

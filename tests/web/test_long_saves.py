@@ -5,6 +5,8 @@ import pytest
 from patience import until
 from serving import API
 
+from app.cache import USUAL, results
+
 pytest.importorskip("playwright")
 from playwright.sync_api import expect
 
@@ -122,6 +124,20 @@ def test_who_opens_the_page_meanwhile_sees_the_progress_and_then_the_results(wat
     expect(watched.page.locator("[data-design-state]")).to_have_text("current")
     expect(watched.page.locator(OUTPUT)).not_to_contain_text("not calculated")
     assert watched.faults() == []
+
+
+def test_a_page_calculates_nothing_again_that_its_revision_holds(watched, served, http, place):
+    job = saved_slowly(http, place, "6.1 s")
+    until(lambda: http.get(job).json()["state"], lambda state: state == "done")
+    results.limit(1)  # as after a restart of the server
+    jobs = http.get(f"{API}/jobs").json()
+    watched.open(place)
+    watched.page.wait_for_load_state("networkidle")
+    expect(watched.page.locator(OUTPUT)).not_to_contain_text("not calculated")
+    expect(watched.page.locator("[data-step=s]")).to_have_class("sheet step")
+    assert http.get(f"{API}/jobs").json() == jobs
+    results.limit(USUAL)
+    idle(served)
 
 
 def test_without_scripts_a_slow_save_is_shown_and_can_be_cancelled(plain, served, place):

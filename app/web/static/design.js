@@ -45,7 +45,8 @@ async function previewed(signal, isQuick) {
   return calculated(answer.location, signal);
 }
 
-const isWaiting = (answer) => answer.state === "pending";
+// A step that is not calculated yet; as long as nothing is changed, the results shown are those of the revision.
+const isWaiting = (answer) => answer.state === "pending" && (designState !== "current" || draft.isChanged());
 
 function waiting({ steps }) {
   const names = Object.keys(steps).filter((step) => isWaiting(steps[step]));
@@ -56,7 +57,7 @@ function show(told) {
   steps = told.steps;
   for (const [step, answer] of Object.entries(told.steps)) {
     markWaiting(step, isWaiting(answer));
-    if (isWaiting(answer)) continue;
+    if (answer.state === "pending") continue;
     showResults(step, answer);
     showValues(form, step, answer);
     drawPictures(document, step, answer);
@@ -175,7 +176,8 @@ async function start() {
   startSolids(() => steps);
   if (form.querySelector("[data-elements]")) import("./elements.js").then(({ startElements }) => startElements());
   try {
-    const { told } = await previewed(undefined, designState !== "current"); // its job failed, or was cancelled
+    const isPainted = designState === "current" && document.querySelector("[data-painted]"); // with results of a step
+    const { told } = await previewed(undefined, isFollowing || (from === null && !isPainted));
     clear();
     show(told);
     state.textContent = [state.textContent, waiting(told)].filter(Boolean).join("; ");
