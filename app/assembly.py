@@ -11,10 +11,12 @@ from app.api.services import Services
 from app.api.threads import Threads
 from app.calculations.assembly import Calculations, assemble_calculations
 from app.calculations.cache import results
+from app.calculations.jobs import CALCULATION, PREVIEW
 from app.catalogue.finding import find_templates
 from app.designs.graph import Catalogues
+from app.designs.previewing import Previews
 from app.designs.regeneration import Regeneration
-from app.designs.service import REGENERATE, REGENERATE_SLOWLY, Designs
+from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.jobs.service import Jobs
 from app.observation import metrics
 from app.reports.paper import Press
@@ -54,6 +56,8 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     jobs = Jobs(database, worker, settings, problems.describe)
     calculations = assemble_calculations(settings, stack, catalogues.templates, database, store, jobs)
     register_jobs(settings, jobs, database, store, catalogues, calculations)
+    previews = Previews(database, catalogues, store, jobs, calculations.steps)
+    jobs.register(PREVIEW, previews, previews.failed, lane=CALCULATION)
     jobs.start(calculations.lanes)
     stack.callback(jobs.stop)
     models = Models(database, store, jobs, catalogues.models)
@@ -69,6 +73,7 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         threads=Threads(),
         answering=Answering(calculations.pool, calculations.jobs, settings.calculation_deadline),
         designs=Designs(database, jobs, catalogues),
+        previews=previews,
         models=models,
         analyses=analyses,
         healing=Healing(database, store, models, analyses),
@@ -108,7 +113,8 @@ def register_jobs(
     builds = Builds(database, store, settings.template_folders)
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
     regeneration = Regeneration(database, builds, analysing, catalogues, calculations.steps)
-    jobs.register(REGENERATE, regeneration, Regeneration.failed)
-    jobs.register(REGENERATE_SLOWLY, regeneration, Regeneration.failed, is_slow=True)
+    jobs.register(REGENERATE, regeneration, regeneration.failed)
+    jobs.register(REGENERATE_SLOWLY, regeneration, regeneration.failed, is_slow=True)
+    jobs.register(CALCULATE, regeneration, regeneration.failed, lane=CALCULATION)
     jobs.register(BUILD, ModelBuild(builds, catalogues.models))
     jobs.register(ANALYSIS, ModelAnalysis(builds, analysing, catalogues.models), is_slow=True)

@@ -187,8 +187,8 @@ class Client:
         return self._followed(_design(answer), on_progress)
 
     def preview(self, id: str, patch: Mapping[str, Any]) -> dict[str, Any]:
-        """What a change would do; nothing is saved."""
-        return self._json("POST", f"{BASE}/designs/{id}/preview", json=patch)
+        """What a change would do; nothing is saved. What takes long goes on as a job, which is followed."""
+        return self._calculated(f"{BASE}/designs/{id}/preview", patch)
 
     def auto_map(self, id: str) -> list[dict[str, str]]:
         """Proposals for model parameters that are not set."""

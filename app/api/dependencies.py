@@ -18,6 +18,7 @@ from app.api.services import Services
 from app.api.threads import Threads
 from app.calculations.steps import Caller, call_as
 from app.designs.graph import Catalogues
+from app.designs.previewing import Previews
 from app.designs.service import Designs
 from app.jobs.service import Jobs
 from app.presentation.units import System
@@ -53,6 +54,7 @@ TheJobs = Annotated[Jobs, Depends(_part("jobs"))]
 TheThreads = Annotated[Threads, Depends(_part("threads"))]
 TheAnswering = Annotated[Answering, Depends(_part("answering"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
+ThePreviews = Annotated[Previews, Depends(_part("previews"))]
 TheModels = Annotated[Models, Depends(_part("models"))]
 TheAnalyses = Annotated[Analyses, Depends(_part("analyses"))]
 TheHealing = Annotated[Healing, Depends(_part("healing"))]
@@ -81,7 +83,8 @@ TheOnce = Annotated[Once, Depends(get_once)]
 
 async def expensive_steps(request: Request, client: TheClient) -> None:
     """Let a route evaluate expensive steps in the pool; a dependency of routers."""
-    call_as(Caller(services_of(request).steps, client))
+    steps = services_of(request).steps
+    call_as(Caller(steps, client, steps.begun()))
 
 
 ExpensiveSteps = Depends(expensive_steps)

@@ -11,6 +11,7 @@ from app.api.threads import Threads
 from app.calculations.pool import CalculationPool
 from app.calculations.steps import Steps
 from app.designs.graph import Catalogues
+from app.designs.previewing import Previews
 from app.designs.service import Designs
 from app.jobs.service import Jobs
 from app.reports.paper import Press
@@ -37,6 +38,7 @@ class Services:
     threads: Threads
     answering: Answering
     designs: Designs
+    previews: Previews
     models: Models
     analyses: Analyses
     healing: Healing

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
@@ -19,7 +20,7 @@ THREADS = 64
 
 
 class Threads:
-    """A number of threads of their own."""
+    """Threads of routes that may wait for the pool, so that those of the others are free."""
 
     def __init__(self) -> None:
         self._limiter: CapacityLimiter | None = None
@@ -33,12 +34,33 @@ class Threads:
     async def run_for(
         self, request: Request, function: Callable[P, T], *args: P.args, **options: P.kwargs
     ) -> T:
-        """Call a function that changes nothing; what it calculates ends if the client leaves."""
-        leaving = asyncio.create_task(_note_leaving(request, present_caller()))
+        """Call a function for a client; what it calculates ends if the client leaves."""
+        caller = present_caller()
+        leaving = asyncio.create_task(_note_leaving(request, caller))
         try:
-            return await self.run(function, *args, **options)
+            return await self.run(_closing, caller, lambda: function(*args, **options))
         finally:
             leaving.cancel()
+
+    async def run_within(
+        self, seconds: float, request: Request, function: Callable[P, T], *args: P.args, **options: P.kwargs
+    ) -> T:
+        """Likewise; steps are deferred that are not calculated after so long, or after the deadline [s]."""
+        if caller := present_caller():
+            caller.until = time.monotonic() + min(seconds, caller.steps.deadline)
+        return await self.run_for(request, function, *args, **options)
+
+
+def _closing(caller: Caller | None, function: Callable[[], T]) -> T:
+    """Call a function, then end what it has begun and left to no job."""
+    failed = True
+    try:
+        result = function()
+        failed = False
+        return result
+    finally:
+        if caller is not None:
+            caller.begun.close(failed=failed)
 
 
 async def _note_leaving(request: Request, caller: Caller | None) -> None:

@@ -60,4 +60,4 @@ def assemble_calculations(
     sources = {cls: source_of(cls) for cls in catalogue}
     handler = CalculationJobs(pool, catalogue, sources, database, store, jobs)
     jobs.register(CALCULATION, handler, handler.failed, lane=CALCULATION)
-    return Calculations(pool, Steps(pool, sources), handler)
+    return Calculations(pool, Steps(pool, sources, settings.calculation_deadline), handler)

@@ -2,6 +2,7 @@
 
 QueueFull
  └── TooManyCalculations   as many wait as may
+StepDeferred               an expensive step was not calculated in the time that its caller waits
 InvalidBody                a body that was read in a calculation process is not what the operation takes
 """
 
@@ -23,6 +24,10 @@ class TooManyCalculations(QueueFull):
 
 class TooManyValues(Exception):
     """The answer would hold more values than the service gives at once."""
+
+
+class StepDeferred(Exception):
+    """An expensive step was not calculated in the time that its caller waits; a job is to do it."""
 
 
 class InvalidBody(Exception):

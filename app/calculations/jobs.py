@@ -22,7 +22,8 @@ from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.language.template import Template
 
-CALCULATION = "calculation"
+CALCULATION, PREVIEW = "calculation", "preview"
+"""Kinds of jobs whose result is an answer: what a request asked for, and nobody waited for."""
 GLANCE = 0.1  # how often a thread looks whether its job was cancelled [s]
 FAILURES = (TemplateError, TooManyValues, InvalidBody)
 """What the request itself brings about."""
@@ -86,7 +87,7 @@ class CalculationJobs:
             answer = self._outcome(calculation, context)
         except FAILURES as error:
             raise JobFailed(error) from error
-        link = f"/api/v1/evaluations/{job.id}?sha256={self.store.put(answer)}"
+        link = place_of_answer(job.id, self.store.put(answer))
         return lambda session: link
 
     def failed(self, session: Session, job: Job, problem: dict[str, Any]) -> None:
@@ -106,3 +107,8 @@ class CalculationJobs:
                 self.pool.cancel(calculation)
         answer: bytes = calculation.future.result()
         return answer
+
+
+def place_of_answer(job: str, sha: str) -> str:
+    """Where the answer of a job is read."""
+    return f"/api/v1/evaluations/{job}?sha256={sha}"

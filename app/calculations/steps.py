@@ -5,7 +5,9 @@ Who calculates, and for which client, is set by the route or the job that calcul
 
 from __future__ import annotations
 
+import math
 import threading
+import time
 from collections.abc import Iterator, Mapping
 from concurrent.futures import wait
 from contextlib import contextmanager
@@ -13,30 +15,89 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import Any
 
+from app.calculations.begun import Begun, fingerprint
 from app.calculations.cost import EXPENSIVE, estimated_seconds
-from app.calculations.pool import CalculationPool
+from app.calculations.errors import StepDeferred
+from app.calculations.pool import Calculation, CalculationPool, Lane
 from app.calculations.sources import Source, loaded
+from app.jobs.service import Job, JobContext
+from app.workers.errors import JobCancelled
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.template import Template
+from templates.core.progress import Reporter
 
 GLANCE = 0.1  # how often a thread looks whether its client has left [s]
 
 
 @dataclass(frozen=True)
 class Steps:
-    """Where expensive steps are evaluated."""
+    """Where expensive steps are evaluated, and how long an answer waits for them [s]."""
 
     pool: CalculationPool
     sources: Mapping[type[Template], Source]
+    deadline: float
+    left: dict[str, Begun] = field(default_factory=dict)  # calculations that wait for their job, by job
+
+    def begun(self) -> Begun:
+        """A place for the calculations that one request begins and does not wait for."""
+        return Begun(self.pool, self.left)
+
+    def drop(self, job: str) -> None:
+        """End what was left to a job that nobody has begun."""
+        if begun := self.left.get(job):
+            begun.close(failed=True)
 
 
-@dataclass(frozen=True)
+@dataclass
 class Caller:
-    """Who asks for steps, and where they are evaluated."""
+    """Who asks for steps, where they are evaluated, and how long that is waited for."""
 
     steps: Steps
     client: str
-    left: threading.Event = field(default_factory=threading.Event)  # the client has closed its connection
+    begun: Begun
+    lane: Lane = "answers"
+    left: threading.Event = field(default_factory=threading.Event)  # nobody waits for the result any longer
+    report: Reporter | None = None
+    until: float = math.inf  # when steps are deferred that are not calculated by then [s, monotonic]
+
+    def evaluation(
+        self,
+        cls: type[Template],
+        raw: dict[str, Any],
+        outputs: tuple[str, ...] | None,
+        level: str | None,
+        tolerance: float | None,
+    ) -> Evaluation:
+        """The evaluation of a step in the pool; blocks.
+
+        Raises
+        ------
+        StepDeferred
+            It has not ended in time; it goes on if it may.
+        """
+        key = (cls, outputs, level, tolerance, fingerprint(raw))
+        question = self.steps.sources[cls], raw, outputs, level, tolerance
+        calculation = self.begun.take(key) or self._submitted(*question)
+        if self.report is not None:
+            calculation.listen(self.report)
+        while not wait([calculation.future], self._glance()).done:
+            if self.left.is_set():
+                self.steps.pool.cancel(calculation)
+            elif time.monotonic() >= self.until:
+                self.begun.keep(key, calculation)
+                raise StepDeferred
+        evaluation: Evaluation = calculation.future.result()
+        return evaluation
+
+    def _submitted(self, *question: Any) -> Calculation:
+        if self.left.is_set():
+            raise JobCancelled
+        if time.monotonic() >= self.until:
+            raise StepDeferred
+        return self.steps.pool.submit(self.client, _evaluated, *question, lane=self.lane)
+
+    def _glance(self) -> float:
+        return max(0.0, min(GLANCE, self.until - time.monotonic()))
 
 
 _caller: ContextVar[Caller | None] = ContextVar("caller", default=None)
@@ -55,21 +116,21 @@ def evaluated_step(
     ------
     InvalidInputs
         Where the template refuses.
+    StepDeferred
+        It is expensive, and the caller does not wait for it.
     TooManyCalculations, WorkerError
         As `CalculationPool.submit` and `Worker.run`.
     """
     caller = _caller.get()
     if caller is None or estimated_seconds(cls, raw, level, tolerance, outputs) <= EXPENSIVE:
         return evaluate(cls, raw, outputs=outputs, level=level, tolerance=tolerance)
-    source = caller.steps.sources[cls]
-    calculation = caller.steps.pool.submit(
-        caller.client, _evaluated, source, dict(raw), outputs, level, tolerance
-    )
-    while not wait([calculation.future], GLANCE).done:
-        if caller.left.is_set():
-            caller.steps.pool.cancel(calculation)
-    made: Evaluation = calculation.future.result()
-    return made
+    return caller.evaluation(cls, dict(raw), outputs, level, tolerance)
+
+
+def begun_steps() -> Begun | None:
+    """What the caller of this context has begun and does not wait for."""
+    caller = _caller.get()
+    return caller.begun if caller else None
 
 
 def _evaluated(
@@ -84,13 +145,19 @@ def _evaluated(
 
 
 @contextmanager
-def calling(steps: Steps | None, client: str) -> Iterator[None]:
-    """Let expensive steps be evaluated in the pool within the context."""
-    token = _caller.set(Caller(steps, client) if steps else None)
+def calling(steps: Steps | None, job: Job, context: JobContext, client: str, lane: Lane) -> Iterator[None]:
+    """Let a job evaluate expensive steps in the pool, and take over what was begun for it."""
+    if steps is None:
+        yield
+        return
+    begun = steps.left.pop(job.id, None) or steps.begun()
+    caller = Caller(steps, client, begun, lane, context.cancelled, context.progress)
+    token = _caller.set(caller)
     try:
         yield
     finally:
         _caller.reset(token)
+        begun.close(failed=True)
 
 
 def call_as(caller: Caller) -> None:

@@ -1,4 +1,4 @@
-"""Calculate a design: every value that can be known now, what waits for a solid, and what is wrong.
+"""Calculate a design: every value that can be known now, what waits for a solid or a job, and what is wrong.
 
 Nothing stops at the first fault, so that a user sees all of them at once.
 """
@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from app.calculations.errors import StepDeferred
 from app.calculations.size import points, spanned
 from app.designs.analyses import measured_unit
 from app.designs.graph import SOLID, Block, Cell, Graph
@@ -19,7 +20,7 @@ from app.designs.size import limit_operations, limit_values
 from app.solids.questions import Question
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText, InvalidInputs
-from templates.core.language.evaluate import Evaluation
+from templates.core.language.evaluate import Evaluation, checked
 from templates.core.language.spec import Choice
 from templates.core.language.template import Template
 from templates.core.units.quantity import Typed, read, read_any
@@ -43,7 +44,8 @@ class Calculation:
     measures: dict[str, Measures] = field(default_factory=dict)  # of models that are built
     analyses: dict[str, Found] = field(default_factory=dict)  # by model.kind: what is used and known
     missing: dict[str, list[str]] = field(default_factory=dict)  # unset parameters of models
-    pending: set[str] = field(default_factory=set)  # nodes that wait for a solid
+    pending: set[str] = field(default_factory=set)  # nodes that wait for a solid, or for a deferred step
+    deferred: set[str] = field(default_factory=set)  # expensive steps that nobody waited for
     broken: set[str] = field(default_factory=set)  # nodes that follow from a fault
     faults: list[Fault] = field(default_factory=list)
     operations: int = 0  # on single values, of the relations so far
@@ -228,14 +230,25 @@ def _attempt(result: Calculation, block: Block, raw: dict[str, Any], waiting: se
         else:
             wanted = _wanted(result.graph, block)
             limit_values(points(raw) * len(block.cls.formulas if wanted is None else wanted))
-            made = memory.evaluation(block, raw, wanted)
-            limit_values(made.count())  # curves are longer than their inputs tell
-            result.evaluations[block.name] = made
+            _evaluate(result, block, raw, wanted)
     except InvalidInputs as error:
         return list(error.faults)
     except FaultyText as error:
         return [error.fault("inputs")]
     return []
+
+
+def _evaluate(result: Calculation, block: Block, raw: dict[str, Any], wanted: tuple[str, ...] | None) -> None:
+    """Evaluate a step; one that is deferred is checked as far as that takes no formula."""
+    try:
+        evaluation = memory.evaluation(block, raw, wanted)
+    except StepDeferred:
+        checked(block.cls, raw, wanted or (), block.level)
+        result.deferred.add(block.name)
+        result.pending.add(block.name)
+        return
+    limit_values(evaluation.count())  # curves are longer than their inputs tell
+    result.evaluations[block.name] = evaluation
 
 
 def _refuse_arrays(result: Calculation, block: Block) -> None:

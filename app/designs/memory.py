@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
-from hashlib import sha256
 from typing import Any, NamedTuple
 
+from app.calculations.begun import fingerprint
 from app.calculations.cache import Cache, results
 from app.calculations.steps import evaluated_step
 from app.designs.graph import Block
@@ -30,8 +30,10 @@ class Memory:
         ------
         InvalidInputs
             Where the template refuses.
+        StepDeferred
+            The caller does not wait for an expensive step.
         """
-        key = (block.cls, block.level, block.tolerance, wanted, _fingerprint(raw))
+        key = (block.cls, block.level, block.tolerance, wanted, fingerprint(raw))
         kept: _Kept | None = self._cache.get(key)
         if kept is None:
             return self._keep(key, evaluated_step(block.cls, raw, wanted, block.level, block.tolerance))
@@ -46,12 +48,6 @@ class Memory:
 
 def _count(evaluation: Evaluation) -> int:
     return len(vars(evaluation.template))
-
-
-def _fingerprint(raw: Mapping[str, Any]) -> bytes:
-    """A digest: the inputs themselves may be large."""
-    typed = tuple((name, repr(value)) for name, value in sorted(raw.items()))
-    return sha256(repr(typed).encode()).digest()
 
 
 memory = Memory()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,18 +20,28 @@ from app.storage.database import Database
 from templates.core.errors import Fault
 
 
+@dataclass(frozen=True)
+class Preview:
+    """What a change would do; without what depends on deferred steps it is not whole."""
+
+    content: dict[str, Any]
+    is_whole: bool
+
+
 def preview(
     database: Database,
     catalogues: Catalogues,
-    id: str,
+    design: str,
     patch: Mapping[str, Any],
     *,
+    revision: int | None = None,
     worksheet: bool = False,
     system: System = "si",
-) -> dict[str, Any]:
+) -> Preview:
     """Old and new values for a patch of a design; nothing is saved or built.
 
-    With `worksheet`, every step as a revision would hold it, its formulas written out.
+    The patch is one of the newest revision, if none is named. With `worksheet`, every step as a revision
+    would hold it, its formulas written out.
 
     Raises
     ------
@@ -39,11 +50,15 @@ def preview(
         by their status.
     """
     with database.read() as session:
-        head = repository.head(session, id)
-    old, _ = _calculated(database, catalogues, Document.model_validate(head.document))
+        head = (
+            repository.head(session, design)
+            if revision is None
+            else repository.revision(session, design, revision)
+        )
     changed = resolved(read_document(merge(head.document, patch)), catalogues)
     new, mismatched = _calculated(database, catalogues, changed)
     raise_if(new.faults)  # not those of the old one: the change may be to mend it
+    old, _ = _calculated(database, catalogues, Document.model_validate(head.document))
     steps = results.steps(new)
     told = {
         "revision": head.number,
@@ -55,7 +70,7 @@ def preview(
         "model_parameters": _model_parameters(old, new, mismatched),
     }
     more = {"steps": previewed(new, steps, system), "parameters": _values(new)} if worksheet else {}
-    return {**converted(told, system), **more}
+    return Preview({**converted(told, system), **more}, is_whole=not (old.deferred or new.deferred))
 
 
 def _calculated(

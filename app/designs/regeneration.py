@@ -8,6 +8,7 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
+from app.calculations.pool import Lane
 from app.calculations.steps import Steps, calling
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
@@ -15,7 +16,7 @@ from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, Iteration
 from app.designs.errors import NotConverged
 from app.designs.graph import SOLID, Catalogues, Graph, build_graph, raise_if
-from app.designs.service import analysed, built, starts
+from app.designs.service import REGENERATE, analysed, built, starts
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.solids.builds import Builds
 from app.solids.errors import CannotRebuild
@@ -34,7 +35,7 @@ FAILURES = (
 
 
 class Regeneration:
-    """The handler of jobs of the kind `regenerate`."""
+    """The handler of jobs that complete a revision: `regenerate` and the kinds beside it."""
 
     def __init__(
         self,
@@ -61,7 +62,7 @@ class Regeneration:
         with self.database.read() as session:
             document = Document.model_validate(repository.revision(session, id, number).document)
         try:
-            with calling(self.steps, f"design:{id}"):
+            with calling(self.steps, job, context, f"design:{id}", _lane(job)):
                 calculation, rounds = self._settled(document, context)
         except FAILURES as error:
             raise JobFailed(error) from error
@@ -74,9 +75,10 @@ class Regeneration:
 
         return completion
 
-    @staticmethod
-    def failed(session: Session, job: Job, problem: dict[str, Any]) -> None:
+    def failed(self, session: Session, job: Job, problem: dict[str, Any]) -> None:
         """Record in the revision why its regeneration failed; runs in the transaction that ends the job."""
+        if self.steps is not None:
+            self.steps.drop(job.id)
         if job.design is not None and job.revision is not None:
             changed = repository.changed_since_good(session, job.design, job.revision)
             repository.fail(session, job.design, job.revision, {**problem, "changed": changed})
@@ -129,6 +131,11 @@ class Regeneration:
                     calculation.shapes[name], question, calculation.graph.wanted(name, kind), context
                 )
         return bool(waiting)
+
+
+def _lane(job: Job) -> Lane:
+    """Where a job calculates: whoever changes a bearing does not wait for calculations of minutes."""
+    return "answers" if job.kind == REGENERATE else "jobs"
 
 
 @contextmanager

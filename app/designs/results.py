@@ -9,6 +9,7 @@ from typing import Any
 from app.calculations import rendering
 from app.designs.calculate import Calculation
 from app.designs.graph import Block
+from app.designs.worksheet import remember
 from app.solids import measures
 from app.solids.analysis_views import in_design
 from cad.regenerate import build_key
@@ -49,7 +50,7 @@ def analyses(calculation: Calculation) -> dict[str, Any]:
 
 
 def steps(calculation: Calculation) -> dict[str, Any]:
-    """Every step: its evaluation, or that it waits for a solid."""
+    """Every step: its evaluation, or that it waits for a solid or for its job."""
     return {
         name: _step(calculation, block)
         for name, block in calculation.graph.blocks.items()
@@ -61,7 +62,9 @@ def _step(calculation: Calculation, block: Block) -> dict[str, Any]:
     relations = {n: cell.raw for n, cell in block.cells.items() if cell.relations}
     if block.name not in calculation.evaluations:
         return {"template": rendering.identity(block.cls), "relations": relations, "state": "pending"}
-    told = rendering.evaluation(calculation.evaluations[block.name])
+    evaluation = calculation.evaluations[block.name]
+    told = rendering.evaluation(evaluation)
+    remember(told, evaluation)
     del told["seconds"]  # equal revisions are equal
     return {**told, "relations": relations}
 

@@ -9,6 +9,8 @@ from typing import Any
 from pydantic import ValidationError
 from sqlalchemy.orm import Session
 
+from app.calculations.begun import Begun
+from app.calculations.steps import begun_steps
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
 from app.designs.automap import Proposal, proposals
@@ -30,7 +32,9 @@ from templates.core.errors import Fault, FaultyText, InvalidInputs, plain
 from templates.core.units.quantity import Value, read
 
 REGENERATE, REGENERATE_SLOWLY = "regenerate", "regenerate_and_analyse"
-"""Kinds of jobs: the second is that of designs whose relations use finite elements."""
+CALCULATE = "calculate_and_regenerate"
+"""Kinds of jobs: the second is that of designs whose relations use finite elements, the third that of designs
+with steps for which the save did not wait."""
 
 LONGEST_PLACE = 200  # characters of where in a document something is wrong
 
@@ -44,6 +48,17 @@ class Saved:
     job: str | None
     created: bool
     fresh: bool = True  # made by this request, not found from an earlier one
+    is_deferred: bool = False  # the request has waited for steps as long as it does: the job calculates them
+
+
+@dataclass(frozen=True)
+class _Draft:
+    """A revision to be written, and the job that completes it, should one have to."""
+
+    written: Written
+    kind: str
+    is_deferred: bool
+    begun: Begun | None  # what the job takes over
 
 
 class Designs:
@@ -62,16 +77,17 @@ class Designs:
         """
         if found := self._repeated(once):
             return found
-        written, kind = self._written(raw, note)
+        draft = self._draft(raw, note)
 
         def unit(session: Session) -> Saved:
             if found := _found(session, once):
                 return found
-            certain = _with_builds(session, written)
-            design, revision = repository.create(session, certain.document["name"], certain)
-            return self._enqueued(session, design, revision, _work(certain, kind), once, created=True)
+            certain = _with_builds(session, draft)
+            name = certain.written.document["name"]
+            design, revision = repository.create(session, name, certain.written)
+            return self._enqueued(session, design, revision, certain, once, created=True)
 
-        return self._saved(unit)
+        return self._saved(unit, draft)
 
     def change(
         self, id: str, patch: Mapping[str, Any], note: str | None, expected: str | None, once: Once
@@ -122,7 +138,7 @@ class Designs:
         with self.database.read() as session:
             number = repeated.revision - 1 if repeated else repository.head(session, id).number
             document = repository.revision(session, id, number).document
-        found = proposals(self.prepare(document)[1].graph)
+        found = proposals(self._graph(resolved(read_document(document), self.catalogues)))
         if repeated or not (apply and found):
             return found, repeated
         models: dict[str, Any] = {}
@@ -140,13 +156,16 @@ class Designs:
     def prepare(self, raw: Mapping[str, Any]) -> tuple[Document, Calculation]:
         """A document read and calculated with what is built already; faults are left in the calculation."""
         document = resolved(read_document(raw), self.catalogues)
+        known = built(self.database), analysed(self.database)
+        return document, calculate(self._graph(document), *known, starts(document))
+
+    def _graph(self, document: Document) -> Graph:
         graph, faults = build_graph(document, self.catalogues)
         raise_if(faults)
-        known = built(self.database), analysed(self.database)
-        return document, calculate(graph, *known, starts(document))
+        return graph
 
     def _append(self, id: str, base: int, raw: Mapping[str, Any], note: str | None, once: Once) -> Saved:
-        written, kind = self._written(raw, note)
+        draft = self._draft(raw, note)
 
         def unit(session: Session) -> Saved:
             if found := _found(session, once):
@@ -154,41 +173,46 @@ class Designs:
             row = repository.design(session, id)
             if row.head != base:
                 raise StaleRevision(f'"{base}"', row.head)
-            if repository.revision(session, id, base).document == written.document:
+            if repository.revision(session, id, base).document == draft.written.document:
                 unchanged = Saved(id, base, None, created=False, fresh=False)
                 once.keep(session, 200, vars(unchanged))
                 return unchanged
-            certain = _with_builds(session, written)
-            revision = repository.append(session, row, certain)
-            return self._enqueued(session, id, revision, _work(certain, kind), once, created=False)
+            certain = _with_builds(session, draft)
+            revision = repository.append(session, row, certain.written)
+            return self._enqueued(session, id, revision, certain, once, created=False)
 
-        return self._saved(unit)
+        return self._saved(unit, draft)
 
-    def _written(self, raw: Mapping[str, Any], note: str | None) -> tuple[Written, str]:
-        """What to write for a document, and the kind of job that regenerates it, should one have to."""
+    def _draft(self, raw: Mapping[str, Any], note: str | None) -> _Draft:
+        """What to write for a document; its results wait for a job if anything in it does."""
         document, calculation = self.prepare(raw)
         raise_if(calculation.faults)
         pending = bool(document.iterations) or bool(calculation.pending)
         told = None if pending else results.told(calculation, [])
         state = "regenerating" if pending else "current"
         plain = document.model_dump(mode="json")
-        kind = REGENERATE_SLOWLY if analyses_wanted(calculation.graph) else REGENERATE
-        return Written(plain, told, results.models(calculation), state, note), kind
+        written = Written(plain, told, results.models(calculation), state, note)
+        return _Draft(written, _kind(calculation), bool(calculation.deferred), begun_steps())
 
     def _enqueued(
-        self, session: Session, design: str, revision: int, work: str | None, once: Once, *, created: bool
+        self, session: Session, design: str, revision: int, draft: _Draft, once: Once, *, created: bool
     ) -> Saved:
         """The job of a revision, if it needs one, and the record of the request; in one transaction."""
         job = None
-        if work:
-            job = self.jobs.enqueue(session, work, {}, design=design, revision=revision, client=once.client)
+        if draft.written.state == "regenerating":
+            job = self.jobs.enqueue(
+                session, draft.kind, {}, design=design, revision=revision, client=once.client
+            )
+            if draft.begun is not None:
+                draft.begun.leave_to(job)
         saved = Saved(design, revision, job, created)
         once.keep(session, 201 if created else 200, vars(saved))
         return saved
 
-    def _saved(self, unit: Any) -> Saved:
+    def _saved(self, unit: Any, draft: _Draft) -> Saved:
         saved: Saved = self.database.write(unit)
         if saved.fresh:
+            saved = replace(saved, is_deferred=draft.is_deferred)
             topic, state = f"design:{saved.design}", "regenerating" if saved.job else "current"
             for event in ("revision", state):
                 self.jobs.events.publish(topic, {"event": event, "revision": saved.revision})
@@ -201,15 +225,18 @@ class Designs:
             return _found(session, once)
 
 
-def _with_builds(session: Session, written: Written) -> Written:
+def _with_builds(session: Session, draft: _Draft) -> _Draft:
     """What to write, its builds renewed; if one was deleted since they were looked up, it has to be built."""
-    if renew(session, [model.build for model in written.models if model.build]):
-        return written
-    return replace(written, results=None, state="regenerating")
+    if renew(session, [model.build for model in draft.written.models if model.build]):
+        return draft
+    return replace(draft, written=replace(draft.written, results=None, state="regenerating"))
 
 
-def _work(written: Written, kind: str) -> str | None:
-    return kind if written.state == "regenerating" else None
+def _kind(calculation: Calculation) -> str:
+    """The kind of job that completes a design."""
+    if analyses_wanted(calculation.graph):
+        return REGENERATE_SLOWLY
+    return CALCULATE if calculation.deferred else REGENERATE
 
 
 def _found(session: Session, once: Once) -> Saved | None:

@@ -63,7 +63,7 @@ def revision(session: Session, row: RevisionRow) -> dict[str, Any]:
 
 
 def _step(typed: dict[str, Any], found: dict[str, Any] | None) -> dict[str, Any]:
-    """A step with its results, or as typed while it waits for a solid."""
+    """A step with its results, or as typed while it waits for a solid or for its job."""
     if found is None or "outputs" not in found:
         template = {"id": typed["template"], "version": typed["version"]}
         empty: dict[str, Any] = {"outputs": {}, "level": None, "error": {}, "warnings": []}

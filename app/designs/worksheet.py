@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from hashlib import sha256
-from typing import Any
+from collections.abc import Hashable, Mapping
+from typing import Any, NamedTuple, Self
 
-from pydantic_core import from_json, to_json
-
+from app.calculations.begun import fingerprint
 from app.calculations.cache import results as kept
+from app.calculations.cost import EXPENSIVE
+from app.calculations.errors import StepDeferred
 from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
 from app.designs.calculate import Calculation
 from app.presentation.units import System, converted
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
+from templates.core.language.evaluate import Evaluation
 from templates.core.language.template import Template
 from templates.core.paper.verdicts import Check, checks
 
@@ -60,15 +61,15 @@ def _formulas(
 def _again(
     told: Mapping[str, Any], catalogue: Catalogue[Template], system: System
 ) -> tuple[list[dict[str, Any]], list[Check]]:
-    """Formulas and checks of a step that has results, calculated as its job did."""
+    """Formulas and checks of a step that has results, calculated as its job did; none if it is deferred."""
     if not told["outputs"]:
         return [], []
-    level = told["level"] if isinstance(told["level"], str) else None
-    inputs = {name: _retyped(value) for name, value in told["inputs"].items() if value["from"] == "given"}
     try:
         cls: Any = catalogue.get(told["template"]["id"], told["template"]["version"])
-        return _written_out(cls, to_json(inputs), tuple(told["outputs"]), level, system)
+        return _written_out(cls, told, system)
     except TemplateError:  # the file of this version was taken away, or changed: its results stay
+        return [], []
+    except StepDeferred:
         return [], []
 
 
@@ -77,14 +78,38 @@ def _retyped(echo: Mapping[str, Any]) -> Any:
     return {name: part for name, part in echo.items() if name != "from"} if "unit" in echo else echo["value"]
 
 
+class _Question(NamedTuple):
+    """What a revision's step was asked, as it can be asked again."""
+
+    inputs: dict[str, Any]
+    outputs: tuple[str, ...]
+    level: str | None
+
+    @classmethod
+    def of(cls, told: Mapping[str, Any]) -> Self:
+        given = {name: _retyped(value) for name, value in told["inputs"].items() if value["from"] == "given"}
+        level = told["level"] if isinstance(told["level"], str) else None
+        return cls(given, tuple(sorted(told["outputs"])), level)  # as the database has them
+
+    def key(self, *more: Any) -> Hashable:
+        return (_Question, fingerprint(self.inputs), self.outputs, self.level, *more)
+
+
+def remember(told: Mapping[str, Any], evaluation: Evaluation) -> None:
+    """Keep the evaluation of an expensive step, so that its worksheet does not calculate it again."""
+    if evaluation.seconds > EXPENSIVE:
+        kept.keep(_Question.of(told).key(type(evaluation.template)), evaluation)
+
+
 def _written_out(
-    cls: Any, inputs: bytes, outputs: tuple[str, ...], level: str | None, system: System
+    cls: Any, told: Mapping[str, Any], system: System
 ) -> tuple[list[dict[str, Any]], list[Check]]:
     """Formulas and checks, kept because a revision never changes."""
-    key = (_written_out, cls, sha256(inputs).digest(), outputs, level, system)
+    question = _Question.of(told)
+    key = question.key(cls, system)
     written: tuple[list[dict[str, Any]], list[Check]] | None = kept.get(key)
     if written is None:
-        evaluation = evaluated_step(cls, from_json(inputs), outputs, level, None)
+        evaluation = kept.get(question.key(cls)) or evaluated_step(cls, *question, None)
         written = formulas(evaluation.template, system, evaluation.outputs), list(checks(evaluation.template))
         kept.keep(key, written)
     return written

@@ -48,6 +48,11 @@ class JobContext:
         """Whether somebody cancelled the job, or the server stops."""
         return self._cancelled.is_set()
 
+    @property
+    def cancelled(self) -> threading.Event:
+        """Set once somebody has cancelled the job, or the server stops."""
+        return self._cancelled
+
     def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
         """Run a function in the worker, within the limits of jobs or others; it tells progress by `report`.
 

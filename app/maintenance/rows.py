@@ -31,7 +31,7 @@ def named_files(connection: sqlite3.Connection) -> Iterator[Named]:
         yield from _files_of_calculation(id, json.loads(payload), result)
 
 
-CALCULATIONS = "SELECT id, payload, result FROM job WHERE kind = 'calculation'"
+CALCULATIONS = "SELECT id, payload, result FROM job WHERE kind IN ('calculation', 'preview')"
 
 
 def _files_of_calculation(id: str, payload: dict[str, str], result: str | None) -> Iterator[Named]:

@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, WithJsonSchema
 
 from app.schemas.analyses import ModelAnalysis
-from app.schemas.answers import Answer, Page, Quantity, Shown, Version, Warning
-from app.schemas.evaluations import CalculatedBy, Evaluated, Level, Output, UsedInput, WorkedFormula
+from app.schemas.answers import Answer, Page, Shown, Version, Warning
+from app.schemas.evaluations import CalculatedBy, Level, Output, UsedInput, WorkedFormula
 from app.schemas.problems import Problem
 from app.schemas.solids import Measurements
 from app.schemas.values import GIVEN

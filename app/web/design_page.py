@@ -19,6 +19,9 @@ from app.web.rendering import show, units_of
 from cad.export import MEDIA_TYPES
 
 UNFINISHED = ("queued", "running")
+QUICK = (
+    1  # how long a page waits for steps; its script asks for what takes longer, and shows the progress [s]
+)
 
 
 async def design_page(
@@ -34,10 +37,12 @@ async def design_page(
     """The newest revision in a form; or a form that was refused, with what was typed and what is wrong."""
     design = await api.get(f"/designs/{id}")
     number = design["revision"]
-    told = await _revision(request, api, id, number)
+    within = 0 if design["state"] == "regenerating" else QUICK
+    told = await _revision(request, api, id, number, within=within)
     steps, models = await _descriptions(api, design)
-    previewed = await api.post(f"/designs/{id}/preview", {}, worksheet=True, units=units_of(request))
-    before = await _revision(request, api, id, number - 1) if number > 1 else None
+    query = {"worksheet": True, "units": units_of(request), "within": within}
+    previewed = await api.post(f"/designs/{id}/preview", {}, **query)
+    before = await _revision(request, api, id, number - 1, within=0) if number > 1 else None
     wrong, words = faults or {}, typed or {}
     parameters = sheet.of_parameters(design["parameters"], previewed["parameters"], words, wrong)
     blocks = _steps(design, told, steps, words, wrong)
@@ -93,8 +98,9 @@ async def revision_page(request: Request, api: Api, id: str, number: int, other:
     )
 
 
-async def _revision(request: Request, api: Api, id: str, number: int) -> dict[str, Any]:
-    return await api.get(f"/designs/{id}/revisions/{number}/worksheet", units=units_of(request))
+async def _revision(request: Request, api: Api, id: str, number: int, **options: Any) -> dict[str, Any]:
+    path = f"/designs/{id}/revisions/{number}/worksheet"
+    return await api.get(path, units=units_of(request), **options)
 
 
 async def _descriptions(
@@ -152,7 +158,7 @@ def _steps(
     """Every step with its fields, results and pictures."""
     blocks = []
     for name, template in schemas.items():
-        cells, result = design["steps"][name], told["steps"][name]
+        cells, result = design["steps"][name], _awaited(template, design["steps"][name], told["steps"][name])
         blocks.append(
             {
                 "name": name,
@@ -164,10 +170,21 @@ def _steps(
                 "options": sheet.of_options(template, name, cells, typed, faults),
                 "result": result,
                 "outputs": [n for n in template["outputs"]["properties"] if n in result["outputs"]],
-                "pictures": pictures(name, template, result),
+                "pictures": pictures(name, template, told["steps"][name]),
             }
         )
     return blocks
+
+
+def _awaited(
+    template: Mapping[str, Any], cells: Mapping[str, Any], result: Mapping[str, Any]
+) -> Mapping[str, Any]:
+    """The results of a step; while they are awaited, places for the page's script to fill in."""
+    if not result.get("pending"):
+        return result
+    names = cells.get("outputs") or list(template["outputs"]["properties"])
+    waiting = {"value": None, "reason": "is not calculated yet"}
+    return {**result, "outputs": dict.fromkeys(names, waiting), "error": dict.fromkeys(names)}
 
 
 def _used(result: Mapping[str, Any]) -> dict[str, Any]:

@@ -290,11 +290,6 @@ def test_a_step_of_a_design_is_calculated_in_another_process(http, log):
     assert steps["s"]["outputs"]["process"]["value"] == begun(log)[0] != os.getpid()
 
 
-def test_a_step_may_take_longer_than_an_answer_waits(http, log):
-    made = http.post(f"{API}/designs", json=design("2.5 s"))
-    assert made.status_code == 201, made.text
-
-
 def test_a_step_that_is_refused_or_crashes_says_so(http):
     problem(http.post(f"{API}/designs", json=design("-1 s")), 422, "invalid-inputs")
     wrong = design("1 ms")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Header, Path, Query, Request, Response
@@ -11,20 +12,21 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import (
     ExpensiveSteps,
-    TheCatalogues,
     TheDatabase,
     TheDesigns,
     TheJobs,
     TheOnce,
+    ThePreviews,
     TheThreads,
     Units,
 )
+from app.api.gate.clients import TheClient
 from app.api.paging import Cursor, Limit, page
 from app.api.reading import StrictRoute
-from app.api.waiting import LATER, finished
+from app.api.waiting import LATER, LONGEST, accepted, finished, patience
 from app.designs import repository, views
 from app.designs.explain import explain
-from app.designs.preview import preview
+from app.designs.previewing import Change
 from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn, RestoreIn
 from app.designs.service import Designs, Saved
 from app.jobs.service import Jobs
@@ -39,6 +41,10 @@ Id = Annotated[str, Path(max_length=64)]
 Number = Annotated[int, Path(ge=1, le=10**9)]
 Prefer = Annotated[str | None, Header(description="`wait=5` or `respond-async`")]
 IfMatch = Annotated[str | None, Header(description='the ETag of the design that was read, such as `"3"`')]
+Within = Annotated[
+    float | None,
+    Query(ge=0, le=LONGEST, description="leave pending what takes longer [s], instead of queueing a job"),
+]
 Patch = Annotated[
     dict[str, Any],
     Body(description="a merge patch of the design, with an optional `note`; null removes"),
@@ -56,13 +62,14 @@ async def create_design(
     threads: TheThreads,
     jobs: TheJobs,
     once: TheOnce,
+    request: Request,
     prefer: Prefer = None,
 ) -> Response:
     """A new design; its models are built. 201 when they are ready, 202 while they are being built."""
     raw = body.model_dump()  # not in JSON's mode, which hides a NaN as null
     note = raw.pop("note")
     raw.pop("model")
-    saved = await threads.run(designs.create, raw, note, once)
+    saved = await threads.run_within(_seconds(prefer), request, designs.create, raw, note, once)
     return await _answer(designs, jobs, saved, prefer)
 
 
@@ -93,12 +100,15 @@ async def change_design(
     threads: TheThreads,
     jobs: TheJobs,
     once: TheOnce,
+    request: Request,
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
     """A new revision; models are rebuilt only where one of their parameters changed."""
     patch, note = _noted(body)
-    saved = await threads.run(designs.change, id, patch, note, if_match, once)
+    saved = await threads.run_within(
+        _seconds(prefer), request, designs.change, id, patch, note, if_match, once
+    )
     return await _answer(designs, jobs, saved, prefer)
 
 
@@ -109,22 +119,25 @@ def delete_design(id: Id, designs: TheDesigns) -> Response:
     return Response(status_code=204)
 
 
-@router.post("/{id}/preview")
+@router.post("/{id}/preview", response_model=None, responses=LATER)
 async def preview_design(
     id: Id,
     body: Patch,
-    database: TheDatabase,
-    catalogues: TheCatalogues,
+    previews: ThePreviews,
     threads: TheThreads,
+    client: TheClient,
     request: Request,
     worksheet: Annotated[bool, Query(description="also every step, its formulas written out")] = False,
     units: Units = "si",
-) -> dict[str, Any]:
+    within: Within = None,
+    prefer: Prefer = None,
+) -> dict[str, Any] | Response:
     """What a change would do to outputs and model parameters; nothing is saved."""
-    patch, _ = _noted(body)
-    return await threads.run_for(
-        request, preview, database, catalogues, id, patch, worksheet=worksheet, system=units
-    )
+    change = Change(id, _noted(body)[0], worksheet, units)
+    if within is not None:
+        return await threads.run_within(within, request, previews.known, change)
+    told, job = await threads.run_within(_seconds(prefer), request, previews.answer, change, client)
+    return accepted(job, told) if job else told
 
 
 @router.post("/{id}/auto-map", responses=LATER)
@@ -134,12 +147,15 @@ async def map_design(
     threads: TheThreads,
     jobs: TheJobs,
     once: TheOnce,
+    request: Request,
     apply: Annotated[bool, Query(description="save the proposals as a new revision")] = False,
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
     """Proposals for model parameters that are not set, by name and unit."""
-    found, saved = await threads.run(designs.auto_map, id, apply, if_match, once)
+    found, saved = await threads.run_within(
+        _seconds(prefer), request, designs.auto_map, id, apply, if_match, once
+    )
     told = {"proposals": [vars(proposal) for proposal in found]}
     return await _answer(designs, jobs, saved, prefer, told) if saved else JSONResponse(told)
 
@@ -151,11 +167,14 @@ async def copy_design(
     threads: TheThreads,
     jobs: TheJobs,
     once: TheOnce,
+    request: Request,
     body: CopyIn | None = None,
     prefer: Prefer = None,
 ) -> Response:
     """A new design with the newest document of this one."""
-    saved = await threads.run(designs.copy, id, body.name if body else None, once)
+    saved = await threads.run_within(
+        _seconds(prefer), request, designs.copy, id, body.name if body else None, once
+    )
     return await _answer(designs, jobs, saved, prefer)
 
 
@@ -167,13 +186,16 @@ async def restore_revision(
     threads: TheThreads,
     jobs: TheJobs,
     once: TheOnce,
+    request: Request,
     body: RestoreIn | None = None,
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
     """A new revision equal to an old one."""
     note = body.note if body else None
-    saved = await threads.run(designs.restore, id, number, note, if_match, once)
+    saved = await threads.run_within(
+        _seconds(prefer), request, designs.restore, id, number, note, if_match, once
+    )
     return await _answer(designs, jobs, saved, prefer)
 
 
@@ -229,11 +251,16 @@ def _noted(body: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
     return patch, note
 
 
+def _seconds(prefer: str | None) -> float:
+    """How long a request waits for expensive steps [s]; at most until the deadline."""
+    return patience(prefer, math.inf)
+
+
 async def _answer(
     designs: Designs, jobs: Jobs, saved: Saved, prefer: str | None, more: dict[str, Any] | None = None
 ) -> Response:
     """The design itself, whether its job ended in time (200, 201) or goes on (202, the job in Location)."""
-    done = await finished(jobs, saved.job, prefer)
+    done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
     status = (201 if saved.created else 200) if done else 202
     place = f"/api/v1/jobs/{saved.job}" if saved.job and not done else f"/api/v1/designs/{saved.design}"
     answer = await run_in_threadpool(_shown, designs, saved.design, saved.revision, status, more)

@@ -1,4 +1,4 @@
-"""`/evaluations/{job}`: the answer of a calculation that went on as a job."""
+"""`/evaluations/{job}`: the answer of a calculation, or of a preview, that went on as a job."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fastapi import APIRouter, Path, Response
 from app.api import problems
 from app.api.dependencies import TheJobs, TheStore
 from app.api.waiting import LATER, accepted
-from app.calculations.jobs import CALCULATION
+from app.calculations.jobs import CALCULATION, PREVIEW
 from app.jobs.errors import JobNotFound
 from app.schemas.evaluations import AnyCalculation
 from app.schemas.problems import refusals
@@ -21,9 +21,9 @@ router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
 
 @router.get("/{job}", response_model=AnyCalculation, responses={**LATER, **refusals(404, 410)})
 def show_evaluation(job: Annotated[str, Path(max_length=64)], jobs: TheJobs, store: TheStore) -> Response:
-    """What `evaluate`, `solve` or `worksheet` would have answered; 202 while the job goes on."""
+    """What `evaluate`, `solve`, `worksheet` or `preview` would have answered; 202 while the job goes on."""
     found = jobs.get(job)
-    if found.kind != CALCULATION:
+    if found.kind not in (CALCULATION, PREVIEW):
         raise JobNotFound(job)
     if not found.finished:
         return accepted(job)

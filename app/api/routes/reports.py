@@ -15,7 +15,7 @@ from app.api.dependencies import ExpensiveSteps, TheJobs, ThePress, TheReports, 
 from app.api.gate.clients import TheClient
 from app.api.gate.guard import PAGE_POLICY
 from app.api.reading import StrictRoute
-from app.api.routes.designs import Id, Number, Prefer
+from app.api.routes.designs import Id, Number, Prefer, Within
 from app.api.waiting import accepted_kinds, finished
 from app.jobs.service import Jobs
 from app.reports import tables
@@ -97,6 +97,7 @@ async def show_worksheet(
     number: Number | None = None,
     kind: Id | None = None,
     units: Units = "si",
+    within: Within = None,
     accept: Accept = None,
 ) -> Response:
     """Inputs and outputs of a revision, the newest if none is named.
@@ -106,7 +107,10 @@ async def show_worksheet(
     """
     wanted = _wanted("worksheet", kind, accept, TABLES)
     revision = await run_in_threadpool(reports.number, id, number)
-    told = await threads.run_for(request, reports.told, id, revision, units)
+    if within is None:
+        told = await threads.run_for(request, reports.told, id, revision, units)
+    else:
+        told = await threads.run_within(within, request, reports.told, id, revision, units)
     headers = {"Vary": "Accept", "Design-Revision": str(revision)}
     if wanted == "json":
         return JSONResponse(told, headers=headers)

@@ -1,12 +1,13 @@
 // The design page while it is used: previews, the draft, saving, progress. Every action is a call of the API.
 import { Refused, call, units } from "./api.js";
+import { calculated } from "./calculation.js";
 import { Draft } from "./draft.js";
 import { isolated } from "./isolated.js";
 import { live } from "./live.js";
 import { showParameters, showValues } from "./parameters.js";
 import { drawPictures } from "./pictures.js";
 import { follow } from "./progress.js";
-import { OUTDATED, markOutdated, showFaults, showResults } from "./results.js";
+import { OUTDATED, markOutdated, markWaiting, showFaults, showResults } from "./results.js";
 import { startSolids } from "./solids.js";
 import { nameOf, patchOf } from "./typed.js";
 
@@ -17,22 +18,46 @@ const draft = new Draft(form, JSON.parse(form.querySelector("[name=was]").value)
 const models = new Set([...document.querySelectorAll("[data-model]")].map((part) => part.dataset.model));
 const state = form.querySelector("[data-state]");
 const trouble = form.querySelector("[data-trouble]");
+const CONFLICT = 409; // the calculation was cancelled
 const patch = () => patchOf(draft.changed(), models);
-let steps = {}, conflicted = false;
+const progress = document.querySelector("[data-progress]");
+const designState = document.querySelector("[data-design-state]").dataset.designState;
+let steps = {}, conflicted = false, isFollowing = false; // the bar shows the job of a revision
 
 const preview = live(
-  (signal) => call("POST", `${api}/preview?worksheet=true&units=${units()}`, patch(), { signal }),
+  (signal) => previewed(signal, isFollowing),
   ({ told }) => {
     clear();
     show(told);
-    state.textContent = draft.keep() ? "previewed, not saved" : "";
+    state.textContent = [draft.keep() && "previewed, not saved", waiting(told)].filter(Boolean).join("; ");
   },
   refusePreview,
 );
 
+// What takes long is shown once its job has ended, the rest at once; or only what is known soon.
+async function previewed(signal, isQuick) {
+  const path = `${api}/preview?worksheet=true&units=${units()}${isQuick ? "&within=1" : ""}`;
+  const answer = await call("POST", path, patch(), { signal, headers: { Prefer: "wait=1" } });
+  if (answer.status !== 202) return answer;
+  clear();
+  show(answer.told);
+  state.textContent = draft.keep() ? "not saved" : "";
+  return calculated(answer.location, signal);
+}
+
+// A step that is not calculated yet; as long as nothing is changed, the results shown are those of the revision.
+const isWaiting = (answer) => answer.state === "pending" && (designState !== "current" || draft.isChanged());
+
+function waiting({ steps }) {
+  const names = Object.keys(steps).filter((step) => isWaiting(steps[step]));
+  return names.length > 0 && `${names.join(", ")} not calculated yet`;
+}
+
 function show(told) {
   steps = told.steps;
   for (const [step, answer] of Object.entries(told.steps)) {
+    markWaiting(step, isWaiting(answer));
+    if (answer.state === "pending") continue;
     showResults(step, answer);
     showValues(form, step, answer);
     drawPictures(document, step, answer);
@@ -42,12 +67,14 @@ function show(told) {
 }
 
 function clear() {
+  progress.hidden = !isFollowing;
   showFaults(form, new Map());
   markOutdated(false);
   trouble.hidden = !conflicted;
 }
 
 function refusePreview(error) {
+  progress.hidden = !isFollowing;
   refuse(error);
   markOutdated(true);
   state.textContent = [state.textContent, OUTDATED].filter(Boolean).join("; ");
@@ -57,7 +84,7 @@ function refuse(error) {
   state.textContent = "";
   if (!(error instanceof Refused)) return tell(`The service does not answer: ${error.message}`);
   const loose = showFaults(form, error.faults);
-  state.textContent = "not possible so: see the message beside the field";
+  state.textContent = error.status === CONFLICT ? "" : "not possible so: see the message beside the field";
   if (loose.size || !error.faults.size) tell([...loose.values()].join("; ") || error.message);
 }
 
@@ -99,19 +126,24 @@ form.addEventListener("submit", async (event) => {
   const changed = patch();
   if (Object.keys(changed).length === 0) return (state.textContent = "nothing has changed");
   const note = form.querySelector("[name=note]").value.trim();
-  const headers = { "If-Match": `"${revision}"`, Prefer: "respond-async", "Idempotency-Key": onlyOnce() };
+  const headers = { "If-Match": `"${revision}"`, Prefer: "wait=1", "Idempotency-Key": onlyOnce() };
   preview.cancel(); // else it would keep as a draft what is saved by then
   state.textContent = "saving …";
   try {
     const { status, location: job } = await call("PATCH", api, { ...changed, ...(note && { note }) }, { headers });
     draft.forget();
-    if (status === 202) await follow(job);
+    if (status === 202) await regenerated(job);
     location.reload();
   } catch (error) {
     if (error.status === 412) conflict();
     else refuseToSave(error);
   }
 });
+
+function regenerated(job) {
+  isFollowing = true;
+  return follow(job);
+}
 
 function refuseToSave(error) {
   if (error.faults?.size) refusePreview(error);
@@ -139,12 +171,16 @@ async function start() {
   const from = draft.restore();
   if (from !== null) showDraft();
   if (from !== null && from !== Number(revision)) tell(`Revision ${revision} was saved since you typed these changes; look at them once more.`);
-  const running = document.querySelector("[data-progress]").dataset.job;
-  if (running) follow(`/api/v1/jobs/${running}`).then(() => location.reload());
+  const running = progress.dataset.job;
+  if (running) regenerated(`/api/v1/jobs/${running}`).then(() => location.reload());
   startSolids(() => steps);
   if (form.querySelector("[data-elements]")) import("./elements.js").then(({ startElements }) => startElements());
   try {
-    show((await call("POST", `${api}/preview?worksheet=true&units=${units()}`, patch())).told);
+    const isPainted = designState === "current" && document.querySelector("[data-painted]"); // with results of a step
+    const { told } = await previewed(undefined, isFollowing || (from === null && !isPainted));
+    clear();
+    show(told);
+    state.textContent = [state.textContent, waiting(told)].filter(Boolean).join("; ");
   } catch (error) {
     refusePreview(error);
   }

@@ -17,11 +17,15 @@ export class Draft {
     return Object.fromEntries(this.fields().filter(differs).map((field) => [field.name, field.value]));
   }
 
+  isChanged() {
+    return Object.keys(this.changed()).length > 0;
+  }
+
   // Keep what differs; true if anything does.
   keep() {
     const changed = this.changed();
     for (const field of this.fields()) field.classList.toggle("changed", Object.hasOwn(changed, field.name));
-    const any = Object.keys(changed).length > 0;
+    const any = this.isChanged();
     if (any) sessionStorage.setItem(this.key, JSON.stringify(changed));
     else sessionStorage.removeItem(this.key);
     return any;

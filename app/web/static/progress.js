@@ -4,7 +4,7 @@ import { isolated } from "./isolated.js";
 
 const ENDED = ["done", "failed", "cancelled"];
 
-export function follow(path, place = document.querySelector("[data-progress]"), begins = "The part is being built …") {
+export function follow(path, place = document.querySelector("[data-progress]"), begins = "The design is being regenerated …") {
   const bar = place.querySelector("progress"), words = place.querySelector("[data-progress-text]");
   place.hidden = false;
   bar.value = 0;

@@ -72,6 +72,12 @@ export function markOutdated(isOutdated) {
   document.getElementById("main").classList.toggle("outdated", isOutdated);
 }
 
+// Likewise for one step of a design, whose results are still being calculated.
+export function markWaiting(step, isWaiting) {
+  const parts = document.querySelectorAll(`[data-step="${step}"], [data-pictures="${step}"]`);
+  for (const part of parts) part.classList.toggle("outdated", isWaiting);
+}
+
 export const OUTDATED = "the results shown are those of before";
 
 // Messages beside the fields of a form; those of no field are returned.

@@ -1,10 +1,10 @@
 // A template's page while it is used: results follow what is typed; the address keeps it.
 import { drawAccuracy } from "./accuracy.js";
 import { Refused, call, units } from "./api.js";
+import { calculated } from "./calculation.js";
 import { isolated } from "./isolated.js";
 import { live } from "./live.js";
 import { drawPictures, whenSeen } from "./pictures.js";
-import { follow } from "./progress.js";
 import { OUTDATED, markOutdated, showFaults, showResults } from "./results.js";
 import { optionOf, valueOf } from "./typed.js";
 
@@ -27,21 +27,9 @@ const progress = document.querySelector("[data-progress]");
 async function tried(signal) {
   const options = { signal, headers: { Prefer: "wait=1" } };
   const answer = await call("POST", `${path}/worksheet?units=${units()}`, asked(), options);
-  return answer.status === 202 ? calculated(answer.location, signal) : answer;
-}
-
-// What takes long is a job: how far it is, a way to stop it, and its answer. Who types or leaves stops it as well.
-async function calculated(job, signal) {
-  const stop = () => fetch(job, { method: "DELETE", keepalive: true }).catch(() => {}); // it has ended meanwhile
-  if (signal?.aborted) stop();
-  signal?.addEventListener("abort", stop);
-  addEventListener("pagehide", stop);
+  if (answer.status !== 202) return answer;
   markOutdated(true);
-  await follow(job, progress, "Calculating …");
-  removeEventListener("pagehide", stop);
-  if (signal?.aborted) throw new DOMException("something else is wanted now", "AbortError");
-  progress.hidden = true;
-  return call("GET", job.replace("/jobs/", "/evaluations/"));
+  return calculated(answer.location, signal);
 }
 
 function show({ told }) {
@@ -76,7 +64,9 @@ form.addEventListener("input", () => {
   preview.ask();
 });
 
-if (progress.dataset.job) calculated(progress.dataset.job).then(show, refuse);
-else if (document.querySelector("[data-output]")) tried().then(show, refuse);
+if (progress.dataset.job) {
+  markOutdated(true);
+  calculated(progress.dataset.job).then(show, refuse);
+} else if (document.querySelector("[data-output]")) tried().then(show, refuse);
 const accuracy = document.querySelector("[data-accuracy]");
 if (accuracy) whenSeen(accuracy, () => drawAccuracy(accuracy));

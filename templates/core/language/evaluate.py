@@ -83,15 +83,9 @@ def evaluate(
     """
     start = time.perf_counter()
     names = list(cls.formulas) if outputs is None else list(outputs)
-    faults = unknown_names((name for name in names if name not in cls.formulas), cls.formulas, "output")
+    faults: list[Fault] = []
     shown_in = _units(cls, units or {}, faults)
-    faults += _level_faults(cls, level)
-    try:
-        template = cls.from_quantities(raw)
-    except InvalidInputs as error:
-        raise InvalidInputs([*faults, *error.faults]) from None
-    if faults:
-        raise InvalidInputs(faults)
+    template = checked(cls, raw, names, level, faults)
     with np.errstate(all="ignore"):
         rungs = _rungs(template, names, level, tolerance)
         parts = [_part(rung.template, names, shown_in) for rung in rungs]
@@ -102,6 +96,31 @@ def evaluate(
     notices = [*_standing(cls), *_noticed(rungs), *_unmet(cls, whole, names, tolerance)]
     seconds = time.perf_counter() - start
     return Evaluation(rungs[0].template, echoes, whole.answers, whole.level, whole.error, notices, seconds)
+
+
+def checked(
+    cls: type[Template],
+    raw: Mapping[str, Any],
+    outputs: Iterable[str] = (),
+    level: str | None = None,
+    others: Iterable[Fault] = (),
+) -> Template:
+    """The template with its inputs read and checked, before any formula runs.
+
+    Raises
+    ------
+    InvalidInputs
+        Naming everything that is wrong with the request, with the faults that were found before (`others`).
+    """
+    faults = unknown_names((name for name in outputs if name not in cls.formulas), cls.formulas, "output")
+    faults += [*others, *_level_faults(cls, level)]
+    try:
+        template = cls.from_quantities(raw)
+    except InvalidInputs as error:
+        raise InvalidInputs([*faults, *error.faults]) from None
+    if faults:
+        raise InvalidInputs(faults)
+    return template
 
 
 def _level_faults(cls: type[Template], level: str | None) -> list[Fault]:
