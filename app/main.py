@@ -43,6 +43,7 @@ from app.models.builds import Builds
 from app.models.healing import Healing
 from app.models.routes import router as models
 from app.models.service import BUILD, ModelBuild, Models
+from app.pacing import Pace
 from app.reports.paper import Press
 from app.reports.routes import router as reports
 from app.reports.service import Reports
@@ -95,6 +96,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
             "4XX": {"description": "a problem", "content": {problems.MEDIA_TYPE: {"schema": PROBLEM}}}
         },
     )
+    app.state.pace = Pace()
     # Routers are tried one after another; that of `evaluate`, which is called most, is the first.
     for router in (
         calculations,

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Response
+from fastapi import APIRouter, Path, Request, Response
 
 from app import problems
 from app.calculations.jobs import CALCULATION
 from app.dependencies import TheJobs, TheStore
 from app.jobs.errors import JobNotFound
 from app.models.errors import CannotRebuild
+from app.pacing import PiecesResponse
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.waiting import LATER, accepted
+from app.workers.pieces import Pieces
 
 router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
 
 
 @router.get("/{job}", responses=LATER)
-def answer(job: Annotated[str, Path(max_length=64)], jobs: TheJobs, store: TheStore) -> Response:
+def answer(
+    job: Annotated[str, Path(max_length=64)], jobs: TheJobs, store: TheStore, request: Request
+) -> Response:
     """What `evaluate`, `solve` or `worksheet` would have answered; 202 while the job goes on."""
     found = jobs.get(job)
     if found.kind != CALCULATION:
@@ -30,7 +34,7 @@ def answer(job: Annotated[str, Path(max_length=64)], jobs: TheJobs, store: TheSt
         return problems.answer(problem)
     sha = found.result.rpartition("sha256=")[2]
     try:
-        return Response(store.read(sha), media_type="application/json")
+        return PiecesResponse(Pieces.of(store.read(sha)), request.app.state.pace)
     except (ArtifactMissing, ArtifactDamaged) as error:
         detail = f"the answer of job {job} was lost. Send the calculation again, or restore a backup"
         raise CannotRebuild("answer_lost", detail) from error
