@@ -16,6 +16,7 @@ from app.api import docs, problems
 from app.api.description import describe_interface, operation_id
 from app.api.gate import guard, observing
 from app.api.gate.heads import HeadLimit
+from app.api.gate.pacing import Pace
 from app.api.gate.stopping import StoppingAnswer
 from app.api.gate.timeouts import BodyTime
 from app.api.reading import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
@@ -57,7 +58,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         with ExitStack() as stack:
             services = assemble(chosen, stack)
-            app.state.services = services
+            app.state.services, app.state.pace = services, Pace()
             stack.enter_context(on_stop_signal(services.jobs.drain))
             stack.enter_context(spared_by_collections())
             yield

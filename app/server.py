@@ -30,6 +30,7 @@ from app.api.gate.observing import Observed, what_is_in_flight
 from app.observation import logs
 from app.settings import Settings
 from app.workers import family
+from app.workers.scheduling import answer_promptly
 
 logger = logging.getLogger(__name__)
 
@@ -67,6 +68,7 @@ async def _busy(scope: Scope, receive: Receive, send: Send) -> None:
 def run(app: FastAPI, settings: Settings) -> NoReturn:
     """Serve until a signal; does not return."""
     flush = logs.configure(settings.log_level, settings.log_format)
+    answer_promptly()
     server = Server(configuration(app, settings), settings.drain_seconds, flush)
     try:
         server.run()

@@ -5,6 +5,11 @@ python -m benchmarks.service_flood estimates  holds estimates of cost against me
 
 Idle and flooded are measured in the same run, and compared as ratios of their 99th percentiles. A flooding
 client waits as Retry-After says: on two cores 34 of 48 requests calculate or wait, the others come again.
+
+The client that measures shares the two cores with the calculations and with the flood's clients. It asks the
+system for short slices, as the server does, and `client wakes late` says what its own sleeps miss: of a
+measured time, that much may be the client's. `server waits for a core` is what the kernel counts for all
+threads of the server, a request (/proc/PID/task/*/schedstat); on an idle machine only the flood causes it.
 Writes `benchmarks/results/service_flood.json`.
 """
 
@@ -32,6 +37,7 @@ from app.calculations.schemas import OIL_FILM, EvaluateIn
 from app.calculations.service import run_evaluate
 from app.catalogue.finding import find_templates
 from app.designs.schemas import PAPER
+from app.workers.scheduling import answer_promptly, share_fairly
 from benchmarks import service_process
 
 RESULTS = Path("benchmarks/results/service_flood.json")
@@ -73,6 +79,7 @@ def heavy() -> dict[str, tuple[str, dict[str, Any]]]:
 
 def flood(port: int) -> None:
     """Keep 48 requests in flight until standard input closes; then print how they were answered."""
+    share_fairly()
     statuses: Counter[str] = Counter()
     stopping = threading.Event()
     for name, (path, body) in heavy().items():
@@ -126,10 +133,15 @@ def flooding(port: int, statuses: dict[str, int]) -> Iterator[None]:
 # What is measured -----------------------------------------------------------------------------------------
 
 
-def milliseconds(port: int, method: str, path: str, body: bytes | None = None) -> list[float]:
-    """Times of a request on one kept connection."""
+PAUSE = 0.01  # between requests [s]
+
+
+def milliseconds(
+    port: int, method: str, path: str, body: bytes | None = None
+) -> tuple[list[float], list[float]]:
+    """Times of a request on one kept connection, and how late the client wakes after each pause."""
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
-    taken = []
+    taken, late = [], []
     for _ in range(PINGS):
         start = time.perf_counter()
         connection.request(method, path, body, HEADERS)
@@ -137,17 +149,29 @@ def milliseconds(port: int, method: str, path: str, body: bytes | None = None) -
         answer.read()
         taken.append(1e3 * (time.perf_counter() - start))
         assert answer.status == 200, answer.status
-        time.sleep(0.01)
+        start = time.perf_counter()
+        time.sleep(PAUSE)
+        late.append(1e3 * (time.perf_counter() - start - PAUSE))
     connection.close()
-    return taken
+    return taken, late
 
 
-def pings(port: int, design: str) -> dict[str, list[float]]:
-    """The neighbours' requests."""
-    return {
-        "evaluate": milliseconds(port, "POST", EVALUATE, CHEAP),
-        "GET design": milliseconds(port, "GET", design),
-    }
+LATE, WAITS = "client wakes late", "server waits for a core"
+
+
+def pings(server: service_process.Server, design: str) -> dict[str, list[float]]:
+    """The neighbours' requests, and what of their times is not the service's own."""
+    before = core_waits(server.pid)
+    evaluated, late = milliseconds(server.port, "POST", EVALUATE, CHEAP)
+    shown, later = milliseconds(server.port, "GET", design)
+    waits = (core_waits(server.pid) - before) / (2 * PINGS)
+    return {"evaluate": evaluated, "GET design": shown, LATE: late + later, WAITS: [waits]}
+
+
+def core_waits(pid: int) -> float:
+    """How long the threads of a process have been ready and had no core, in all [ms]."""
+    rows = [(task / "schedstat").read_text().split() for task in Path(f"/proc/{pid}/task").iterdir()]
+    return sum(int(row[1]) for row in rows) / 1e6
 
 
 def children(pid: int) -> dict[int, float]:
@@ -195,6 +219,7 @@ def abandoned(server: service_process.Server) -> float:
 
 def compare() -> dict[str, Any]:
     """Everything, in one run."""
+    answer_promptly()
     with (
         tempfile.TemporaryDirectory() as folder,
         service_process.crankwright(Path(folder)) as server,
@@ -203,19 +228,26 @@ def compare() -> dict[str, Any]:
         made = client.post("/api/v1/designs", json=PAPER, headers={"Prefer": "wait=60"}).raise_for_status()
         design = f"/api/v1/designs/{made.json()['id']}"
         client.post(heavy()["mass_conserving, 20 points"][0], json=heavy()["mass_conserving, 20 points"][1])
-        pings(server.port, design)  # warms up
+        pings(server, design)  # warms up
         free, statuses = [abandoned(server) for _ in range(5)], dict[str, int]()
-        idle = pings(server.port, design)
+        idle = pings(server, design)
         with flooding(server.port, statuses):
-            flooded = pings(server.port, design)
+            flooded = pings(server, design)
             cores = cores_used(server.pid)
         load = os.getloadavg()
     rows = {}
-    for name in idle:
+    for name in ("evaluate", "GET design"):
         was, now = (np.percentile(times[name], [50, 99]).round(2).tolist() for times in (idle, flooded))
         rows[name] = {"idle p50, p99 [ms]": was, "flooded": now, "ratio of p99": round(now[1] / was[1], 2)}
+    sides = {"idle": idle, "flooded": flooded}
     return {
         "neighbours": rows,
+        "client wakes late, p50, p99 [ms]": {
+            name: np.percentile(times[LATE], [50, 99]).round(2).tolist() for name, times in sides.items()
+        },
+        "server waits for a core [ms a request]": {
+            name: round(times[WAITS][0], 3) for name, times in sides.items()
+        },
         "answers to the flood": statuses,
         "part of a core used by the busiest processes": cores,
         "abandoned, until the process is free [s]": [round(seconds, 2) for seconds in free],

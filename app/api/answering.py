@@ -11,6 +11,7 @@ from fastapi import Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app.api.gate.clients import get_client
+from app.api.gate.pacing import PiecesResponse
 from app.api.waiting import accepted, client_left, patience
 from app.calculations.jobs import CalculationJobs
 from app.calculations.operations import Question, answered
@@ -23,6 +24,19 @@ class Answering:
 
     def __init__(self, pool: CalculationPool, jobs: CalculationJobs, deadline: float) -> None:
         self.pool, self.jobs, self.deadline = pool, jobs, deadline
+
+    async def admit(self, request: Request, template: str, version: int) -> None:
+        """Ask, before a large body comes, whether there is room for its calculation.
+
+        Raises
+        ------
+        UnknownTemplate, InvalidInputs, TooManyCalculations
+            What `answer` would raise now.
+        """
+        self.jobs.catalogue.get(template, version)
+        client = await get_client(request)
+        if self._patience(request) > 0:  # else a job waits for its turn
+            self.pool.admit(client)
 
     async def answer(self, request: Request, question: Question) -> Response:
         """The answer of a calculation process; 202 with a job once nobody waits for it any longer.
@@ -38,7 +52,7 @@ class Answering:
         """
         cls = self.jobs.catalogue.get(question.template, question.version)
         client = await get_client(request)
-        seconds = min(self.deadline, patience(request.headers.get("prefer"), self.deadline))
+        seconds = self._patience(request)
         if seconds <= 0:
             return accepted(await run_in_threadpool(self.jobs.create, question, client))
         calculation = self.pool.submit(client, answered, self.jobs.sources[cls], question)
@@ -49,7 +63,11 @@ class Answering:
             raise
         if not ended:
             return accepted(await run_in_threadpool(self.jobs.create, question, client, calculation))
-        return Response(calculation.future.result(), media_type="application/json")
+        return PiecesResponse(calculation.future.result(), request.app.state.pace)
+
+    def _patience(self, request: Request) -> float:
+        """How long the request waits for its answer [s]."""
+        return min(self.deadline, patience(request.headers.get("prefer"), self.deadline))
 
     async def _ends(self, request: Request, calculation: Calculation, seconds: float) -> bool:
         """Wait until a calculation ends, at most so long [s]; whether it did.

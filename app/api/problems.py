@@ -14,6 +14,7 @@ from fastapi import APIRouter, FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 
 from app.api.gate.allow import allowed_methods
 from app.api.gate.guard import BadHost, CrossSite, HostNotAllowed
@@ -58,6 +59,7 @@ class Kind:
 
 INVALID = Kind("invalid-inputs", 422, "Some inputs are wrong", "mend each of `errors`; nothing was saved")
 INTERNAL = Kind("internal", 500, "The service failed", "this is a fault of the program; please report it")
+CANCELLED = Kind("cancelled", 409, "The work was cancelled", "send the change again")
 
 NOT_READY = Kind("not-ready", 503, "The service is not ready", "see `errors`; ask the operator")
 REBUILDING = Kind("rebuilding", 503, "The file is being made again", "retry after the time in Retry-After")
@@ -121,7 +123,8 @@ TABLE: dict[type[Exception], Kind] = {
     workers.DeadlineExceeded: Kind("deadline", 422, "The work took too long", "simplify the model"),
     workers.MemoryExceeded: Kind("memory", 422, "The work took too much memory", "simplify the model"),
     workers.JobCrashed: Kind("crashed", 422, "The process crashed", "change the inputs"),
-    workers.JobCancelled: Kind("cancelled", 409, "The work was cancelled", "send the change again"),
+    workers.JobCancelled: CANCELLED,
+    ClientDisconnect: CANCELLED,  # while its body came: nobody reads this
 }
 HTTP = {
     404: Kind("no-such-path", 404, "No such path", "GET /openapi.json lists all paths"),

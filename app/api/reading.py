@@ -6,9 +6,8 @@ nesting, and nothing is guessed from a missing or wrong content type.
 
 from __future__ import annotations
 
-import asyncio
 import hashlib
-from collections.abc import Awaitable, Callable, Coroutine
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
 from json import JSONDecodeError
 from typing import Any
 
@@ -17,6 +16,9 @@ from fastapi.routing import APIRoute
 from pydantic_core import from_json
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.api.gate.pacing import Pace
+from app.workers.pieces import PIECE, Pieces
+
 JSON_TYPES = {"application/json"}
 PATCH_TYPES = {"application/json", "application/merge-patch+json"}
 STEP_TYPES = ("model/step", "application/step", "application/p21")
@@ -24,9 +26,6 @@ STEP_TYPES = ("model/step", "application/step", "application/p21")
 FORM_TYPES = {"application/x-www-form-urlencoded"}
 MOST_BRACKETS, MOST_QUOTES = 250_000, 400_000
 """In one body. A list of numbers has one bracket; millions of them keep the parser, and the server, busy."""
-
-
-SLICE = 2**18  # bytes that are counted at once
 
 
 class HttpError(Exception):
@@ -66,7 +65,38 @@ class PreconditionRequired(HttpError):
 
 
 class StrictRequest(Request):
-    """A request whose JSON is parsed strictly."""
+    """A request whose JSON is parsed strictly, and whose body comes in pieces if it is large."""
+
+    @property
+    def pace(self) -> Pace:
+        """The pace of all large bodies and answers of the app."""
+        return self.app.state.pace  # type: ignore[no-any-return]
+
+    async def pieces(self) -> Pieces:
+        """The body as it came."""
+        if not hasattr(self, "_pieces"):
+            self._pieces = Pieces(tuple([part async for part in self._received()]))
+        return self._pieces
+
+    async def body(self) -> bytes:
+        """The body as one object; to join a large one holds the interpreter, see `pieces`."""
+        if not hasattr(self, "_body"):
+            self._body = (await self.pieces()).joined()
+        return self._body
+
+    async def discard(self) -> None:
+        """Receive the body and forget it: a client that still sends may not read an answer yet."""
+        async for _ in self._received():
+            pass
+
+    async def _received(self) -> AsyncIterator[bytes]:
+        size = 0
+        async for part in self.stream():
+            if part:
+                yield part
+            size += len(part)
+            if size > PIECE:
+                await self.pace.step()
 
     async def json(self) -> Any:
         """The body as JSON.
@@ -106,10 +136,21 @@ class StrictRoute(APIRoute):
             if takes_json:
                 check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
                 # here, because FastAPI answers whatever is raised in its reading with 400
-                await _check_intricacy(await told.body())
+                await self._admit(told)
+                await _check_intricacy(told)
             return await self.shortcut(told) or await handler(told)
 
         return strict
+
+    async def _admit(self, request: StrictRequest) -> None:
+        try:
+            await self.admit(request)
+        except Exception:
+            await request.discard()
+            raise
+
+    async def admit(self, request: StrictRequest) -> None:
+        """Raise what refuses a request by its head alone; its body has not come yet."""
 
     async def shortcut(self, request: StrictRequest) -> Response | None:
         """An answer past FastAPI's general machinery, where a route can read a plain request by itself."""
@@ -147,13 +188,13 @@ def require_step(request: Request) -> None:
         )
 
 
-async def _check_intricacy(body: bytes) -> None:
-    """Count what makes parsing dear; of a large body slice by slice, so that others get their turn."""
+async def _check_intricacy(request: StrictRequest) -> None:
+    """Count what makes parsing expensive; of a large body piece by piece, so that others get their turn."""
     brackets = quotes = 0
-    for start in range(0, len(body), SLICE):
-        if start:
-            await asyncio.sleep(0)
-        part = body[start : start + SLICE]
+    for number, piece in enumerate(await request.pieces()):
+        if number:
+            await request.pace.step()
+        part = bytes(piece)
         brackets += part.count(b"[") + part.count(b"{")
         quotes += part.count(b'"')
     if brackets > MOST_BRACKETS or quotes > MOST_QUOTES:

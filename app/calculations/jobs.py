@@ -18,6 +18,7 @@ from app.calculations.sources import Source
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.workers.pieces import Pieces
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.language.template import Template
@@ -56,7 +57,7 @@ class CalculationJobs:
         is_kept = running is not None and self.pool.keep(running)
         if running is not None and not is_kept:
             self.pool.cancel(running)
-        payload = {**vars(question), "body": self.store.put(question.body)}
+        payload = {**vars(question), "body": self.store.put(*question.body)}
 
         def unit(session: Session) -> str:
             id = self.jobs.enqueue(session, CALCULATION, payload, client=client)
@@ -87,7 +88,7 @@ class CalculationJobs:
             answer = self._outcome(calculation, context)
         except FAILURES as error:
             raise JobFailed(error) from error
-        link = place_of_answer(job.id, self.store.put(answer))
+        link = place_of_answer(job.id, self.store.put(*answer))
         return lambda session: link
 
     def failed(self, session: Session, job: Job, problem: dict[str, Any]) -> None:
@@ -97,15 +98,16 @@ class CalculationJobs:
 
     def _submitted(self, job: Job) -> Calculation:
         """The calculation of a job from its row, as after a start of the server."""
-        question = Question(**{**job.payload, "body": self.store.read(job.payload["body"])})
+        body = Pieces.of(self.store.read(job.payload["body"]))
+        question = Question(**{**job.payload, "body": body})
         cls = self.catalogue.get(question.template, question.version)
         return self.pool.submit(f"job:{job.id}", answered, self.sources[cls], question, lane="jobs")
 
-    def _outcome(self, calculation: Calculation, context: JobContext) -> bytes:
+    def _outcome(self, calculation: Calculation, context: JobContext) -> Pieces:
         while not wait([calculation.future], GLANCE).done:
             if context.is_cancelled:
                 self.pool.cancel(calculation)
-        answer: bytes = calculation.future.result()
+        answer: Pieces = calculation.future.result()
         return answer
 
 

@@ -19,6 +19,7 @@ from app.calculations.service import run_evaluate, run_solve
 from app.calculations.sources import Source, loaded
 from app.calculations.worksheet import run_worksheet
 from app.presentation.units import System
+from app.workers.pieces import Pieces
 from templates.core.language.template import Template
 
 
@@ -44,11 +45,11 @@ class Question:
     template: str
     version: int
     operation: str
-    body: bytes
+    body: Pieces
     system: System = "si"
 
 
-def answered(source: Source, question: Question) -> bytes:
+def answered(source: Source, question: Question) -> Pieces:
     """The answer as JSON.
 
     Raises
@@ -59,8 +60,8 @@ def answered(source: Source, question: Question) -> bytes:
         As the operation itself.
     """
     operation = OPERATIONS[question.operation]
-    body = _read(operation.body, question.body)
-    return to_json(operation.run(loaded(source), body, question.system))
+    body = _read(operation.body, question.body.joined())
+    return Pieces.of(to_json(operation.run(loaded(source), body, question.system)))
 
 
 def _read(model: type[Asked], body: bytes) -> Asked:

@@ -112,13 +112,26 @@ class CalculationPool:
         with self._changed:
             if self._closed:
                 raise JobCancelled
-            loser = self._admitted(client) if lane == "answers" else None
+            loser = self._loser(client) if lane == "answers" else None
+            if loser is not None:
+                self._queue.remove(loser)
             calculation = Calculation(function, args, client, self._turns.next(client), lane)
             self._queue.append(calculation)
             self._changed.notify_all()
         if loser is not None:
             loser.future.set_exception(TooManyCalculations(RETRY_AFTER))
         return calculation
+
+    def admit(self, client: str) -> None:
+        """Refuse what `submit` would refuse now, before the body of the request is received.
+
+        Raises
+        ------
+        TooManyCalculations
+            As `submit`.
+        """
+        with self._changed:
+            self._loser(client)
 
     def cancel(self, calculation: Calculation) -> None:
         """End a calculation: one that waits at once, one that runs with its process."""
@@ -150,15 +163,14 @@ class CalculationPool:
         for thread in self._threads:
             thread.join()
 
-    def _admitted(self, client: str) -> Calculation | None:
-        """Make room in the queue if it is full; who gives way, if anybody does."""
+    def _loser(self, client: str) -> Calculation | None:
+        """Who must give way to a calculation of this client; nobody, if the queue is not full."""
         queue = [calculation for calculation in self._queue if calculation.lane == "answers"]
         if len(queue) - self._room("answers") < self.most_waiting:
             return None
         loser = last_of_the_greediest(queue, client)
         if loser is None:
             raise TooManyCalculations(RETRY_AFTER)
-        self._queue.remove(loser)
         return loser
 
     def _work(self) -> None:

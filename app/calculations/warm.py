@@ -7,7 +7,6 @@ import it.
 from __future__ import annotations
 
 import logging
-import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,17 +15,16 @@ from pydantic_core import to_json
 import templates
 from app.calculations import operations  # noqa: F401 - what the processes run
 from app.calculations.rendering import evaluation
+from app.workers.scheduling import give_way
 from templates.core.catalogue.finding import find
 from templates.core.errors import TemplateError
 from templates.core.language.evaluate import evaluate
 from templates.core.language.template import Template
 
-NICENESS = 5  # the server's own thread comes first
-
 
 def rehearse(has_come: Callable[[], bool]) -> None:
     """Let the server go first; called once in every process before its first request."""
-    os.nice(NICENESS)
+    give_way()
 
 
 def _calculate_examples() -> None:

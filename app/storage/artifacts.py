@@ -9,7 +9,7 @@ import re
 import stat
 import tempfile
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -38,8 +38,8 @@ class Stored:
 class Artifacts(Protocol):
     """What every store of artifacts can do."""
 
-    def put(self, data: bytes) -> str:
-        """Store bytes; they are durable when it returns."""
+    def put(self, *parts: bytes | memoryview) -> str:
+        """Store bytes, whole or in parts; they are durable when it returns."""
         ...
 
     def fetch(self, sha: str) -> Path:
@@ -74,18 +74,18 @@ class ArtifactStore:
         for stale in folder.glob(f"*/{_TEMPORARY}*"):
             stale.unlink()
 
-    def put(self, data: bytes) -> str:
-        """Store the bytes durably and return their SHA-256; the same bytes are stored once.
+    def put(self, *parts: bytes | memoryview) -> str:
+        """Store bytes, whole or in parts, durably and return their SHA-256; the same bytes are stored once.
 
         A file that is there keeps its bytes, if they are good, and is as young as if it were new.
         """
-        sha = hashlib.sha256(data).hexdigest()
+        sha = _hashed(parts)
         target = self._location(sha)
         if not (self.exists(sha) and self._renewed(target)):
             with self._changing:
                 target.parent.mkdir(exist_ok=True)
                 self._clear(target)
-                _write_whole(target, data)
+                _write_whole(target, parts)
         # Even for a file found: the writer that renamed it may not have synced its folder yet.
         _sync_folder(target.parent)
         _sync_folder(self.folder)
@@ -225,12 +225,19 @@ def _moment() -> str:
     return datetime.now(UTC).strftime("%Y%m%dT%H%M%S.%f")
 
 
-def _write_whole(target: Path, data: bytes) -> None:
+def _hashed(parts: Iterable[bytes | memoryview]) -> str:
+    total = hashlib.sha256()
+    for part in parts:
+        total.update(part)
+    return total.hexdigest()
+
+
+def _write_whole(target: Path, parts: Iterable[bytes | memoryview]) -> None:
     """Write beside the target, sync, then rename, so that the target never shows half its bytes."""
     descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=_TEMPORARY)
     try:
         with os.fdopen(descriptor, "wb") as file:
-            file.write(data)
+            file.writelines(parts)
             file.flush()
             os.fsync(file.fileno())
         os.replace(temporary, target)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,8 @@ STATIC = Path(__file__).with_name("static")
 SMALLEST, LEVEL = 1000, 6  # of what is compressed [bytes], and how hard
 PLAIN = ("/events", "/evaluate", ".png", ".step")
 """Ends of paths that are sent as they are: streams, short answers, what is compressed already."""
+CALCULATED = re.compile("/api/v1/(evaluations/.*|templates/.*/worksheet)")
+"""Paths of answers that may be large: to compress 256 kB holds the event loop for some 10 ms."""
 
 
 class Files(StaticFiles):
@@ -43,8 +46,12 @@ class Compression:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on, compressed or not."""
-        plain = scope["type"] != "http" or scope["path"].endswith(PLAIN)
-        await (self.app if plain else self.compressed)(scope, receive, send)
+        is_plain = scope["type"] != "http" or _is_plain(scope["path"])
+        await (self.app if is_plain else self.compressed)(scope, receive, send)
+
+
+def _is_plain(path: str) -> bool:
+    return path.endswith(PLAIN) or CALCULATED.fullmatch(path) is not None
 
 
 def install(app: FastAPI) -> None:

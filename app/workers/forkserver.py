@@ -23,6 +23,7 @@ from typing import NoReturn
 
 from app.workers.job_process import Rehearsal, serve_jobs
 from app.workers.lifeline import hang_on
+from app.workers.scheduling import share_fairly
 
 Nursery = dict[int, Connection]  # process id of a living job -> where its exit code is told
 
@@ -30,6 +31,8 @@ Nursery = dict[int, Connection]  # process id of a living job -> where its exit 
 def main(channel: int, lifeline: int, modules: Iterable[str]) -> NoReturn:
     """Import the modules, then fork a job process for each pair of connections that the channel brings."""
     hang_on(lifeline)  # first of all: the imports take seconds, on a busy machine many
+    signal.signal(signal.SIGTTOU, signal.SIG_IGN)  # in the background of a terminal, a message may stop it
+    share_fairly()
     loaded = [_preload(module) for module in modules]
     rehearsals = [module.rehearse for module in loaded if module and hasattr(module, "rehearse")]
     gc.freeze()  # collections in the children shall not copy what is shared

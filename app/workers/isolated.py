@@ -19,7 +19,7 @@ from typing import Any
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed
 from app.workers.lifeline import Lifeline
-from app.workers.messages import Progress, Raised, Request, Returned
+from app.workers.messages import Progress, Raised, Request, Returned, pack, receive, send
 from templates.core.progress import Reporter
 
 _BOOT = (
@@ -47,7 +47,7 @@ class JobProcess:
             The process died while it was waiting.
         """
         self.reusable = False
-        self._connection.send(request)
+        send(self._connection, pack(request))
 
     def finish(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event | None) -> Any:
         """Wait for the end of the job and return its result; see `Worker.run` for what it raises."""
@@ -117,7 +117,7 @@ class JobProcess:
 
     def _receive(self) -> Any:
         try:
-            return self._connection.recv()
+            return receive(self._connection).unpacked()
         except (EOFError, ConnectionResetError):
             raise JobCrashed(self._exit_code()) from None
 
@@ -195,7 +195,9 @@ class ForkServer:
                 pass_fds=ends,
                 stdin=subprocess.DEVNULL,
                 env={**self._environment, **os.environ},
-                start_new_session=True,  # Ctrl-C in a terminal is for the server, which ends its jobs itself
+                # Ctrl-C in a terminal is for the server, which ends its jobs itself. In a session of its own,
+                # the niceness of the processes would count for nothing: see app/workers/scheduling.py.
+                process_group=0,
             )
         self._lifeline.close_reader()
 

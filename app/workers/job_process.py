@@ -19,7 +19,7 @@ from typing import NoReturn
 from app.workers.base import Limits
 from app.workers.errors import MemoryExceeded, RemoteError, WorkerError
 from app.workers.lifeline import hang_on, has_hung_up
-from app.workers.messages import Progress, Raised, Request, Returned
+from app.workers.messages import Packed, Progress, Raised, Request, Returned, pack, receive, send
 from templates.core.progress import reporting
 
 Rehearsal = Callable[[Callable[[], bool]], object]
@@ -45,15 +45,15 @@ def serve_jobs(
         for rehearse in rehearsals:
             with suppress(Exception):  # the job will meet it again, and say so
                 rehearse(connection.poll)
-        request = connection.recv_bytes()
+        request = receive(connection)
         reusable = not has_hung_up(connection.fileno())  # else cancelled before this process was born
         while reusable:
             answer, reusable = _answer(request, connection)
-            connection.send_bytes(answer)
+            send(connection, answer)
             del answer
             if reusable:
                 gc.collect()  # what a calculation leaves in cycles may be large
-                request = connection.recv_bytes()
+                request = receive(connection)
         exit_code = 0
     finally:  # also when the server has closed its end, which is how it dismisses a process
         os._exit(exit_code)
@@ -67,22 +67,22 @@ def _die_with(parent: int) -> None:
         raise ProcessLookupError(parent)
 
 
-def _answer(packed: bytes, connection: Connection) -> tuple[bytes, bool]:
+def _answer(packed: Packed, connection: Connection) -> tuple[Packed, bool]:
     """Run a pickled request; the pickled message that says how it ended, and whether another may follow."""
     reusable = False
     try:
-        request: Request = pickle.loads(packed)
+        request: Request = packed.unpacked()
         _limit(request.limits)
         reusable = request.reusable
         return _run(request, connection)
     except BaseException as error:  # whatever it is belongs to the caller
         reusable = reusable and isinstance(error, Exception) and not isinstance(error, WorkerError)
-        return pickle.dumps(Raised(_portable(error), reusable)), reusable
+        return pack(Raised(_portable(error), reusable)), reusable
 
 
-def _run(request: Request, connection: Connection) -> tuple[bytes, bool]:
+def _run(request: Request, connection: Connection) -> tuple[Packed, bool]:
     try:
-        with reporting(lambda fraction, text: connection.send(Progress(fraction, text))):
+        with reporting(lambda fraction, text: send(connection, pack(Progress(fraction, text)))):
             result = request.function(*request.args)
         reusable = request.reusable and not _has_grown(request.limits)
         return _packed_result(Returned(result, reusable)), reusable
@@ -90,9 +90,9 @@ def _run(request: Request, connection: Connection) -> tuple[bytes, bool]:
         raise MemoryExceeded(request.limits.memory_mb) from None
 
 
-def _packed_result(message: Returned) -> bytes:
+def _packed_result(message: Returned) -> Packed:
     try:
-        return pickle.dumps(message)
+        return pack(message)
     except (pickle.PicklingError, TypeError, AttributeError) as error:
         kind = type(message.value).__qualname__
         raise RemoteError(kind, f"the result cannot be pickled: {error}") from None

@@ -1,10 +1,17 @@
 """What the server and a job process say to each other."""
 
+import pickle
 from collections.abc import Callable
 from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from pickle import PickleBuffer
+from struct import Struct
 from typing import Any
 
 from app.workers.base import Limits
+
+_COUNT = Struct("!I")
+"""How the number of pieces is written that follow a message."""
 
 
 @dataclass(frozen=True)
@@ -39,3 +46,36 @@ class Raised:
 
     error: BaseException
     reusable: bool = False
+
+
+@dataclass(frozen=True)
+class Packed:
+    """A pickled message, and beside it the large bytes that it holds, piece by piece."""
+
+    message: bytes
+    pieces: tuple[PickleBuffer | bytes, ...] = ()
+
+    def unpacked(self) -> Any:
+        """The message."""
+        return pickle.loads(self.message, buffers=self.pieces)
+
+
+def pack(message: Any) -> Packed:
+    """Pickle a message; raises what pickle raises."""
+    pieces: list[PickleBuffer] = []
+    packed = pickle.dumps(message, protocol=5, buffer_callback=pieces.append)
+    return Packed(packed, tuple(pieces))
+
+
+def send(connection: Connection, packed: Packed) -> None:
+    """Send a message: how many pieces follow, itself, the pieces."""
+    connection.send_bytes(_COUNT.pack(len(packed.pieces)) + packed.message)
+    for piece in packed.pieces:
+        connection.send_bytes(piece)
+
+
+def receive(connection: Connection) -> Packed:
+    """Receive a message; blocks. Raises EOFError if the other end closes before all of it has come."""
+    head = connection.recv_bytes()
+    (count,) = _COUNT.unpack_from(head)
+    return Packed(head[_COUNT.size :], tuple(connection.recv_bytes() for _ in range(count)))

@@ -259,7 +259,7 @@ def descendants(pid: int) -> set[int]:
     parents = {}
     for entry in Path("/proc").iterdir():
         if entry.name.isdecimal():
-            parents[int(entry.name)] = _parent(entry)
+            parents[int(entry.name)] = parent_of(entry)
     found: set[int] = set()
     while more := {child for child, parent in parents.items() if parent in found | {pid}} - found:
         found |= more
@@ -274,7 +274,7 @@ def alive(pid: int) -> bool:
         return False
 
 
-def _parent(entry: Path) -> int:
+def parent_of(entry: Path) -> int:
     try:
         return int((entry / "stat").read_text().rpartition(")")[2].split()[1])
     except (FileNotFoundError, ProcessLookupError):

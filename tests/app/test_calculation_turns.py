@@ -204,3 +204,14 @@ def test_closing_ends_everything(made, gates):
     with pytest.raises(JobCancelled):
         submitted(pool, "a", "four")
     assert not any(thread.is_alive() for thread in pool._threads)
+
+
+def test_who_would_be_refused_is_refused_before_the_body_comes(made, gates):
+    pool = made(waiting=2)
+    submitted(pool, "flood", "a")
+    assert eventually(lambda: gates.started == ["a"])
+    submitted(pool, "flood", "b", "c")
+    with pytest.raises(TooManyCalculations):
+        pool.admit("flood")
+    pool.admit("newcomer")
+    assert (pool.running, pool.waiting) == (1, 2)  # nobody has given way yet

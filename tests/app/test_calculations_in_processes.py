@@ -94,6 +94,13 @@ def test_it_is_calculated_in_another_process(http, log):
     assert answer["outputs"]["process"]["value"] == begun(log)[0] != os.getpid()
 
 
+def test_the_server_comes_first(server):
+    pool = server.app.state.services.calculations
+    niceness = pool.submit("tests", os.getpriority, os.PRIO_PROCESS, 0).future.result(60)
+    assert niceness == min(19, os.getpriority(os.PRIO_PROCESS, 0) + 10)
+    assert pool.submit("tests", os.getsid, 0).future.result(60) == os.getsid(0)  # else it would not count
+
+
 def test_processes_are_used_again(http, log):
     assert {sleep(http).json()["outputs"]["process"]["value"] for _ in range(3)} == {begun(log)[0]}
 

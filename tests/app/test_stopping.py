@@ -8,10 +8,22 @@ import sqlite3
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import httpx
 import pytest
-from serving import API, PATIENCE, ServerProcess, alive, descendants, folder_of_models, heard, moody, problem
+from serving import (
+    API,
+    PATIENCE,
+    ServerProcess,
+    alive,
+    descendants,
+    folder_of_models,
+    heard,
+    moody,
+    parent_of,
+    problem,
+)
 
 from app.calculations.schemas import OIL_FILM
 
@@ -89,7 +101,8 @@ def test_a_hung_job_goes_back_into_the_queue(server):
 
 
 def test_a_stopped_forkserver_and_a_job_that_waits_for_it(server):
-    forkserver, *_ = (pid for pid in descendants(server.process.pid) if os.getsid(pid) == pid)
+    own = server.process.pid
+    forkserver, *_ = (pid for pid in descendants(own) if parent_of(Path(f"/proc/{pid}")) == own)
     os.kill(forkserver, signal.SIGSTOP)
     server.running_job()
     assert server.stop() == 0

@@ -6,6 +6,7 @@ import resource
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 from templates.core.progress import report
 
@@ -100,6 +101,24 @@ def hoard(megabytes):
     """Keep memory beyond the end of the request."""
     _HOARD.append(bytearray(megabytes * 2**20))
     return os.getpid()
+
+
+def same(value):
+    return value
+
+
+def standing():
+    """Session, process group and slice [ns] of the process."""
+    return os.getsid(0), os.getpgid(0), slice_of_thread()
+
+
+def slice_of_thread():
+    """How long the kernel means to let this thread run [ns]; 0 where it does not say."""
+    try:
+        rows = Path("/proc/thread-self/sched").read_text().splitlines()
+    except OSError:
+        return 0
+    return next((int(row.split()[-1]) for row in rows if row.startswith("se.slice")), 0)
 
 
 _HOARD = []

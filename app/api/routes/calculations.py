@@ -27,6 +27,7 @@ from app.calculations.worksheet import run_worksheet
 from app.presentation.units import System
 from app.schemas.evaluations import Evaluation, Solution, Worksheet
 from app.schemas.problems import refusals
+from app.workers.pieces import Pieces
 
 LONGEST_ID, PLAIN_NUMBER = 64, re.compile("[1-9][0-9]{0,5}")
 FEW = 100  # points and names that are taken in the event loop, if every level is quick: a thread costs more
@@ -40,18 +41,22 @@ Prefer = Annotated[
 
 
 class LargeRoute(StrictRoute):
-    """A route with a template, its version and a body, which hands a large body on without reading it.
+    """A route with a template, its version and a body, which hands a large body on without parsing it.
 
     To parse 16 MB holds the interpreter, and with it the server, for a second.
     """
 
+    async def admit(self, request: StrictRequest) -> None:
+        """Refuse a large body before it comes, if the pool has no room for its calculation."""
+        if int(request.headers.get("content-length", 0)) > LARGE and _system(request) and _is_plain(request):
+            await services_of(request).answering.admit(request, *_template(request))
+
     async def shortcut(self, request: StrictRequest) -> Response | None:
         """The answer to a large body."""
-        system = SYSTEMS.get(request.query_params.get("units"))
-        if system is None or len(await request.body()) <= LARGE or not _is_plain(request):
+        system, body = _system(request), await request.pieces()
+        if system is None or len(body) <= LARGE or not _is_plain(request):
             return None
-        id, number = request.path_params["id"], int(request.path_params["number"])
-        question = Question(id, number, self.path.rpartition("/")[2], await request.body(), system)
+        question = Question(*_template(request), self.path.rpartition("/")[2], body, system)
         return await services_of(request).answering.answer(request, question)
 
 
@@ -66,15 +71,15 @@ class PlainRoute(LargeRoute):
         """The answer, unless something about the request is not plain."""
         if not _is_plain(request):
             return None
-        if len(await request.body()) > LARGE:
+        if len(await request.pieces()) > LARGE:
             return await super().shortcut(request)
         try:
             body = self.asked.model_validate(await request.json())
         except ValueError:  # no JSON, or not what is asked for
             return None
-        id, number, services = request.path_params["id"], request.path_params["number"], services_of(request)
+        services = services_of(request)
         answer: Response = await self.endpoint(
-            id, int(number), body, services.catalogues, services.answering, request
+            *_template(request), body, services.catalogues, services.answering, request
         )
         return answer
 
@@ -88,6 +93,16 @@ def _is_plain(request: Request) -> bool:
     """Whether the path names a template and a version in their usual form."""
     id, number = request.path_params["id"], request.path_params["number"]
     return len(id) <= LONGEST_ID and PLAIN_NUMBER.fullmatch(number) is not None
+
+
+def _template(request: Request) -> tuple[str, int]:
+    """The template and the version that a plain path names."""
+    return request.path_params["id"], int(request.path_params["number"])
+
+
+def _system(request: Request) -> System | None:
+    """The units that the request wants to read; None for a word that names none."""
+    return SYSTEMS.get(request.query_params.get("units"))
 
 
 router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=PlainRoute)
@@ -108,7 +123,7 @@ async def evaluate_template(
     if points(body.inputs) <= FEW and len(body.inputs) <= FEW and is_quick(cls):
         return _json(to_json(run_evaluate(cls, body)))
     if estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs) > EXPENSIVE:
-        return await answering.answer(request, Question(id, number, "evaluate", await request.body()))
+        return await answering.answer(request, await _question(request, id, number, "evaluate"))
     return _json(await run_in_threadpool(lambda: to_json(run_evaluate(cls, body))))
 
 
@@ -126,7 +141,7 @@ async def solve_template(
     cls = catalogues.templates.get(id, number)
     seconds = solving_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs, body.target)
     if seconds > EXPENSIVE:
-        return await answering.answer(request, Question(id, number, "solve", await request.body()))
+        return await answering.answer(request, await _question(request, id, number, "solve"))
     return _json(await run_in_threadpool(lambda: to_json(run_solve(cls, body))))
 
 
@@ -148,8 +163,14 @@ async def write_worksheet(
     cls = catalogues.templates.get(id, number)
     seconds = estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs)
     if seconds + writing_seconds(cls, body.outputs) > EXPENSIVE:
-        return await answering.answer(request, Question(id, number, "worksheet", await request.body(), units))
+        return await answering.answer(request, await _question(request, id, number, "worksheet", units))
     return _json(await run_in_threadpool(lambda: to_json(run_worksheet(cls, body, units))))
+
+
+async def _question(
+    request: Request, id: str, number: int, operation: str, system: System = "si"
+) -> Question:
+    return Question(id, number, operation, Pieces.of(await request.body()), system)
 
 
 def _json(content: bytes) -> Response:

@@ -1,0 +1,45 @@
+"""Large bodies and large answers move piece by piece, one of them in each turn of the event loop.
+
+Otherwise twenty uploads at the same time would each move in every turn, and whoever sends a short request
+would wait for all of them several times.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+
+from fastapi import Response
+from starlette.types import Receive, Scope, Send
+
+from app.workers.pieces import Pieces
+
+
+class Pace:
+    """Lets those who move a large thing take turns; nobody holds a turn while it waits for a client."""
+
+    def __init__(self) -> None:
+        self._turn = asyncio.Lock()
+
+    async def step(self) -> None:
+        """Wait for the turn to move the next piece."""
+        async with self._turn:
+            await asyncio.sleep(0)
+
+
+class PiecesResponse(Response):
+    """An answer that is sent in pieces, each when the client has read most of those before."""
+
+    def __init__(self, pieces: Pieces, pace: Pace, media_type: str = "application/json") -> None:
+        length: Mapping[str, str] = {"Content-Length": str(len(pieces))}
+        super().__init__(headers=length, media_type=media_type)
+        self.pieces, self.pace = pieces, pace
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send the head, then the pieces."""
+        await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
+        last = len(self.pieces.parts) - 1
+        for number, piece in enumerate(self.pieces):
+            if number:
+                await self.pace.step()
+            await send({"type": "http.response.body", "body": piece, "more_body": number < last})
