@@ -30,6 +30,7 @@ from app.description import describe_interface
 from app.designs.events import router as design_events
 from app.designs.files import router as design_files
 from app.designs.graph import Catalogues
+from app.designs.recent import Recent
 from app.designs.regeneration import Regeneration
 from app.designs.routes import router as designs
 from app.designs.service import REGENERATE, REGENERATE_SLOWLY, Designs
@@ -165,7 +166,8 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     builds = Builds(database, store, settings.template_folders)
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
     lanes = assemble_calculations(app, settings, stack, catalogues.templates, database, store, queue)
-    regeneration = Regeneration(database, builds, analysing, catalogues, app.state.steps)
+    recent = Recent()
+    regeneration = Regeneration(database, builds, analysing, catalogues, app.state.steps, recent)
     queue.register(REGENERATE, regeneration, Regeneration.failed)
     queue.register(REGENERATE_SLOWLY, regeneration, Regeneration.failed, is_slow=True)
     queue.register(BUILD, ModelBuild(builds, catalogues.models))
@@ -175,7 +177,7 @@ def assemble(app: FastAPI, settings: Settings, stack: ExitStack) -> None:
     app.state.database, app.state.store, app.state.jobs = database, store, queue
     app.state.catalogues, app.state.settings = catalogues, settings
     app.state.streams = Streams(settings.streams, settings.streams_per_client)
-    app.state.designs = Designs(database, queue, catalogues)
+    app.state.designs = Designs(database, queue, catalogues, recent)
     app.state.models = Models(database, store, queue, catalogues.models)
     app.state.analyses = Analyses(database, store, queue)
     app.state.healing = Healing(database, store, app.state.models, app.state.analyses)

@@ -11,7 +11,7 @@ import numpy as np
 from app.analyses.views import in_design
 from app.calculations import rendering
 from app.designs.calculate import Calculation
-from app.designs.graph import Block
+from app.designs.network import Block
 from cad.inspect import MEASURES
 from cad.model import CadModel
 from cad.regenerate import build_key
@@ -42,7 +42,7 @@ def analyses(calculation: Calculation) -> dict[str, Any]:
             kind: in_design(
                 build_key(calculation.shapes[block.name]),
                 question,
-                calculation.analyses.get(f"{block.name}.{kind}", {}),
+                calculation.found(block.name, kind),
             )
             for kind, question in block.analyses.items()
         }
