@@ -14,7 +14,7 @@ from app.designs.calculate import Calculation
 from app.designs.network import Block
 from cad.inspect import MEASURES
 from cad.model import CadModel
-from cad.regenerate import build_key
+from cad.regenerate import as_quantities, build_key
 
 
 @dataclass(frozen=True)
@@ -90,15 +90,7 @@ def _model(calculation: Calculation, block: Block) -> ModelState:
 
 def parameters(shape: CadModel) -> dict[str, Any]:
     """Every parameter of a model in its declared unit, defaults included."""
-    return {name: shown(shape, name, value) for name, value in shape.inputs_si().items()}
-
-
-def shown(shape: CadModel, name: str, si: Any) -> dict[str, Any]:
-    """A parameter as the interface shows it, free of the last digit's noise of unit conversion."""
-    if isinstance(si, str):
-        return {"value": si}
-    meaning = shape.inputs[name].meaning
-    return {"value": float(f"{meaning.scale.from_si(float(si)):.12g}"), "unit": meaning.unit}
+    return as_quantities(shape)
 
 
 def outputs(told: Mapping[str, Any]) -> dict[str, Any]:

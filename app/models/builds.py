@@ -10,11 +10,10 @@ import hashlib
 import logging
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 from sqlalchemy.orm import Session
 
-from app.designs import repository, results
+from app.designs import repository
 from app.models.ages import is_fresh, renew
 from app.models.errors import CannotRebuild
 from app.models.shapes import made_otherwise, shape_of
@@ -24,7 +23,15 @@ from app.storage.tables import ArtifactRow
 from app.workers.base import Runner
 from cad.export import derive
 from cad.model import CadModel
-from cad.regenerate import MADE_BY, Build, build_key, regenerate
+from cad.regenerate import (
+    MADE_BY,
+    Build,
+    as_quantities,
+    as_text,
+    build_key,
+    regenerate,
+    regenerate_from_text,
+)
 from templates.core.catalogue.finding import Catalogue
 from templates.core.progress import report
 
@@ -54,7 +61,7 @@ class Builds:
         row = self._row(build_key(shape), STEP)
         if row and self.store.exists(row.sha256) and self.keep([shape]):
             return
-        made = context.run(build_in_worker, shape.id, shape.version, shape.inputs_si(), self.folders)
+        made = context.run(build_in_worker, shape.id, shape.version, as_text(shape), self.folders)
         if row and hashlib.sha256(made.step).hexdigest() != row.sha256:
             raise _changed(shape, row)
         sha = self.store.put(made.step)
@@ -102,7 +109,7 @@ class Builds:
             return repository.artifact(session, key, kind)
 
     def _record(self, session: Session, shape: CadModel, made: Build, sha: str) -> None:
-        parameters = results.parameters(shape)
+        parameters = as_quantities(shape)
         units = {name: declared.meaning.unit for name, declared in shape.inputs.items()}
         dimensions = {n: {"value": value, "unit": units[n]} for n, value in made.dimensions.items()}
         measured = {"measures": made.measures, "dimensions": dimensions}
@@ -119,9 +126,9 @@ def _changed(shape: CadModel, row: ArtifactRow) -> CannotRebuild:
     return CannotRebuild("model_changed", detail)
 
 
-def build_in_worker(id: str, version: int, parameters: Mapping[str, Any], folders: tuple[Path, ...]) -> Build:
-    """`cad.regenerate.regenerate` with progress told to the job; runs in the worker's process."""
-    return regenerate(id, version, parameters, folders=folders, report=report)
+def build_in_worker(id: str, version: int, texts: Mapping[str, str], folders: tuple[Path, ...]) -> Build:
+    """`cad.regenerate.regenerate_from_text`, reporting progress to the job; runs in the worker's process."""
+    return regenerate_from_text(id, version, texts, folders=folders, report=report)
 
 
 def rehearse(called: Callable[[], bool]) -> None:

@@ -76,7 +76,7 @@ def _bounded(declared: Input, typed: Typed, ledger: Ledger) -> tuple[Any, Fault 
     """The value and what is wrong with it; a faulty point of an array is masked, and is no fault."""
     if isinstance(declared, Table):
         return _rows(declared, typed.si)
-    if is_single(declared) and isinstance(typed.si, np.ndarray):
+    if isinstance(typed.si, np.ndarray) and is_single(declared):
         detail = f"{declared.meaning.words} is one value for all points: give a number, not an array"
         return np.float64(np.nan), Fault(declared.name, "not_single", detail)
     if isinstance(declared, Curve) and not (declared.constant and isinstance(typed.si, float)):

@@ -266,7 +266,9 @@ class Template:
 
     def admit(self, declaration: Formula[Any], value: Any) -> Any:
         """Check a formula's result against its bounds: refuse a point, mask points of an array, or warn."""
-        meaning = declaration.meaning.at(self.level)
+        meaning = declaration.meaning
+        if meaning.per_level:
+            meaning = meaning.at(self.level)
         if isinstance(value, float) or (np.ndim(value) == 0 and not isinstance(value, str)):
             value = np.float64(value)
             if not (math.isfinite(value) and (meaning.domain_si is None or meaning.domain_si.admits(value))):
