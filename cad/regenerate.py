@@ -61,7 +61,7 @@ def as_text(model: CadModel) -> dict[str, str]:
 
 
 def as_quantities(model: CadModel) -> dict[str, dict[str, float | str]]:
-    """Every parameter as it stands in the STEP file, in its declared unit: `{"value": 50.0, "unit": "mm"}`."""
+    """Every parameter in its declared unit, as in the STEP file: `{"value": 50.0, "unit": "mm"}`."""
     return {name: dict(quantity) for name, quantity in _canonical(model).quantities.items()}
 
 

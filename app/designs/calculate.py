@@ -95,8 +95,11 @@ class Calculation:
 
     def waiting(self) -> list[SolidAnalysis]:
         """The analyses that are waited for, of models that are built."""
-        nodes = [node for node in self.graph.order if isinstance(node, SolidAnalysis)]
-        return [node for node in nodes if node in self.pending and node.model.name in self.measures]
+        return [
+            node
+            for node in self.graph.order
+            if isinstance(node, SolidAnalysis) and node in self.pending and node.model.name in self.measures
+        ]
 
 
 def calculate(
@@ -165,45 +168,41 @@ def _unmapped(result: Calculation, name: str, sources: Iterable[Node]) -> list[F
 
 
 def _cell(result: Calculation, cell: Cell) -> None:
-    """The SI value of a cell, if what it follows from has one."""
+    """The SI value of a cell, if what it follows from has one; a faulty literal is left to its block."""
     sources = result.graph.sources[cell]
     if not result.broken.isdisjoint(sources):
         result.broken.add(cell)
         result.faults += _unmapped(result, cell.name, sources)
     elif not result.pending.isdisjoint(sources):
         result.pending.add(cell)
-    else:
-        _read_cell(result, cell)
+    elif not (isinstance(cell.declared, Choice) and not cell.relations):
+        try:
+            typed = _related(result, cell) if cell.relations else _literal(cell)
+        except FaultyText as error:
+            result.broken.add(cell)
+            if cell.relations or cell.declared is None:
+                result.faults.append(error.fault(cell.name))
+        else:
+            result.typed[cell.name], result.values[cell.name] = typed, typed.si
 
 
-def _read_cell(result: Calculation, cell: Cell) -> None:
-    """Read or calculate a cell; a faulty literal of a block is left for the block to report."""
-    try:
-        if cell.relations:
-            _keep(result, cell, _joined(result, cell))
-        elif cell.declared is None:
-            result.values[cell.name] = read_any(cell.raw).si
-        elif not isinstance(cell.declared, Choice):
-            typed = result.typed[cell.name] = read(cell.raw, cell.declared.meaning.unit)
-            result.values[cell.name] = typed.si
-    except FaultyText as error:
-        result.broken.add(cell)
-        if cell.relations or cell.declared is None:
-            result.faults.append(error.fault(cell.name))
+def _literal(cell: Cell) -> Typed:
+    return read_any(cell.raw) if cell.declared is None else read(cell.raw, cell.declared.meaning.unit)
 
 
-def _keep(result: Calculation, cell: Cell, si: Value) -> None:
-    """Keep the value [SI] of a relation, for a block in the unit that is declared there."""
-    result.values[cell.name] = si
-    if cell.declared is not None:
-        scale = cell.declared.meaning.scale
-        result.typed[cell.name] = Typed(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {})
+def _related(result: Calculation, cell: Cell) -> Typed:
+    """The value of relations, in a block in the unit that is declared there."""
+    si = _joined(result, cell)
+    if cell.declared is None:
+        return Typed(None, "", si, {})  # it is used in SI only
+    scale = cell.declared.meaning.scale
+    return Typed(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {})
 
 
 def _joined(result: Calculation, cell: Cell) -> Value:
     """The value of a relation, or of a list that mixes relations and quantities."""
     names = {name: result.value(reference) for name, reference in cell.uses.items()}
-    limit_values(count := spanned(np.shape(value) for value in names.values()))
+    limit_values(count := spanned(map(np.shape, names.values())))
     result.operations += count * sum(relation.parts for relation in cell.relations)
     limit_operations(result.operations)
     if not isinstance(cell.raw, list):

@@ -41,7 +41,7 @@ def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list
     if faults := list(too_many_relations(document)):
         return Graph({}, {}, frozenset()), faults
     network, faults = _network(document, catalogues)
-    links = {cell: _links(network, cell) for cell in network.cells()}
+    links = {cell: _links(network, cell) for cell in network.cells() if cell.uses}
     if faults := [*faults, *_unknown(network, links)]:
         return _graph(network), faults
     sources = _sources(network, links)
@@ -73,8 +73,8 @@ def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[
 
 def _cell(reference: Reference, name: str, raw: Any, declared: Any = None) -> tuple[Cell, list[Fault]]:
     """A cell with those of its relations that can be read, and the faults of the others."""
-    texts = [item for item in (raw if isinstance(raw, list) else (raw,)) if is_relation(item)]
-    if not texts:
+    texts = [item for item in raw if is_relation(item)] if isinstance(raw, list) else [raw]
+    if not texts or not is_relation(texts[0]):
         return Cell(reference, name, raw, declared=declared), []
     relations: list[Relation] = []
     faults: list[Fault] = []
@@ -164,10 +164,9 @@ def _unknown(network: Network, links: Links) -> Iterator[Fault]:
 
 def _sources(network: Network, links: Links) -> dict[Node, tuple[Node, ...]]:
     """The nodes from which each node follows directly."""
-    sources: dict[Node, tuple[Node, ...]] = {
-        cell: tuple(dict.fromkeys(node for node in linked.values() if node)) if linked else ()
-        for cell, linked in links.items()
-    }
+    sources: dict[Node, tuple[Node, ...]] = dict.fromkeys(network.cells(), ())
+    for cell, linked in links.items():
+        sources[cell] = tuple(dict.fromkeys(node for node in linked.values() if node))
     for block in network.blocks.values():
         sources[block] = tuple(block.cells.values())
         if block.is_model:

@@ -75,7 +75,7 @@ class Designs:
             design, revision = repository.create(session, certain.document["name"], certain)
             return self._enqueued(session, design, revision, _work(certain, kind), once, created=True)
 
-        return self._saved(unit)
+        return self._saved(unit, kind)
 
     def change(
         self, id: str, patch: Mapping[str, Any], note: str | None, expected: str | None, once: Once
@@ -167,7 +167,7 @@ class Designs:
             revision = repository.append(session, row, certain)
             return self._enqueued(session, id, revision, _work(certain, kind), once, created=False)
 
-        return self._saved(unit)
+        return self._saved(unit, kind)
 
     def _written(self, raw: Mapping[str, Any], note: str | None) -> tuple[Written, str]:
         """What to write for a document, and the kind of job that regenerates it, should one have to."""
@@ -193,14 +193,14 @@ class Designs:
         once.keep(session, 201 if created else 200, vars(saved))
         return saved
 
-    def _saved(self, unit: Any) -> Saved:
+    def _saved(self, unit: Any, kind: str) -> Saved:
         saved: Saved = self.database.write(unit)
         if saved.fresh:
             topic, state = f"design:{saved.design}", "regenerating" if saved.job else "current"
             for event in ("revision", state):
                 self.jobs.events.publish(topic, {"event": event, "revision": saved.revision})
         if saved.job:
-            self.jobs.wake()
+            self.jobs.wake(kind)
         return saved
 
     def _repeated(self, once: Once) -> Saved | None:

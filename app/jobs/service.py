@@ -145,9 +145,9 @@ class Jobs:
         since = turns.oldest_queued(session)
         return 0 if since is None else operated(session) + self._database.clock.elapsed - since
 
-    def wake(self) -> None:
-        """Have the queue looked at."""
-        self._dispatcher.wake()
+    def wake(self, kind: str | None = None) -> None:
+        """Have the queue looked at, by all threads or by those of a kind's lane."""
+        self._dispatcher.wake(kind)
 
     def get(self, id: str) -> Job:
         """Return a job; raises JobNotFound."""

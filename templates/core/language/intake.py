@@ -84,15 +84,11 @@ def _bounded(declared: Input, typed: Typed, ledger: Ledger) -> tuple[Any, Fault 
     elif isinstance(typed.si, np.ndarray):
         value, fault = _mask_given(declared, typed.si, declared.meaning.admits(typed.si), ledger), None
     else:
-        value, fault = _one_number(declared, typed)
+        inside = declared.meaning.admits(typed.si)
+        value, fault = np.float64(typed.si), None if inside else _out_of_bounds(declared, typed, inside)
     if declared.meaning.published_si is not None:
         warn_if_outside(ledger, declared, value)
     return value, fault
-
-
-def _one_number(declared: Input, typed: Typed) -> tuple[np.float64, Fault | None]:
-    inside = declared.meaning.admits(typed.si)
-    return np.float64(typed.si), None if inside else _out_of_bounds(declared, typed, inside)
 
 
 def _along_a_cycle(declared: Curve, typed: Typed) -> tuple[Any, Fault | None]:

@@ -207,7 +207,7 @@ class Template:
         check_shapes(self)
         faults: list[Fault] = []
         with np.errstate(all="ignore"):
-            for rule in (rule for rule in cls.requirements if not cls._waits(rule, pending)):
+            for rule in cls._due(pending) if pending else cls.requirements:
                 try:
                     faults += violations(self, rule)
                 except InvalidInputs as error:  # a default that the rule asks for is refused
@@ -217,10 +217,13 @@ class Template:
         return self
 
     @classmethod
+    def _due(cls, pending: Collection[str]) -> list[Requirement]:
+        """The rules that are not about inputs which are pending."""
+        return [rule for rule in cls.requirements if not cls._waits(rule, pending)]
+
+    @classmethod
     def _waits(cls, rule: Requirement, pending: Collection[str]) -> bool:
         """Whether a rule is about any of the inputs that are pending, by name or beneath what it uses."""
-        if not pending:
-            return False
         beneath = {name for used in rule.uses for name in cls.dependencies(used)}.union(rule.uses_as_given)
         attributes = {cls.inputs[name].attribute for name in pending}
         return not (attributes.isdisjoint(beneath) and frozenset(pending).isdisjoint(rule.names))
