@@ -83,8 +83,9 @@ def _canonical(model: CadModel) -> _Canonical:
     """The canonical form of a model, made once and kept with the values that the model has computed."""
     kept: _Canonical | None = vars(model).get(_KEPT)
     if kept is None:
-        quantities = {name: _rounded(model, name, si) for name, si in model.inputs_si().items()}
-        texts = {name: _text(**quantity) for name, quantity in quantities.items()}
+        texts, quantities = dict[str, str](), dict[str, dict[str, float | str]]()
+        for name, si in model.inputs_si().items():
+            texts[name], quantities[name] = _written(model, name, si)
         kept = vars(model)[_KEPT] = _Canonical(texts, quantities, _key(type(model), texts))
     return kept
 
@@ -150,18 +151,14 @@ def _plain(model: CadModel) -> dict[str, float | str]:
     return {n: v if isinstance(v, str) else float(v) for n, v in model.inputs_si().items()}
 
 
-def _rounded(model: CadModel, name: str, si: Any) -> dict[str, float | str]:
-    """A parameter in its declared unit, to twelve digits: free of the last digit's noise of conversion."""
+def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, float | str]]:
+    """A parameter as text and as quantity, to twelve digits: free of the last digit's noise of conversion."""
     if isinstance(si, str):
-        return {"value": si}
+        return si, {"value": si}
     meaning = model.inputs[name].meaning
-    return {"value": float(f"{meaning.scale.from_si(float(si)):.12g}"), "unit": meaning.unit}
-
-
-def _text(value: float | str, unit: float | str = "1") -> str:
-    if isinstance(value, str):
-        return value
-    return f"{value:.12g}" if unit == "1" else f"{value:.12g} {unit}"
+    number = f"{meaning.scale.from_si(float(si)):.12g}"
+    text = number if meaning.unit == "1" else f"{number} {meaning.unit}"
+    return text, {"value": float(number), "unit": meaning.unit}
 
 
 def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:

@@ -201,10 +201,12 @@ def _related(result: Calculation, cell: Cell) -> Typed:
 
 def _joined(result: Calculation, cell: Cell) -> Value:
     """The value of a relation, or of a list that mixes relations and quantities."""
-    names = {name: result.value(reference) for name, reference in cell.uses.items()}
-    limit_values(count := spanned(map(np.shape, names.values())))
-    result.operations += count * sum(relation.parts for relation in cell.relations)
-    limit_operations(result.operations)
+    known = {} if result.assumed else result.values
+    names = {n: known[n] if n in known else result.value(reference) for n, reference in cell.uses.items()}
+    if any(map(np.ndim, names.values())):  # single values are few: the text of all relations is limited
+        limit_values(count := spanned(map(np.shape, names.values())))
+        result.operations += count * sum(relation.parts for relation in cell.relations)
+        limit_operations(result.operations)
     if not isinstance(cell.raw, list):
         return _finite(cell.relations[0].value(names))
     declared = cell.declared.meaning.unit if cell.declared else None
@@ -232,11 +234,14 @@ def _finite(value: Value) -> Value:
 
 def _block(result: Calculation, block: Block) -> None:
     """Evaluate a step or check a model's parameters; what can be checked is, even if a cell is pending."""
-    waiting = {n for n, cell in block.cells.items() if cell in result.pending}
-    spoilt = {n for n, cell in block.cells.items() if cell in result.broken and cell.relations}
+    waiting = {n for n, cell in block.cells.items() if cell in result.pending} if result.pending else set()
+    broken = result.broken
+    spoilt = {n for n, c in block.cells.items() if c in broken and c.relations} if broken else set()
     typed = result.typed
     raw = {n: typed.get(c.name, c.raw) for n, c in block.cells.items() if n not in waiting}
     faults = _attempt(result, block, raw, waiting)
+    if not (faults or waiting or spoilt):
+        return
     told = [fault for fault in faults if fault.name not in waiting | spoilt]
     if block.is_model:
         absent = [f.name for f in told if f.code == "missing"]

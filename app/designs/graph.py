@@ -83,8 +83,8 @@ def _cell(reference: Reference, name: str, raw: Any, declared: Any = None) -> tu
             relations.append(parse(text))
         except FaultyText as error:
             faults.append(error.fault(name))
-    names = sorted(frozenset().union(*(relation.names for relation in relations)))
-    uses = {used: Reference.parse(used) for used in names}
+    names = [name for relation in relations for name in relation.names]
+    uses = {used: Reference.parse(used) for used in sorted(set(names))}
     return Cell(reference, name, raw, tuple(relations), uses, declared), faults
 
 
@@ -148,7 +148,9 @@ def _unknown(network: Network, links: Links) -> Iterator[Fault]:
     models = {block.name: block.analyses for block in network.blocks.values() if block.is_model}
     unknown: list[tuple[str, str]] = []  # where, and what
     for cell, linked in links.items():
-        for reference in (reference for reference, node in linked.items() if node is None):
+        for reference, node in linked.items():
+            if node is not None:
+                continue
             if detail := remedy(reference, models):
                 yield Fault(cell.name, "unknown_name", detail)
             else:
@@ -166,7 +168,7 @@ def _sources(network: Network, links: Links) -> dict[Node, tuple[Node, ...]]:
     """The nodes from which each node follows directly."""
     sources: dict[Node, tuple[Node, ...]] = dict.fromkeys(network.cells(), ())
     for cell, linked in links.items():
-        sources[cell] = tuple(dict.fromkeys(node for node in linked.values() if node))
+        sources[cell] = tuple(dict.fromkeys(filter(None, linked.values())))
     for block in network.blocks.values():
         sources[block] = tuple(block.cells.values())
         if block.is_model:

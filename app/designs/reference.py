@@ -30,4 +30,4 @@ class Reference:
     @property
     def member(self) -> str:
         """The name within the block: `radial_load`, `torsion.stiffness`; empty for a parameter."""
-        return ".".join(part for part in (self.analysis, self.output) if part is not None)
+        return f"{self.analysis}.{self.output}" if self.analysis else self.output or ""

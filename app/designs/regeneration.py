@@ -103,6 +103,8 @@ class Regeneration:
         rounds = list[dict[str, Any]]()
         while True:
             calculation = self._built(calculation, context)
+            if not document.iterations:
+                return calculation, []
             assumed = calculation.assumed
             measured = {Reference.parse(i.through): _measure(calculation, i) for i in document.iterations}
             number = len(rounds) // max(1, len(measured)) + 1

@@ -204,6 +204,8 @@ class Designs:
         return saved
 
     def _repeated(self, once: Once) -> Saved | None:
+        if not once.key:
+            return None
         with self.database.read() as session:
             return _found(session, once)
 

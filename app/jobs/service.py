@@ -3,7 +3,7 @@
 import asyncio
 import logging
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, cast
 
 from sqlalchemy.orm import Session
 
@@ -205,7 +205,7 @@ class Jobs:
                 async with asyncio.timeout(seconds):
                     async for event in events:
                         if event["event"] in FINAL:
-                            break
+                            return cast(State, event["event"])
             except TimeoutError:
                 pass
         return (await asyncio.to_thread(self.get, id)).state

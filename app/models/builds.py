@@ -71,6 +71,8 @@ class Builds:
     def keep(self, shapes: Iterable[CadModel]) -> bool:
         """Keep builds for as long as the job that counts on them runs; return whether all are there."""
         keys = [build_key(shape) for shape in shapes]
+        if not keys:
+            return True
         with self.database.read() as session:
             if is_fresh(session, keys):
                 return True

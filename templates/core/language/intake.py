@@ -29,7 +29,8 @@ def read_inputs(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, 
     for name, declared in cls.inputs.items():
         if name in raw:
             try:
-                typed[name] = _read_one(declared, raw[name])
+                given = raw[name]
+                typed[name] = given if isinstance(given, Typed) else _read_one(declared, given)
             except FaultyText as error:
                 faults.append(error.fault(name))
         elif declared.required:
@@ -43,7 +44,7 @@ def _read_one(declared: Input, raw: Any) -> Typed | str:
         if isinstance(option, str) and option in declared.options:
             return option
         raise FaultyText("not_an_option", f"{excerpt(raw)} is none of {', '.join(declared.options)}")
-    return raw if isinstance(raw, Typed) else read(raw, declared.meaning.unit)
+    return read(raw, declared.meaning.unit)
 
 
 def _example(declared: Input) -> str:
@@ -150,6 +151,8 @@ def check_shapes(self: Template) -> None:
         Naming the arrays and their shapes.
     """
     arrays = {n: v for n, v in vars(self).items() if isinstance(v, np.ndarray)}
+    if not arrays:
+        return
     try:
         points_of(self, arrays)
         curves = {n: d for n, d in self.declarations.items() if isinstance(d, Curve) and n in arrays}

@@ -150,7 +150,8 @@ class Template:
         typed, faults = read_inputs(cls, raw)
         ledger = Ledger(typed=typed)
         values, refused = admitted(cls, typed, ledger)
-        faults = [fault for fault in (*faults, *refused) if fault.name not in pending]
+        if faults := [*faults, *refused]:
+            faults = [fault for fault in faults if fault.name not in pending]
         if faults:
             raise InvalidInputs(faults)
         return cls._checked(values, ledger, pending)
