@@ -169,7 +169,7 @@ def counted(root: Path) -> Calls:
             if not bench.is_current(design):
                 raise RuntimeError("the change that was counted did not lead to a solid")
     finally:
-        threading.setprofile(None)  # type: ignore[arg-type]
+        threading.setprofile(None)
     return calls
 
 
