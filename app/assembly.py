@@ -15,6 +15,7 @@ from app.calculations.jobs import CALCULATION, PREVIEW
 from app.catalogue.finding import find_templates
 from app.designs.graph import Catalogues
 from app.designs.previewing import Previews
+from app.designs.recent import Recent
 from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.jobs.service import Jobs
@@ -55,7 +56,8 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     stack.callback(worker.close)
     jobs = Jobs(database, worker, settings, problems.describe)
     calculations = assemble_calculations(settings, stack, catalogues.templates, database, store, jobs)
-    register_jobs(settings, jobs, database, store, catalogues, calculations)
+    recent = Recent()
+    register_jobs(settings, jobs, database, store, catalogues, calculations, recent)
     previews = Previews(database, catalogues, store, jobs, calculations.steps)
     jobs.register(PREVIEW, previews, previews.failed, lane=CALCULATION)
     jobs.start(calculations.lanes)
@@ -72,7 +74,7 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         steps=calculations.steps,
         threads=Threads(),
         answering=Answering(calculations.pool, calculations.jobs, settings.calculation_deadline),
-        designs=Designs(database, jobs, catalogues),
+        designs=Designs(database, jobs, catalogues, recent),
         previews=previews,
         models=models,
         analyses=analyses,
@@ -108,11 +110,12 @@ def register_jobs(
     store: ArtifactStore,
     catalogues: Catalogues,
     calculations: Calculations,
+    recent: Recent,
 ) -> None:
     """Say what carries out each kind of job."""
     builds = Builds(database, store, settings.template_folders)
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
-    regeneration = Regeneration(database, builds, analysing, catalogues, calculations.steps)
+    regeneration = Regeneration(database, builds, analysing, catalogues, calculations.steps, recent)
     jobs.register(REGENERATE, regeneration, regeneration.failed)
     jobs.register(REGENERATE_SLOWLY, regeneration, regeneration.failed, is_slow=True)
     jobs.register(CALCULATE, regeneration, regeneration.failed, lane=CALCULATION)

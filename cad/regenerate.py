@@ -24,7 +24,7 @@ from cad.model import CadModel
 from cad.step import read_step, write_step
 from cad.step_text import KERNEL
 
-__all__ = ["Build", "as_text", "build_key", "regenerate"]
+__all__ = ["Build", "as_quantities", "as_text", "build_key", "regenerate", "regenerate_from_text"]
 
 Report = Callable[[float, str], None]
 
@@ -57,12 +57,40 @@ def as_text(model: CadModel) -> dict[str, str]:
 
     Twelve digits: what differs less is the same model, and gets the same bytes.
     """
-    return {name: _text(model, name, value) for name, value in model.inputs_si().items()}
+    return dict(_canonical(model).texts)
+
+
+def as_quantities(model: CadModel) -> dict[str, dict[str, float | str]]:
+    """Every parameter in its declared unit, as in the STEP file: `{"value": 50.0, "unit": "mm"}`."""
+    return {name: dict(quantity) for name, quantity in _canonical(model).quantities.items()}
 
 
 def build_key(model: CadModel) -> str:
     """What a build of this model is found by: SHA-256 of model, version, parameters, kernel and recipe."""
-    return _key(type(model), as_text(model))
+    return _canonical(model).key
+
+
+@dataclass(frozen=True)
+class _Canonical:
+    """The parameters of a model in the form that its key is made of."""
+
+    texts: dict[str, str]
+    quantities: dict[str, dict[str, float | str]]
+    key: str
+
+
+def _canonical(model: CadModel) -> _Canonical:
+    """The canonical form of a model, made once and kept with the values that the model has computed."""
+    kept: _Canonical | None = vars(model).get(_KEPT)
+    if kept is None:
+        texts, quantities = dict[str, str](), dict[str, dict[str, float | str]]()
+        for name, si in model.inputs_si().items():
+            texts[name], quantities[name] = _written(model, name, si)
+        kept = vars(model)[_KEPT] = _Canonical(texts, quantities, _key(type(model), texts))
+    return kept
+
+
+_KEPT = "canonical form"  # no name that a declaration can have
 
 
 def regenerate(
@@ -84,8 +112,20 @@ def regenerate(
     GeometryError
         If the kernel fails, or makes anything but what was asked for.
     """
+    texts = as_text(models(*folders).get(model_id, version).from_si(parameters))
+    return regenerate_from_text(model_id, version, texts, folders=folders, report=report)
+
+
+def regenerate_from_text(
+    model_id: str,
+    version: int,
+    texts: Mapping[str, str],
+    *,
+    folders: Sequence[Path] = (),
+    report: Report = ignore,
+) -> Build:
+    """Build a model from its parameters as `as_text` writes them; raises as `regenerate` does."""
     cls = models(*folders).get(model_id, version)
-    texts = as_text(cls.from_si(parameters))
     model, key = cls.from_quantities(texts), _key(cls, texts)
     with _kernel(model):
         report(0.0, "building")
@@ -111,12 +151,14 @@ def _plain(model: CadModel) -> dict[str, float | str]:
     return {n: v if isinstance(v, str) else float(v) for n, v in model.inputs_si().items()}
 
 
-def _text(model: CadModel, name: str, value: Any) -> str:
-    if isinstance(value, str):
-        return value
+def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, float | str]]:
+    """A parameter as text and as quantity, to twelve digits: free of the last digit's noise of conversion."""
+    if isinstance(si, str):
+        return si, {"value": si}
     meaning = model.inputs[name].meaning
-    number = f"{meaning.scale.from_si(float(value)):.12g}"
-    return number if meaning.unit == "1" else f"{number} {meaning.unit}"
+    number = f"{meaning.scale.from_si(float(si)):.12g}"
+    text = number if meaning.unit == "1" else f"{number} {meaning.unit}"
+    return text, {"value": float(number), "unit": meaning.unit}
 
 
 def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:

@@ -31,7 +31,8 @@ class Surface:
 
     def about(self, axis: Vector) -> bool:
         """Whether the surface turns about that axis through the origin."""
-        return self.along(axis) and bool(self.point.cross(axis).Length < _COINCIDENT)
+        turns, through = self.direction.cross(axis), self.point.cross(axis)
+        return bool(turns.Length < _COINCIDENT and through.Length < _COINCIDENT)
 
     def holds(self, axis: Vector) -> bool:
         """Whether the plane holds that axis through the origin."""

@@ -8,6 +8,7 @@ from hashlib import sha256
 from typing import Any
 
 from app.calculations.pool import Calculation, CalculationPool
+from templates.core.units.quantity import Typed
 
 
 class Begun:
@@ -57,4 +58,9 @@ class Begun:
 
 def fingerprint(inputs: Mapping[str, Any]) -> bytes:
     """A digest of inputs as typed, the same in whatever order their parts are written."""
-    return sha256(json.dumps(inputs, sort_keys=True, default=repr).encode()).digest()
+    return sha256(json.dumps(inputs, sort_keys=True, default=_plain).encode()).digest()
+
+
+def _plain(value: object) -> object:
+    """What JSON does not know: a quantity that was read already is what its user typed."""
+    return [value.value, value.unit, value.extra] if isinstance(value, Typed) else repr(value)

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from app.calculations.size import shape, spanned
+from app.calculations.size import arrays, spanned
 from templates.core.errors import InvalidInputs
 from templates.core.language.levels import SINGLE, accuracy
 from templates.core.language.solve import POLISHES, SAMPLES
@@ -45,7 +46,7 @@ def estimated_seconds(
     outputs: Collection[str] | None = None,
 ) -> float:
     """How long `evaluate` will take, reading and writing included [s]; for wrong inputs, anything."""
-    shapes = _shapes(cls, inputs)
+    shapes = arrays(inputs)
     numbers = min(MOST_POINTS, sum(map(math.prod, shapes.values())))
     levels = _levels(cls, inputs, level, tolerance, numbers)
     points = min(MOST_POINTS, spanned(_points(cls, shapes)))
@@ -84,12 +85,6 @@ def is_quick(cls: type[Template]) -> bool:
 
 
 _quick: dict[Any, bool] = {}
-
-
-def _shapes(cls: type[Template], inputs: Mapping[str, Any]) -> dict[str, tuple[int, ...]]:
-    """The shapes of all arrays among the inputs, as typed."""
-    shapes = {name: shape(raw) for name, raw in inputs.items() if not isinstance(raw, str)}
-    return {name: found for name, found in shapes.items() if found}
 
 
 def _points(cls: type[Template], shapes: Mapping[str, tuple[int, ...]]) -> Iterable[tuple[int, ...]]:
@@ -140,8 +135,10 @@ def _ladder(cls: type[Template], inputs: Mapping[str, Any], numbers: int) -> tup
 
 def _first(cls: type[Template], name: str, raw: Any) -> Any:
     """An array's first value, in its unit; anything else as it is."""
-    if isinstance(raw, Typed) or isinstance(cls.inputs.get(name), (Curve, Table)):
+    if isinstance(cls.inputs.get(name), (Curve, Table)):
         return raw
+    if isinstance(raw, Typed):
+        return raw if isinstance(raw.si, float) else replace(raw, value=None, si=float(raw.si.flat[0]))
     value = raw.get("value") if isinstance(raw, Mapping) else raw
     while isinstance(value, list) and value:
         value = value[0]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -31,8 +31,9 @@ def quantity(value: Any, unit: str | None) -> dict[str, Any]:
 def answer(result: Answer) -> dict[str, Any]:
     """An output; what does not exist is null with its reason."""
     if not isinstance(result.value, np.ndarray):
-        told = quantity(result.value, result.unit)
-        return told if result.reason is None else {**told, "value": None, "reason": result.reason}
+        unit = {} if result.unit is None else {"unit": result.unit}
+        reason = {} if result.reason is None else {"reason": result.reason}
+        return {"value": None if reason else result.value, **unit, **reason}
     if result.reasons is None:
         return quantity(result.value.tolist(), result.unit)
     holes = _with_holes(result.value, result.reasons)
@@ -53,16 +54,25 @@ def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDA
 
 def _plain(value: Any) -> Any:
     """A single value or an array as JSON; what was not measured is null."""
-    if isinstance(value, np.ndarray):
-        return (
-            [_plain(item) for item in value.tolist()] if value.ndim == 1 else [_plain(row) for row in value]
-        )
-    return None if isinstance(value, float) and math.isnan(value) else value
+    if not isinstance(value, np.ndarray):
+        return None if value != value else value  # NaN
+    if value.ndim == 1:
+        return [None if item != item else item for item in value.tolist()]
+    return [_plain(row) for row in value]
+
+
+def _errors(errors: Mapping[str, Any]) -> dict[str, Any]:
+    """The error of each output as JSON."""
+    return {
+        name: _plain(error) if isinstance(error, np.ndarray) else None if error != error else error
+        for name, error in errors.items()
+    }
 
 
 def echo(used: Echo) -> dict[str, Any]:
     """An input as it was used."""
-    return {**quantity(used.value, used.unit), "from": used.source, **used.extra}
+    unit = {} if used.unit is None else {"unit": used.unit}
+    return {"value": used.value, **unit, "from": used.source, **used.extra}
 
 
 def evaluation(made: Evaluation) -> dict[str, Any]:
@@ -72,7 +82,7 @@ def evaluation(made: Evaluation) -> dict[str, Any]:
         "inputs": {name: echo(used) for name, used in made.inputs.items()},
         "outputs": {name: answer(result) for name, result in made.outputs.items()},
         "level": _plain(made.level),
-        "error": {name: _plain(error) for name, error in made.error.items()},
+        "error": _errors(made.error),
         "warnings": [{"code": w.code, "name": w.name, "detail": w.detail} for w in made.warnings],
         "seconds": made.seconds,
     }

@@ -16,14 +16,24 @@ Shape = tuple[int, ...]
 
 def points(inputs: Mapping[str, Any]) -> int:
     """How many points the arrays among inputs, as typed, span together."""
-    return spanned(shape(raw) for raw in inputs.values() if not isinstance(raw, str))
+    return spanned(arrays(inputs).values())
+
+
+def arrays(inputs: Mapping[str, Any]) -> dict[str, Shape]:
+    """The shapes of the arrays among inputs, as typed."""
+    shapes: dict[str, Shape] = {}
+    for name, raw in inputs.items():
+        is_single = isinstance(raw, str) or (isinstance(raw, Typed) and isinstance(raw.si, float))
+        if not is_single and (axes := shape(raw)):
+            shapes[name] = axes
+    return shapes
 
 
 def spanned(shapes: Iterable[Shape]) -> int:
     """How many points shapes span together; of shapes that do not fit, at least as many as any of them."""
     # NumPy's own broadcast_shapes gives up on counts beyond 2^63.
-    axes = zip_longest(*(reversed(shape) for shape in shapes), fillvalue=1)
-    return math.prod(max(lengths) for lengths in axes)
+    axes = zip_longest(*map(reversed, shapes), fillvalue=1)
+    return math.prod(map(max, axes))
 
 
 def shape(raw: Any) -> Shape:

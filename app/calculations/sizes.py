@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pint
+from numpy.typing import NDArray
 
 from templates.core.language.spec import Declaration, Requirement, Shared
 from templates.core.units.units import Unit
@@ -25,7 +26,8 @@ def size_of(value: Any) -> int:
     """The memory of a value and of all that it refers to [bytes]; what equal parts share may count twice."""
     total, seen, waiting = sys.getsizeof(value), {id(value)}, [value]
     while waiting:
-        for part in _parts(waiting.pop()):
+        item = waiting.pop()
+        for part in _parts(item) if isinstance(item, np.ndarray) else get_referents(item):
             if type(part) in _ATOMS:
                 total += sys.getsizeof(part)
             elif id(part) not in seen and not isinstance(part, _SHARED):
@@ -35,9 +37,7 @@ def size_of(value: Any) -> int:
     return total
 
 
-def _parts(value: Any) -> list[Any]:
-    """What a value refers to; of a view of an array the array that owns the numbers."""
-    if isinstance(value, np.ndarray):
-        items = value.ravel().tolist() if value.dtype == object else []
-        return items if value.base is None else [*items, value.base]
-    return get_referents(value)
+def _parts(array: NDArray[Any]) -> list[Any]:
+    """The objects in an array, and of a view the array that owns the numbers."""
+    items = array.ravel().tolist() if array.dtype == object else []
+    return items if array.base is None else [*items, array.base]

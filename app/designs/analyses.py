@@ -10,22 +10,25 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from app.designs.document import Model
+from app.designs.reference import Reference
 from app.solids.questions import Question, faults, in_order, no_shaft, question
 from cad.analysis.kinds import KINDS
 from cad.inspect import MEASURES
 from templates.core.errors import Fault, unknown_name
 
 
-def measured_unit(tail: str) -> str:
-    """The unit of what is measured on a solid: `mass`, or `torsion.stiffness`."""
-    kind, _, output = tail.partition(".")
-    return KINDS[kind][output] if output else MEASURES[tail]
+def measured_unit(reference: Reference) -> str:
+    """The unit of what is measured on a solid: `model.mass`, or `throw.torsion.stiffness`."""
+    if reference.analysis is None:
+        return MEASURES[reference.output or ""]
+    return KINDS[reference.analysis][reference.output or ""]
 
 
-def is_measured(tail: str, declared: Iterable[str]) -> bool:
+def is_measured(reference: Reference, declared: Iterable[str]) -> bool:
     """Whether a name within a model is a measure of its solid, or an output of a declared analysis."""
-    kind, _, output = tail.partition(".")
-    return tail in MEASURES or (kind in declared and output in KINDS[kind])
+    if reference.analysis is None:
+        return reference.output in MEASURES
+    return reference.analysis in declared and reference.output in KINDS[reference.analysis]
 
 
 def measured_names(declared: Iterable[str]) -> Iterator[str]:
@@ -34,32 +37,32 @@ def measured_names(declared: Iterable[str]) -> Iterator[str]:
     yield from (f"{kind}.{output}" for kind in declared for output in KINDS[kind])
 
 
-def questions(name: str, model: Model, cls: Any, found: list[Fault]) -> dict[str, Question]:
-    """The analyses that a model declares, as far as they can be made; faults are added to those found."""
+def questions(name: str, model: Model, cls: Any) -> tuple[dict[str, Question], list[Fault]]:
+    """The analyses that a model declares, as far as they can be made, and what is wrong with them."""
+    if not model.analyses:
+        return {}, []
     known = {kind: options for kind, options in model.analyses.items() if kind in KINDS}
     place = f"models.{name}.analyses"
-    for kind in model.analyses.keys() - known.keys():
-        found.append(unknown_name(kind, KINDS, "analysis").within(place))
+    unknown = model.analyses.keys() - known.keys()
+    wrong = [unknown_name(kind, KINDS, "analysis").within(place) for kind in unknown]
     for kind, options in known.items():
-        found += [fault.within(f"{place}.{kind}") for fault in faults(options)]
+        wrong += [fault.within(f"{place}.{kind}") for fault in faults(options)]
     if known and (reason := no_shaft(cls)):
-        found.append(Fault(place, "no_shaft", reason))
-    return {kind: question(kind, options) for kind, options in known.items()}
+        wrong.append(Fault(place, "no_shaft", reason))
+    return {kind: question(kind, options) for kind, options in known.items()}, wrong
 
 
-def remedy(name: str, models: Mapping[str, Mapping[str, Question]]) -> str | None:
+def remedy(reference: Reference, models: Mapping[str, Mapping[str, Question]]) -> str | None:
     """What to do about an unknown name that means an analysis; None if it does not."""
-    model, _, tail = name.partition(".")
-    kind, _, output = tail.partition(".")
+    model, kind, output = reference.block, reference.analysis, reference.output
     if model not in models or kind not in KINDS or not output:
         return None
     if kind not in models[model]:
         declared = f'declare "analyses": {{"{kind}": {{}}}} in models.{model}'
-        return f"{model} has no analysis {kind}; {declared} to use {name}"
+        return f"{model} has no analysis {kind}; {declared} to use {reference}"
     return f"{model}.{kind} tells {', '.join(KINDS[kind])}, no {output[:60]}"
 
 
-def used(kind: str, names: Iterable[str]) -> tuple[str, ...]:
-    """The outputs of an analysis that are among the names which relations use of its model."""
-    prefix = f"{kind}."
-    return in_order(kind, {name.removeprefix(prefix) for name in names if name.startswith(prefix)})
+def used(kind: str, references: Iterable[Reference]) -> tuple[str, ...]:
+    """The outputs of an analysis among what relations use of its model."""
+    return in_order(kind, {reference.output for reference in references if reference.analysis == kind})

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from app.designs.graph import Block, Graph
+from app.designs.network import Block, Graph
+from app.designs.reference import Reference
 from templates.core.language.spec import Choice
 from templates.core.units.units import compatible, unit
 
@@ -39,22 +40,22 @@ def _proposal(graph: Graph, model: Block, name: str) -> Proposal | None:
             same = (
                 f"both are called {words}" if called == name else f"{declared.meaning.words} is also {words}"
             )
-            others = f"; {', '.join(fitting[1:])} would fit too" if fitting[1:] else ""
+            others = f"; {', '.join(map(str, fitting[1:]))} would fit too" if fitting[1:] else ""
             reason = f"{same}, and both are given in {declared.meaning.unit} or its like{others}"
             return Proposal(target, f"= {fitting[0]}", reason)
     return None
 
 
-def _named(graph: Graph, called: str) -> Iterator[str]:
+def _named(graph: Graph, called: str) -> Iterator[Reference]:
     """What is called so: outputs and inputs of steps first, then parameters of the design."""
     steps = [block for block in graph.blocks.values() if not block.is_model]
-    yield from (f"{step.name}.{called}" for step in steps if called in step.cls.formulas)
-    yield from (f"{step.name}.{called}" for step in steps if called in step.cls.inputs)
+    yield from (Reference(step.name, None, called) for step in steps if called in step.cls.formulas)
+    yield from (Reference(step.name, None, called) for step in steps if called in step.cls.inputs)
     if called in graph.parameters:
-        yield called
+        yield Reference(called)
 
 
-def _fits(graph: Graph, source: str, wanted: str) -> bool:
-    if source in graph.parameters:
-        return compatible(graph.kinds[source].base, unit(wanted).base)
+def _fits(graph: Graph, source: Reference, wanted: str) -> bool:
+    if source.output is None:
+        return compatible(graph.kinds[source.block].base, unit(wanted).base)
     return compatible(unit(graph.unit_of(source)).base, unit(wanted).base)

@@ -5,167 +5,139 @@ Nothing stops at the first fault, so that a user sees all of them at once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from app.calculations.errors import StepDeferred
 from app.calculations.size import points, spanned
-from app.designs.analyses import measured_unit
-from app.designs.graph import SOLID, Block, Cell, Graph
+from app.designs.calculation import Analysed, Calculation, Found, Measured, Measures
 from app.designs.memory import memory
+from app.designs.network import Block, Cell, Graph, Node, Solid, SolidAnalysis
+from app.designs.reference import Reference
 from app.designs.size import limit_operations, limit_values
-from app.solids.questions import Question
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText, InvalidInputs
-from templates.core.language.evaluate import Evaluation, checked
+from templates.core.language.evaluate import checked
 from templates.core.language.spec import Choice
-from templates.core.language.template import Template
 from templates.core.units.quantity import Typed, read, read_any
 from templates.core.units.relation import is_relation, parse
-from templates.core.units.units import Value, unit
+from templates.core.units.units import Value
 
-Measures = Mapping[str, float]  # in the units of MEASURES
-Measured = Callable[[CadModel], Measures | None]
-Found = Mapping[str, Mapping[str, Any]]  # outputs of an analysis
-Analysed = Callable[[CadModel, Question, tuple[str, ...]], Found | None]
-
-
-@dataclass
-class Calculation:
-    """What came out; all values are in SI."""
-
-    graph: Graph
-    values: dict[str, Value] = field(default_factory=dict)  # of cells
-    evaluations: dict[str, Evaluation] = field(default_factory=dict)  # of steps
-    shapes: dict[str, CadModel] = field(default_factory=dict)  # models whose parameters are all known
-    measures: dict[str, Measures] = field(default_factory=dict)  # of models that are built
-    analyses: dict[str, Found] = field(default_factory=dict)  # by model.kind: what is used and known
-    missing: dict[str, list[str]] = field(default_factory=dict)  # unset parameters of models
-    pending: set[str] = field(default_factory=set)  # nodes that wait for a solid, or for a deferred step
-    deferred: set[str] = field(default_factory=set)  # expensive steps that nobody waited for
-    broken: set[str] = field(default_factory=set)  # nodes that follow from a fault
-    faults: list[Fault] = field(default_factory=list)
-    operations: int = 0  # on single values, of the relations so far
-
-    def value(self, name: str, assumed: Mapping[str, float] | None = None) -> Value:
-        """The value [SI] of a name, once its node is calculated."""
-        if assumed and name in assumed:
-            return assumed[name]
-        if name in self.values:
-            return self.values[name]
-        head, _, tail = name.partition(".")
-        block = self.graph.blocks[head]
-        declared = block.cls.inputs.get(tail) or block.cls.formulas.get(tail)
-        if declared is None:
-            return self.measure(name)
-        with np.errstate(all="ignore"):
-            return getattr(self.instance(head), declared.attribute)  # type: ignore[no-any-return]
-
-    def measure(self, name: str) -> float:
-        """What is measured or found on a solid [SI], by its name in relations: `throw.torsion.stiffness`.
-
-        Raises
-        ------
-        FaultyText
-            With code `no_value`, where an analysis tells a reason instead.
-        """
-        head, _, tail = name.partition(".")
-        measured = self.measures[head][tail] if tail in self.measures[head] else self._found(name)
-        return float(unit(measured_unit(tail)).to_si(measured))
-
-    def _found(self, name: str) -> float:
-        analysis, _, output = name.rpartition(".")
-        told = self.analyses[analysis][output]
-        if told["value"] is None:
-            raise FaultyText("no_value", f"{name} has no value: {told['reason']}")
-        return float(told["value"])
-
-    def instance(self, block: str) -> Template:
-        """The template of a step, or the model, with its values."""
-        return self.evaluations[block].template if block in self.evaluations else self.shapes[block]
+__all__ = ["Analysed", "Calculation", "Found", "Measured", "Measures", "calculate", "resume"]
 
 
 def calculate(
     graph: Graph,
     measured: Measured,
     analysed: Analysed,
-    assumed: Mapping[str, float] | None = None,
-    broken: Iterable[str] = (),
+    assumed: Mapping[Reference, float] | None = None,
+    broken: Iterable[Cell] = (),
 ) -> Calculation:
     """Calculate all nodes in order.
 
-    `measured` tells what a model measures, or None if it is not built, and `analysed` what finite elements
-    found on it; `assumed` are the SI values of the measures through which iterations run; `broken` names
-    cells that are known to be faulty.
+    `measured` returns what a model measures, or None if it is not built, and `analysed` what finite elements
+    found on it; `assumed` are the SI values of the measures through which iterations run; `broken` are cells
+    that are known to be faulty.
     """
-    result = Calculation(graph, broken=set(broken))
-    for node in graph.order:
-        sources = graph.sources(node)
-        if node in result.broken:
-            continue
-        name, mark, kind = node.partition(SOLID)
-        if kind:
-            _analysis(result, name, kind, analysed)
-        elif mark:
-            _solid(result, name, measured)
-        elif node in graph.blocks:
-            _block(result, graph.blocks[node])
-        elif not sources.isdisjoint(result.broken):
-            result.broken.add(node)
-            result.faults += _unmapped(result, node, sources)
-        elif not sources.isdisjoint(result.pending):
-            result.pending.add(node)
-        elif cell := graph.cell(node):
-            _cell(result, cell, assumed or {})
-    for through in sorted(graph.assumed):
-        result.faults += _unmapped(result, "iterations", {through.partition(".")[0] + SOLID})
+    result = Calculation(graph, assumed or {}, broken=set(broken))
+    _calculate(result, graph.order, measured, analysed)
+    for through in sorted(graph.assumed, key=str):
+        if model := graph.blocks.get(through.block):
+            result.faults += _unmapped(result, "iterations", (model.solid,))
     return result
 
 
-def _unmapped(result: Calculation, node: str, sources: set[str]) -> list[Fault]:
+def resume(before: Calculation, measured: Measured, analysed: Analysed) -> Calculation:
+    """A calculation without faults, continued: only what was pending is calculated."""
+    result = replace(
+        before,
+        values=dict(before.values),
+        typed=dict(before.typed),
+        evaluations=dict(before.evaluations),
+        shapes=dict(before.shapes),
+        measures=dict(before.measures),
+        analyses={model: dict(kinds) for model, kinds in before.analyses.items()},
+        pending=set(),
+        deferred=set(),
+        faults=[],
+    )
+    nodes = [node for node in before.graph.order if node in before.pending]
+    _calculate(result, nodes, measured, analysed)
+    return result
+
+
+def _calculate(result: Calculation, nodes: Iterable[Node], measured: Measured, analysed: Analysed) -> None:
+    for node in nodes:
+        if node in result.broken:
+            continue
+        match node:
+            case Cell():
+                _cell(result, node)
+            case Block():
+                _block(result, node)
+            case Solid(model):
+                _solid(result, model, measured)
+            case SolidAnalysis(model, kind):
+                _analysis(result, node, model, kind, analysed)
+
+
+def _unmapped(result: Calculation, name: str, sources: Iterable[Node]) -> list[Fault]:
     """Faults of a value that needs a model of which a parameter is not set."""
-    models = sorted({source.partition(SOLID)[0] for source in sources} & result.missing.keys())
-    unset = [f"{model}.{name}" for model in models for name in result.missing[model]]
+    models = {node.model.name for node in sources if isinstance(node, (Solid, SolidAnalysis))}
+    unset = [f"{model}.{n}" for model in sorted(models) for n in result.missing.get(model, ())]
     return (
-        [Fault(node, "missing", f"this needs {', '.join(unset)}: set it, or map it to an output")]
+        [Fault(name, "missing", f"this needs {', '.join(unset)}: set it, or map it to an output")]
         if unset
         else []
     )
 
 
-def _cell(result: Calculation, cell: Cell, assumed: Mapping[str, float]) -> None:
-    """The SI value of a cell; a faulty literal of a block is left for the block to tell."""
-    try:
-        value = _joined(result, cell, assumed) if cell.relations else _literal(result.graph, cell)
-    except FaultyText as error:
-        result.broken.add(cell.name)
-        if cell.relations or cell.name in result.graph.parameters:
-            result.faults.append(error.fault(cell.name))
-        return
-    if value is not None:
-        result.values[cell.name] = value
+def _cell(result: Calculation, cell: Cell) -> None:
+    """The SI value of a cell, if what it follows from has one; a faulty literal is left to its block."""
+    sources = result.graph.sources[cell]
+    if not result.broken.isdisjoint(sources):
+        result.broken.add(cell)
+        result.faults += _unmapped(result, cell.name, sources)
+    elif not result.pending.isdisjoint(sources):
+        result.pending.add(cell)
+    elif not (isinstance(cell.declared, Choice) and not cell.relations):
+        try:
+            typed = _related(result, cell) if cell.relations else _literal(cell)
+        except FaultyText as error:
+            result.broken.add(cell)
+            if cell.relations or cell.declared is None:
+                result.faults.append(error.fault(cell.name))
+        else:
+            result.typed[cell.name], result.values[cell.name] = typed, typed.si
 
 
-def _literal(graph: Graph, cell: Cell) -> Value | None:
-    if cell.name in graph.parameters:
-        return read_any(cell.raw).si
-    head, _, tail = cell.name.partition(".")
-    declared = graph.blocks[head].cls.inputs[tail]
-    return None if isinstance(declared, Choice) else read(cell.raw, declared.meaning.unit).si
+def _literal(cell: Cell) -> Typed:
+    return read_any(cell.raw) if cell.declared is None else read(cell.raw, cell.declared.meaning.unit)
 
 
-def _joined(result: Calculation, cell: Cell, assumed: Mapping[str, float]) -> Value:
+def _related(result: Calculation, cell: Cell) -> Typed:
+    """The value of relations, in a block in the unit that is declared there."""
+    si = _joined(result, cell)
+    if cell.declared is None:
+        return Typed(None, "", si, {})  # it is used in SI only
+    scale = cell.declared.meaning.scale
+    return Typed(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {})
+
+
+def _joined(result: Calculation, cell: Cell) -> Value:
     """The value of a relation, or of a list that mixes relations and quantities."""
-    names = {name: result.value(name, assumed) for name in cell.uses}
-    limit_values(count := spanned(np.shape(value) for value in names.values()))
-    result.operations += count * sum(relation.parts for relation in cell.relations)
-    limit_operations(result.operations)
+    known = {} if result.assumed else result.values
+    names = {n: known[n] if n in known else result.value(reference) for n, reference in cell.uses.items()}
+    if any(map(np.ndim, names.values())):  # single values are few: the text of all relations is limited
+        limit_values(count := spanned(map(np.shape, names.values())))
+        result.operations += count * sum(relation.parts for relation in cell.relations)
+        limit_operations(result.operations)
     if not isinstance(cell.raw, list):
         return _finite(cell.relations[0].value(names))
-    declared = result.graph.unit_of(cell.name) if "." in cell.name else None
+    declared = cell.declared.meaning.unit if cell.declared else None
     parts = [_item(item, names, declared) for item in cell.raw]
     if any(np.ndim(part) for part in parts):
         raise FaultyText(
@@ -190,10 +162,14 @@ def _finite(value: Value) -> Value:
 
 def _block(result: Calculation, block: Block) -> None:
     """Evaluate a step or check a model's parameters; what can be checked is, even if a cell is pending."""
-    waiting = {n for n, cell in block.cells.items() if cell.name in result.pending}
-    spoilt = {n for n, c in block.cells.items() if c.name in result.broken and c.relations}
-    raw = {n: _given(result, block, cell) for n, cell in block.cells.items() if n not in waiting}
+    waiting = {n for n, cell in block.cells.items() if cell in result.pending} if result.pending else set()
+    broken = result.broken
+    spoilt = {n for n, c in block.cells.items() if c in broken and c.relations} if broken else set()
+    typed = result.typed
+    raw = {n: typed.get(c.name, c.raw) for n, c in block.cells.items() if n not in waiting}
     faults = _attempt(result, block, raw, waiting)
+    if not (faults or waiting or spoilt):
+        return
     told = [fault for fault in faults if fault.name not in waiting | spoilt]
     if block.is_model:
         absent = [f.name for f in told if f.code == "missing"]
@@ -201,18 +177,9 @@ def _block(result: Calculation, block: Block) -> None:
         told = [fault for fault in told if fault.code != "missing"]
     result.faults += [fault.within(block.name) for fault in told]
     if waiting and not told and not spoilt:
-        result.pending.add(block.name)
+        result.pending.add(block)
     elif faults or spoilt:
-        result.broken.add(block.name)
-
-
-def _given(result: Calculation, block: Block, cell: Cell) -> Any:
-    """A cell as the template takes it: as typed, or the value of its relation in the declared unit."""
-    if not cell.relations or cell.name not in result.values:
-        return cell.raw
-    scale = unit(result.graph.unit_of(cell.name))
-    si = result.values[cell.name]
-    return Typed(np.asarray(scale.from_si(si)).tolist(), scale.text, si, {})
+        result.broken.add(block)
 
 
 def _attempt(result: Calculation, block: Block, raw: dict[str, Any], waiting: set[str]) -> list[Fault]:
@@ -245,7 +212,7 @@ def _evaluate(result: Calculation, block: Block, raw: dict[str, Any], wanted: tu
     except StepDeferred:
         checked(block.cls, raw, wanted or (), block.level)
         result.deferred.add(block.name)
-        result.pending.add(block.name)
+        result.pending.add(block)
         return
     limit_values(evaluation.count())  # curves are longer than their inputs tell
     result.evaluations[block.name] = evaluation
@@ -263,33 +230,32 @@ def _wanted(graph: Graph, block: Block) -> tuple[str, ...] | None:
     """The outputs to compute: all, or those the step names and those that relations use."""
     if block.outputs is None:
         return None
-    linked = [tail for tail in graph.used.get(block.name, ()) if tail in block.cls.formulas]
-    return tuple(dict.fromkeys([*block.outputs, *linked]))
+    linked = (reference.member for reference in graph.used.get(block.name, ()))
+    return tuple(dict.fromkeys([*block.outputs, *(n for n in linked if n in block.cls.formulas)]))
 
 
-def _solid(result: Calculation, name: str, measured: Measured) -> None:
-    if name in result.broken or name in result.missing:
-        result.broken.add(name + SOLID)
+def _solid(result: Calculation, model: Block, measured: Measured) -> None:
+    if model in result.broken or model.name in result.missing:
+        result.broken.add(model.solid)
         return
-    measures = measured(result.shapes[name]) if name in result.shapes else None
+    measures = measured(result.shapes[model.name]) if model.name in result.shapes else None
     if measures is None:
-        result.pending.add(name + SOLID)
+        result.pending.add(model.solid)
     else:
-        result.measures[name] = measures
+        result.measures[model.name] = measures
 
 
-def _analysis(result: Calculation, name: str, kind: str, analysed: Analysed) -> None:
+def _analysis(result: Calculation, node: SolidAnalysis, model: Block, kind: str, analysed: Analysed) -> None:
     """What is known of an analysis that somebody uses; it waits for its solid, and then for its job."""
-    solid, node = name + SOLID, name + SOLID + kind
-    wanted = result.graph.wanted(name, kind)
+    wanted = result.graph.wanted(model.name, kind)
     if not wanted:
         return
-    if solid in result.broken:
+    if model.solid in result.broken:
         result.broken.add(node)
         return
-    question = result.graph.blocks[name].analyses[kind]
-    found = None if solid in result.pending else analysed(result.shapes[name], question, wanted)
+    is_waiting = model.solid in result.pending
+    found = None if is_waiting else analysed(result.shapes[model.name], model.analyses[kind], wanted)
     if found is None:
         result.pending.add(node)
     else:
-        result.analyses[f"{name}.{kind}"] = found
+        result.analyses.setdefault(model.name, {})[kind] = found

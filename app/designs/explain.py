@@ -9,7 +9,8 @@ import numpy as np
 from app.calculations import rendering
 from app.designs.analyses import measured_unit
 from app.designs.calculate import Calculation
-from app.designs.graph import SOLID
+from app.designs.network import Cell, Solid, SolidAnalysis
+from app.designs.reference import Reference
 from app.storage.errors import NotFound
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Derived, Formula
@@ -29,7 +30,7 @@ def explain(calculation: Calculation, name: str) -> dict[str, Any]:
     NotFound
         If no model has this parameter.
     """
-    return _Telling(calculation).of(_full_name(calculation, name))
+    return _Telling(calculation).of(Reference.parse(_full_name(calculation, name)))
 
 
 def _full_name(calculation: Calculation, name: str) -> str:
@@ -47,41 +48,38 @@ def _full_name(calculation: Calculation, name: str) -> str:
 class _Telling:
     def __init__(self, calculation: Calculation) -> None:
         self.calculation, self.graph = calculation, calculation.graph
-        self.told: set[str] = set()
+        self.told: set[Reference] = set()
         self.depth = 0
 
-    def of(self, name: str) -> dict[str, Any]:
+    def of(self, reference: Reference) -> dict[str, Any]:
         """What a name is, and what it follows from."""
-        if name in self.told:
+        name = str(reference)
+        if reference in self.told:
             return {"name": name, "kind": "told_above"}
         if self.depth == DEEPEST:
-            return {"name": name, "value": self._value(name), "kind": "deeper"}
-        self.told.add(name)
+            return {"name": name, "value": self._value(reference), "kind": "deeper"}
+        self.told.add(reference)
         self.depth += 1
-        origin = self._origin(name)
+        origin = self._origin(reference)
         self.depth -= 1
-        return {"name": name, "value": self._value(name), **origin}
+        return {"name": name, "value": self._value(reference), **origin}
 
-    def _origin(self, name: str) -> dict[str, Any]:
-        if name in self.graph.assumed:
+    def _origin(self, reference: Reference) -> dict[str, Any]:
+        if reference in self.graph.assumed:
             return {"kind": "iterated", "because": []}
-        if cell := self.graph.cell(name):
-            if cell.relations:
-                because = [self.of(used) for used in sorted(cell.uses)]
-                return {"kind": "relation", "relation": cell.raw, "because": because}
-            return {"kind": "given", "typed": cell.raw, "because": []}
-        head, _, tail = name.partition(".")
-        if (node := self.graph.node(name)) and SOLID in node:
-            because = [self.of(f"{head}.{used}") for used in self.graph.blocks[head].cells]
-            return {**self._looked_at(node), "because": because}
-        return self._declared(head, tail)
+        if cell := self.graph.cell(reference):
+            return self._cell(cell)
+        node = self.graph.node(reference)
+        if isinstance(node, (Solid, SolidAnalysis)):
+            because = [self.of(cell.reference) for cell in node.model.cells.values()]
+            return {**_looked_at(node), "because": because}
+        return self._declared(reference.block, reference.member)
 
-    def _looked_at(self, node: str) -> dict[str, Any]:
-        """Whether a value is measured on a solid, or found by which analysis."""
-        name, _, kind = node.partition(SOLID)
-        if not kind:
-            return {"kind": "measured"}
-        return {"kind": "analysis", "analysis": self.graph.blocks[name].analyses[kind].shown()}
+    def _cell(self, cell: Cell) -> dict[str, Any]:
+        if not cell.relations:
+            return {"kind": "given", "typed": cell.raw, "because": []}
+        because = [self.of(used) for used in cell.uses.values()]
+        return {"kind": "relation", "relation": cell.raw, "because": because}
 
     def _declared(self, head: str, tail: str) -> dict[str, Any]:
         cls = self.graph.blocks[head].cls
@@ -90,27 +88,33 @@ class _Telling:
             return {"kind": "default", "because": []}
         kind = "default_formula" if isinstance(declared, Derived) else "formula"
         paper = formula_on_paper(cls, declared)
-        because = [self.of(f"{head}.{used}") for used in paper.pop("uses")]
+        because = [self.of(Reference(head, None, used)) for used in paper.pop("uses")]
         del paper["name"]
         return {"kind": kind, "template": rendering.identity(cls), **paper, "because": because}
 
-    def _value(self, name: str) -> Any:
+    def _value(self, reference: Reference) -> Any:
         """The value with its unit; null while it waits for a solid or is not set."""
-        if name in self.graph.parameters:
-            kind = f"{self.graph.kinds[name].base:~}" or "1"
-            si = self.calculation.values.get(name)
+        if reference.output is None:
+            kind = f"{self.graph.kinds[reference.block].base:~}" or "1"
+            si = self.calculation.values.get(reference.block)
             return None if si is None else {"value": np.asarray(si).tolist(), "unit": kind}
         try:
-            si = self.calculation.value(name)
+            si = self.calculation.value(reference)
         except (KeyError, AttributeError, FaultyText):
             return None
         if isinstance(si, str):
             return {"value": si}
-        head, _, tail = name.partition(".")
-        cls = self.graph.blocks[head].cls
-        declared = cls.inputs.get(tail) or cls.formulas.get(tail)
+        cls = self.graph.blocks[reference.block].cls
+        declared = cls.inputs.get(reference.member) or cls.formulas.get(reference.member)
         if declared is None:
-            shown = unit(measured_unit(tail)).from_si(si)
-            return {"value": float(shown), "unit": measured_unit(tail)}
+            name = measured_unit(reference)
+            return {"value": float(unit(name).from_si(si)), "unit": name}
         shown = declared.meaning.scale.from_si(si)
         return {"value": np.asarray(shown).tolist(), "unit": declared.meaning.unit}
+
+
+def _looked_at(node: Solid | SolidAnalysis) -> dict[str, Any]:
+    """Whether a value is measured on a solid, or found by which analysis."""
+    if isinstance(node, Solid):
+        return {"kind": "measured"}
+    return {"kind": "analysis", "analysis": node.model.analyses[node.kind].shown()}

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from app.calculations.begun import fingerprint
 from app.calculations.cache import Cache, results
 from app.calculations.steps import evaluated_step
-from app.designs.graph import Block
+from app.designs.network import Block
 from templates.core.language.evaluate import Evaluation
 
 

@@ -77,13 +77,12 @@ def _calculated(
     database: Database, catalogues: Catalogues, document: Document
 ) -> tuple[Calculation, dict[str, Fault]]:
     graph, faults = build_graph(document, catalogues)
-    models = {name for name, block in graph.blocks.items() if block.is_model}
-    mismatched = {
-        f.name: f for f in faults if f.code == "unit_mismatch" and f.name.partition(".")[0] in models
-    }
+    models = [block for block in graph.blocks.values() if block.is_model]
+    cells = {cell.name: cell for model in models for cell in model.cells.values()}
+    mismatched = {f.name: f for f in faults if f.code == "unit_mismatch" and f.name in cells}
     raise_if([fault for fault in faults if fault.name not in mismatched])
     known = built(database), analysed(database)
-    return calculate(graph, *known, starts(document), broken=mismatched), mismatched
+    return calculate(graph, *known, starts(document), broken=[cells[name] for name in mismatched]), mismatched
 
 
 def _compared(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
@@ -96,7 +95,7 @@ def _found(calculation: Calculation) -> dict[str, Any]:
     told: dict[str, Any] = {}
     for block in calculation.graph.blocks.values():
         for kind in block.analyses:
-            known = calculation.analyses.get(f"{block.name}.{kind}", {})
+            known = calculation.found(block.name, kind)
             for output in calculation.graph.wanted(block.name, kind):
                 told[f"{block.name}.{kind}.{output}"] = known.get(output)
     return told

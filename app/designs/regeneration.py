@@ -12,10 +12,12 @@ from app.calculations.pool import Lane
 from app.calculations.steps import Steps, calling
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
-from app.designs.calculate import Calculation, calculate
+from app.designs.calculate import Calculation, calculate, resume
 from app.designs.document import Document, Iteration
 from app.designs.errors import NotConverged
-from app.designs.graph import SOLID, Catalogues, Graph, build_graph, raise_if
+from app.designs.graph import Catalogues, Graph, build_graph, raise_if
+from app.designs.recent import Prepared, Recent
+from app.designs.reference import Reference
 from app.designs.service import REGENERATE, analysed, built, starts
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.solids.builds import Builds
@@ -44,9 +46,10 @@ class Regeneration:
         analysing: Analysing,
         catalogues: Catalogues,
         steps: Steps | None = None,
+        recent: Recent | None = None,
     ) -> None:
         self.database, self.builds, self.catalogues = database, builds, catalogues
-        self.analysing, self.steps = analysing, steps
+        self.analysing, self.steps, self.recent = analysing, steps, recent or Recent()
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Regenerate the revision of a job; the completion attaches what was found.
@@ -60,10 +63,10 @@ class Regeneration:
         assert job.revision is not None
         id, number = job.design, job.revision
         with self.database.read() as session:
-            document = Document.model_validate(repository.revision(session, id, number).document)
+            plain = repository.revision(session, id, number).document
         try:
             with calling(self.steps, job, context, f"design:{id}", _lane(job)):
-                calculation, rounds = self._settled(document, context)
+                calculation, rounds = self._settled(self._prepared(plain), context)
         except FAILURES as error:
             raise JobFailed(error) from error
         told = results.told(calculation, rounds)
@@ -83,14 +86,28 @@ class Regeneration:
             changed = repository.changed_since_good(session, job.design, job.revision)
             repository.fail(session, job.design, job.revision, {**problem, "changed": changed})
 
-    def _settled(self, document: Document, context: JobContext) -> tuple[Calculation, list[dict[str, Any]]]:
-        """The calculation with all solids built and all iterations settled, and the rounds that it took."""
+    def _prepared(self, plain: Mapping[str, Any]) -> Prepared:
+        """A revision's document and its calculation: that of its save, or made again."""
+        if prepared := self.recent.find(plain):
+            return prepared
+        document = Document.model_validate(plain)
         graph, faults = build_graph(document, self.catalogues)
         raise_if(faults)
-        assumed, rounds = starts(document), list[dict[str, Any]]()
+        return Prepared(document, self._calculated(graph, starts(document)))
+
+    def _calculated(self, graph: Graph, assumed: Mapping[Reference, float]) -> Calculation:
+        return calculate(graph, built(self.database), analysed(self.database), assumed)
+
+    def _settled(self, prepared: Prepared, context: JobContext) -> tuple[Calculation, list[dict[str, Any]]]:
+        """The calculation with all solids built and all iterations settled, and the rounds that it took."""
+        document, calculation = prepared
+        rounds = list[dict[str, Any]]()
         while True:
-            calculation = self._built(graph, assumed, context)
-            measured = {i.through: _measure(calculation, i) for i in document.iterations}
+            calculation = self._built(calculation, context)
+            if not document.iterations:
+                return calculation, []
+            assumed = calculation.assumed
+            measured = {Reference.parse(i.through): _measure(calculation, i) for i in document.iterations}
             number = len(rounds) // max(1, len(measured)) + 1
             rounds += [_round(number, name, assumed[name], value) for name, value in measured.items()]
             unsettled = [i for i in document.iterations if not _settles(i, assumed, measured)]
@@ -100,31 +117,32 @@ class Regeneration:
                 told = [done for done in rounds if done["through"] == iteration.through]
                 if len(told) >= iteration.limit:
                     raise NotConverged(iteration.through, iteration.tolerance, told)
-            assumed = measured
+            calculation = self._calculated(calculation.graph, measured)
 
-    def _built(self, graph: Graph, assumed: Mapping[str, float], context: JobContext) -> Calculation:
+    def _built(self, calculation: Calculation, context: JobContext) -> Calculation:
         """The calculation once every model in it is built, and analysed as far as somebody uses it.
 
         Models may wait for each other's measures, so each round makes what can be made.
         """
         while True:
-            calculation = calculate(graph, built(self.database), analysed(self.database), assumed)
             raise_if(calculation.faults)
             if not self.builds.keep(calculation.shapes[name] for name in calculation.measures):
-                continue  # one was deleted just now: it is built again
+                calculation = self._calculated(calculation.graph, calculation.assumed)
+                continue  # a build was deleted since: it is built again
             waiting = sorted(calculation.shapes.keys() - calculation.measures.keys())
             for name in waiting:
                 with _named(name):
                     self.builds.make(calculation.shapes[name], context)
             if not self._analysed(calculation, context) and not waiting:
                 return calculation
+            calculation = resume(calculation, built(self.database), analysed(self.database))
 
     def _analysed(self, calculation: Calculation, context: JobContext) -> bool:
         """Analyse every solid whose analysis is waited for; whether there was any."""
-        marked = (node.partition(SOLID) for node in sorted(calculation.pending))
-        waiting = [(name, kind) for name, _, kind in marked if kind and name in calculation.measures]
-        for name, kind in waiting:
-            question = calculation.graph.blocks[name].analyses[kind]
+        waiting = calculation.waiting()
+        for node in waiting:
+            name, kind = node.model.name, node.kind
+            question = node.model.analyses[kind]
             with _named(name, kind):
                 self.builds.make(calculation.shapes[name], context)  # its file may be lost
                 self.analysing.find(
@@ -153,17 +171,20 @@ def _named(model: str, analysis: str = "") -> Iterator[None]:
 
 def _measure(calculation: Calculation, iteration: Iteration) -> float:
     try:
-        return calculation.measure(iteration.through)
+        return calculation.measure(Reference.parse(iteration.through))
     except FaultyText as error:
         raise InvalidInputs([error.fault("iterations")]) from error
 
 
-def _round(number: int, name: str, assumed: float, measured: float) -> dict[str, Any]:
-    scale = unit(measured_unit(name.partition(".")[2]))
+def _round(number: int, through: Reference, assumed: float, measured: float) -> dict[str, Any]:
+    scale = unit(measured_unit(through))
     shown = {"assumed": float(scale.from_si(assumed)), "measured": float(scale.from_si(measured))}
-    return {"round": number, "through": name, **shown, "unit": scale.text}
+    return {"round": number, "through": str(through), **shown, "unit": scale.text}
 
 
-def _settles(iteration: Iteration, assumed: Mapping[str, float], measured: Mapping[str, float]) -> bool:
-    old, new = assumed[iteration.through], measured[iteration.through]
+def _settles(
+    iteration: Iteration, assumed: Mapping[Reference, float], measured: Mapping[Reference, float]
+) -> bool:
+    through = Reference.parse(iteration.through)
+    old, new = assumed[through], measured[through]
     return abs(new - old) <= iteration.tolerance * max(abs(new), abs(old))

@@ -8,7 +8,7 @@ from typing import Any
 
 from app.calculations import rendering
 from app.designs.calculate import Calculation
-from app.designs.graph import Block
+from app.designs.network import Block
 from app.designs.worksheet import remember
 from app.solids import measures
 from app.solids.analysis_views import in_design
@@ -40,7 +40,7 @@ def analyses(calculation: Calculation) -> dict[str, Any]:
             kind: in_design(
                 build_key(calculation.shapes[block.name]),
                 question,
-                calculation.analyses.get(f"{block.name}.{kind}", {}),
+                calculation.found(block.name, kind),
             ).model_dump(exclude_unset=True)
             for kind, question in block.analyses.items()
         }

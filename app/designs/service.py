@@ -18,6 +18,8 @@ from app.designs.calculate import Analysed, Calculation, Found, Measured, Measur
 from app.designs.document import Document, merge
 from app.designs.errors import StaleRevision
 from app.designs.graph import Catalogues, Graph, build_graph, raise_if
+from app.designs.recent import Prepared, Recent
+from app.designs.reference import Reference
 from app.designs.repository import Written
 from app.jobs.service import Jobs
 from app.solids import analysis_rows as analyses
@@ -64,8 +66,11 @@ class _Draft:
 class Designs:
     """All changes of designs."""
 
-    def __init__(self, database: Database, jobs: Jobs, catalogues: Catalogues) -> None:
+    def __init__(
+        self, database: Database, jobs: Jobs, catalogues: Catalogues, recent: Recent | None = None
+    ) -> None:
         self.database, self.jobs, self.catalogues = database, jobs, catalogues
+        self.recent = recent or Recent()
 
     def create(self, raw: Mapping[str, Any], note: str | None, once: Once) -> Saved:
         """A new design.
@@ -143,8 +148,9 @@ class Designs:
             return found, repeated
         models: dict[str, Any] = {}
         for proposal in found:
-            model, _, parameter = proposal.target.partition(".")
-            models.setdefault(model, {"parameters": {}})["parameters"][parameter] = proposal.relation
+            target = Reference.parse(proposal.target)
+            model = models.setdefault(target.block, {"parameters": {}})
+            model["parameters"][target.member] = proposal.relation
         return found, self.change(id, {"models": models}, "auto-map", expected or f'"{number}"', once)
 
     def state(self, id: str) -> dict[str, Any]:
@@ -191,6 +197,8 @@ class Designs:
         told = None if pending else results.told(calculation, [])
         state = "regenerating" if pending else "current"
         plain = document.model_dump(mode="json")
+        if pending and not calculation.deferred:
+            self.recent.keep(plain, Prepared(document, calculation))
         written = Written(plain, told, results.models(calculation), state, note)
         return _Draft(written, _kind(calculation), bool(calculation.deferred), begun_steps())
 
@@ -217,10 +225,12 @@ class Designs:
             for event in ("revision", state):
                 self.jobs.events.publish(topic, {"event": event, "revision": saved.revision})
         if saved.job:
-            self.jobs.wake()
+            self.jobs.wake(draft.kind)
         return saved
 
     def _repeated(self, once: Once) -> Saved | None:
+        if not once.key:
+            return None
         with self.database.read() as session:
             return _found(session, once)
 
@@ -312,7 +322,7 @@ def analysed(database: Database) -> Analysed:
     return known
 
 
-def starts(document: Document) -> dict[str, float]:
+def starts(document: Document) -> dict[Reference, float]:
     """The SI values with which the iterations of a document begin.
 
     Raises
@@ -320,11 +330,11 @@ def starts(document: Document) -> dict[str, float]:
     InvalidInputs
         If a start is no quantity of its measure's kind.
     """
-    faults, values = [], {}
+    faults, values = list[Fault](), dict[Reference, float]()
     for iteration in document.iterations:
-        measure = iteration.through.partition(".")[2]
+        through = Reference.parse(iteration.through)
         try:
-            values[iteration.through] = _single(read(iteration.start, measured_unit(measure)).si)
+            values[through] = _single(read(iteration.start, measured_unit(through)).si)
         except FaultyText as error:
             faults.append(error.fault("iterations.start"))
     raise_if(faults)

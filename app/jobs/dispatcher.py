@@ -90,10 +90,10 @@ class Dispatcher:
         """How many threads run the jobs of a kind's lane."""
         return self._counts[self._lane_name(kind)]
 
-    def wake(self) -> None:
-        """Have a thread of each lane look at the queue."""
-        for lane in self._awake.values():
-            lane.release()
+    def wake(self, kind: str | None = None) -> None:
+        """Have a thread of each lane look at the queue, or one of the lane of a kind."""
+        for lane in self._awake if kind is None else (self._lane_name(kind),):
+            self._awake[lane].release()
 
     def interrupt(self, id: str) -> None:
         """Kill the process of a job, if it runs."""

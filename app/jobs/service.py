@@ -3,7 +3,7 @@
 import asyncio
 import logging
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, cast
 
 from sqlalchemy.orm import Session
 
@@ -146,9 +146,9 @@ class Jobs:
         since = turns.oldest_queued(session)
         return 0 if since is None else operated(session) + self._database.clock.elapsed - since
 
-    def wake(self) -> None:
-        """Have the queue looked at."""
-        self._dispatcher.wake()
+    def wake(self, kind: str | None = None) -> None:
+        """Have the queue looked at, by all threads or by those of a kind's lane."""
+        self._dispatcher.wake(kind)
 
     def get(self, id: str) -> Job:
         """Return a job; raises JobNotFound."""
@@ -206,7 +206,7 @@ class Jobs:
                 async with asyncio.timeout(seconds):
                     async for event in events:
                         if event["event"] in FINAL:
-                            break
+                            return cast(State, event["event"])
             except TimeoutError:
                 pass
         return (await asyncio.to_thread(self.get, id)).state

@@ -6,6 +6,7 @@ Pydantic looks at every entry of an object before it counts them, and describes 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from pydantic import BaseModel, BeforeValidator, model_validator
@@ -32,7 +33,7 @@ class Bounded(BaseModel):
 
 def at_most(count: int) -> BeforeValidator:
     """An annotation of a dictionary: it has at most so many entries, counted before they are looked at."""
-    return BeforeValidator(lambda raw: _few(raw, count))
+    return BeforeValidator(partial(_few, most=count))
 
 
 def _few(raw: Any, most: int) -> Any:

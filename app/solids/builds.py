@@ -10,7 +10,6 @@ import hashlib
 import logging
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 from sqlalchemy.orm import Session
 
@@ -24,7 +23,14 @@ from app.storage.tables import ArtifactRow
 from app.workers.base import Runner
 from cad.export import derive
 from cad.model import CadModel
-from cad.regenerate import MADE_BY, Build, build_key, regenerate
+from cad.regenerate import (
+    MADE_BY,
+    Build,
+    as_text,
+    build_key,
+    regenerate,
+    regenerate_from_text,
+)
 from templates.core.catalogue.finding import Catalogue
 from templates.core.progress import report
 
@@ -54,7 +60,7 @@ class Builds:
         row = self._row(build_key(shape), STEP)
         if row and self.store.exists(row.sha256) and self.keep([shape]):
             return
-        made = context.run(build_in_worker, shape.id, shape.version, shape.inputs_si(), self.folders)
+        made = context.run(build_in_worker, shape.id, shape.version, as_text(shape), self.folders)
         if row and hashlib.sha256(made.step).hexdigest() != row.sha256:
             raise _changed(shape, row)
         sha = self.store.put(made.step)
@@ -64,6 +70,8 @@ class Builds:
     def keep(self, shapes: Iterable[CadModel]) -> bool:
         """Keep builds for as long as the job that counts on them runs; return whether all are there."""
         keys = [build_key(shape) for shape in shapes]
+        if not keys:
+            return True
         with self.database.read() as session:
             if is_fresh(session, keys):
                 return True
@@ -119,9 +127,9 @@ def _changed(shape: CadModel, row: ArtifactRow) -> CannotRebuild:
     return CannotRebuild("model_changed", detail)
 
 
-def build_in_worker(id: str, version: int, parameters: Mapping[str, Any], folders: tuple[Path, ...]) -> Build:
-    """`cad.regenerate.regenerate` with progress told to the job; runs in the worker's process."""
-    return regenerate(id, version, parameters, folders=folders, report=report)
+def build_in_worker(id: str, version: int, texts: Mapping[str, str], folders: tuple[Path, ...]) -> Build:
+    """`cad.regenerate.regenerate_from_text`, reporting progress to the job; runs in the worker's process."""
+    return regenerate_from_text(id, version, texts, folders=folders, report=report)
 
 
 def rehearse(called: Callable[[], bool]) -> None:

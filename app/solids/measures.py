@@ -9,19 +9,12 @@ from app.schemas.answers import Quantity, Triple
 from app.schemas.solids import BoundingBox, Inertia, Measurements
 from cad.inspect import MEASURES
 from cad.model import CadModel
+from cad.regenerate import as_quantities
 
 
 def parameters(shape: CadModel) -> dict[str, Any]:
     """Every parameter of a model in its declared unit, defaults included, as rows keep it."""
-    return {name: shown(shape, name, value) for name, value in shape.inputs_si().items()}
-
-
-def shown(shape: CadModel, name: str, si: Any) -> dict[str, Any]:
-    """A parameter as the interface shows it, free of the last digit's noise of unit conversion."""
-    if isinstance(si, str):
-        return {"value": si}
-    meaning = shape.inputs[name].meaning
-    return {"value": float(f"{meaning.scale.from_si(float(si)):.12g}"), "unit": meaning.unit}
+    return as_quantities(shape)
 
 
 def measurements(measures: Mapping[str, float], dimensions: Mapping[str, Any]) -> Measurements:

@@ -39,7 +39,8 @@ class Watch:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Look at what was raised."""
-        self.raise_if_damage(error)
+        if error is not None:
+            self.raise_if_damage(error)
 
     def _named(self, error: BaseException) -> DatabaseDamaged:
         with self._lock:

@@ -131,7 +131,8 @@ class Database:
                 seconds = self.clock.advance(connection)
                 for pending in group:
                     pending.run(connection)
-                    self.watch.raise_if_damage(pending.error)
+                    if pending.error is not None:
+                        self.watch.raise_if_damage(pending.error)
         except Exception as error:
             self._on_commit(len(group), time.perf_counter() - start, True)
             for pending in group:

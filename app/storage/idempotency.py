@@ -36,6 +36,8 @@ class Once:
         KeyReused
             If the key came with another body.
         """
+        if not self.key:
+            return None
         row = self._row(session, self.client) or self._row(session, BEFORE_CLIENTS)
         if row is None:
             return None
@@ -60,4 +62,4 @@ class Once:
             )
 
     def _row(self, session: Session, client: str) -> IdempotencyRow | None:
-        return session.get(IdempotencyRow, (self.key, self.scope, client)) if self.key else None
+        return session.get(IdempotencyRow, (self.key, self.scope, client))

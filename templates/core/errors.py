@@ -106,7 +106,9 @@ def unknown_name(name: str, known: Iterable[str], kind: str) -> Fault:
 
 def unknown_names(names: Iterable[str], known: Iterable[str], kind: str) -> list[Fault]:
     """A fault for each name that nobody declared, the first of them with the nearest declared ones."""
-    declared, each = list(known), iter(names)
+    if not (unknown := list(names)):
+        return []
+    declared, each = list(known), iter(unknown)
     faults = [unknown_name(name, declared, kind) for name in islice(each, MOST_SUGGESTED)]
     return faults + [Fault(plain(n), "unknown_name", f"{kind} {plain(n)!r} is unknown") for n in each]
 

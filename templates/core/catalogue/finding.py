@@ -58,11 +58,10 @@ class Catalogue(Generic[T]):
         UnknownTemplate
             If there is none.
         """
-        versions = self.of(id)
-        if version not in versions:
-            known = ", ".join(map(str, versions))
+        if (found := self.versions.get((id, version))) is None:
+            known = ", ".join(map(str, self.of(id)))
             raise UnknownTemplate(id, f"{self.kind} {id} has no version {version}; it has {known}")
-        return versions[version]
+        return found
 
     def latest(self, id: str) -> type[T]:
         """The newest version that is not withdrawn, else the newest."""

@@ -91,7 +91,9 @@ def evaluate(
         parts = [_part(rung.template, names, shown_in) for rung in rungs]
         whole = parts[0] if rungs[0].where is None else _joined(rungs, parts)
         echoes = {
-            n: _echo(template, declared) for n, declared in cls.inputs.items() if is_told(template, declared)
+            name: _echo(template, declared)
+            for name, declared in cls.inputs.items()
+            if name in template.ledger.typed or is_told(template, declared)
         }
     notices = [*_standing(cls), *_noticed(rungs), *_unmet(cls, whole, names, tolerance)]
     seconds = time.perf_counter() - start
@@ -186,6 +188,8 @@ def _scattered(
 
 def _units(cls: type[Template], units: Mapping[str, str], faults: list[Fault]) -> dict[str, Unit]:
     shown: dict[str, Unit] = {}
+    if not units:
+        return shown
     unknown = unknown_names((name for name in units if name not in cls.formulas), cls.formulas, "output")
     faults += [fault.within("units") for fault in unknown]
     for name, text in units.items():

@@ -29,7 +29,8 @@ def read_inputs(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, 
     for name, declared in cls.inputs.items():
         if name in raw:
             try:
-                typed[name] = _read_one(declared, raw[name])
+                given = raw[name]
+                typed[name] = given if isinstance(given, Typed) else _read_one(declared, given)
             except FaultyText as error:
                 faults.append(error.fault(name))
         elif declared.required:
@@ -43,7 +44,7 @@ def _read_one(declared: Input, raw: Any) -> Typed | str:
         if isinstance(option, str) and option in declared.options:
             return option
         raise FaultyText("not_an_option", f"{excerpt(raw)} is none of {', '.join(declared.options)}")
-    return raw if isinstance(raw, Typed) else read(raw, declared.meaning.unit)
+    return read(raw, declared.meaning.unit)
 
 
 def _example(declared: Input) -> str:
@@ -76,7 +77,7 @@ def _bounded(declared: Input, typed: Typed, ledger: Ledger) -> tuple[Any, Fault 
     """The value and what is wrong with it; a faulty point of an array is masked, and is no fault."""
     if isinstance(declared, Table):
         return _rows(declared, typed.si)
-    if is_single(declared) and isinstance(typed.si, np.ndarray):
+    if isinstance(typed.si, np.ndarray) and is_single(declared):
         detail = f"{declared.meaning.words} is one value for all points: give a number, not an array"
         return np.float64(np.nan), Fault(declared.name, "not_single", detail)
     if isinstance(declared, Curve) and not (declared.constant and isinstance(typed.si, float)):
@@ -84,15 +85,11 @@ def _bounded(declared: Input, typed: Typed, ledger: Ledger) -> tuple[Any, Fault 
     elif isinstance(typed.si, np.ndarray):
         value, fault = _mask_given(declared, typed.si, declared.meaning.admits(typed.si), ledger), None
     else:
-        value, fault = _one_number(declared, typed)
+        inside = declared.meaning.admits(typed.si)
+        value, fault = np.float64(typed.si), None if inside else _out_of_bounds(declared, typed, inside)
     if declared.meaning.published_si is not None:
         warn_if_outside(ledger, declared, value)
     return value, fault
-
-
-def _one_number(declared: Input, typed: Typed) -> tuple[np.float64, Fault | None]:
-    inside = declared.meaning.admits(typed.si)
-    return np.float64(typed.si), None if inside else _out_of_bounds(declared, typed, inside)
 
 
 def _along_a_cycle(declared: Curve, typed: Typed) -> tuple[Any, Fault | None]:
@@ -154,6 +151,8 @@ def check_shapes(self: Template) -> None:
         Naming the arrays and their shapes.
     """
     arrays = {n: v for n, v in vars(self).items() if isinstance(v, np.ndarray)}
+    if not arrays:
+        return
     try:
         points_of(self, arrays)
         curves = {n: d for n, d in self.declarations.items() if isinstance(d, Curve) and n in arrays}

@@ -44,7 +44,7 @@ class Accuracy:
         measured. Scalars, or arrays of the shape of the points.
         """
         names, tables = list(outputs), self.errors.get(template.level or SINGLE, {})
-        exact = {name for name in names if _same_at_all_levels(template, name)}
+        exact = {name for name in names if _same_at_all_levels(template, name)} if template.levels else set()
         known = tables if template.is_measured() else {}
         measured = [name for name in names if name in known and name not in exact]
         cell = self._cell(template) if measured else None
@@ -74,7 +74,7 @@ class Accuracy:
 def _same_at_all_levels(template: Template, output: str) -> bool:
     """Whether an output, which is no text, has no other value at another level."""
     formula = template.formulas[output]
-    if not template.levels or isinstance(formula, Text):
+    if isinstance(formula, Text):
         return False
     return "level" not in template.ancestors(formula.attribute)
 

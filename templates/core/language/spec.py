@@ -49,11 +49,7 @@ class Given(Declaration):
         self.default: Typed | None = None if default is None else read(default, meaning.unit)
         self.optional, self.alternative = optional or alternative, alternative
         self.single = single
-
-    @property
-    def required(self) -> bool:
-        """Whether the template cannot do without it."""
-        return self.default is None and not self.optional
+        self.required = self.default is None and not self.optional
 
 
 class Curve(Given):

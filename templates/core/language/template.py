@@ -150,7 +150,8 @@ class Template:
         typed, faults = read_inputs(cls, raw)
         ledger = Ledger(typed=typed)
         values, refused = admitted(cls, typed, ledger)
-        faults = [fault for fault in (*faults, *refused) if fault.name not in pending]
+        if faults := [*faults, *refused]:
+            faults = [fault for fault in faults if fault.name not in pending]
         if faults:
             raise InvalidInputs(faults)
         return cls._checked(values, ledger, pending)
@@ -207,7 +208,7 @@ class Template:
         check_shapes(self)
         faults: list[Fault] = []
         with np.errstate(all="ignore"):
-            for rule in (rule for rule in cls.requirements if not cls._waits(rule, pending)):
+            for rule in cls._due(pending) if pending else cls.requirements:
                 try:
                     faults += violations(self, rule)
                 except InvalidInputs as error:  # a default that the rule asks for is refused
@@ -217,10 +218,13 @@ class Template:
         return self
 
     @classmethod
+    def _due(cls, pending: Collection[str]) -> list[Requirement]:
+        """The rules that are not about inputs which are pending."""
+        return [rule for rule in cls.requirements if not cls._waits(rule, pending)]
+
+    @classmethod
     def _waits(cls, rule: Requirement, pending: Collection[str]) -> bool:
         """Whether a rule is about any of the inputs that are pending, by name or beneath what it uses."""
-        if not pending:
-            return False
         beneath = {name for used in rule.uses for name in cls.dependencies(used)}.union(rule.uses_as_given)
         attributes = {cls.inputs[name].attribute for name in pending}
         return not (attributes.isdisjoint(beneath) and frozenset(pending).isdisjoint(rule.names))
@@ -266,7 +270,9 @@ class Template:
 
     def admit(self, declaration: Formula[Any], value: Any) -> Any:
         """Check a formula's result against its bounds: refuse a point, mask points of an array, or warn."""
-        meaning = declaration.meaning.at(self.level)
+        meaning = declaration.meaning
+        if meaning.per_level:
+            meaning = meaning.at(self.level)
         if isinstance(value, float) or (np.ndim(value) == 0 and not isinstance(value, str)):
             value = np.float64(value)
             if not (math.isfinite(value) and (meaning.domain_si is None or meaning.domain_si.admits(value))):

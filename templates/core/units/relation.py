@@ -47,8 +47,7 @@ class Relation:
         FaultyText
             With code `unit_mismatch`, where units do not go together.
         """
-        forget_units()
-        return _kind(self.tree, kinds)
+        return _checked(self.text, tuple((name, kinds[name]) for name in sorted(self.names)))
 
     def value(self, values: Mapping[str, Value]) -> Value:
         """The value in SI, from the SI values of its names; not finite where the arithmetic is not.
@@ -152,6 +151,13 @@ def _finite(value: float) -> float:
     if not np.isfinite(value):
         raise FaultyText("not_finite", "a number in the relation is too large")
     return value
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _checked(text: str, kinds: tuple[tuple[str, Kind], ...]) -> Kind:
+    """The kind of a relation, from those of its names; raises as `Relation.kind`."""
+    forget_units()
+    return _kind(parse(text).tree, dict(kinds))
 
 
 def _kind(node: Any, kinds: Mapping[str, Kind]) -> Kind:

@@ -1,0 +1,95 @@
+"""What comes out of the calculation of a design."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from app.designs.analyses import measured_unit
+from app.designs.network import Graph, Node, SolidAnalysis
+from app.designs.reference import Reference
+from app.solids.questions import Question
+from cad.model import CadModel
+from templates.core.errors import Fault, FaultyText
+from templates.core.language.evaluate import Evaluation
+from templates.core.language.template import Template
+from templates.core.units.quantity import Typed
+from templates.core.units.units import Value, unit
+
+Measures = Mapping[str, float]  # in the units of MEASURES
+Measured = Callable[[CadModel], Measures | None]
+Found = Mapping[str, Mapping[str, Any]]  # outputs of an analysis
+Analysed = Callable[[CadModel, Question, tuple[str, ...]], Found | None]
+
+
+@dataclass
+class Calculation:
+    """What came out; all values are in SI."""
+
+    graph: Graph
+    assumed: Mapping[Reference, float] = field(default_factory=dict)  # with which iterations begin a round
+    values: dict[str, Value] = field(default_factory=dict)  # of cells
+    typed: dict[str, Typed] = field(default_factory=dict)  # cells of blocks as the templates take them
+    evaluations: dict[str, Evaluation] = field(default_factory=dict)  # of steps
+    shapes: dict[str, CadModel] = field(default_factory=dict)  # models whose parameters are all known
+    measures: dict[str, Measures] = field(default_factory=dict)  # of models that are built
+    analyses: dict[str, dict[str, Found]] = field(default_factory=dict)  # by model and kind: used and known
+    missing: dict[str, list[str]] = field(default_factory=dict)  # unset parameters of models
+    pending: set[Node] = field(default_factory=set)  # what waits for a solid, or for a deferred step
+    deferred: set[str] = field(default_factory=set)  # expensive steps that nobody waited for
+    broken: set[Node] = field(default_factory=set)  # what follows from a fault
+    faults: list[Fault] = field(default_factory=list)
+    operations: int = 0  # on single values, of the relations so far
+
+    def value(self, reference: Reference) -> Value:
+        """The value [SI] of a name, once its node is calculated."""
+        if reference in self.assumed:
+            return self.assumed[reference]
+        if cell := self.graph.cell(reference):
+            if cell.name in self.values:
+                return self.values[cell.name]
+        cls = self.graph.blocks[reference.block].cls
+        declared = cls.inputs.get(reference.member) or cls.formulas.get(reference.member)
+        if declared is None:
+            return self.measure(reference)
+        with np.errstate(all="ignore"):
+            return getattr(self.instance(reference.block), declared.attribute)  # type: ignore[no-any-return]
+
+    def measure(self, reference: Reference) -> float:
+        """What is measured or found on a solid [SI], by its name in relations: `throw.torsion.stiffness`.
+
+        Raises
+        ------
+        FaultyText
+            With code `no_value`, where an analysis has a reason instead.
+        """
+        if reference.analysis is not None:
+            measured = self._found(reference, reference.analysis)
+        else:
+            measured = self.measures[reference.block][reference.member]
+        return float(unit(measured_unit(reference)).to_si(measured))
+
+    def found(self, model: str, kind: str) -> Found:
+        """What is used and known of an analysis; nothing, while it is pending."""
+        return self.analyses.get(model, {}).get(kind, {})
+
+    def _found(self, reference: Reference, kind: str) -> float:
+        result = self.analyses[reference.block][kind][reference.output or ""]
+        if result["value"] is None:
+            raise FaultyText("no_value", f"{reference} has no value: {result['reason']}")
+        return float(result["value"])
+
+    def instance(self, block: str) -> Template:
+        """The template of a step, or the model, with its values."""
+        return self.evaluations[block].template if block in self.evaluations else self.shapes[block]
+
+    def waiting(self) -> list[SolidAnalysis]:
+        """The analyses that are waited for, of models that are built."""
+        return [
+            node
+            for node in self.graph.order
+            if isinstance(node, SolidAnalysis) and node in self.pending and node.model.name in self.measures
+        ]

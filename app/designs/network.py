@@ -1,0 +1,161 @@
+"""The network of a design: which value follows from which.
+
+Its nodes are cells, which are the values that a user wrote (`scale`, `film.radial_load`); blocks, which are
+steps and models; solids, which are models when built; and analyses of solids. A block follows from its cells,
+and its outputs follow from it. What is measured follows from the solid.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from app.designs.analyses import is_measured, measured_names, measured_unit, used
+from app.designs.reference import Reference
+from app.solids.questions import Question
+from cad.model import CadModel
+from templates.core.language.spec import Choice, Declaration
+from templates.core.language.template import Template
+from templates.core.units.operations import Kind
+from templates.core.units.relation import Relation
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """One value as its user wrote it, with the relations in it (a list may hold several) and what they use.
+
+    `declared` is the input of a block that it sets; a parameter of the design has none.
+    """
+
+    reference: Reference
+    name: str
+    raw: Any
+    relations: tuple[Relation, ...] = ()
+    uses: Mapping[str, Reference] = field(default_factory=dict)
+    declared: Declaration | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """A step or a model: a template and the cells that are set."""
+
+    name: str
+    cls: type[Template]
+    cells: dict[str, Cell]
+    level: str | None = None
+    tolerance: float | None = None
+    outputs: tuple[str, ...] | None = None
+    analyses: Mapping[str, Question] = field(default_factory=dict)
+
+    @cached_property
+    def is_model(self) -> bool:
+        """Whether it has a shape."""
+        return issubclass(self.cls, CadModel)
+
+    @cached_property
+    def solid(self) -> Solid:
+        """What is built of a model."""
+        return Solid(self)
+
+    @cached_property
+    def analysed(self) -> Mapping[str, SolidAnalysis]:
+        """The analyses that a model declares, by their kind."""
+        return {kind: SolidAnalysis(self, kind) for kind in self.analyses}
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A model when it is built."""
+
+    model: Block
+
+
+@dataclass(frozen=True, eq=False)
+class SolidAnalysis:
+    """A finite-element analysis of a solid."""
+
+    model: Block
+    kind: str
+
+
+Node = Cell | Block | Solid | SolidAnalysis
+
+
+@dataclass(frozen=True)
+class Network:
+    """The parameters and blocks of one document, and what its names mean."""
+
+    parameters: dict[str, Cell]
+    blocks: dict[str, Block]
+    assumed: frozenset[Reference]  # the measures through which a declared iteration runs
+
+    def cells(self) -> Iterator[Cell]:
+        """Every cell of the design."""
+        yield from self.parameters.values()
+        for block in self.blocks.values():
+            yield from block.cells.values()
+
+    def cell(self, reference: Reference) -> Cell | None:
+        """The cell of this name."""
+        if reference.output is None:
+            return self.parameters.get(reference.block)
+        block = self.blocks.get(reference.block)
+        return block.cells.get(reference.member) if block else None
+
+    def node(self, reference: Reference) -> Node | None:
+        """The node from which a name in a relation takes its value; None if nothing is named so."""
+        block, output = self.blocks.get(reference.block), reference.output
+        if block is None or output is None:
+            return self.parameters.get(reference.block) if output is None else None
+        if reference.analysis is None and (cell := block.cells.get(output)):
+            return None if isinstance(cell.declared, Choice) else cell  # a word is no value to calculate with
+        if declared := _declared(block, reference):
+            return None if isinstance(declared, Choice) else block
+        if not (block.is_model and is_measured(reference, block.analyses)):
+            return None
+        return block.analysed[reference.analysis] if reference.analysis else block.solid
+
+    def names(self) -> list[str]:
+        """Every name that a relation may use, for a remedy."""
+        inside = (f"{b.name}.{n}" for b in self.blocks.values() for n in (*b.cls.inputs, *b.cls.formulas))
+        models = (block for block in self.blocks.values() if block.is_model)
+        measured = (f"{model.name}.{n}" for model in models for n in measured_names(model.analyses))
+        return [*self.parameters, *inside, *measured]
+
+    @cached_property
+    def used(self) -> Mapping[str, tuple[Reference, ...]]:
+        """What relations and iterations use of each block, in the order of the names."""
+        names = {str(reference): reference for reference in self.assumed}
+        for cell in self.cells():
+            names.update(cell.uses)
+        blocks: dict[str, list[Reference]] = {}
+        for name in sorted(names):
+            blocks.setdefault(names[name].block, []).append(names[name])
+        return {block: tuple(references) for block, references in blocks.items()}
+
+    def wanted(self, model: str, kind: str) -> tuple[str, ...]:
+        """The outputs of an analysis that relations or iterations use."""
+        return used(kind, self.used.get(model, ()))
+
+    def unit_of(self, reference: Reference) -> str:
+        """The declared unit of a name inside a block."""
+        declared = _declared(self.blocks[reference.block], reference)
+        return declared.meaning.unit if declared else measured_unit(reference)
+
+
+def _declared(block: Block, reference: Reference) -> Any:
+    """The input or formula of a block that a reference names; None of what is measured."""
+    if reference.analysis is not None or reference.output is None:
+        return None
+    return block.cls.inputs.get(reference.output) or block.cls.formulas.get(reference.output)
+
+
+@dataclass(frozen=True)
+class Graph(Network):
+    """A checked network: its nodes in an order in which they can be calculated."""
+
+    sources: Mapping[Node, tuple[Node, ...]] = field(default_factory=dict)  # what each follows from directly
+    order: Sequence[Node] = ()
+    kinds: Mapping[str, Kind] = field(default_factory=dict)  # of the parameters

@@ -1,0 +1,33 @@
+"""Dotted names of a design's values, parsed once: `scale`, `film.radial_load`, `throw.torsion.stiffness`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A value of a design: a parameter, or an input, output or measure of a block, or of an analysis of it.
+
+    A parameter stands for itself, so its name is the `block`, and there is no `output`.
+    """
+
+    block: str
+    analysis: str | None = None
+    output: str | None = None
+
+    @classmethod
+    def parse(cls, name: str) -> Reference:
+        """The reference that a name in a relation means; whether it exists is for the network to say."""
+        block, *inside = name.split(".", 2)
+        if not inside:
+            return cls(block)
+        return cls(block, inside[0], inside[1]) if inside[1:] else cls(block, None, inside[0])
+
+    def __str__(self) -> str:
+        return ".".join(part for part in (self.block, self.analysis, self.output) if part is not None)
+
+    @property
+    def member(self) -> str:
+        """The name within the block: `radial_load`, `torsion.stiffness`; empty for a parameter."""
+        return f"{self.analysis}.{self.output}" if self.analysis else self.output or ""
