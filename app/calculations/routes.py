@@ -17,7 +17,7 @@ from starlette.concurrency import run_in_threadpool
 from app.calculations.answering import Answering, TheAnswering
 from app.calculations.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
 from app.calculations.display import System, Units
-from app.calculations.operations import Question
+from app.calculations.operations import LARGE, Question
 from app.calculations.schemas import Asked, EvaluateIn, SolveIn
 from app.calculations.service import run_evaluate, run_solve
 from app.calculations.size import points
@@ -29,7 +29,6 @@ from app.waiting import LATER
 
 LONGEST_ID, PLAIN_NUMBER = 64, re.compile("[1-9][0-9]{0,5}")
 FEW = 100  # points and names that are taken in the event loop, if every level is quick: a thread costs more
-LARGE = 256 * 1024  # bytes of a body that is read in the process that calculates
 SYSTEMS: dict[str | None, System] = {None: "si", "si": "si", "us": "us"}
 
 Prefer = Annotated[

@@ -1,5 +1,6 @@
 """Expensive calculations over HTTP: in processes of their own, and as jobs when nobody waits any longer."""
 
+import json
 import os
 from concurrent.futures import ThreadPoolExecutor
 
@@ -10,6 +11,7 @@ from serving import API, faults, heard, problem, serving
 from sleeping import folder_of_sleeper
 from test_workers import alive, eventually
 
+from app.calculations.operations import LARGE
 from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.service import run_evaluate, run_solve
 from app.calculations.worksheet import run_worksheet
@@ -233,11 +235,69 @@ def test_a_job_ends_at_its_deadline(http):
 
 
 def test_a_job_that_is_refused_says_why(http):
-    body = {"inputs": {"duration": "1 ms", "mood": "odd"}}
+    body = {"inputs": {"duration": "1 ms", "mood": "refuses"}}
     accepted = http.post(f"{SLEEPER}/evaluate", json=body, headers={"Prefer": "respond-async"})
     job = ended(http, accepted.headers["Location"])
     assert job["problem"]["type"] == "/problems/invalid-inputs"
     assert [fault["name"] for fault in job["problem"]["errors"]] == ["mood"]
+
+
+MASS_CONSERVING = {**EvaluateIn.model_config["json_schema_extra"]["examples"][0], "level": "mass_conserving"}
+SOLVING = {**SolveIn.model_config["json_schema_extra"]["examples"][0], "level": "mass_conserving"}
+WRONG = [
+    ("evaluate", {"inputs": {**MASS_CONSERVING["inputs"], "speed": "1 N", "sped": 1}}, {"speed", "sped"}),
+    (
+        "evaluate",
+        {"outputs": ["thickness"], "units": {"friction_torque": "m"}},
+        {"thickness", "units.friction_torque"},
+    ),
+    ("evaluate", {"inputs": {**MASS_CONSERVING["inputs"], "bearing_width": "-18 mm"}}, {"bearing_width"}),
+    ("evaluate", {"inputs": {}, "tolerance": 2}, {"tolerance"}),
+    ("worksheet", {"level": "finest"}, {"level.finest"}),
+    (
+        "solve",
+        {"units": {"minimum_film_thickness": "s"}, "outputs": ["x"]},
+        {"x", "units.minimum_film_thickness"},
+    ),
+    ("solve", {"unknown": "width", "target": {"y": "1 mm"}}, {"unknown", "target.y", "inputs.bearing_width"}),
+    ("solve", {"bounds": ["80 mm", "10 mm"]}, {"bounds"}),
+]
+
+
+@pytest.mark.parametrize(("operation", "changes", "names"), WRONG)
+@pytest.mark.parametrize("prefer", ["respond-async", "wait=0"])
+def test_what_is_wrong_is_refused_before_it_becomes_a_job(http, operation, changes, names, prefer):
+    body = {**(SOLVING if operation == "solve" else MASS_CONSERVING), **changes}
+    before = http.get(f"{API}/jobs", params={"limit": 1}).json()["items"]
+    answer = http.post(f"{FILM_PLACE}/{operation}", json=body, headers={"Prefer": prefer})
+    assert faults(answer).keys() == names
+    assert http.get(f"{API}/jobs", params={"limit": 1}).json()["items"] == before
+
+
+def test_too_many_points_of_a_level_are_refused_before_they_become_a_job(http):
+    speeds = {"value": [3000.0 + n for n in range(500)], "unit": "rpm"}
+    body = {**MASS_CONSERVING, "inputs": {**MASS_CONSERVING["inputs"], "speed": speeds}}
+    answer = http.post(f"{FILM_PLACE}/evaluate", json=body, headers={"Prefer": "respond-async"})
+    assert faults(answer) == {"level": "too_many_points"}
+
+
+def test_a_large_body_is_refused_before_it_becomes_a_job(http):
+    speeds = {"value": [3000.0 + n / 8 for n in range(30_000)], "unit": "N"}
+    body = {"inputs": {**MASS_CONSERVING["inputs"], "speed": speeds}, "level": "map"}
+    assert len(json.dumps(body)) > LARGE
+    answer = http.post(f"{FILM_PLACE}/evaluate", json=body, headers={"Prefer": "respond-async"})
+    assert faults(answer) == {"speed": "wrong_unit"}
+
+
+def test_a_large_body_becomes_a_job_without_a_check_if_no_process_is_free(http, log):
+    body = {"inputs": {"duration": {"value": [4.0] * 80_000, "unit": "s"}}}
+    with ThreadPoolExecutor(1) as threads:
+        first = threads.submit(sleep, http, "1.9 s", Prefer="wait=30")
+        begun(log)
+        accepted = http.post(f"{SLEEPER}/evaluate", json=body, headers={"Prefer": "respond-async"})
+        assert accepted.status_code == 202
+        http.delete(accepted.headers["Location"]).raise_for_status()
+        assert first.result().status_code in (200, 202)
 
 
 def test_progress_of_a_job_is_streamed(http):
