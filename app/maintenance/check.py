@@ -19,6 +19,7 @@ from app.storage.artifacts import QUARANTINE, SHA256
 from app.storage.integrity import faults, is_damage
 
 YOUNG = 60.0  # a file of a running service may be this old before the row that names it is committed [s]
+OWNERS = {"surface": "analysis", "body": "job", "answer": "job"}  # by kind of file; of a build else
 MOST = 100  # faults of the database that are listed
 
 Say = Callable[[str], None]
@@ -46,7 +47,7 @@ class Findings:
         yield from (f"database: {text}" for text in self.database)
         yield from (f"reference: {text}" for text in self.references)
         for row, text in self.damaged.items():
-            owner = "analysis" if row.kind == "surface" else "build"
+            owner = OWNERS.get(row.kind, "build")
             yield f"artifact {row.sha}, {row.kind} of {owner} {row.owner}: {text}"
         yield from (f"file {path}: no row names it" for path in self.unnamed)
         yield f"{self.files} good artifacts, {self.size / 2**20:.1f} MiB; {self.quarantined} in quarantine"

@@ -10,6 +10,13 @@ from typing import TypeVar, TypeVarTuple
 
 from app.analyses import repository as analyses
 from app.analyses.finding import Analysing
+from app.calculations.errors import InvalidBody
+from app.calculations.jobs import question_of
+from app.calculations.operations import answered
+from app.calculations.sources import source_of
+from app.catalogue.finding import find_templates
+from app.http import HttpError
+from app.jobs import repository as jobs
 from app.maintenance.check import Findings, Say
 from app.maintenance.rows import Named
 from app.models.builds import Builds
@@ -18,6 +25,7 @@ from app.models.shapes import shape_of
 from app.settings import Settings
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.workers.base import Limits
 from app.workers.errors import WorkerError
 from app.workers.local import LocalProcesses
@@ -31,7 +39,17 @@ from templates.core.errors import TemplateError
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
-FAILURES = (CannotRebuild, TemplateError, GeometryError, AnalysisError, WorkerError)
+FAILURES = (
+    CannotRebuild,
+    TemplateError,
+    GeometryError,
+    AnalysisError,
+    WorkerError,
+    InvalidBody,
+    HttpError,
+    ArtifactMissing,
+    ArtifactDamaged,
+)
 
 
 class Direct:
@@ -56,14 +74,18 @@ class Repair:
         self.builds = Builds(database, store, settings.template_folders)
         longest = Limits(settings.analysis_deadline, settings.analysis_memory_mb)
         self.analysing = Analysing(database, store, longest)
+        self.templates = find_templates(settings.template_folders)
+        self.calculation = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
         self.runner = Direct(worker, Limits(settings.job_deadline, settings.job_memory_mb))
 
     def row(self, row: Named) -> str | None:
         """Have the file of a row good; return why it is not, if it is not."""
-        if row.kind in ("body", "answer"):
-            return "send the calculation again: its answer is not kept anywhere else"
+        if row.kind == "body":
+            return "it is not kept anywhere else; nothing needs it as long as the job's answer is good"
         try:
-            if row.kind == SURFACE:
+            if row.kind == "answer":
+                self._answer(row)
+            elif row.kind == SURFACE:
                 self._surface(row.owner)
             else:
                 self.builds.restore(row.owner, self.catalogue, self.runner)
@@ -72,6 +94,19 @@ class Repair:
         except FAILURES as error:
             return str(error)
         return None
+
+    def _answer(self, row: Named) -> None:
+        """Calculate the answer of a job again: the same, but for the time that it took."""
+        if self.store.exists(row.sha):  # else it has been set aside now
+            return
+        with self.database.read() as session:
+            job = jobs.get(session, row.owner)
+        assert job is not None, "it has just been named"
+        question = question_of(job.payload, self.store)
+        source = source_of(self.templates.get(question.template, question.version))
+        sha = self.store.put(self.runner.run(answered, source, question, limits=self.calculation))
+        link = f"/api/v1/evaluations/{job.id}?sha256={sha}"
+        self.database.write(lambda session: jobs.set_result(session, job.id, link))
 
     def _surface(self, key: str) -> None:
         with self.database.read() as session:
