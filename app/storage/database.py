@@ -132,6 +132,7 @@ class Database:
                 for pending in group:
                     pending.run(connection)
                     self.watch.raise_if_damage(pending.error)
+            self.watch.refuse()  # a file that was deleted meanwhile has taken the commit along
         except Exception as error:
             self._on_commit(len(group), time.perf_counter() - start, True)
             for pending in group:
