@@ -32,6 +32,10 @@ class Watch:
         """Return if no damage has shown, and the file is still that of the start; raises DatabaseDamaged."""
         if self.damage is not None:
             raise self._again(self.damage)
+        self.require_file()
+
+    def require_file(self) -> None:
+        """Return if the file is still that of the start: SQLite would make an empty one in its place."""
         if self._file is not None and _identity(self._path) != self._file:
             lost = "the file was deleted or replaced while the service used it"
             raise self._named(DatabaseDamaged(str(self._path), [lost]))

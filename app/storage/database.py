@@ -58,6 +58,7 @@ class Database:
         DatabaseDamaged
             What was to be read cannot be read.
         """
+        self.watch.require_file()
         with self.watch, Session(self._reader, expire_on_commit=False) as session:
             yield session
 

@@ -127,6 +127,8 @@ class TestDatabase:
             file.write_bytes(copy)
         with pytest.raises(DatabaseDamaged, match="deleted or replaced"):
             database.write(lambda session: session.execute(update(BuildRow).values(version=3)))
+        with pytest.raises(DatabaseDamaged, match="deleted or replaced"), database.read():
+            pass
         database.close()
         with pytest.raises(DatabaseDamaged, match=r"deleted or replaced.* showed while the service ran"):
             refuse_damage(f"sqlite:///{file}")
