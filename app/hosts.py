@@ -18,7 +18,7 @@ DEFAULT_PORTS = {"http": 80, "https": 443}
 
 _LABEL = "[a-z0-9_-]{1,63}"
 _AUTHORITY = re.compile(
-    rf"(?:\[(?P<six>[0-9a-f:.]{{2,45}})\]|(?P<name>{_LABEL}(?:\.{_LABEL})*))(?::(?P<port>[0-9]{{1,5}}))?"
+    rf"(?:\[(?P<six>[0-9a-f:.]{{2,45}})\]|(?P<name>{_LABEL}(?:\.{_LABEL})*)\.?)(?::(?P<port>[0-9]{{1,5}}))?"
 )
 _WILDCARD = "*."
 _LOOPBACK = ip_network("127.0.0.0/8")
@@ -37,7 +37,10 @@ class Authority:
 
 
 def parse(text: str) -> Authority | None:
-    """The authority in a text such as `localhost:8000` or `[::1]:8000`; None if it is no authority."""
+    """The authority in a text such as `localhost:8000` or `[::1]:8000`; None if it is no authority.
+
+    A name may end with the dot of the root, as in `localhost.`: it is the same name.
+    """
     return _parsed(text.lower()) if len(text) <= LONGEST and text.isascii() else None
 
 

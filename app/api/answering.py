@@ -13,10 +13,12 @@ from starlette.concurrency import run_in_threadpool
 from app.api.gate.clients import get_client
 from app.api.gate.pacing import PiecesResponse
 from app.api.waiting import accepted, client_left, patience
+from app.calculations.errors import TooManyCalculations
 from app.calculations.jobs import CalculationJobs
-from app.calculations.operations import Question, answered
+from app.calculations.operations import LARGE, Question, answered, check, checked
 from app.calculations.pool import Calculation, CalculationPool
 from app.workers.errors import JobCancelled
+from templates.core.language.template import Template
 
 
 class Answering:
@@ -41,7 +43,8 @@ class Answering:
     async def answer(self, request: Request, question: Question) -> Response:
         """The answer of a calculation process; 202 with a job once nobody waits for it any longer.
 
-        The process is ended if the client leaves.
+        Who does not want to wait at all learns nevertheless what is wrong with the request. The process is
+        ended if the client leaves.
 
         Raises
         ------
@@ -54,6 +57,7 @@ class Answering:
         client = await get_client(request)
         seconds = self._patience(request)
         if seconds <= 0:
+            await self._check(request, cls, client, question)
             return accepted(await run_in_threadpool(self.jobs.create, question, client))
         calculation = self.pool.submit(client, answered, self.jobs.sources[cls], question)
         try:
@@ -68,6 +72,23 @@ class Answering:
     def _patience(self, request: Request) -> float:
         """How long the request waits for its answer [s]."""
         return min(self.deadline, patience(request.headers.get("prefer"), self.deadline))
+
+    async def _check(self, request: Request, cls: type[Template], client: str, question: Question) -> None:
+        """Refuse what is wrong with a question, as far as shows without calculating.
+
+        A large body is read in a calculation process. If none is free within the time that an answer waits
+        for its job, the job itself will say what is wrong.
+        """
+        if len(question.body) <= LARGE:
+            await run_in_threadpool(check, cls, question)
+            return
+        with suppress(TooManyCalculations):
+            checking = self.pool.submit(client, checked, self.jobs.sources[cls], question)
+            try:
+                if await self._ends(request, checking, self.jobs.jobs.wait_seconds):
+                    checking.future.result()
+            finally:
+                self.pool.cancel(checking)
 
     async def _ends(self, request: Request, calculation: Calculation, seconds: float) -> bool:
         """Wait until a calculation ends, at most so long [s]; whether it did.

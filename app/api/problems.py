@@ -36,8 +36,8 @@ from app.jobs import errors as jobs
 from app.observation import logs, metrics
 from app.reports.errors import Unprintable
 from app.schemas.problems import MEDIA_TYPE, ProblemKind, refusals
-from app.solids.errors import CannotRebuild
 from app.storage import errors as storage
+from app.storage.errors import CannotRebuild
 from app.workers import errors as workers
 from cad.errors import AnalysisError, GeometryError, UnreadableStep
 from templates.core import errors as templates

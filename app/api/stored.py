@@ -39,7 +39,7 @@ async def lost(
         return problems.answer(refused)
     job = await to_thread.run_sync(healing.request, sha)
     if not await finished(jobs, job, prefer):
-        return _rebuilding(sha, job)
+        return rebuilding(sha, job)
     if problem := await to_thread.run_sync(jobs.problem, job):
         if problem["status"] == GONE:
             healing.refuse(sha, problem)
@@ -49,7 +49,8 @@ async def lost(
     return None
 
 
-def _rebuilding(sha: str, job: str) -> Response:
+def rebuilding(sha: str, job: str) -> Response:
+    """503 for an artifact that a job makes again."""
     about = problems.problem(problems.REBUILDING, f"artifact {sha} was missing or damaged and is made again")
     place = f"/api/v1/jobs/{job}"
     return problems.answer({**about, "job": place}, {"Retry-After": str(RETRY_AFTER), "Location": place})

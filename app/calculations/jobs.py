@@ -6,6 +6,7 @@ becomes a job goes on in its process, if the lane of jobs has room; else it is c
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from concurrent.futures import wait
 from typing import Any
 
@@ -15,9 +16,11 @@ from app.calculations.errors import InvalidBody, TooManyValues
 from app.calculations.operations import Question, answered
 from app.calculations.pool import Calculation, CalculationPool
 from app.calculations.sources import Source
+from app.jobs import repository
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild
 from app.workers.pieces import Pieces
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
@@ -26,8 +29,20 @@ from templates.core.language.template import Template
 CALCULATION, PREVIEW = "calculation", "preview"
 """Kinds of jobs whose result is an answer: what a request asked for, and nobody waited for."""
 GLANCE = 0.1  # how often a thread looks whether its job was cancelled [s]
-FAILURES = (TemplateError, TooManyValues, InvalidBody)
-"""What the request itself brings about."""
+AGAIN = "again"  # in a payload: the job whose lost answer is calculated again
+FAILURES = (TemplateError, TooManyValues, InvalidBody, CannotRebuild)
+"""What the request itself, or the loss of it, brings about."""
+
+
+def question_of(payload: Mapping[str, Any], store: ArtifactStore) -> Question:
+    """The question that the row of a job names; raises ArtifactMissing, ArtifactDamaged."""
+    fields = {name: part for name, part in payload.items() if name != AGAIN}
+    return Question(**{**fields, "body": Pieces.of(store.read(payload["body"]))})
+
+
+def _lost(job: Job) -> CannotRebuild:
+    detail = f"the request of job {job.id} was lost. Send the calculation again, or restore a backup"
+    return CannotRebuild("answer_lost", detail)
 
 
 class CalculationJobs:
@@ -88,8 +103,32 @@ class CalculationJobs:
             answer = self._outcome(calculation, context)
         except FAILURES as error:
             raise JobFailed(error) from error
-        link = place_of_answer(job.id, self.store.put(*answer))
-        return lambda session: link
+        lost = job.payload.get(AGAIN)  # the job whose answer this is
+        link = place_of_answer(lost or job.id, self.store.put(*answer))
+
+        def unit(session: Session) -> str:
+            if lost:
+                repository.set_result(session, lost, link)
+            return link
+
+        return unit
+
+    def request_again(self, job: Job, client: str) -> str:
+        """Return the job that calculates the lost answer of another one again.
+
+        Raises
+        ------
+        CannotRebuild
+            The request that the job was made of is lost as well.
+        QueueFull
+            Too many jobs are waiting.
+        """
+        if job.kind != CALCULATION or not self.store.exists(job.payload["body"]):
+            raise _lost(job)
+        payload = {**job.payload, AGAIN: job.id}
+        again = self.database.write(lambda session: self.jobs.request(session, CALCULATION, payload, client))
+        self.jobs.wake()
+        return again
 
     def failed(self, session: Session, job: Job, problem: dict[str, Any]) -> None:
         """End the calculation of a job that was cancelled before anybody followed it."""
@@ -98,8 +137,10 @@ class CalculationJobs:
 
     def _submitted(self, job: Job) -> Calculation:
         """The calculation of a job from its row, as after a start of the server."""
-        body = Pieces.of(self.store.read(job.payload["body"]))
-        question = Question(**{**job.payload, "body": body})
+        try:
+            question = question_of(job.payload, self.store)
+        except (ArtifactMissing, ArtifactDamaged) as error:
+            raise _lost(job) from error
         cls = self.catalogue.get(question.template, question.version)
         return self.pool.submit(f"job:{job.id}", answered, self.sources[cls], question, lane="jobs")
 

@@ -15,7 +15,7 @@ from pydantic_core import from_json, to_json
 
 from app.calculations.errors import InvalidBody
 from app.calculations.schemas import Asked, EvaluateIn, SolveIn
-from app.calculations.service import run_evaluate, run_solve
+from app.calculations.service import check_evaluate, check_solve, run_evaluate, run_solve
 from app.calculations.sources import Source, loaded
 from app.calculations.worksheet import run_worksheet
 from app.presentation.units import System
@@ -25,16 +25,19 @@ from templates.core.language.template import Template
 
 @dataclass(frozen=True)
 class Operation:
-    """What is asked, and the model of the body that asks it."""
+    """What is asked, the model of the body that asks it, and what refuses it without calculating."""
 
     body: type[Asked]
+    check: Callable[[type[Template], Any], None]
     run: Callable[[type[Template], Any, System], dict[str, Any]]
 
 
+LARGE = 256 * 1024  # bytes of a body that is read in the process that calculates
+
 OPERATIONS = {
-    "evaluate": Operation(EvaluateIn, lambda cls, body, system: run_evaluate(cls, body)),
-    "solve": Operation(SolveIn, lambda cls, body, system: run_solve(cls, body)),
-    "worksheet": Operation(EvaluateIn, run_worksheet),
+    "evaluate": Operation(EvaluateIn, check_evaluate, lambda cls, body, system: run_evaluate(cls, body)),
+    "solve": Operation(SolveIn, check_solve, lambda cls, body, system: run_solve(cls, body)),
+    "worksheet": Operation(EvaluateIn, check_evaluate, run_worksheet),
 }
 
 
@@ -62,6 +65,23 @@ def answered(source: Source, question: Question) -> Pieces:
     operation = OPERATIONS[question.operation]
     body = _read(operation.body, question.body.joined())
     return Pieces.of(to_json(operation.run(loaded(source), body, question.system)))
+
+
+def check(cls: type[Template], question: Question) -> None:
+    """Return if nothing is wrong with a question, as far as shows without calculating.
+
+    Raises
+    ------
+    InvalidBody, TemplateError, TooManyValues
+        As `answered`.
+    """
+    operation = OPERATIONS[question.operation]
+    operation.check(cls, _read(operation.body, question.body.joined()))
+
+
+def checked(source: Source, question: Question) -> None:
+    """As `check`, in a calculation process."""
+    check(loaded(source), question)
 
 
 def _read(model: type[Asked], body: bytes) -> Asked:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from app.calculations import rendering
 from app.calculations.errors import TooManyValues
 from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.size import points
 from templates.core.language.evaluate import Evaluation, evaluate
-from templates.core.language.solve import solve
+from templates.core.language.request import read_request, require_points
+from templates.core.language.solve import read_question, solve
 from templates.core.language.template import Template
 
 MOST_VALUES = 2_000_000  # in one answer: some 40 MB of JSON
@@ -30,13 +33,53 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
     TooManyValues
         If the answer would be too large.
     """
-    outputs = len(cls.formulas) if body.outputs is None else len(body.outputs)
-    _limit(points(body.inputs) * max(1, outputs))
+    _limit_answer(cls, body)
     made = evaluate(
         cls, body.inputs, outputs=body.outputs, units=body.units, level=body.level, tolerance=body.tolerance
     )
     _limit(made.count())  # curves are longer than their inputs tell
     return made
+
+
+def check_evaluate(cls: type[Template], body: EvaluateIn) -> None:
+    """Return if nothing is wrong with a request to evaluate, as far as shows without calculating.
+
+    Raises
+    ------
+    InvalidInputs
+        With everything that is wrong.
+    TooManyValues
+        If the answer would be too large.
+    """
+    _limit_answer(cls, body)
+    request = read_request(cls, body.inputs, body.outputs, body.units, body.level)
+    with np.errstate(all="ignore"):
+        require_points(request.template, body.level, body.tolerance)
+
+
+def check_solve(cls: type[Template], body: SolveIn) -> None:
+    """Return if nothing is wrong with a request to solve, as far as shows without calculating.
+
+    Raises
+    ------
+    InvalidInputs
+        With everything that is wrong.
+    """
+    read_question(
+        cls,
+        body.inputs,
+        body.unknown,
+        body.bounds,
+        body.target,
+        outputs=body.outputs,
+        units=body.units,
+        level=body.level,
+    )
+
+
+def _limit_answer(cls: type[Template], body: EvaluateIn) -> None:
+    outputs = len(cls.formulas) if body.outputs is None else len(body.outputs)
+    _limit(points(body.inputs) * max(1, outputs))
 
 
 def _limit(values: int) -> None:

@@ -20,7 +20,7 @@ from app.designs.reference import Reference
 from app.designs.size import limit_operations, limit_values
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText, InvalidInputs
-from templates.core.language.evaluate import checked
+from templates.core.language.request import read_request
 from templates.core.language.spec import Choice
 from templates.core.units.quantity import Typed, read, read_any
 from templates.core.units.relation import is_relation, parse
@@ -210,7 +210,7 @@ def _evaluate(result: Calculation, block: Block, raw: dict[str, Any], wanted: tu
     try:
         evaluation = memory.evaluation(block, raw, wanted)
     except StepDeferred:
-        checked(block.cls, raw, wanted or (), block.level)
+        read_request(block.cls, raw, wanted, level=block.level)
         result.deferred.add(block.name)
         result.pending.add(block)
         return

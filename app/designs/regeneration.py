@@ -21,9 +21,9 @@ from app.designs.reference import Reference
 from app.designs.service import REGENERATE, analysed, built, starts
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.solids.builds import Builds
-from app.solids.errors import CannotRebuild
 from app.solids.finding import Analysing
 from app.storage.database import Database
+from app.storage.errors import CannotRebuild
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
 from cad.errors import AnalysisError, GeometryError
 from templates.core.errors import FaultyText, InvalidInputs, TemplateError

@@ -187,7 +187,7 @@ class Dispatcher:
         def unit(session: Session) -> bool:
             if not repository.end(session, job, "done", context.log, progress=1.0):
                 return False
-            repository.set_result(session, job, completion(session))
+            repository.set_result(session, job.id, completion(session))
             return True
 
         if self._database.write(unit):

@@ -83,9 +83,9 @@ def end(session: Session, job: Job, state: State, log: list[str], **more: Any) -
     return _write(session, _held(job), state=state, log=log, operated=operated(session), **more) == 1
 
 
-def set_result(session: Session, job: Job, link: str | None) -> None:
+def set_result(session: Session, id: str, link: str | None) -> None:
     """Store the link to what a job has made."""
-    _write(session, JobRow.id == job.id, result=link)
+    _write(session, JobRow.id == id, result=link)
 
 
 def give_back(session: Session, job: Job, crashes: int) -> bool:

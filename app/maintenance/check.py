@@ -16,9 +16,10 @@ from app.maintenance.errors import CannotRun
 from app.maintenance.folder import database_file, reading, refuse_other_schema
 from app.maintenance.rows import Named, broken_references, named_files
 from app.storage.artifacts import QUARANTINE, SHA256
-from app.storage.integrity import faults, is_damage
+from app.storage.integrity import faults, is_damage, marker_of
 
 YOUNG = 60.0  # a file of a running service may be this old before the row that names it is committed [s]
+OWNERS = {"surface": "analysis", "body": "job", "answer": "job"}  # by kind of file; of a build else
 MOST = 100  # faults of the database that are listed
 
 Say = Callable[[str], None]
@@ -46,7 +47,7 @@ class Findings:
         yield from (f"database: {text}" for text in self.database)
         yield from (f"reference: {text}" for text in self.references)
         for row, text in self.damaged.items():
-            owner = "analysis" if row.kind == "surface" else "build"
+            owner = OWNERS.get(row.kind, "build")
             yield f"artifact {row.sha}, {row.kind} of {owner} {row.owner}: {text}"
         yield from (f"file {path}: no row names it" for path in self.unnamed)
         yield f"{self.files} good artifacts, {self.size / 2**20:.1f} MiB; {self.quarantined} in quarantine"
@@ -66,6 +67,8 @@ def check(data: Path, url: str | None, *, in_use: bool) -> Findings:
     findings.quarantined = sum(1 for _ in artifacts.glob(f"{QUARANTINE}/*"))
     # Files before rows: a row that comes meanwhile has its file already, and is found among the rows.
     files = [file for file in artifacts.glob("[0-9a-f][0-9a-f]/*") if SHA256.fullmatch(file.name)]
+    if (marker := marker_of(path)).exists():
+        findings.database.append(f"damage showed while a service used it, see {marker.name}")
     try:
         findings.database += faults(path, MOST)
         with reading(path) as connection:

@@ -8,16 +8,23 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TypeVar, TypeVarTuple
 
+from app.api.reading import HttpError
+from app.calculations.errors import InvalidBody
+from app.calculations.jobs import CALCULATION, place_of_answer, question_of
+from app.calculations.operations import answered
+from app.calculations.sources import source_of
+from app.catalogue.finding import find_templates
+from app.jobs import repository as jobs
 from app.maintenance.check import Findings, Say
 from app.maintenance.rows import Named
 from app.settings import Settings
 from app.solids import analysis_rows as analyses
 from app.solids.builds import Builds
-from app.solids.errors import CannotRebuild
 from app.solids.finding import Analysing
 from app.solids.shapes import shape_of
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild
 from app.workers.base import Limits
 from app.workers.errors import WorkerError
 from app.workers.local import LocalProcesses
@@ -31,7 +38,17 @@ from templates.core.errors import TemplateError
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
-FAILURES = (CannotRebuild, TemplateError, GeometryError, AnalysisError, WorkerError)
+FAILURES = (
+    CannotRebuild,
+    TemplateError,
+    GeometryError,
+    AnalysisError,
+    WorkerError,
+    InvalidBody,
+    HttpError,
+    ArtifactMissing,
+    ArtifactDamaged,
+)
 
 
 class Direct:
@@ -56,14 +73,18 @@ class Repair:
         self.builds = Builds(database, store, settings.template_folders)
         longest = Limits(settings.analysis_deadline, settings.analysis_memory_mb)
         self.analysing = Analysing(database, store, longest)
+        self.templates = find_templates(settings.template_folders)
+        self.calculation = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
         self.runner = Direct(worker, Limits(settings.job_deadline, settings.job_memory_mb))
 
     def row(self, row: Named) -> str | None:
         """Have the file of a row good; return why it is not, if it is not."""
-        if row.kind in ("body", "answer"):
-            return "send the calculation again: its answer is not kept anywhere else"
+        if row.kind == "body":
+            return "it is not kept anywhere else; nothing needs it as long as the job's answer is good"
         try:
-            if row.kind == SURFACE:
+            if row.kind == "answer":
+                self._answer(row)
+            elif row.kind == SURFACE:
                 self._surface(row.owner)
             else:
                 self.builds.restore(row.owner, self.catalogue, self.runner)
@@ -72,6 +93,21 @@ class Repair:
         except FAILURES as error:
             return str(error)
         return None
+
+    def _answer(self, row: Named) -> None:
+        """Calculate the answer of a job again: the same, but for the time that it took."""
+        if self.store.exists(row.sha):  # else it has been set aside now
+            return
+        with self.database.read() as session:
+            job = jobs.get(session, row.owner)
+        assert job is not None, "it has just been named"
+        if job.kind != CALCULATION:
+            raise CannotRebuild("answer_lost", f"job {job.id} is no calculation; send its request again")
+        question = question_of(job.payload, self.store)
+        source = source_of(self.templates.get(question.template, question.version))
+        sha = self.store.put(*self.runner.run(answered, source, question, limits=self.calculation))
+        link = place_of_answer(job.id, sha)
+        self.database.write(lambda session: jobs.set_result(session, job.id, link))
 
     def _surface(self, key: str) -> None:
         with self.database.read() as session:

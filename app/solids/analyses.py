@@ -14,14 +14,13 @@ from app.solids import rows
 from app.solids.ages import is_fresh, renew
 from app.solids.analysis_views import shown
 from app.solids.builds import Builds
-from app.solids.errors import CannotRebuild
 from app.solids.finding import Analysing, is_known, shaft_of
 from app.solids.models import FAILURES, File
 from app.solids.questions import Question, under_load
 from app.solids.shapes import shape_of
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
-from app.storage.errors import NotFound
+from app.storage.errors import CannotRebuild, NotFound
 from cad.analysis.kinds import SURFACE
 from cad.errors import AnalysisError
 from cad.model import CadModel

@@ -15,10 +15,10 @@ from sqlalchemy.orm import Session
 
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
-from app.solids.errors import CannotRebuild
 from app.solids.shapes import made_otherwise, shape_of
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.storage.errors import CannotRebuild
 from app.storage.tables import ArtifactRow
 from app.workers.base import Runner
 from cad.export import derive

@@ -11,12 +11,11 @@ from sqlalchemy.orm import Session
 from app.solids import analysis_rows as analyses
 from app.solids import rows
 from app.solids.analyses import Analyses
-from app.solids.errors import CannotRebuild
 from app.solids.models import Models
 from app.solids.shapes import made_otherwise, shape_of
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
-from app.storage.errors import ArtifactMissing
+from app.storage.errors import ArtifactMissing, CannotRebuild
 from cad.regenerate import build_key
 
 REMEMBERED = 1000  # artifacts that could not be rebuilt; asked for again, they start no other job

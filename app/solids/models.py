@@ -14,10 +14,9 @@ from app.schemas.solids import Build, BuildUse, Verification
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.builds import Builds
-from app.solids.errors import CannotRebuild
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
-from app.storage.errors import NotFound
+from app.storage.errors import CannotRebuild, NotFound
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
 from cad.errors import GeometryError
 from cad.export import DERIVED

@@ -5,8 +5,7 @@ from __future__ import annotations
 from sqlalchemy.orm import Session
 
 from app.solids import rows
-from app.solids.errors import CannotRebuild
-from app.storage.errors import NotFound
+from app.storage.errors import CannotRebuild, NotFound
 from cad.model import CadModel
 from cad.regenerate import MADE_BY, build_key
 from templates.core.catalogue.finding import Catalogue

@@ -5,27 +5,40 @@ from __future__ import annotations
 import logging
 import sqlite3
 import threading
+from contextlib import suppress
+from pathlib import Path
 from types import TracebackType
 
 from app.storage.engines import sqlite_file
 from app.storage.errors import DatabaseDamaged
-from app.storage.integrity import faults, is_damage
+from app.storage.integrity import faults, is_damage, marker_of
 
 logger = logging.getLogger(__name__)
 
 
 class Watch:
-    """A context that turns SQLite's errors about damage into DatabaseDamaged, and remembers the first."""
+    """A context that turns SQLite's errors about damage into DatabaseDamaged, and remembers the first.
+
+    It leaves a note of it beside the file: what is lost with SQLite's log shows at no later start.
+    """
 
     def __init__(self, url: str) -> None:
-        self._url = url
+        self._path = sqlite_file(url)
+        self._file = _identity(self._path)
         self._lock = threading.Lock()
         self.damage: DatabaseDamaged | None = None
 
     def refuse(self) -> None:
-        """Return if no damage has shown; raises DatabaseDamaged."""
+        """Return if no damage has shown, and the file is still that of the start; raises DatabaseDamaged."""
         if self.damage is not None:
             raise self._again(self.damage)
+        self.require_file()
+
+    def require_file(self) -> None:
+        """Return if the file is still that of the start: SQLite would make an empty one in its place."""
+        if self._file is not None and _identity(self._path) != self._file:
+            lost = "the file was deleted or replaced while the service used it"
+            raise self._named(DatabaseDamaged(str(self._path), [lost]))
 
     def raise_if_damage(self, error: BaseException | None) -> None:
         """Return unless an error says that the database is damaged; raises DatabaseDamaged."""
@@ -47,18 +60,33 @@ class Watch:
             if self.damage is None:
                 self.damage = error if isinstance(error, DatabaseDamaged) else self._diagnosed(error)
                 logger.critical("%s", self.damage)
+                self._note(self.damage)
             return self._again(self.damage)
 
     def _diagnosed(self, error: BaseException) -> DatabaseDamaged:
         """Read the whole file once more, because the error names no page."""
-        path = sqlite_file(self._url)
+        path = self._path
         try:
             found = faults(path) if path else []
         except (sqlite3.Error, OSError) as failure:
             found = [f"it cannot be examined ({failure})"]
         return DatabaseDamaged(str(path or "database"), found or [str(getattr(error, "orig", error))])
 
+    def _note(self, damage: DatabaseDamaged) -> None:
+        if self._path is not None:
+            with suppress(OSError):  # the disk may be the reason
+                marker_of(self._path).write_text("; ".join(damage.faults), encoding="utf-8")
+
     @staticmethod
     def _again(damage: DatabaseDamaged) -> DatabaseDamaged:
         """A fresh exception: one that is raised in several threads would collect their tracebacks."""
         return DatabaseDamaged(damage.database, damage.faults)
+
+
+def _identity(path: Path | None) -> tuple[int, int] | None:
+    """Device and inode of a file; None if there is none."""
+    try:
+        seen = path.stat() if path else None
+    except OSError:
+        return None
+    return (seen.st_dev, seen.st_ino) if seen else None

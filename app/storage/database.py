@@ -58,6 +58,7 @@ class Database:
         DatabaseDamaged
             What was to be read cannot be read.
         """
+        self.watch.require_file()
         with self.watch, Session(self._reader, expire_on_commit=False) as session:
             yield session
 
@@ -133,6 +134,7 @@ class Database:
                     pending.run(connection)
                     if pending.error is not None:
                         self.watch.raise_if_damage(pending.error)
+            self.watch.refuse()  # a file that was deleted meanwhile has taken the commit along
         except Exception as error:
             self._on_commit(len(group), time.perf_counter() - start, True)
             for pending in group:

@@ -103,3 +103,25 @@ class ArtifactDamaged(StorageError):
 
     def __str__(self) -> str:
         return f"Artifact {self.sha} is damaged: {self.reason}. The file has been set aside."
+
+
+class CannotRebuild(Exception):
+    """A file that is damaged or gone cannot be made again under its hash; links lead to what there is.
+
+    Its code is one of:
+
+    other_recipe    another kernel or recipe made it: this program makes another build of the same row
+    model_changed   the model's file makes other bytes now, or refuses the parameters
+    model_gone      the model is no longer in the catalogue
+    other_bytes     it was rebuilt, and is another artifact now
+    answer_lost     the request that it answers is lost as well
+    """
+
+    def __init__(self, code: str, detail: str, links: dict[str, str] | None = None) -> None:
+        super().__init__(code, detail, links)
+        self.code = code
+        self.detail = detail
+        self.links = links or {}
+
+    def __str__(self) -> str:
+        return self.detail

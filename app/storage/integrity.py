@@ -37,6 +37,8 @@ def refuse_damage(url: str) -> None:
         With the pages and tables that are not.
     """
     path = sqlite_file(url)
+    if path is not None and (marker := marker_of(path)).exists():
+        raise DatabaseDamaged(str(path), [_noted(marker)])
     if path is None or not path.is_file() or not path.stat().st_size:
         return
     with _one_at_a_time:
@@ -46,6 +48,19 @@ def refuse_damage(url: str) -> None:
         if found := faults(path):
             raise DatabaseDamaged(str(path), found)
         _sound[path] = seen
+
+
+def marker_of(path: Path) -> Path:
+    """The note beside a SQLite file that damage has shown while a service used it."""
+    return path.with_name(f"{path.name}.damaged")
+
+
+def _noted(marker: Path) -> str:
+    text = marker.read_text(encoding="utf-8", errors="replace")[:1000]
+    return (
+        f"{text}. This showed while the service ran, so rows may be lost even if the file looks whole now; "
+        f"whoever has made sure of the contents deletes {marker.name}"
+    )
 
 
 def faults(path: Path, most: int = MOST) -> list[str]:

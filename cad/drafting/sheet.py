@@ -53,8 +53,16 @@ def write_dxf(bodies: Sequence[Body], header: Header | None) -> bytes:
     """A dimensioned drawing; equal bodies and headers give equal bytes."""
     stream = io.StringIO()
     with _no_times():
-        draw(bodies, header).write(stream)
+        document = draw(bodies, header)
+        _register_classes(document)
+        document.write(stream)
     return stream.getvalue().encode()
+
+
+def _register_classes(document: Drawing) -> None:
+    """List the classes in one order; ezdxf itself would walk a set, whose order differs by process."""
+    for name in sorted(document.entitydb.dxf_types_in_use()):
+        document.classes.add_class(name)
 
 
 @contextmanager

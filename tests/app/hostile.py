@@ -28,7 +28,6 @@ FOREIGN_HOSTS = [
     "localhost?evil.example",
     "http://localhost",
     "//localhost",
-    "localhost.",
     "foo.localhost",
     "localhost:8000:80",
     "localhost:",

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from templates.core.errors import Fault, InvalidInputs
 from templates.core.progress import report
 from templates.core.template import Array, Template, choice, formula, given
 
@@ -24,7 +25,7 @@ class Sleeper(Template):
     example = {"duration": "1 ms"}
 
     t: Array = given("s", "duration", ge=0)
-    mood: str = choice("good", "dies", "eats", words="mood", default="good")
+    mood: str = choice("good", "dies", "eats", "refuses", words="mood", default="good")
 
     @formula("1", "process")
     def n(self) -> Array:
@@ -37,6 +38,8 @@ def slept(seconds, mood):
         log.write(f"{os.getpid()}\\n")
     if mood == "dies":
         ctypes.string_at(0)
+    if mood == "refuses":
+        raise InvalidInputs([Fault("mood", "refused", "such a mood shows when it is calculated only")])
     if mood == "eats":
         bytearray(8 * 2**30)
     end = time.monotonic() + float(np.max(seconds))

@@ -1,5 +1,6 @@
 """Expensive calculations over HTTP: in processes of their own, and as jobs when nobody waits any longer."""
 
+import json
 import os
 from concurrent.futures import ThreadPoolExecutor
 
@@ -8,15 +9,21 @@ import pytest
 from click.testing import CliRunner
 from serving import API, faults, heard, problem, serving
 from sleeping import folder_of_sleeper
+from test_damage import delete, flip, truncate
 from test_workers import alive, eventually
 
+from app.calculations.operations import LARGE
 from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.service import run_evaluate, run_solve
 from app.calculations.worksheet import run_worksheet
 from app.catalogue.finding import find_templates
 from app.cli import main
 from app.client import Client, Problem
+from app.jobs import repository
+from app.maintenance.repair import Repair
+from app.maintenance.rows import Named
 from app.settings import Settings
+from app.workers.inline import Inline
 
 SLEEPER = f"{API}/templates/sleeper/versions/1"
 FILM = find_templates(()).get("oil_film", 2)
@@ -240,11 +247,140 @@ def test_a_job_ends_at_its_deadline(http):
 
 
 def test_a_job_that_is_refused_says_why(http):
-    body = {"inputs": {"duration": "1 ms", "mood": "odd"}}
+    body = {"inputs": {"duration": "1 ms", "mood": "refuses"}}
     accepted = http.post(f"{SLEEPER}/evaluate", json=body, headers={"Prefer": "respond-async"})
     job = ended(http, accepted.headers["Location"])
     assert job["problem"]["type"] == "/problems/invalid-inputs"
     assert [fault["name"] for fault in job["problem"]["errors"]] == ["mood"]
+
+
+MASS_CONSERVING = {**EvaluateIn.model_config["json_schema_extra"]["examples"][0], "level": "mass_conserving"}
+SOLVING = {**SolveIn.model_config["json_schema_extra"]["examples"][0], "level": "mass_conserving"}
+WRONG = [
+    ("evaluate", {"inputs": {**MASS_CONSERVING["inputs"], "speed": "1 N", "sped": 1}}, {"speed", "sped"}),
+    (
+        "evaluate",
+        {"outputs": ["thickness"], "units": {"friction_torque": "m"}},
+        {"thickness", "units.friction_torque"},
+    ),
+    ("evaluate", {"inputs": {**MASS_CONSERVING["inputs"], "bearing_width": "-18 mm"}}, {"bearing_width"}),
+    ("evaluate", {"inputs": {}, "tolerance": 2}, {"tolerance"}),
+    ("worksheet", {"level": "finest"}, {"level.finest"}),
+    (
+        "solve",
+        {"units": {"minimum_film_thickness": "s"}, "outputs": ["x"]},
+        {"x", "units.minimum_film_thickness"},
+    ),
+    ("solve", {"unknown": "width", "target": {"y": "1 mm"}}, {"unknown", "target.y", "inputs.bearing_width"}),
+    ("solve", {"bounds": ["80 mm", "10 mm"]}, {"bounds"}),
+]
+
+
+@pytest.mark.parametrize(("operation", "changes", "names"), WRONG)
+@pytest.mark.parametrize("prefer", ["respond-async", "wait=0"])
+def test_what_is_wrong_is_refused_before_it_becomes_a_job(http, operation, changes, names, prefer):
+    body = {**(SOLVING if operation == "solve" else MASS_CONSERVING), **changes}
+    before = http.get(f"{API}/jobs", params={"limit": 1}).json()["items"]
+    answer = http.post(f"{FILM_PLACE}/{operation}", json=body, headers={"Prefer": prefer})
+    assert faults(answer).keys() == names
+    assert http.get(f"{API}/jobs", params={"limit": 1}).json()["items"] == before
+
+
+def test_too_many_points_of_a_level_are_refused_before_they_become_a_job(http):
+    speeds = {"value": [3000.0 + n for n in range(500)], "unit": "rpm"}
+    body = {**MASS_CONSERVING, "inputs": {**MASS_CONSERVING["inputs"], "speed": speeds}}
+    answer = http.post(f"{FILM_PLACE}/evaluate", json=body, headers={"Prefer": "respond-async"})
+    assert faults(answer) == {"level": "too_many_points"}
+
+
+def test_a_large_body_is_refused_before_it_becomes_a_job(http):
+    speeds = {"value": [3000.0 + n / 8 for n in range(30_000)], "unit": "N"}
+    body = {"inputs": {**MASS_CONSERVING["inputs"], "speed": speeds}, "level": "map"}
+    assert len(json.dumps(body)) > LARGE
+    answer = http.post(f"{FILM_PLACE}/evaluate", json=body, headers={"Prefer": "respond-async"})
+    assert faults(answer) == {"speed": "wrong_unit"}
+
+
+def test_a_large_body_becomes_a_job_without_a_check_if_no_process_is_free(http, log):
+    body = {"inputs": {"duration": {"value": [4.0] * 80_000, "unit": "s"}}}
+    with ThreadPoolExecutor(1) as threads:
+        first = threads.submit(sleep, http, "1.9 s", Prefer="wait=30")
+        begun(log)
+        accepted = http.post(f"{SLEEPER}/evaluate", json=body, headers={"Prefer": "respond-async"})
+        assert accepted.status_code == 202
+        http.delete(accepted.headers["Location"]).raise_for_status()
+        assert first.result().status_code in (200, 202)
+
+
+class TestLostAnswers:
+    def done(self, http, mood="good"):
+        """The row of a job that has ended, and its answer."""
+        job = ended(http, sleep(http, mood=mood, Prefer="respond-async").headers["Location"])
+        return job, http.get(job["result"])
+
+    def file(self, settings, job):
+        sha = job["result"].rpartition("sha256=")[2]
+        return settings.data / "artifacts" / sha[:2] / sha
+
+    def asked(self, server, job):
+        with server.app.state.database.read() as session:
+            return repository.get(session, job["id"]).payload["body"]
+
+    @pytest.mark.parametrize("damage", [delete, flip, truncate])
+    def test_a_lost_answer_is_calculated_again(self, http, settings, damage):
+        job, whole = self.done(http)
+        damage(self.file(settings, job))
+        again = http.get(job["result"], headers={"Prefer": "wait=30"})
+        assert again.status_code == 200
+        assert again.json()["inputs"] == whole.json()["inputs"]
+        assert again.json()["outputs"].keys() == whole.json()["outputs"].keys()
+        new = http.get(f"{API}/jobs/{job['id']}").json()
+        assert new["result"] != job["result"], "another time, so other bytes"
+        assert http.get(new["result"]).content == again.content
+
+    def test_who_does_not_wait_gets_503_and_the_job(self, http, settings):
+        job, _ = self.done(http)
+        flip(self.file(settings, job))
+        answer = http.get(job["result"], headers={"Prefer": "respond-async"})
+        told = problem(answer, 503, "rebuilding")
+        assert answer.headers["Location"] == told["job"]
+        assert ended(http, told["job"])["state"] == "done"
+        assert http.get(job["result"]).status_code == 200
+        truncate(self.file(settings, http.get(told["job"]).json()))  # a rebuilt answer can be lost as well
+        assert http.get(told["job"].replace("jobs", "evaluations"), headers={"Prefer": "wait=30"}).is_success
+        assert http.get(job["result"]).status_code == 200
+
+    def test_without_its_request_it_is_gone(self, server, http, settings):
+        job, _ = self.done(http)
+        delete(self.file(settings, job))
+        server.app.state.store.delete(self.asked(server, job))
+        told = problem(http.get(job["result"]), 410, "artifact-gone")
+        assert told["errors"][0]["code"] == "answer_lost"
+
+    def test_a_request_that_is_lost_before_its_turn(self, server, http, log):
+        ahead = [sleep(http, "1.5 s", Prefer="respond-async").headers["Location"] for _ in range(2)]
+        begun(log)
+        last = http.get(sleep(http, Prefer="respond-async").headers["Location"]).json()
+        assert last["state"] == "queued"
+        server.app.state.store.delete(self.asked(server, last))
+        assert [ended(http, job)["state"] for job in ahead] == ["done", "done"]
+        assert ended(http, f"{API}/jobs/{last['id']}")["problem"]["errors"][0]["code"] == "answer_lost"
+        problem(http.get(f"{API}/evaluations/{last['id']}"), 410, "artifact-gone")
+
+    def test_repair_calculates_it_again(self, server, http, settings):
+        job, _ = self.done(http)
+        flip(self.file(settings, job))
+        database, store = server.app.state.database, server.app.state.store
+        damaged = Named(self.file(settings, job).name, None, job["id"], "answer")
+        repair = Repair(database, store, settings, Inline())
+        assert repair.row(damaged) is None
+        new = http.get(f"{API}/jobs/{job['id']}").json()
+        assert new["result"] != job["result"]
+        assert http.get(new["result"]).status_code == 200
+        store.delete(self.asked(server, job))
+        store.delete(self.file(settings, new).name)
+        why = repair.row(Named(self.file(settings, new).name, None, job["id"], "answer"))
+        assert why.startswith("There is no artifact")
 
 
 def test_progress_of_a_job_is_streamed(http):

@@ -1,5 +1,6 @@
 """A damaged database is refused at the start, with the page; damage that shows later ends all writing."""
 
+import os
 import sqlite3
 
 import pytest
@@ -7,6 +8,7 @@ from click.testing import CliRunner
 from sqlalchemy import select, update
 
 from app.cli import main
+from app.maintenance.check import check
 from app.storage.database import Database
 from app.storage.errors import CommitFailed, DatabaseDamaged
 from app.storage.identity import now
@@ -114,3 +116,40 @@ class TestDatabase:
         with pytest.raises(DatabaseDamaged):
             database.submit(lambda session: None)
         database.close()
+
+    @pytest.mark.parametrize("loss", ["deleted", "replaced"])
+    def test_a_file_that_was_taken_away_gets_no_write(self, file, loss):
+        database = Database(f"sqlite:///{file}")
+        database.write(lambda session: session.execute(update(BuildRow).values(version=2)))
+        copy = file.read_bytes()
+        file.unlink()
+        if loss == "replaced":
+            file.write_bytes(copy)
+        with pytest.raises(DatabaseDamaged, match="deleted or replaced"):
+            database.write(lambda session: session.execute(update(BuildRow).values(version=3)))
+        with pytest.raises(DatabaseDamaged, match="deleted or replaced"), database.read():
+            pass
+        database.close()
+        with pytest.raises(DatabaseDamaged, match=r"deleted or replaced.* showed while the service ran"):
+            refuse_damage(f"sqlite:///{file}")
+
+    def test_a_file_that_is_taken_away_during_a_commit(self, file):
+        database = Database(f"sqlite:///{file}")
+        with pytest.raises(DatabaseDamaged, match="deleted or replaced"):
+            database.write(lambda session: file.unlink())
+        database.close()
+
+    def test_a_damaged_log_is_remembered_at_the_next_start(self, file):
+        """SQLite leaves out what it cannot read of its log: the file is whole again, and rows are lost."""
+        database = Database(f"sqlite:///{file}")
+        for number in range(50):
+            row = DesignRow(id=f"late{number:04}", name="x" * 3000, created=now(), head=0)
+            database.write(lambda session, row=row: session.add(row))
+        log = file.with_name(f"{file.name}-wal")
+        log.write_bytes(log.read_bytes()[:32] + os.urandom(log.stat().st_size - 32))
+        with pytest.raises(DatabaseDamaged), database.read() as session:
+            session.scalars(select(DesignRow)).all()
+        database.close()
+        with pytest.raises(DatabaseDamaged, match="showed while the service ran"):
+            refuse_damage(f"sqlite:///{file}")
+        assert any("damage showed" in text for text in check(file.parent, None, in_use=False).database)

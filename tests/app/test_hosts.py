@@ -39,6 +39,8 @@ class TestAuthorities:
             ("[::1]:8000", "::1", 8000),
             ("[0:0::0:1]", "::1", None),
             ("192.168.1.5:80", "192.168.1.5", 80),
+            ("localhost.", "localhost", None),
+            ("Crank.Example.:8443", "crank.example", 8443),
         ],
     )
     def test_what_is_one(self, text, name, port):

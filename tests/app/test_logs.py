@@ -1,5 +1,6 @@
 """Logs, ids of requests, and figures: what an operator sees from outside."""
 
+import asyncio
 import io
 import json
 import logging
@@ -11,7 +12,9 @@ import pytest
 from prometheus_client.parser import text_string_to_metric_families
 from serving import API, PATIENCE, ServerProcess, created, moody
 
+from app.api.gate.observing import Observed
 from app.observation import logs, metrics
+from app.observation.metrics import REGISTRY
 
 DESIGNS = f"{API}/designs"
 HARMLESS = re.compile(r"[A-Za-z0-9._-]{1,64}")
@@ -171,6 +174,35 @@ def test_requests_are_counted_by_route(http):
     for number in range(3):
         http.get(f"{DESIGNS}/none{number}")
     assert figures(http)[counted] == before + 3
+
+
+def test_who_left_is_counted_apart(caplog):
+    """The service answers 409 then, because the work was cancelled; nobody gets that answer."""
+
+    async def app(scope, receive, send):
+        while (await receive())["type"] != "http.disconnect":
+            pass
+        await send({"type": "http.response.start", "status": 409, "headers": []})
+        await send({"type": "http.response.body", "body": b""})
+
+    sent, messages = [], [{"type": "http.request"}, {"type": "http.disconnect"}]
+
+    async def receive():
+        return messages.pop(0)
+
+    async def send(message):
+        sent.append(message)
+
+    scope = {"type": "http", "method": "POST", "path": "/left", "headers": [], "client": ("127.0.0.1", 1)}
+    before = REGISTRY.get_sample_value("crankwright_requests_total", LEFT) or 0
+    with caplog.at_level("INFO", "app.api.gate.observing"):
+        asyncio.run(Observed(app)(scope, receive, send))
+    assert sent[0]["status"] == 409
+    assert caplog.records[-1].status == 499
+    assert REGISTRY.get_sample_value("crankwright_requests_total", LEFT) == before + 1
+
+
+LEFT = {"route": "unknown", "method": "POST", "status": "499"}
 
 
 def test_paths_and_methods_of_clients_make_no_new_figures(http):

@@ -8,6 +8,7 @@ import sqlite3
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import httpx
@@ -137,6 +138,38 @@ def calculates(server, seconds: float = 0.5) -> bool:
     used = sum(float(line.split()[-1]) for line in text.splitlines() if CPU.match(line))
     server.idle = min(getattr(server, "idle", used), used)
     return "crankwright_requests_in_flight 2.0" in text and used > server.idle + seconds
+
+
+SPEEDS = {"value": [3000.0 + number for number in range(20)], "unit": "rpm"}
+MASS_CONSERVING = {"inputs": {**OIL_FILM, "speed": SPEEDS}, "level": "mass_conserving"}
+
+
+def calculations(server) -> int:
+    """The process from which those of calculations are forked."""
+    leaders = (pid for pid in descendants(server.process.pid) if os.getsid(pid) == pid)
+    return next(
+        pid for pid in leaders if b"app.calculations.warm" in Path(f"/proc/{pid}/cmdline").read_bytes()
+    )
+
+
+@pytest.mark.parametrize("stopped", ["fork server", "its children", "all"])
+def test_calculations_of_stopped_processes_are_cut(server, stopped):
+    """Some are calculated and some wait for a process, all of which ignore every signal but one."""
+    forkserver = calculations(server)
+    if stopped == "fork server":
+        until(lambda: len(descendants(forkserver)) > 0)
+        os.kill(forkserver, signal.SIGSTOP)
+    ask = partial(httpx.post, f"{server.url}{EVALUATE}", timeout=PATIENCE, trust_env=False)
+    with ThreadPoolExecutor(4) as pool:
+        answers = [pool.submit(ask, json=MASS_CONSERVING) for _ in range(4)]
+        until(lambda: "crankwright_requests_in_flight 5.0" in figures(server))
+        if stopped != "fork server":
+            until(lambda: len(descendants(forkserver)) > 0)
+            for pid in {*descendants(forkserver), *([forkserver] if stopped == "all" else [])}:
+                os.kill(pid, signal.SIGSTOP)
+        assert server.stop() == 0
+        for answer in answers:
+            problem(answer.result(), 503, "stopping")
 
 
 def test_streams_end_and_slow_downloads_are_cut(server):

@@ -8,6 +8,7 @@ import ezdxf
 import numpy as np
 import pytest
 from ezdxf.document import Drawing
+from ezdxf.entitydb import EntityDB
 
 from cad.drafting.matching import matched
 from cad.drafting.measures import measures
@@ -174,3 +175,13 @@ def test_hatch_stays_within_its_outline() -> None:
         middle = (a[0] + b[0]) / 2, (a[1] + b[1]) / 2
         assert 0 <= min(middle) <= max(middle) <= 10
         assert abs((b[1] - a[1]) - (b[0] - a[0])) < 1e-9  # at 45°
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_the_order_of_sets_does_not_show(
+    example: Build, dxf: bytes, monkeypatch: pytest.MonkeyPatch, backwards: bool
+) -> None:
+    """A set of texts is walked in another order by every process."""
+    in_use = EntityDB.dxf_types_in_use
+    monkeypatch.setattr(EntityDB, "dxf_types_in_use", lambda self: sorted(in_use(self), reverse=backwards))
+    assert derive(example.step, "dxf") == dxf

@@ -13,6 +13,7 @@ from app.observation import logs, metrics
 
 logger = logging.getLogger(__name__)
 
+CLIENT_LEFT = 499  # as nginx calls it: the client closed its connection before there was an answer
 _LONGEST = 200  # characters of a path in the log
 _METHODS = {"GET", "POST", "PUT", "PATCH", "DELETE", "HEAD", "OPTIONS"}
 
@@ -35,22 +36,28 @@ class Observed:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        start, status = time.perf_counter(), 0
+        start, status, is_gone = time.perf_counter(), 0, False
         id_ = logs.REQUEST_ID.get() if is_inside(scope) else logs.request_id(scope["headers"])
         header = (b"x-request-id", id_.encode())
         token = logs.REQUEST_ID.set(id_)
 
+        async def received() -> Message:
+            nonlocal is_gone
+            message = await receive()
+            is_gone = is_gone or message["type"] == "http.disconnect"
+            return message
+
         async def observed(message: Message) -> None:
             nonlocal status
             if message["type"] == "http.response.start":
-                status = message["status"]
+                status = CLIENT_LEFT if is_gone else message["status"]  # nobody gets this answer
                 message["headers"] = [*message.get("headers", ()), header]
                 metrics.REQUESTS.add(_route(scope), _method(scope), status, time.perf_counter() - start)
             await send(message)
 
         in_flight[id(scope)] = (id_, scope["method"], scope["path"], start)
         try:
-            await self.app(scope, receive, observed)
+            await self.app(scope, received, observed)
         finally:
             del in_flight[id(scope)]
             if status >= 500 or logger.isEnabledFor(logging.INFO):

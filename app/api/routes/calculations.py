@@ -19,7 +19,7 @@ from app.api.reading import StrictRequest, StrictRoute
 from app.api.routes.templates import Id, Number
 from app.api.waiting import LATER
 from app.calculations.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
-from app.calculations.operations import Question
+from app.calculations.operations import LARGE, Question
 from app.calculations.schemas import Asked, EvaluateIn, SolveIn
 from app.calculations.service import run_evaluate, run_solve
 from app.calculations.size import points
@@ -31,7 +31,6 @@ from app.workers.pieces import Pieces
 
 LONGEST_ID, PLAIN_NUMBER = 64, re.compile("[1-9][0-9]{0,5}")
 FEW = 100  # points and names that are taken in the event loop, if every level is quick: a thread costs more
-LARGE = 256 * 1024  # bytes of a body that is read in the process that calculates
 SYSTEMS: dict[str | None, System] = {None: "si", "si": "si", "us": "us"}
 
 DECLARED = {**LATER, **refusals(404, 429)}

@@ -1,42 +1,82 @@
-"""`/evaluations/{job}`: the answer of a calculation, or of a preview, that went on as a job."""
+"""`/evaluations/{job}`: the answer of a calculation that went on as a job."""
 
 from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Request, Response
+from fastapi import APIRouter, Header, Path, Request, Response
+from starlette.concurrency import run_in_threadpool
 
 from app.api import problems
-from app.api.dependencies import TheJobs, TheStore
+from app.api.dependencies import TheAnswering, TheJobs, TheStore
+from app.api.gate.clients import TheClient
 from app.api.gate.pacing import PiecesResponse
-from app.api.waiting import LATER, accepted
-from app.calculations.jobs import CALCULATION, PREVIEW
+from app.api.stored import UNAVAILABLE, rebuilding
+from app.api.waiting import LATER, accepted, finished
+from app.calculations.jobs import CALCULATION, PREVIEW, CalculationJobs
 from app.jobs.errors import JobNotFound
+from app.jobs.job import Job
+from app.jobs.service import Jobs
 from app.schemas.evaluations import AnyCalculation
 from app.schemas.problems import refusals
-from app.solids.errors import CannotRebuild
+from app.storage.artifacts import ArtifactStore
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.workers.pieces import Pieces
 
 router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
 
 
-@router.get("/{job}", response_model=AnyCalculation, responses={**LATER, **refusals(404, 410)})
-def show_evaluation(
-    job: Annotated[str, Path(max_length=64)], jobs: TheJobs, store: TheStore, request: Request
+@router.get(
+    "/{job}", response_model=AnyCalculation, responses={**LATER, **UNAVAILABLE, **refusals(404, 409, 429)}
+)
+async def show_evaluation(
+    job: Annotated[str, Path(max_length=64)],
+    jobs: TheJobs,
+    store: TheStore,
+    answering: TheAnswering,
+    client: TheClient,
+    request: Request,
+    prefer: Annotated[str | None, Header(description="`wait=5`, for an answer that was lost")] = None,
 ) -> Response:
-    """What `evaluate`, `solve`, `worksheet` or `preview` would have answered; 202 while the job goes on."""
-    found = jobs.get(job)
-    if found.kind not in (CALCULATION, PREVIEW):
-        raise JobNotFound(job)
-    if not found.finished:
+    """What `evaluate`, `solve`, `worksheet` or `preview` would have answered; 202 while the job goes on.
+
+    An answer that was lost is calculated again: the same, but for the time that it took.
+    """
+    row = await run_in_threadpool(_calculation, jobs, job)
+    if not row.finished:
         return accepted(job)
-    if found.result is None:
-        problem = found.problem or problems.problem(problems.INTERNAL, "the job left no answer")
-        return problems.answer(problem)
-    sha = found.result.rpartition("sha256=")[2]
+    if row.result is None:
+        return problems.answer(row.problem or problems.problem(problems.INTERNAL, "the job left no answer"))
     try:
-        return PiecesResponse(Pieces.of(store.read(sha)), request.app.state.pace)
-    except (ArtifactMissing, ArtifactDamaged) as error:
-        detail = f"the answer of job {job} was lost. Send the calculation again, or restore a backup"
-        raise CannotRebuild("answer_lost", detail) from error
+        stored = await run_in_threadpool(_stored, store, row)
+    except (ArtifactMissing, ArtifactDamaged) as lost:
+        if unavailable := await _calculated_again(answering.jobs, row, client, prefer, lost.sha):
+            return unavailable
+        stored = await run_in_threadpool(_stored, store, await run_in_threadpool(_calculation, jobs, job))
+    return PiecesResponse(stored, request.app.state.pace)
+
+
+async def _calculated_again(
+    calculations: CalculationJobs, row: Job, client: str, prefer: str | None, sha: str
+) -> Response | None:
+    """None once the job has its answer again; else what to send in its place."""
+    jobs = calculations.jobs
+    again = await run_in_threadpool(calculations.request_again, row, client)
+    if not await finished(jobs, again, prefer):
+        return rebuilding(sha, again)
+    problem = await run_in_threadpool(jobs.problem, again)
+    return problems.answer(problem) if problem else None
+
+
+def _calculation(jobs: Jobs, id: str) -> Job:
+    """The job, if its result is an answer; raises JobNotFound."""
+    row = jobs.get(id)
+    if row.kind not in (CALCULATION, PREVIEW):
+        raise JobNotFound(id)
+    return row
+
+
+def _stored(store: ArtifactStore, row: Job) -> Pieces:
+    """The answer from the store; raises ArtifactMissing, ArtifactDamaged."""
+    assert row.result is not None
+    return Pieces.of(store.read(row.result.rpartition("sha256=")[2]))

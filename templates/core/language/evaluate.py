@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array
-from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name, unknown_names
 from templates.core.language.admission import absence
 from templates.core.language.intake import Input, remarks
 from templates.core.language.ledger import Notice
 from templates.core.language.levels import Rung, accuracy, at_level, climb
+from templates.core.language.request import read_request
 from templates.core.language.spec import Choice, Derived, Formula, Given, Profile, Text
 from templates.core.language.template import Template
-from templates.core.units.quantity import Typed, Unit, require_same_kind
+from templates.core.units.quantity import Typed, Unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,10 +82,8 @@ def evaluate(
         Naming everything that is wrong with the request at once, or the result that is out of its domain.
     """
     start = time.perf_counter()
-    names = list(cls.formulas) if outputs is None else list(outputs)
-    faults: list[Fault] = []
-    shown_in = _units(cls, units or {}, faults)
-    template = checked(cls, raw, names, level, faults)
+    request = read_request(cls, raw, outputs, units, level)
+    template, names, shown_in = request.template, request.names, request.shown_in
     with np.errstate(all="ignore"):
         rungs = _rungs(template, names, level, tolerance)
         parts = [_part(rung.template, names, shown_in) for rung in rungs]
@@ -98,39 +96,6 @@ def evaluate(
     notices = [*_standing(cls), *_noticed(rungs), *_unmet(cls, whole, names, tolerance)]
     seconds = time.perf_counter() - start
     return Evaluation(rungs[0].template, echoes, whole.answers, whole.level, whole.error, notices, seconds)
-
-
-def checked(
-    cls: type[Template],
-    raw: Mapping[str, Any],
-    outputs: Iterable[str] = (),
-    level: str | None = None,
-    others: Iterable[Fault] = (),
-) -> Template:
-    """The template with its inputs read and checked, before any formula runs.
-
-    Raises
-    ------
-    InvalidInputs
-        Naming everything that is wrong with the request, with the faults that were found before (`others`).
-    """
-    faults = unknown_names((name for name in outputs if name not in cls.formulas), cls.formulas, "output")
-    faults += [*others, *_level_faults(cls, level)]
-    try:
-        template = cls.from_quantities(raw)
-    except InvalidInputs as error:
-        raise InvalidInputs([*faults, *error.faults]) from None
-    if faults:
-        raise InvalidInputs(faults)
-    return template
-
-
-def _level_faults(cls: type[Template], level: str | None) -> list[Fault]:
-    if level is None or level in cls.levels:
-        return []
-    if not cls.levels:
-        return [Fault("level", "unknown_name", f"{cls.id} {cls.version} has one level only; leave it out")]
-    return [unknown_name(level, cls.levels, "level").within("level")]
 
 
 @dataclass(frozen=True)
@@ -184,22 +149,6 @@ def _scattered(
     for rung, value in zip(rungs, values, strict=True):
         whole[rung.where] = value
     return whole
-
-
-def _units(cls: type[Template], units: Mapping[str, str], faults: list[Fault]) -> dict[str, Unit]:
-    shown: dict[str, Unit] = {}
-    if not units:
-        return shown
-    unknown = unknown_names((name for name in units if name not in cls.formulas), cls.formulas, "output")
-    faults += [fault.within("units") for fault in unknown]
-    for name, text in units.items():
-        if name not in cls.formulas:
-            continue
-        try:
-            shown[name] = require_same_kind(text, cls.formulas[name].meaning.unit)
-        except FaultyText as error:
-            faults.append(error.fault(f"units.{name}"))
-    return shown
 
 
 def _answer(template: Template, formula: Formula[Any], shown_in: Unit | None) -> Answer:

@@ -17,6 +17,7 @@ from templates.core.errors import Fault, FaultyText, InvalidInputs, Unreachable,
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.intake import Input, is_single
 from templates.core.language.ledger import Notice
+from templates.core.language.request import read_options
 from templates.core.language.spec import Choice, Curve, Formula, Profile, Table, Text
 from templates.core.language.template import Template
 from templates.core.units.quantity import Typed, read
@@ -57,7 +58,7 @@ def solve(
     Unreachable
         If no value between the bounds gives the target, with the range that is reachable.
     """
-    declared, (low, high), formula, wanted = _question(cls, raw, unknown, bounds, target)
+    declared, (low, high), formula, wanted = read_question(cls, raw, unknown, bounds, target, **options)
     fidelity: dict[str, Any] = {name: options[name] for name in ("level", "tolerance") if name in options}
     asked = _Curve(cls, dict(raw), declared, formula, wanted, fidelity)
     curve = replace(asked, fidelity=_cheap(cls, fidelity))
@@ -81,15 +82,24 @@ def _cheap(cls: type[Template], fidelity: dict[str, Any]) -> dict[str, Any]:
     return {"level": cls.default_level}
 
 
-def _question(
+def read_question(
     cls: type[Template],
     raw: Mapping[str, Any],
     unknown: str,
     bounds: Sequence[Any],
     target: Mapping[str, Any],
+    *,
+    tolerance: float | None = None,
+    **names: Any,
 ) -> tuple[Input, tuple[float, float], Formula[Any], float]:
-    """The declarations and SI values that the question is about; everything wrong with it at once."""
-    faults: list[Fault] = []
+    """Return the declarations and SI values that the question is about; `names` go to `read_options`.
+
+    Raises
+    ------
+    InvalidInputs
+        Naming everything that is wrong with the question at once.
+    """
+    *_, faults = read_options(cls, **names)
     declared, formula = _unknown(cls, unknown, faults), None
     if unknown in raw:
         faults.append(Fault(f"inputs.{unknown}", "solved_for", "this input is solved for; leave it out"))

@@ -1,0 +1,91 @@
+"""What a request asks of a template, checked as a whole before any formula runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name, unknown_names
+from templates.core.language.levels import at_level
+from templates.core.language.template import Template
+from templates.core.units.quantity import Unit, require_same_kind
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A request in which nothing is wrong: inputs, names of outputs, units in which some are shown."""
+
+    template: Template
+    names: list[str]
+    shown_in: Mapping[str, Unit]
+
+
+def read_request(
+    cls: type[Template],
+    raw: Mapping[str, Any],
+    outputs: Iterable[str] | None = None,
+    units: Mapping[str, str] | None = None,
+    level: str | None = None,
+) -> Request:
+    """Read inputs as a user types them, and the names of what is asked for.
+
+    Raises
+    ------
+    InvalidInputs
+        Naming everything that is wrong at once.
+    """
+    names, shown_in, faults = read_options(cls, outputs, units, level)
+    try:
+        template = cls.from_quantities(raw)
+    except InvalidInputs as error:
+        raise InvalidInputs([*faults, *error.faults]) from None
+    if faults:
+        raise InvalidInputs(faults)
+    return Request(template, names, shown_in)
+
+
+def require_points(template: Template, level: str | None, tolerance: float | None) -> None:
+    """Return if the level that will be calculated takes as many points; raises InvalidInputs.
+
+    With a tolerance the level of each point follows from the calculation, so there is nothing to check.
+    """
+    if template.levels and (level is not None or tolerance is None):
+        at_level(template, level or template.starting_level())
+
+
+def read_options(
+    cls: type[Template],
+    outputs: Iterable[str] | None = None,
+    units: Mapping[str, str] | None = None,
+    level: str | None = None,
+) -> tuple[list[str], dict[str, Unit], list[Fault]]:
+    """Return the outputs asked for, their units, and all that is wrong with these and with the level."""
+    names = list(cls.formulas) if outputs is None else list(outputs)
+    faults = unknown_names((name for name in names if name not in cls.formulas), cls.formulas, "output")
+    shown_in = _units(cls, units or {}, faults)
+    return names, shown_in, faults + _level_faults(cls, level)
+
+
+def _level_faults(cls: type[Template], level: str | None) -> list[Fault]:
+    if level is None or level in cls.levels:
+        return []
+    if not cls.levels:
+        return [Fault("level", "unknown_name", f"{cls.id} {cls.version} has one level only; leave it out")]
+    return [unknown_name(level, cls.levels, "level").within("level")]
+
+
+def _units(cls: type[Template], units: Mapping[str, str], faults: list[Fault]) -> dict[str, Unit]:
+    shown: dict[str, Unit] = {}
+    if not units:
+        return shown
+    unknown = unknown_names((name for name in units if name not in cls.formulas), cls.formulas, "output")
+    faults += [fault.within("units") for fault in unknown]
+    for name, text in units.items():
+        if name not in cls.formulas:
+            continue
+        try:
+            shown[name] = require_same_kind(text, cls.formulas[name].meaning.unit)
+        except FaultyText as error:
+            faults.append(error.fault(f"units.{name}"))
+    return shown
