@@ -166,7 +166,9 @@ class Writer:
             case ast.Pow():
                 return f"{self._in(node.left, ATOM)}^{{{self.write(node.right)[0]}}}", POWER
             case ast.Mult():
-                return f"{self._in(node.left, PRODUCT)}{self.times}{self._in(node.right, PRODUCT)}", PRODUCT
+                left, right = self._in(node.left, PRODUCT), self._in(node.right, PRODUCT)
+                times = r"\cdot " if right[0].isdigit() else self.times  # "2 3" reads as one number
+                return f"{left}{times}{right}", PRODUCT
             case ast.Add():
                 return f"{self._in(node.left, SUM)}+{self._in(node.right, SUM)}", SUM
             case ast.Sub():
