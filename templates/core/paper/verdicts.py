@@ -62,22 +62,22 @@ def _of_bounds(template: Template, declared: Declaration, meaning: Meaning, valu
         ("domain", meaning.domain, meaning.domain_si),
         ("published", meaning.published, meaning.published_si),
     )
-    for kind, told, si in kinds:
-        if si is None or not any((told.gt, told.ge, told.lt is not None, told.le is not None)):
+    for kind, bounds, si in kinds:
+        if si is None or not any((bounds.gt, bounds.ge, bounds.lt is not None, bounds.le is not None)):
             continue
-        known = np.asarray(value)[np.isfinite(value)]
-        inside = np.asarray(si.admits(known))
+        present = np.asarray(value)[np.isfinite(value)]
+        inside = np.asarray(si.admits(present))
         numbers = shown(template, declared.attribute, {}, absolute=True) if np.ndim(value) == 0 else ""
         yield Check(
             name=declared.name,
             words=meaning.words,
             kind=kind,
-            demand=_demanded(symbol(declared), told, meaning.unit),
+            demand=_demanded(symbol(declared), bounds, meaning.unit),
             numbers=numbers and f"{symbol(declared)}={numbers}",
-            used=None if meaning.scale.absolute else _share_of(si, known),
+            used=None if meaning.scale.absolute else _share_of(si, present),
             holds=bool(inside.all()),
             broken=int((~inside).sum()),
-            points=known.size,
+            points=present.size,
             source=meaning.source,
         )
 
@@ -128,10 +128,9 @@ def _written(template: Template, comparison: Comparison) -> tuple[str, str]:
     if left.node is None or right.node is None or _misleads(template, left, right):
         return "", ""
     names = symbols(type(template))
-    used = {
-        n.attr for side in (left.node, right.node) for n in ast.walk(side) if isinstance(n, ast.Attribute)
-    }
-    values = {attribute: shown(template, attribute, {}) for attribute in used & names.keys()}
+    nodes = (node for side in (left.node, right.node) for node in ast.walk(side))
+    used = {node.attr for node in nodes if isinstance(node, ast.Attribute)} & names.keys()
+    values = {attribute: shown(template, attribute, {}) for attribute in used}
     demand = _joined(template, comparison, names, r"\,")
     return demand, _joined(template, comparison, values, r"\cdot ") if all(values.values()) else ""
 
@@ -140,15 +139,19 @@ def _joined(template: Template, comparison: Comparison, texts: Mapping[str, str]
     attributes = {name: (text, 1 if r"\," in text else 3) for name, text in texts.items()}
     writer = Writer({}, attributes, {}, times)
     left, right = comparison.left, comparison.right
-    return f"{_side(template, writer, left, right)}{_SIGNS[comparison.sign]}{_side(template, writer, right, left)}"
+    written = _side(template, writer, left, right), _side(template, writer, right, left)
+    return _SIGNS[comparison.sign].join(written)
 
 
 def _side(template: Template, writer: Writer, side: Operand, other: Operand) -> str:
     """One side; a number in the unit of the input or output with which it is compared."""
     scale = _scale(template, other)
     if not side.constant or scale is None or scale.text == "1":
+        assert side.node is not None
         return writer.write(side.node)[0]
-    return amount(side.constant, "K") if scale.absolute else amount(scale.from_si(side.constant), scale.text)
+    if scale.absolute:
+        return amount(side.constant, "K")
+    return amount(float(scale.from_si(side.constant)), scale.text)
 
 
 def _scale(template: Template, side: Operand) -> Unit | None:
