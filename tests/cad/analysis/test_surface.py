@@ -7,7 +7,7 @@ import pytest
 from cadquery import Shape, Workplane
 from test_torsion_analytic import mirrored
 
-from cad.analysis.analyse import Asked, analyse
+from cad.analysis.analyse import AnalysisRequest, analyse
 from cad.analysis.elastic import System, respond
 from cad.analysis.kinds import KINDS, Kind
 from cad.analysis.mesh import Fineness, Grid, make_grid
@@ -132,10 +132,14 @@ def test_a_half_with_its_image_is_the_mirrored_mesh() -> None:
 def test_it_is_found_only_by_name_and_told_with_units() -> None:
     """Of a level alone; by a tolerance at the level at which the stiffness meets it."""
     shaft, seen_at = Shaft(0.0, LENGTH), []
-    for asked in (Asked(level="coarse"), Asked("bending", level="coarse"), Asked(tolerance=0.05)):
+    for asked in (
+        AnalysisRequest(level="coarse"),
+        AnalysisRequest("bending", level="coarse"),
+        AnalysisRequest(tolerance=0.05),
+    ):
         found = analyse(ROUND, shaft, asked, ["surface"], lambda done, what: None).outputs
         assert found.keys() == {"surface"}
-        told = found["surface"]["value"].told()
+        told = found["surface"]["value"].as_json()
         units = {name: part["unit"] for name, part in told.items() if name not in ("load", "triangles")}
         twist = {"twist": "deg"} if asked.load == "torsion" else {}
         assert units == {"points": "mm", "displacement": "mm", **twist, "stress": "MPa"}
@@ -144,5 +148,7 @@ def test_it_is_found_only_by_name_and_told_with_units() -> None:
         assert found["surface"]["mesh"]["degrees_of_freedom"] > 0
         seen_at.append(told["load"])
     assert seen_at == ["a torque of 1 N*m about z", "a moment of 1 N*m about y", "a torque of 1 N*m about z"]
-    both = analyse(ROUND, shaft, Asked(level="coarse"), ["stiffness", "surface"], lambda done, what: None)
+    both = analyse(
+        ROUND, shaft, AnalysisRequest(level="coarse"), ["stiffness", "surface"], lambda done, what: None
+    )
     assert both.outputs["stiffness"]["mesh"] == both.outputs["surface"]["mesh"]
