@@ -51,7 +51,7 @@ def show_accuracy(id: Id, number: Number, catalogues: TheCatalogues) -> dict[str
     measured = accuracy(cls)
     if measured is None:
         raise UnknownTemplate(id, f"the error of {id} version {number} is not measured")
-    return measured.told
+    return measured.content
 
 
 def summary(cls: type[Template], catalogue: Catalogue[Any]) -> dict[str, Any]:

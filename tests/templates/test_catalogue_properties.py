@@ -18,7 +18,7 @@ from templates.core.catalogue.digests import digests, release_file
 from templates.core.catalogue.finding import find
 from templates.core.errors import InvalidInputs
 from templates.core.language import dimensions
-from templates.core.language.evaluate import evaluate, is_told
+from templates.core.language.evaluate import evaluate, is_reported
 from templates.core.language.intake import is_single
 from templates.core.language.spec import Choice, Curve, Derived, Given, Profile, Text
 from templates.core.language.template import Template
@@ -47,8 +47,8 @@ def as_typed(declared, value):
 
 def example_si(cls):
     template = cls.from_quantities(cls.example)
-    told = {name: declared for name, declared in cls.inputs.items() if is_told(template, declared)}
-    return {name: getattr(template, declared.attribute) for name, declared in told.items()}
+    reported = {name: declared for name, declared in cls.inputs.items() if is_reported(template, declared)}
+    return {name: getattr(template, declared.attribute) for name, declared in reported.items()}
 
 
 class TestDeclarations:

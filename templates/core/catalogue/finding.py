@@ -43,12 +43,12 @@ class Catalogue(Generic[T]):
         UnknownTemplate
             If there is none.
         """
-        found = {version: cls for (name, version), cls in sorted(self.versions.items()) if name == id}
-        if not found:
+        classes = {version: cls for (name, version), cls in sorted(self.versions.items()) if name == id}
+        if not classes:
             raise UnknownTemplate(
                 id, f"there is no {self.kind} {plain(id)!r}; there are {', '.join(self.ids)}"
             )
-        return found
+        return classes
 
     def get(self, id: str, version: int) -> type[T]:
         """One version of one id.
@@ -60,8 +60,8 @@ class Catalogue(Generic[T]):
         """
         versions = self.of(id)
         if version not in versions:
-            known = ", ".join(map(str, versions))
-            raise UnknownTemplate(id, f"{self.kind} {id} has no version {version}; it has {known}")
+            listing = ", ".join(map(str, versions))
+            raise UnknownTemplate(id, f"{self.kind} {id} has no version {version}; it has {listing}")
         return versions[version]
 
     def latest(self, id: str) -> type[T]:
@@ -149,11 +149,11 @@ def _usable(path: Path) -> ModuleType:
 
 
 def _declared_in(module: ModuleType, path: Path) -> type[Template]:
-    found = [
+    classes = [
         value
         for value in vars(module).values()
         if isinstance(value, type) and issubclass(value, Template) and value.__module__ == module.__name__
     ]
-    if len(found) != 1:
-        raise UnusableFile(str(path), f"it declares {len(found)} templates; it must declare one")
-    return found[0]
+    if len(classes) != 1:
+        raise UnusableFile(str(path), f"it declares {len(classes)} templates; it must declare one")
+    return classes[0]

@@ -97,7 +97,9 @@ def evaluate(
         parts = [_part(rung.template, names, shown_in) for rung in rungs]
         whole = parts[0] if rungs[0].where is None else _joined(rungs, parts)
         echoes = {
-            n: _echo(template, declared) for n, declared in cls.inputs.items() if is_told(template, declared)
+            n: _echo(template, declared)
+            for n, declared in cls.inputs.items()
+            if is_reported(template, declared)
         }
     notices = [*_standing(cls), *_noticed(rungs), *_unmet(cls, whole, names, tolerance)]
     seconds = time.perf_counter() - start
@@ -198,15 +200,15 @@ def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
     if isinstance(value, str):
         return Answer(value or None, None, reason=None if value else why)
     beneath = template.depends_on(formula.attribute)
-    masks = [m for m in template.ledger.masks if not (m.tells or beneath.isdisjoint(m.names))]
+    masks = [m for m in template.ledger.masks if not (m.explains or beneath.isdisjoint(m.names))]
     shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), value.shape)
-    told = np.broadcast_to(value, shape).astype(object)
+    texts = np.broadcast_to(value, shape).astype(object)
     reasons = np.full(shape, None, dtype=object)
-    reasons[told == ""] = why
+    reasons[texts == ""] = why
     for mask in reversed(masks):
         reasons[np.broadcast_to(mask.where, shape)] = mask.reason
-    told[reasons != None] = None  # noqa: E711
-    return Answer(told, None, reasons=reasons if reasons.any() else None)
+    texts[reasons != None] = None  # noqa: E711
+    return Answer(texts, None, reasons=reasons if reasons.any() else None)
 
 
 def _with_reasons(
@@ -223,7 +225,7 @@ def _with_reasons(
         return si, None
     points = si.shape[: -profile.axes] if profile else si.shape
     shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), points)
-    covering = (mask.where for mask in masks if not mask.tells)
+    covering = (mask.where for mask in masks if not mask.explains)
     covered = reduce(np.logical_or, covering, np.zeros(shape, dtype=bool))
     value = np.where(profile.spread(covered) if profile else covered, np.nan, si)
     holes = ~profile.inside(~np.isnan(value)) if profile else np.isnan(value)
@@ -234,7 +236,7 @@ def _with_reasons(
     return value, reasons
 
 
-def is_told(template: Template, declared: Input) -> bool:
+def is_reported(template: Template, declared: Input) -> bool:
     """Whether an input is worth telling: given, or with a default that exists and is no output anyway."""
     if declared.name in template.ledger.typed:
         return True

@@ -1,4 +1,4 @@
-"""From what a user typed to the SI values of a template; everything that is wrong is found at once."""
+"""From what a user typed to the SI values of a template; all faults are collected before any is reported."""
 
 from __future__ import annotations
 
@@ -39,7 +39,9 @@ def read_inputs(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, 
 
 def _read_one(declared: Input, raw: Any) -> Typed | str:
     if isinstance(declared, Choice):
-        option = raw["value"] if isinstance(raw, dict) and raw.keys() == {"value"} else raw  # as it is told
+        option = (
+            raw["value"] if isinstance(raw, dict) and raw.keys() == {"value"} else raw
+        )  # as answers write it
         if isinstance(option, str) and option in declared.options:
             return option
         raise FaultyText("not_an_option", f"{excerpt(raw)} is none of {', '.join(declared.options)}")
@@ -163,9 +165,9 @@ def check_shapes(self: Template) -> None:
             )
     except ValueError:
         names = {self.declarations[n].name: v.shape for n, v in arrays.items()}
-        told = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
+        shapes = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
         detail = (
-            f"arrays of different shapes do not fit together ({told}); give equal lengths or a single value"
+            f"arrays of different shapes do not fit together ({shapes}); give equal lengths or a single value"
         )
         raise InvalidInputs([Fault(name, "shape", detail) for name in names]) from None
 
@@ -196,8 +198,8 @@ def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
             names = tuple(self.inputs[name].attribute for name in rule.names)
             self.ledger.masks.append(Mask(names, ~holds, f"{rule.sentence}: {rule.remedy}"))
     elif not holds:
-        told = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in rule.names)
-        detail = f"{rule.sentence}, but {told}; {rule.remedy}"
+        values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in rule.names)
+        detail = f"{rule.sentence}, but {values}; {rule.remedy}"
         yield from (Fault(name, "inconsistent", detail) for name in rule.names)
 
 
@@ -215,5 +217,5 @@ def _shown(self: Template, declared: Declaration) -> str:
     if isinstance(value, tuple):
         return str([[float(f"{declared.meaning.scale.from_si(v):.6g}") for v in row] for row in value])
     if np.ndim(value):
-        return f"{np.shape(value)[-1]} values from {declared.meaning.told(value.flat[0])}"
-    return "not given" if np.isnan(value) else declared.meaning.told(value)
+        return f"{np.shape(value)[-1]} values from {declared.meaning.with_unit(value.flat[0])}"
+    return "not given" if np.isnan(value) else declared.meaning.with_unit(value)

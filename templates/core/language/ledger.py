@@ -29,7 +29,7 @@ class Mask:
     names: tuple[str, ...]
     where: NDArray[np.bool_]
     reason: str
-    tells: bool = False
+    explains: bool = False
 
 
 @dataclass

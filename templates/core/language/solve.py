@@ -67,10 +67,10 @@ def solve(
         raise curve.unreachable(grid, residual)
     unit = declared.meaning.unit
     root = roots[0] if curve == asked else asked.polished(roots[0], curve)
-    found = float(declared.meaning.scale.from_si(root))
-    evaluation = evaluate(cls, {**raw, unknown: {"value": found, "unit": unit}}, **options)
+    value = float(declared.meaning.scale.from_si(root))
+    evaluation = evaluate(cls, {**raw, unknown: {"value": value, "unit": unit}}, **options)
     return Solution(
-        found, unit, evaluation, [*_not_monotone(declared, formula, residual), *_others(declared, roots)]
+        value, unit, evaluation, [*_not_monotone(declared, formula, residual), *_others(declared, roots)]
     )
 
 
@@ -115,8 +115,8 @@ def _unknown(cls: type[Template], name: str, faults: list[Fault]) -> Input | Non
     """The declaration of the unknown, if it is a quantity that can take any value."""
     declared = cls.inputs.get(name)
     if declared is None:
-        known = unknown_name(name, _solvable(cls), "input")
-        faults.append(Fault("unknown", known.code, known.detail))
+        fault = unknown_name(name, _solvable(cls), "input")
+        faults.append(Fault("unknown", fault.code, fault.detail))
     elif name not in _solvable(cls):
         detail = f"{name} takes no continuous values; one of {', '.join(_solvable(cls))} can be solved for"
         faults.append(Fault("unknown", "not_solvable", detail))
@@ -220,8 +220,8 @@ class _Curve:
         for _ in range(ROUNDS):
             residual = self.residual(grid)
             edge = np.isnan(residual[:-1]) != np.isnan(residual[1:])
-            found = np.flatnonzero(edge | _crosses(residual))[:INTERVALS]
-            fine = (np.linspace(grid[i], grid[i + 1], FINER) for i in found)
+            intervals = np.flatnonzero(edge | _crosses(residual))[:INTERVALS]
+            fine = (np.linspace(grid[i], grid[i + 1], FINER) for i in intervals)
             grid = np.unique(np.concatenate([grid, *fine]))
         return grid, self.residual(grid)
 
@@ -257,7 +257,10 @@ class _Curve:
             return Unreachable(name, detail, (np.nan, np.nan), meaning.unit)
         ends = np.nanmin(residual) + self.wanted, np.nanmax(residual) + self.wanted
         low, high = (float(meaning.scale.from_si(end)) for end in ends)
-        shown, target = f"{meaning.told(ends[0])} … {meaning.told(ends[1])}", meaning.told(self.wanted)
+        shown, target = (
+            f"{meaning.with_unit(ends[0])} … {meaning.with_unit(ends[1])}",
+            meaning.with_unit(self.wanted),
+        )
         if ends[0] < self.wanted < ends[1]:
             detail = (
                 f"{target} lies in a jump of {name}, or where it has no value: no input gives exactly this"
@@ -268,8 +271,8 @@ class _Curve:
 
 
 def _not_monotone(declared: Input, formula: Formula[Any], residual: Array) -> list[Notice]:
-    known = residual[np.isfinite(residual)]
-    steps, rounding = np.diff(known), 1e-12 * np.max(np.abs(known), initial=0.0)
+    finite = residual[np.isfinite(residual)]
+    steps, rounding = np.diff(finite), 1e-12 * np.max(np.abs(finite), initial=0.0)
     if (steps >= -rounding).all() or (steps <= rounding).all():
         return []
     detail = f"{formula.name} is not monotone in {declared.name} between the bounds, in this version"
@@ -279,6 +282,6 @@ def _not_monotone(declared: Input, formula: Formula[Any], residual: Array) -> li
 def _others(declared: Input, roots: list[float]) -> list[Notice]:
     if len(roots) == 1:
         return []
-    others = ", ".join(declared.meaning.told(root) for root in roots[1:5])
+    others = ", ".join(declared.meaning.with_unit(root) for root in roots[1:5])
     detail = f"{others} give the target too; the lowest is returned"
     return [Notice("several_solutions", declared.name, detail)]

@@ -93,8 +93,8 @@ class Template:
         everything = {name: v for base in reversed(cls.__mro__) for name, v in vars(base).items()}
         declared = {name: v for name, v in everything.items() if isinstance(v, Declaration)}
         if reserved := sorted(name for name in declared if name in cls._own_words()):
-            told = ", ".join(reserved)
-            raise TypeError(f"{cls.__name__}: {told} has a meaning in every template; name it otherwise")
+            names = ", ".join(reserved)
+            raise TypeError(f"{cls.__name__}: {names} has a meaning in every template; name it otherwise")
         cls.declarations, cls._ancestry = declared, {}
         named = by_name(declared)
         cls.inputs = {name: v for name, v in named.items() if isinstance(v, (Given, Choice, Derived))}
@@ -252,11 +252,11 @@ class Template:
 
     @classmethod
     def _beneath(cls, attribute: str) -> Iterator[str]:
-        found, waiting = {attribute}, [attribute]
+        attributes, waiting = {attribute}, [attribute]
         while waiting:
             yield (name := waiting.pop())
-            new = dict.fromkeys(n for n in getattr(cls._node(name), "uses", ()) if n not in found)
-            found |= new.keys()
+            new = dict.fromkeys(n for n in getattr(cls._node(name), "uses", ()) if n not in attributes)
+            attributes |= new.keys()
             waiting += new
 
     def inputs_si(self) -> dict[str, Any]:

@@ -142,8 +142,8 @@ def fed_film(So: float, ratio: float, feed: Feed) -> FedFilm | None:
     smallest = 0.0 if feed.pressure > 0 else float(mapped_load(np.array(_SMALLEST), np.array(ratio)))
     search = Search(max(So, smallest), ratio, feed)
     try:
-        found = search.found()
-        film = None if found is None else search.extrapolated(*found)
+        balance = search.balance()
+        film = None if balance is None else search.extrapolated(*balance)
     except (ArithmeticError, ValueError, RuntimeError):  # the last two: a singular matrix
         return None
     return film if film is None or So >= smallest else replace(film, eps=film.eps * So / smallest)
@@ -160,7 +160,7 @@ class Search:
     feed: Feed
     """Grooves, which stand still, or none: then the line that feeds turns with the journal."""
 
-    def found(self) -> tuple[Place, SolvedRing] | None:
+    def balance(self) -> tuple[Place, SolvedRing] | None:
         """The place and its film on the coarse mesh, by Newton's method; steps are halved when it turns back.
 
         The mesh follows the grooves, so that the force has steps; where the search hunts about one, the place

@@ -41,9 +41,9 @@ def valves_in_order(io: Array, ic: Array, eo: Array, ec: Array) -> Truth:
 @units(None, None, returns="1")
 def burns_before_exhaust(name: str, gas: Callable[[], GasCycle]) -> Truth:
     """Whether combustion ends before the exhaust opens; what is not given is told by other rules."""
-    if name not in POLYTROPIC or not isinstance(made := gas(), Polytropic):
+    if name not in POLYTROPIC or not isinstance(cycle := gas(), Polytropic):
         return True
-    return ~(made.v_cut >= made.v_opened)
+    return ~(cycle.v_cut >= cycle.v_opened)
 
 
 @units(None, returns="1")

@@ -161,13 +161,13 @@ def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: i
         return
     ring, own = ring_of(load.of(part), finer)
     e, settled, error = _nested(ring, law.of(part))
-    found = np.flatnonzero(part)[settled]
+    cases = np.flatnonzero(part)[settled]
     gap = 1 - np.hypot(*e[:, settled])
     place = gap.argmin(axis=-1)
-    whole.eps[:, found] = e[:, settled][..., own]
-    whole.least_gap[found] = gap[np.arange(found.size), place]
-    whole.least_angle[found] = ring.place[place]
-    whole.step_error[found] = error[settled]
+    whole.eps[:, cases] = e[:, settled][..., own]
+    whole.least_gap[cases] = gap[np.arange(cases.size), place]
+    whole.least_angle[cases] = ring.place[place]
+    whole.step_error[cases] = error[settled]
 
 
 def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array]:
@@ -179,13 +179,13 @@ def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array]:
     error = np.full(settled.shape, np.nan)
     while stride > 1:
         stride //= 2
-        coarse, known = e, settled
+        coarse, settled_before = e, settled
         finer, tolerance = ring.every(stride), _ROUGH if stride > 1 else TOLERANCE
-        start = np.where(known[:, None], _halved(coarse, finer.place.size), 0.0)
-        e, settled = _settled(finer, law, start, tolerance, known | (stride <= _LAST))
+        start = np.where(settled_before[:, None], _halved(coarse, finer.place.size), 0.0)
+        e, settled = _settled(finer, law, start, tolerance, settled_before | (stride <= _LAST))
         shared = 1 - np.hypot(*e[..., ::2]).max(axis=-1)
         change = shared - (1 - np.hypot(*coarse).max(axis=-1))
-        error = np.where(known, np.abs(change) / (3 * shared), np.nan)
+        error = np.where(settled_before, np.abs(change) / (3 * shared), np.nan)
     return e, settled, error
 
 

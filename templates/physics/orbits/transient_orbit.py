@@ -119,10 +119,10 @@ def _next(journal: Journal, states: list[State], S: Array, w: float, step: float
             return after
     part, after = step / _SUBSTEPS, here
     for _ in range(_SUBSTEPS):
-        found = stepped(journal, after, S, w, 1 / part, -after.content / part)
-        if found is None:
+        advanced = stepped(journal, after, S, w, 1 / part, -after.content / part)
+        if advanced is None:
             return None
-        after = found
+        after = advanced
     return after
 
 

@@ -108,5 +108,5 @@ def is_below(one: Array, other: Array) -> Any:
 @units("1", "Pa", returns="1")
 def life_in_words(cycles: Array, amplitude: Array) -> Any:
     """Whether a life is finite or endless; empty where the amplitude [Pa] means nothing."""
-    told = np.select([np.isnan(amplitude), np.isnan(cycles)], ["", "endless"], "finite")
-    return told if told.ndim else str(told)
+    words = np.select([np.isnan(amplitude), np.isnan(cycles)], ["", "endless"], "finite")
+    return words if words.ndim else str(words)

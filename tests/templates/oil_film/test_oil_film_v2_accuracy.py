@@ -91,7 +91,7 @@ class TestTolerance:
         assert np.isnan(made.error["density"])
 
     def test_property_cost_rises_with_the_ladder(self):
-        cost = [about["cost"]["vectorised"] for about in accuracy(OilFilm).told["levels"].values()]
+        cost = [about["cost"]["vectorised"] for about in accuracy(OilFilm).content["levels"].values()]
         assert cost[0] < cost[2] < cost[3] < cost[4]
 
 
