@@ -1,4 +1,4 @@
-"""Whether a finished solid is the one asked for: OpenCASCADE calls wrong solids valid, these do not."""
+"""Whether a finished solid is the one requested: OpenCASCADE calls wrong solids valid, these do not."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def as_text(model: CadModel) -> dict[str, str]:
 
 
 def build_key(model: CadModel) -> str:
-    """What a build of this model is found by: SHA-256 of model, version, parameters, kernel and recipe."""
+    """The cache key of a build of this model: SHA-256 of model, version, parameters, kernel and recipe."""
     return _key(type(model), as_text(model))
 
 
@@ -82,7 +82,7 @@ def regenerate(
     InvalidInputs
         If parameters are out of range or against a rule; nothing was drawn then.
     GeometryError
-        If the kernel fails, or makes anything but what was asked for.
+        If the kernel fails, or makes anything but what was requested.
     """
     cls = models(*folders).get(model_id, version)
     texts = as_text(cls.from_si(parameters))

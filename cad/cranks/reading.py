@@ -1,7 +1,7 @@
 """The parameters of a crank, read back from the surfaces of the finished solid.
 
-Whatever is there is found by where it is, not by what it should measure: planes across the shaft tell the
-webs, cylinders about the shaft beyond the webs the journals and ends, other cylinders along it the pin.
+Each feature is recognised by its place, not by its expected size: planes across the shaft are the faces of
+webs, cylinders about the shaft beyond the webs are journals and ends, another cylinder along it is the pin.
 """
 
 from __future__ import annotations

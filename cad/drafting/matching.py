@@ -58,7 +58,7 @@ def matched(parameters: Mapping[str, str], measures: Sequence[Measure]) -> tuple
 
 
 def _clearest(fitting: Sequence[Measure], matches: Sequence[Dimension]) -> Measure:
-    """The first; of equal ones told within the view, that which is farthest from the others there."""
+    """The first; of equal ones drawn within the view, that which is farthest from the others there."""
     others = [d.measure.points[0] for d in matches if d.measure.form in _WITHIN]
     first = fitting[0]
     if first.form not in _WITHIN or not others:

@@ -1,4 +1,4 @@
-"""What can be dimensioned in the two views of a drawing: found on surfaces, whatever model they are of."""
+"""What can be dimensioned in the two views of a drawing, read from surfaces of any model."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """A drawing on its sheet as DXF: views, dimensions, table of parameters and title block, all in millimetres.
 
 The section stands at its true coordinates, everything is drawn 1:1, and the A3 sheet around it is as large as
-the scale asks; so a DIMENSION measures what the part measures. Each carries the name of its parameter.
+the scale requires; so a DIMENSION measures what the part measures. Each carries the name of its parameter.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ OUTSIDE = "_outside"
 
 @dataclass(frozen=True)
 class Catalogue(Generic[T]):
-    """All versions of all templates (or models) found; `kind` names them in messages."""
+    """All versions of all templates (or models) in the folders; `kind` names them in messages."""
 
     versions: dict[tuple[str, int], type[T]]
     kind: str = "template"

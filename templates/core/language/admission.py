@@ -8,7 +8,7 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.language.ledger import Ledger, Mask, Notice
+from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Declaration, Formula, Profile
 
 if TYPE_CHECKING:
@@ -67,12 +67,14 @@ def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
     return np.where(declaration.spread(inside) if isinstance(declaration, Profile) else inside, value, np.nan)
 
 
-def warn_if_outside(ledger: Ledger, declaration: Declaration, value: Any, level: str = "") -> None:
-    """Note a warning that names the limit where a value leaves its published range."""
+def outside_published(declaration: Declaration, value: Any, level: str = "") -> Notice | None:
+    """A warning that names the limit where a value leaves its published range; None where it does not."""
     meaning = declaration.meaning.at(level)
-    outside = ~np.isnan(value) & ~np.asarray(meaning.published_si.admits(value))  # type: ignore[union-attr]
+    if meaning.published_si is None:
+        return None
+    outside = ~np.isnan(value) & ~np.asarray(meaning.published_si.admits(value))
     if not outside.any():
-        return
+        return None
     if np.ndim(value):
         where = f"leaves it at {int(outside.sum())} of {outside.size} points"
     else:
@@ -81,4 +83,4 @@ def warn_if_outside(ledger: Ledger, declaration: Declaration, value: Any, level:
     remedy = f"; {meaning.remedy}" if meaning.remedy and meaning.domain.open else ""
     limits = meaning.published.text(meaning.unit)
     detail = f"published for {meaning.words} {limits}{source}; here it {where}{remedy}"
-    ledger.warnings.append(Notice("outside_published_range", declaration.name, detail))
+    return Notice("outside_published_range", declaration.name, detail)

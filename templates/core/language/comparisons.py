@@ -4,7 +4,7 @@ A rule reads the values of a template. Here it reads `Operand`s: values that als
 calculated. Where two are compared the result is an `Outcome`: a truth that also carries both sides. So a
 report can say how close each compared value is to its limit. Nothing reads the source of the rule.
 
-Rules combine truths by `&`, `|` and `~`. Where Python itself asks for a truth (`and`, `or`, `if`), it chooses
+Rules combine truths by `&`, `|` and `~`. Where Python itself needs a truth (`and`, `or`, `if`), it chooses
 what the rule returns, and only what the rule returns is recorded.
 """
 
@@ -146,7 +146,7 @@ def worst_share(small: Any, large: Any, where: Truth = True) -> float | None:
 
 @dataclass(frozen=True, eq=False)
 class Outcome(_Recording):
-    """A truth and what it follows from: one comparison, all or any of several outcomes, or nothing known."""
+    """A truth and what it follows from: one comparison, all or any of several outcomes, or unknown causes."""
 
     value: Any
     comparison: Comparison | None = None

@@ -1,4 +1,4 @@
-"""Evaluate a template: from a user's inputs to named answers, computing only what is asked for."""
+"""Evaluate a template: from a user's inputs to named answers, computing only the requested outputs."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def evaluate(
 ) -> Evaluation:
     """Evaluate the outputs named (all, if None) for inputs as a user types them.
 
-    `units` asks for outputs in other units. Arrays of inputs give arrays of outputs.
+    `units` names other units for outputs. Arrays of inputs give arrays of outputs.
 
     Raises
     ------
@@ -237,7 +237,7 @@ def _with_reasons(
 
 
 def is_reported(template: Template, declared: Input) -> bool:
-    """Whether an input is worth telling: given, or with a default that exists and is no output anyway."""
+    """Whether an answer reports an input: given, or with a default that exists and is no output anyway."""
     if declared.name in template.ledger.typed:
         return True
     if isinstance(declared, Derived):

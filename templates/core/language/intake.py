@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,8 +11,8 @@ from numpy.typing import NDArray
 
 from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_names
-from templates.core.language.admission import warn_if_outside
-from templates.core.language.ledger import Ledger, Mask, Notice
+from templates.core.language.admission import outside_published
+from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Requirement, Table
 from templates.core.units.quantity import Typed, read
 from templates.core.units.units import unit
@@ -55,26 +56,38 @@ def _example(declared: Input) -> str:
     return "; give a number" if scale == "1" else f"; give it in {scale} or its like"
 
 
-def admitted(
-    cls: type[Template], typed: Mapping[str, Typed | str], ledger: Ledger
-) -> tuple[dict[str, Any], list[Fault]]:
-    """The SI value of every input that was given or has a constant default, by attribute; and the faults."""
-    values: dict[str, Any] = {}
-    faults: list[Fault] = []
+@dataclass(frozen=True)
+class Intake:
+    """SI values of inputs by attribute, with the faults, masked points and warnings that came up."""
+
+    values: dict[str, Any] = field(default_factory=dict)
+    faults: list[Fault] = field(default_factory=list)
+    masks: list[Mask] = field(default_factory=list)
+    warnings: list[Notice] = field(default_factory=list)
+    missing: set[str] = field(default_factory=set)
+
+
+def admitted(cls: type[Template], typed: Mapping[str, Typed | str]) -> Intake:
+    """The SI value of every input that was given or has a constant default, and what is wrong with it."""
+    intake = Intake()
     for name, declared in cls.inputs.items():
         source = typed.get(name) or (None if isinstance(declared, Derived) else declared.default)
         if isinstance(source, Typed):
-            values[declared.attribute], fault = _bounded(declared, source, ledger)
-            faults += [fault] if fault else []
+            value, remark = _bounded(declared, source)
+            intake.values[declared.attribute] = value
+            intake.faults.extend([remark] if isinstance(remark, Fault) else [])
+            intake.masks.extend([remark] if isinstance(remark, Mask) else [])
+            warning = None if isinstance(declared, Table) else outside_published(declared, value)
+            intake.warnings.extend([warning] if warning else [])
         elif source is not None:
-            values[declared.attribute] = source
+            intake.values[declared.attribute] = source
         elif isinstance(declared, Given) and declared.optional:
-            ledger.missing |= set() if declared.alternative else {declared.attribute}
-            values[declared.attribute] = () if isinstance(declared, Table) else np.float64(np.nan)
-    return values, faults
+            intake.missing.update(set() if declared.alternative else {declared.attribute})
+            intake.values[declared.attribute] = () if isinstance(declared, Table) else np.float64(np.nan)
+    return intake
 
 
-def _bounded(declared: Input, typed: Typed, ledger: Ledger) -> tuple[Any, Fault | None]:
+def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:
     """The value and what is wrong with it; a faulty point of an array is masked, and is no fault."""
     if isinstance(declared, Table):
         return _rows(declared, typed.si)
@@ -82,14 +95,10 @@ def _bounded(declared: Input, typed: Typed, ledger: Ledger) -> tuple[Any, Fault 
         detail = f"{declared.meaning.words} is one value for all points: give a number, not an array"
         return np.float64(np.nan), Fault(declared.name, "not_single", detail)
     if isinstance(declared, Curve) and not (declared.constant and isinstance(typed.si, float)):
-        value, fault = _along_a_cycle(declared, typed)
-    elif isinstance(typed.si, np.ndarray):
-        value, fault = _mask_given(declared, typed.si, declared.meaning.admits(typed.si), ledger), None
-    else:
-        value, fault = _one_number(declared, typed)
-    if declared.meaning.published_si is not None:
-        warn_if_outside(ledger, declared, value)
-    return value, fault
+        return _along_a_cycle(declared, typed)
+    if isinstance(typed.si, np.ndarray):
+        return _masked_points(declared, typed.si, declared.meaning.admits(typed.si))
+    return _one_number(declared, typed)
 
 
 def _one_number(declared: Input, typed: Typed) -> tuple[np.float64, Fault | None]:
@@ -129,12 +138,13 @@ def _out_of_bounds(declared: Declaration, typed: Typed, inside: Any) -> Fault:
     return Fault(declared.name, "out_of_range", detail)
 
 
-def _mask_given(declared: Declaration, value: Array, inside: NDArray[np.bool_], ledger: Ledger) -> Array:
+def _masked_points(
+    declared: Declaration, value: Array, inside: NDArray[np.bool_]
+) -> tuple[Array, Mask | None]:
     if inside.all():
-        return value
+        return value, None
     reason = f"{declared.name} must be {declared.meaning.wanted}"
-    ledger.masks.append(Mask((declared.attribute,), ~inside, reason))
-    return np.where(inside, value, np.nan)
+    return np.where(inside, value, np.nan), Mask((declared.attribute,), ~inside, reason)
 
 
 def as_typed(cls: type[Template], name: str, value: Any) -> Any:
@@ -204,7 +214,7 @@ def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
 
 
 def remarks(self: Template) -> Iterator[Notice]:
-    """A warning for every rule that asks for no more than attention, where it does not hold."""
+    """A warning for every rule that refuses nothing, where it does not hold."""
     for rule in (rule for rule in self.requirements if rule.warning):
         if not np.all(rule.function(self)):
             yield from (Notice(rule.warning, name, f"{rule.sentence}; {rule.remedy}") for name in rule.names)

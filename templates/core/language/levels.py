@@ -34,7 +34,9 @@ class Accuracy:
 
     axes: tuple[str, str]  # attributes of the template
     grids: tuple[Array, Array]  # ascending edges of the cells
-    errors: dict[str, dict[str, Array]]  # by level and output: the largest found in each cell, NaN unmeasured
+    errors: dict[
+        str, dict[str, Array]
+    ]  # by level and output: the largest measured in each cell, NaN unmeasured
     content: dict[str, Any]  # the whole file, as it is served
 
     def of(self, template: Template, outputs: Iterable[str]) -> dict[str, Any]:

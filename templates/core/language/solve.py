@@ -23,13 +23,13 @@ from templates.core.units.quantity import Typed, read
 
 SAMPLES = 1025  # of the scan; cheap as one array call
 INTERVALS, FINER, ROUNDS = 20, 65, 5  # where something happens: so many intervals, in so many parts, so often
-POLISHES, POLISHED = 8, 1e-9  # steps at a dear level, and the relative miss with which they end
+POLISHES, POLISHED = 8, 1e-9  # steps at an expensive level, and the relative miss with which they end
 JUMP = 1e-6  # relative residual at a crossing beyond which it is a jump, not a solution
 
 
 @dataclass(frozen=True)
 class Solution:
-    """The value found [declared unit of the unknown], and the evaluation there."""
+    """The value of the solution [declared unit of the unknown], and the evaluation there."""
 
     unknown: float
     unit: str
@@ -47,7 +47,7 @@ def solve(
 ) -> Solution:
     """Find the input `unknown` between `bounds` for which the one output in `target` has its value.
 
-    `options` go to `evaluate`. Where several solutions exist the lowest is returned and a warning tells of
+    `options` go to `evaluate`. Where several solutions exist the lowest is returned and a warning names
     the others.
 
     Raises
@@ -59,14 +59,14 @@ def solve(
     """
     declared, (low, high), formula, wanted = _question(cls, raw, unknown, bounds, target)
     fidelity: dict[str, Any] = {name: options[name] for name in ("level", "tolerance") if name in options}
-    asked = _Curve(cls, dict(raw), declared, formula, wanted, fidelity)
-    curve = replace(asked, fidelity=_cheap(cls, fidelity))
+    requested = _Curve(cls, dict(raw), declared, formula, wanted, fidelity)
+    curve = replace(requested, fidelity=_cheap(cls, fidelity))
     grid, residual = curve.scan(low, high)
     roots = curve.roots(grid, residual)
     if not roots:
         raise curve.unreachable(grid, residual)
     unit = declared.meaning.unit
-    root = roots[0] if curve == asked else asked.polished(roots[0], curve)
+    root = roots[0] if curve == requested else requested.polished(roots[0], curve)
     value = float(declared.meaning.scale.from_si(root))
     evaluation = evaluate(cls, {**raw, unknown: {"value": value, "unit": unit}}, **options)
     return Solution(
@@ -75,7 +75,7 @@ def solve(
 
 
 def _cheap(cls: type[Template], fidelity: dict[str, Any]) -> dict[str, Any]:
-    """The fidelity of the scan: the one asked for, or the default level where that may take few points."""
+    """The fidelity of the scan: the one requested, or the default level where that may take few points."""
     if not cls.most_points or ((level := fidelity.get("level")) and level not in cls.most_points):
         return fidelity
     return {"level": cls.default_level}
@@ -214,7 +214,7 @@ class _Curve:
     def scan(self, low: float, high: float) -> tuple[Array, Array]:
         """Values of the unknown and their residuals; dense where the target is crossed or the domain ends.
 
-        So a jump is told from a crossing, and the end of the reachable range is found.
+        This separates a jump from a crossing, and locates the end of the reachable range.
         """
         grid = _grid(low, high)
         for _ in range(ROUNDS):
@@ -250,7 +250,7 @@ class _Curve:
         return root
 
     def unreachable(self, grid: Array, residual: Array) -> Unreachable:
-        """The error that tells what can be reached between the bounds, and why the target cannot."""
+        """The error that says what can be reached between the bounds, and why the target cannot."""
         meaning, name = self.formula.meaning, self.formula.name
         if np.isnan(residual).all():
             detail = f"{name} has no value anywhere between the bounds; give other bounds or inputs"

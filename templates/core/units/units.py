@@ -63,7 +63,7 @@ MOST_REMEMBERED = 20_000
 
 
 def forget_units() -> None:
-    """Keep what Pint remembers of units bounded: it keeps everything that it was ever asked for.
+    """Keep what Pint remembers of units bounded: it keeps every unit that it ever parsed.
 
     Call it where units come in that a user made up. What was forgotten is calculated again.
     """

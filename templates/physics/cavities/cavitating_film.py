@@ -73,7 +73,7 @@ def cavitating_film(
 def solved_ring(
     eps: float, ratio: float, grooves: list[Groove], ambient: float = 0.0, around: int = 128, across: int = 16
 ) -> SolvedRing:
-    """Solve the static film with cavities, from a coarse mesh to the one asked for.
+    """Solve the static film with cavities, from a coarse mesh to the requested one.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Static position of a journal in a mass-conserving film, from its load: eccentricity and attitude found.
+"""Static position of a journal in a mass-conserving film, from its load: eccentricity and attitude.
 
 The film is fed by a line at the widest gap, or by grooves that stand still relative to the load. Films are
 those of `cavitating_film`, searched for on 64 × 8 intervals and then extrapolated from twice as many, after
@@ -128,7 +128,7 @@ def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> t
 
 
 def fed_film(So: float, ratio: float, feed: Feed) -> FedFilm | None:
-    """Find the film that bears So; None if there is none or it is not found.
+    """Find the film that bears So; None if there is none or the search fails.
 
     Parameters
     ----------

@@ -123,7 +123,7 @@ class Running:
 
 @dataclass(frozen=True)
 class HeatBalance:
-    """The balance found; NaN where it was not asked for."""
+    """The balance; NaN where it was not requested."""
 
     T: Array
     """Film temperature [K]; infinite where there is no balance below 500 °C."""

@@ -140,7 +140,7 @@ def static_film_at(
 
 
 def _scattered(values: Array, valid: Mask) -> Array:
-    """Values of the known points among NaN; a single one as a number."""
+    """Values of the valid points among NaN; a single one as a number."""
     whole = np.full(valid.shape, np.nan)
     whole[valid] = values
     return whole[()]

@@ -94,7 +94,7 @@ class CycleOrbit:
     step_error: Array
     """Relative error of the smallest gap by the step, (...); NaN at level transient."""
     marched: TransientOrbit | None = None
-    """What was found by marching in time."""
+    """Results of marching in time."""
 
     def admitted(self, eps_max: Array) -> "CycleOrbit":
         """The same with NaN where the largest eccentricity was not admitted."""

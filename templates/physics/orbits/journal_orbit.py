@@ -7,7 +7,7 @@ theta is the crank angle, which turns with Omega; the load on the journal is lin
 film is massless and always full where it bears: what it was before is of no account. Every node of the cycle
 is solved for at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance
 of Newton's method and no cycles are run in. Second order in the step, 1° or less, and a quarter of that where
-the smallest gap would err by more than 0.2 per cent; the difference from twice the step tells the error.
+the smallest gap would err by more than 0.2 per cent; the difference from twice the step gives the error.
 
 References
 ----------
@@ -41,7 +41,7 @@ _THINNER, _LONGEST = 0.25, 0.7
 _STUCK = 0.1
 """A journal at the wall that moves less than this, over its gap, stays there."""
 ROUGHEST = 2e-3
-"""Relative error of the smallest gap by the step, beyond which the steps are made shorter [-]."""
+"""Relative error of the smallest gap by the step, beyond which the steps are shortened [-]."""
 UNKNOWN = 0.1
 """The same beyond which an orbit is not taken for one: it may owe its film to the steps [-]."""
 _FINER = 4
@@ -79,7 +79,7 @@ class Orbit:
     least_angle: Array
     """(C,) its crank angle [rad]."""
     step_error: Array
-    """(C,) relative error of the smallest gap by the step; NaN where it is not known [-]."""
+    """(C,) relative error of the smallest gap by the step; NaN where it is not measured [-]."""
 
 
 @dataclass(frozen=True)
@@ -217,7 +217,7 @@ def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float, tried: Ma
 
 
 def _limited(e: Array, change: Array) -> tuple[Array, Array]:
-    """The change made, each node held within its bearing; and its largest size over the gap, (C,)."""
+    """The change applied, each node held within its bearing; and its largest size over the gap, (C,)."""
     gap, length = 1 - np.hypot(*e), np.hypot(*change)
     share = np.minimum(1.0, _LONGEST / np.maximum(length, _LONGEST))
     radius = 1 - np.maximum(_THINNER * gap, THINNEST / 2)

@@ -40,13 +40,13 @@ from templates.physics.pads.slider import (
 )
 
 STEEPEST = 1000.0
-"""The largest film ratio h_i/h_o for which the mesh is made [-]."""
+"""The largest film ratio h_i/h_o that the mesh resolves [-]."""
 NARROWEST, WIDEST = 0.01, 100.0
-"""Widths b/l between which the mesh is made [-]."""
+"""Widths b/l that the mesh resolves [-]."""
 STATIONS = np.linspace(0, 1, 101)
-"""Places x/l at which the pressure along a pad is told [-]."""
+"""Places x/l at which the pressure along a pad is reported [-]."""
 HEIGHTS = np.linspace(0, 1, 41)
-"""Places z/h at which the velocity across the film is told [-]."""
+"""Places z/h at which the velocity across the film is reported [-]."""
 
 _BLOCK = 512
 
