@@ -7,8 +7,8 @@ r"""The film of a moving journal with mass-conserving cavities, one step of time
 alpha is the fill of the gap, P = p psi²/(eta Omega) the pressure above that of the cavity, which is ambient;
 angles phi are fixed in the frame of the load, in which the gap is carried at w. The journal has no mass: at
 every step its place is solved for together with pressure and fill so that the film bears the load. Newton's
-method on the complementarity (Fischer, Burmeister), as in `cavitation`, with two more unknowns. Finite volumes
-on half the width, backward differences of second order in time, upwind in the cavities.
+method on the complementarity (Fischer, Burmeister), as in `cavitation`, with two more unknowns. Finite
+volumes on half the width, backward differences of second order in time, upwind in the cavities.
 Oil is fed at ambient pressure along the line of the widest gap, as by `cavitating_film` without grooves.
 
 References
