@@ -196,11 +196,16 @@ def check_case(cls, case, precision):
     assert results.keys() == case["outputs"].keys()
     for name, value in case["outputs"].items():
         if isinstance(value, list):
-            found, known = np.asarray(results[name], dtype=float), np.asarray(value, dtype=float)
-            assert found == pytest.approx(known, rel=precision, abs=0, nan_ok=True), (name, case["inputs"])
+            measured, reference = np.asarray(results[name], dtype=float), np.asarray(value, dtype=float)
+            assert measured == pytest.approx(reference, rel=precision, abs=0, nan_ok=True), (
+                name,
+                case["inputs"],
+            )
             continue
-        known = value if isinstance(value, (str, type(None))) else pytest.approx(value, rel=precision, abs=0)
-        assert results[name] == known, (name, case["inputs"])
+        reference = (
+            value if isinstance(value, (str, type(None))) else pytest.approx(value, rel=precision, abs=0)
+        )
+        assert results[name] == reference, (name, case["inputs"])
 
 
 class TestArrays:

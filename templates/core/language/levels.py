@@ -105,15 +105,15 @@ def accuracy_file(cls: type[Template]) -> Path:
     return Path(inspect.getfile(cls)).with_suffix(".accuracy.json")
 
 
-_known: dict[Any, Accuracy | None] = {}
+_cache: dict[Any, Accuracy | None] = {}
 
 
 def accuracy(cls: type[Template]) -> Accuracy | None:
     """The measured errors of a version, if they were measured."""
-    if cls not in _known:
+    if cls not in _cache:
         path = accuracy_file(cls)
-        _known[cls] = _loaded(path) if path.exists() else None
-    return _known[cls]
+        _cache[cls] = _loaded(path) if path.exists() else None
+    return _cache[cls]
 
 
 def _loaded(path: Path) -> Accuracy:

@@ -13,10 +13,10 @@ def stiffness_and_mass(parameters: dict[str, str]) -> tuple[float, float]:
     shape = Crankshaft.from_quantities(parameters)
     built, shaft = regenerate("crankshaft", 1, shape.inputs_si()), shape.shaft()
     assert shaft is not None
-    found = analyse(built.step, shaft, AnalysisRequest(), ["stiffness"], lambda done, what: None).outputs[
+    result = analyse(built.step, shaft, AnalysisRequest(), ["stiffness"], lambda done, what: None).outputs[
         "stiffness"
     ]
-    return found["value"], built.measures["mass"]
+    return result["value"], built.measures["mass"]
 
 
 @pytest.mark.slow

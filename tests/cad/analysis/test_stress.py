@@ -28,17 +28,17 @@ from cad.step import write_step
 @pytest.mark.slow
 @pytest.mark.parametrize("load", LOADS)
 def test_a_shoulder_fillet_concentrates_stress_as_peterson_says(load: Kind) -> None:
-    found = peaks(load)
-    assert found.converged
-    assert factors(load, found)[-1] == pytest.approx(peterson(load), rel=0.05)
+    result = peaks(load)
+    assert result.converged
+    assert factors(load, result)[-1] == pytest.approx(peterson(load), rel=0.05)
 
 
 @pytest.mark.slow
 def test_a_sharp_corner_has_no_greatest_stress() -> None:
-    found = analyse(
+    result = analyse(
         shoulder(0.0), Shaft(0.0, END), AnalysisRequest(), ["maximum_stress"], lambda done, what: None
     )
-    stress = found.outputs["maximum_stress"]
+    stress = result.outputs["maximum_stress"]
     assert stress["value"] is None
     assert "sharp inner corner" in stress["reason"]
 
