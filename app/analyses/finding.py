@@ -87,10 +87,8 @@ def analyse_in_worker(
     step: bytes, shaft: Shaft, question: Question, outputs: tuple[str, ...]
 ) -> dict[str, dict[str, Any]]:
     """`cad.analysis.analyse.analyse` with progress told to the job; runs in the worker's process."""
-    from cad.analysis.analyse import (
-        AnalysisRequest,
-        analyse,
-    )  # the server, which imports this module, needs no solver
+    # The server imports this module too, and needs no solver.
+    from cad.analysis.analyse import AnalysisRequest, analyse
 
     request = AnalysisRequest(question.kind, question.boundary, question.level, question.tolerance)  # type: ignore[arg-type]
     try:

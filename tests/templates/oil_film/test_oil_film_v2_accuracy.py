@@ -60,7 +60,7 @@ class TestTolerance:
             assert evaluation.error["minimum_film_thickness"] <= tolerance
             assert not [w for w in evaluation.warnings if w.code == "tolerance_unmet"]
 
-    def test_property_unmet_tolerance_is_told_at_the_finest(self):
+    def test_property_unmet_tolerance_is_reported_at_the_finest(self):
         evaluation = evaluate(OilFilm, bearing(1.0, 0.5), outputs=["minimum_film_thickness"], tolerance=1e-9)
         assert evaluation.level == "reynolds"
         assert [w.code for w in evaluation.warnings] == ["tolerance_unmet"]
