@@ -20,7 +20,7 @@ from time import perf_counter
 from typing import Any
 
 from benchmarks.torsion_calculix import stiffness
-from cad.analysis.analyse import Asked, analyse
+from cad.analysis.analyse import AnalysisRequest, analyse
 from cad.analysis.levels import NAMES
 from cad.shaft import Shaft
 
@@ -51,7 +51,7 @@ def throw() -> dict[str, Any]:
     return {"step": regenerate("crank_throw", 1, THROW).step}
 
 
-def ours(step: bytes, asked: Asked) -> dict[str, Any]:
+def ours(step: bytes, asked: AnalysisRequest) -> dict[str, Any]:
     """Our stiffness [N·m/rad], and what it took."""
     found = analyse(step, SHAFT, asked, ["stiffness"], lambda done, what: None).outputs["stiffness"]
     return {
@@ -65,7 +65,9 @@ def ours(step: bytes, asked: Asked) -> dict[str, Any]:
 def greatest_stress(step: bytes) -> dict[str, Any]:
     """The greatest stress [MPa] under 1 N·m, and what it took."""
     outputs = ["maximum_stress"]
-    found = analyse(step, SHAFT, Asked(), outputs, lambda done, what: None).outputs["maximum_stress"]
+    found = analyse(step, SHAFT, AnalysisRequest(), outputs, lambda done, what: None).outputs[
+        "maximum_stress"
+    ]
     return {"stress": found["value"], "told error": found["error"], **found["mesh"]}
 
 
@@ -117,8 +119,8 @@ def main() -> None:
     """Measure, print and keep the results."""
     os.environ["OMP_NUM_THREADS"] = "1"
     step = alone(throw, times=1)["step"]
-    own = alone(ours, step, Asked(tolerance=TOLERANCE))
-    levels = {level: alone(ours, step, Asked(level=level)) for level in NAMES}
+    own = alone(ours, step, AnalysisRequest(tolerance=TOLERANCE))
+    levels = {level: alone(ours, step, AnalysisRequest(level=level)) for level in NAMES}
     dear = alone(greatest_stress, step, times=1)
     others = climb(step, abs(own["error"]))
     ratios = [

@@ -1,4 +1,4 @@
-"""Whether a finished solid is the one asked for: OpenCASCADE calls wrong solids valid, these do not."""
+"""Whether a finished solid is the one requested: OpenCASCADE calls wrong solids valid, these do not."""
 
 from __future__ import annotations
 
@@ -26,17 +26,19 @@ def check_bodies(
         `not_one_solid`, `invalid_solid`, `not_finite` or `volume`.
     """
     wanted = {part.name: len(part.places) for part in parts}
-    found = {body.name: len(body.places) for body in bodies}
-    if wanted != found:
+    counted = {body.name: len(body.places) for body in bodies}
+    if wanted != counted:
         raise GeometryError(
-            "not_one_solid", f"{model.id} should have the parts {wanted}; the file has {found}", model.inputs
+            "not_one_solid",
+            f"{model.id} should have the parts {wanted}; the file has {counted}",
+            model.inputs,
         )
     by_name = {part.name: part for part in parts}
     for body, one in zip(bodies, measured, strict=True):
         _check_body(model, by_name[body.name], one)
 
 
-def check_box(model: CadModel, found: Box) -> None:
+def check_box(model: CadModel, measured: Box) -> None:
     """The parts together fill the box that they should.
 
     Raises
@@ -45,9 +47,9 @@ def check_box(model: CadModel, found: Box) -> None:
         `bounding_box`.
     """
     wanted = model.bounding_box()
-    pairs = zip((*wanted.low, *wanted.high), (*found.low, *found.high), strict=True)
+    pairs = zip((*wanted.low, *wanted.high), (*measured.low, *measured.high), strict=True)
     if not all(isclose(a, b, rel_tol=1e-9, abs_tol=_BOX_TOLERANCE) for a, b in pairs):
-        detail = f"{model.id} should fill the box {_box(wanted)}; it fills {_box(found)}"
+        detail = f"{model.id} should fill the box {_box(wanted)}; it fills {_box(measured)}"
         raise GeometryError("bounding_box", detail, model.inputs)
 
 
@@ -60,21 +62,23 @@ def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, flo
         `dimension`, naming the parameters that are not as requested.
     """
     try:
-        found = {name: round(value, 9) for name, value in model.dimensions(seen).items()}
+        measured = {name: round(value, 9) for name, value in model.dimensions(seen).items()}
     except LookupError as error:
         detail = f"{model.id} does not show the surfaces from which its dimensions are read ({error})"
         raise GeometryError("dimension", detail, model.inputs) from error
-    wanted = {name: _requested(model, name) for name in found}
+    wanted = {name: _requested(model, name) for name in measured}
     wrong = {
         n: v
-        for n, v in found.items()
+        for n, v in measured.items()
         if not isclose(v, wanted[n], rel_tol=1e-12, abs_tol=_DIMENSION_TOLERANCE)
     }
     if wrong:
         unit = {name: model.inputs[name].meaning.unit for name in wrong}
-        told = (f"{n} should be {wanted[n]:.9g} {unit[n]}, it is {v:.9g} {unit[n]}" for n, v in wrong.items())
-        raise GeometryError("dimension", "; ".join(told), wrong)
-    return found
+        messages = (
+            f"{n} should be {wanted[n]:.9g} {unit[n]}, it is {v:.9g} {unit[n]}" for n, v in wrong.items()
+        )
+        raise GeometryError("dimension", "; ".join(messages), wrong)
+    return measured
 
 
 def _check_body(model: CadModel, part: Part, one: Measured) -> None:

@@ -1,4 +1,4 @@
-"""What can go wrong with a shape after its parameters were found to be in order.
+"""What can go wrong with a shape after its parameters have passed their checks.
 
 Wrong parameters are refused earlier, as `templates.core.errors.InvalidInputs`.
 """
@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 
 class GeometryError(Exception):
-    """The kernel made no solid, or not the one that was asked for.
+    """The kernel made no solid, or not the one that was requested.
 
     `code` is one of `not_finite`, `not_one_solid`, `invalid_solid`, `bounding_box`, `volume`, `dimension`,
     `kernel`; `parameters` are the API names of the parameters concerned. It survives pickling, because it
@@ -29,7 +29,7 @@ class UnreadableStep(ValueError):
 
 
 class AnalysisError(Exception):
-    """A solid that cannot be analysed as asked.
+    """A solid that cannot be analysed as requested.
 
     `code` is one of `no_shaft`, `no_end`, `mesh`, `not_converged`, `solver`; `name` is what was analysed. It
     survives pickling.

@@ -1,4 +1,4 @@
-"""What is made from a finished STEP file, and only when somebody asks for it: meshes, pictures, drawings."""
+"""Files derived from a finished STEP file, on request only: meshes, pictures, drawings."""
 
 from __future__ import annotations
 

@@ -61,15 +61,17 @@ def placed(meshes: Iterable[Mesh]) -> Iterator[tuple[Mesh, Array, Array]]:
 def _face_meshes(shape: Shape) -> Iterator[tuple[Array, Array, Integers]]:
     for face in shape.Faces():
         location = TopLoc_Location()
-        found = BRep_Tool.Triangulation_s(face.wrapped, location)
-        if found is None:  # a face too small to show a triangle
+        triangulation = BRep_Tool.Triangulation_s(face.wrapped, location)
+        if triangulation is None:  # a face too small to show a triangle
             continue
         turn, shift = rigid(Location(location))
-        numbers = range(1, found.NbNodes() + 1)
-        found.ComputeNormals()
-        points = np.array([(p.X(), p.Y(), p.Z()) for p in map(found.Node, numbers)])
-        normals = np.array([(n.X(), n.Y(), n.Z()) for n in map(found.Normal, numbers)])
-        triangles = np.array([found.Triangle(i).Get() for i in range(1, found.NbTriangles() + 1)]) - 1
+        numbers = range(1, triangulation.NbNodes() + 1)
+        triangulation.ComputeNormals()
+        points = np.array([(p.X(), p.Y(), p.Z()) for p in map(triangulation.Node, numbers)])
+        normals = np.array([(n.X(), n.Y(), n.Z()) for n in map(triangulation.Normal, numbers)])
+        triangles = (
+            np.array([triangulation.Triangle(i).Get() for i in range(1, triangulation.NbTriangles() + 1)]) - 1
+        )
         if face.wrapped.Orientation() == TopAbs_Orientation.TopAbs_REVERSED:
             triangles, normals = triangles[:, ::-1], -normals
         yield points @ turn.T + shift, normals @ turn.T, triangles

@@ -5,7 +5,7 @@ Beyond them it says four things, and only the first of them draws:
 
 - `build()`: its parts, each one solid with the volume that it must have, from a closed form that knows
   nothing of the kernel. OpenCASCADE may return a wrong solid that calls itself valid (a drilling 10 nm wider
-  than its groove took 12 % off a bearing shell); the volume tells.
+  than its groove took 12 % off a bearing shell); the volume shows it.
 - `bounding_box()`: the box that the parts together must fill.
 - `dimensions(seen)`: its parameters, as they are read back from the surfaces of the finished STEP file.
 - `example`: a valid set of parameters.

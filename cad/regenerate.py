@@ -66,7 +66,7 @@ def as_quantities(model: CadModel) -> dict[str, dict[str, float | str]]:
 
 
 def build_key(model: CadModel) -> str:
-    """What a build of this model is found by: SHA-256 of model, version, parameters, kernel and recipe."""
+    """The cache key of a build of this model: SHA-256 of model, version, parameters, kernel and recipe."""
     return _canonical(model).key
 
 
@@ -110,7 +110,7 @@ def regenerate(
     InvalidInputs
         If parameters are out of range or against a rule; nothing was drawn then.
     GeometryError
-        If the kernel fails, or makes anything but what was asked for.
+        If the kernel fails, or makes anything but what was requested.
     """
     texts = as_text(models(*folders).get(model_id, version).from_si(parameters))
     return regenerate_from_text(model_id, version, texts, folders=folders, report=report)

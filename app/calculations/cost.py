@@ -164,6 +164,6 @@ def _evaluating(
 def _level_seconds(cls: type[Template], level: str, points: int) -> float:
     """What a level was measured to take for so many points [s]; nothing, if it was not measured."""
     measured = accuracy(cls)
-    cost = measured.told["levels"].get(level, {}).get("cost", {}) if measured else {}
+    cost = measured.content["levels"].get(level, {}).get("cost", {}) if measured else {}
     single = float(cost.get("single", 0.0))
     return single if points <= 1 else single + points * float(cost.get("vectorised", single))

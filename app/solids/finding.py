@@ -87,11 +87,12 @@ def analyse_in_worker(
     step: bytes, shaft: Shaft, question: Question, outputs: tuple[str, ...]
 ) -> dict[str, dict[str, Any]]:
     """`cad.analysis.analyse.analyse` with progress told to the job; runs in the worker's process."""
-    from cad.analysis.analyse import Asked, analyse  # the server, which imports this module, needs no solver
+    # The server imports this module too, and needs no solver.
+    from cad.analysis.analyse import AnalysisRequest, analyse
 
-    asked = Asked(question.kind, question.boundary, question.level, question.tolerance)  # type: ignore[arg-type]
+    request = AnalysisRequest(question.kind, question.boundary, question.level, question.tolerance)  # type: ignore[arg-type]
     try:
-        found = analyse(step, shaft, asked, outputs, report).outputs
+        found = analyse(step, shaft, request, outputs, report).outputs
         return {name: _packed(told) if name == SURFACE else told for name, told in found.items()}
     except (AnalysisError, MemoryError):
         raise
@@ -104,5 +105,5 @@ def _packed(told: dict[str, Any]) -> dict[str, Any]:
     """A surface as the bytes of its JSON; how many triangles it has is told beside it."""
     surface = told["value"]
     rest = {name: part for name, part in told.items() if name != "value"}
-    written = json.dumps(surface.told(), separators=(",", ":"), allow_nan=False)
+    written = json.dumps(surface.as_json(), separators=(",", ":"), allow_nan=False)
     return {FILE: written.encode(), "triangles": len(surface.triangles), **rest}

@@ -1,4 +1,4 @@
-"""STEP bytes → the asked outputs of an analysis, each with its error; a pure function of its inputs."""
+"""STEP bytes → the requested outputs of an analysis, each with its error; a pure function of its inputs."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from cad.shaft import Shaft
 Report = Callable[[float, str], None]
 
 WORST = 0.25
-"""The relative error from which on no value is told."""
+"""The relative error from which on no value is returned."""
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What is asked of an analysis; a tolerance (relative) chooses the level, else it is named."""
+class AnalysisRequest:
+    """What an analysis computes, and how; a tolerance (relative) chooses the level, else it is named."""
 
     load: Kind = "torsion"
     boundary: Boundary = "free_end"
@@ -35,14 +35,16 @@ class Asked:
 
 
 @dataclass
-class Found:
+class AnalysisResult:
     """Outputs by name: value in the unit of `KINDS`, or the surface, with its error and its mesh."""
 
     outputs: dict[str, dict[str, Any]] = field(default_factory=dict)
 
 
-def analyse(step: bytes, shaft: Shaft, asked: Asked, outputs: Collection[str], report: Report) -> Found:
-    """Find the asked outputs, and nothing else.
+def analyse(
+    step: bytes, shaft: Shaft, request: AnalysisRequest, outputs: Collection[str], report: Report
+) -> AnalysisResult:
+    """Compute the requested outputs, and nothing else.
 
     Raises
     ------
@@ -51,69 +53,75 @@ def analyse(step: bytes, shaft: Shaft, asked: Asked, outputs: Collection[str], r
     """
     report(0.0, "reading the solid")
     solid = read_solid(step, shaft)
-    found = Found()
+    results: dict[str, dict[str, Any]] = {}
     elastic = [name for name in outputs if name != "maximum_stress"]
     if elastic:
-        _climb(solid, shaft, asked, elastic, found, report)
+        results |= _elastic_results(solid, shaft, request, elastic, report)
     if "maximum_stress" in outputs:
-        found.outputs["maximum_stress"] = _stress(solid, shaft, asked, report)
+        results["maximum_stress"] = _stress(solid, shaft, request, report)
     report(1.0, "done")
-    return found
+    return AnalysisResult(results)
 
 
-def _climb(
-    solid: Solid, shaft: Shaft, asked: Asked, outputs: Collection[str], found: Found, report: Report
-) -> None:
+def _elastic_results(
+    solid: Solid, shaft: Shaft, request: AnalysisRequest, outputs: Collection[str], report: Report
+) -> dict[str, dict[str, Any]]:
     """Level after level until every output meets the tolerance; of a surface, its stiffness."""
+    results: dict[str, dict[str, Any]] = {}
     measured = [name for name in outputs if name in _ELASTIC]
-    if not measured and asked.tolerance is not None:
+    if not measured and request.tolerance is not None:
         measured = ["stiffness"]
-    rungs = ladder(asked.level, asked.tolerance)
+    rungs = ladder(request.level, request.tolerance)
     for number, level in enumerate(rungs):
 
         def on_this_rung(done: float, what: str, number: int = number) -> None:
             report(_ELASTIC_SHARE * (number + done) / len(rungs), what)
 
-        told = _at_level(solid, shaft, asked, level, {*measured, *outputs}, on_this_rung)
-        found.outputs.update({name: told[name] for name in outputs})
-        worst = max((told[name]["error"] or 0.0 for name in measured), default=0.0)
-        if asked.tolerance is None or worst <= asked.tolerance:
-            return
+        results = _at_level(solid, shaft, request, level, {*measured, *outputs}, on_this_rung)
+        worst = max((results[name]["error"] or 0.0 for name in measured), default=0.0)
+        if request.tolerance is None or worst <= request.tolerance:
+            break
+    return {name: results[name] for name in outputs}
 
 
 def _at_level(
-    solid: Solid, shaft: Shaft, asked: Asked, level: Level, outputs: Collection[str], report: Report
+    solid: Solid,
+    shaft: Shaft,
+    request: AnalysisRequest,
+    level: Level,
+    outputs: Collection[str],
+    report: Report,
 ) -> dict[str, dict[str, Any]]:
     started = time.perf_counter()
     report(0.1, f"level {level.name}: meshing")
     grid = make_grid(solid, level.fineness)
-    wanted = {name: find for name, find in _ELASTIC.items() if name in outputs}
+    wanted = {name: compute for name, compute in _ELASTIC.items() if name in outputs}
     values: dict[str, list[float]] = {name: [] for name in wanted}
     reasons: dict[str, str] = {}
     for order in (level.order - 1, level.order) if wanted else (level.order,):
         report(0.2 if order < level.order else 0.5, f"solving {grid.mesh.ne} elements of order {order}")
-        response = respond(System(grid, order, shaft.material, asked.load), asked.boundary)
-        for name, find in wanted.items():
+        response = respond(System(grid, order, shaft.material, request.load), request.boundary)
+        for name, compute in wanted.items():
             try:
-                values[name].append(find(response))
+                values[name].append(compute(response))
             except AnalysisError as error:  # one output is refused, the others are not
                 reasons[name] = error.detail
     shown = surface(response) if SURFACE in outputs else None
-    told = {
+    common = {
         "level": level.name,
         "mesh": _mesh(solid, grid.mesh.ne, response.system.space.ndof, level.order),
         "seconds": time.perf_counter() - started,
     }
-    found: dict[str, dict[str, Any]] = {}
+    results: dict[str, dict[str, Any]] = {}
     for name in wanted:
-        about = {"unit": KINDS[asked.load][name], **told}
+        about = {"unit": KINDS[request.load][name], **common}
         if name in reasons:
-            found[name] = {"value": None, "error": None, **about, "reason": reasons[name]}
+            results[name] = {"value": None, "error": None, **about, "reason": reasons[name]}
         else:
-            found[name] = {**_judged(values[name], level, is_sharp=grid.is_sharp), **about}
+            results[name] = {**_judged(values[name], level, is_sharp=grid.is_sharp), **about}
     if shown:
-        found[SURFACE] = {"value": shown, "error": None, **told}
-    return found
+        results[SURFACE] = {"value": shown, "error": None, **common}
+    return results
 
 
 def _judged(values: Sequence[float], level: Level, *, is_sharp: bool) -> dict[str, Any]:
@@ -125,17 +133,17 @@ def _judged(values: Sequence[float], level: Level, *, is_sharp: bool) -> dict[st
     return {"value": None, "error": WORST, "reason": reason}
 
 
-def _stress(solid: Solid, shaft: Shaft, asked: Asked, report: Report) -> dict[str, Any]:
+def _stress(solid: Solid, shaft: Shaft, request: AnalysisRequest, report: Report) -> dict[str, Any]:
     started = time.perf_counter()
     peaks = greatest_stress(
         solid,
         shaft.material,
-        asked.load,
-        asked.boundary,
+        request.load,
+        request.boundary,
         lambda n: report(_ELASTIC_SHARE + 0.08 * n, f"stress, mesh {n + 1}"),
     )
     last = peaks.steps[-1]
-    told = {
+    common = {
         "unit": "MPa",
         "error": peaks.changes[-1],
         "convergence": [
@@ -148,13 +156,13 @@ def _stress(solid: Solid, shaft: Shaft, asked: Asked, report: Report) -> dict[st
         "seconds": time.perf_counter() - started,
     }
     if peaks.converged:
-        return {"value": _per_newton_metre(last.value), **told}
+        return {"value": _per_newton_metre(last.value), **common}
     changes = " and ".join(f"{change:.1%}" for change in peaks.changes[-2:])
     reason = (
         f"the greatest stress did not settle: the last refinements changed it by {changes}, not by less than "
         f"{SMALL:.0%} and {CONVERGED:.0%}; at a sharp inner corner it has no limit, give it a fillet"
     )
-    return {"value": None, **told, "reason": reason}
+    return {"value": None, **common, "reason": reason}
 
 
 def _mesh(solid: Solid, elements: int, degrees_of_freedom: int, order: int) -> dict[str, Any]:

@@ -91,8 +91,8 @@ def _neighbours(corners: Integers) -> tuple[Integers, Integers]:
     sides = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1), axis=-1).reshape(-1, 2)
     order = np.lexsort(sides.T)
     twice = np.flatnonzero((sides[order[1:]] == sides[order[:-1]]).all(axis=1))
-    found = np.stack([order[twice], order[twice + 1]])
-    one, other = np.stack([found // 3, found % 3], axis=-1)
+    pairs = np.stack([order[twice], order[twice + 1]])
+    one, other = np.stack([pairs // 3, pairs % 3], axis=-1)
     return one, other
 
 

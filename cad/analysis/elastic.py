@@ -43,11 +43,11 @@ def stress(u: Any, material: Material) -> Any:
 
 
 class System:
-    """Stiffness of a held solid in elements of one order, made ready to be solved; for one kind of load.
+    """Stiffness of a held solid in elements of one order, prepared for solving; for one kind of load.
 
-    Elements are as much curved as their order allows. The mesh stays so until the next system is made on it.
-    It is factorised, or solved anew for each force where there are few: by conjugate gradients with balanced
-    domain decomposition (Dohrmann 2003), which at 200 000 unknowns takes half the time and half the memory.
+    Elements are as much curved as their order allows. The mesh stays so until the next system is built on it.
+    It is factorised, or solved for each force by itself where there are few: by conjugate gradients with
+    balanced domain decomposition (Dohrmann 2003), which at 200 000 unknowns takes half the time and memory.
     """
 
     def __init__(
@@ -84,7 +84,7 @@ class System:
         u.data = self.inverse * outer
         if getattr(self.inverse, "iterations", 0) >= _MOST_STEPS:
             raise AnalysisError(
-                "solver", f"no equilibrium was found in {_MOST_STEPS} steps; try another level"
+                "solver", f"the solver did not converge in {_MOST_STEPS} steps; try another level"
             )
         u.data += form.harmonic_extension * u
         u.data += form.inner_solve * force

@@ -1,10 +1,10 @@
 """Levels of fidelity: mesh and order for an accuracy, from a table beside this file.
 
 The error of an answer is estimated on its own mesh, from the same answer at one order less. A factor of that
-change is to cover what a higher order would mend, a floor what only a finer mesh would: a coarse mesh about
-a drilling was 1.4 % too stiff in any order. Both are read from benchmarks/results/torsion_levels.json, once
-more for solids with sharp inner edges: there no true error exceeds 0.76 of the one told, in torsion or in
-bending (`python -m benchmarks.torsion_levels`). With sharp edges two orders may agree by chance, as on
+change is to cover what a higher order would correct, a floor what only a finer mesh would: a coarse mesh
+about a drilling was 1.4 % too stiff in any order. Both are read from benchmarks/results/torsion_levels.json,
+once more for solids with sharp inner edges: there no true error exceeds 0.76 of the one reported, in torsion
+or in bending (`python -m benchmarks.torsion_levels`). With sharp edges two orders may agree by chance, as on
 crankshafts with a slender end, so their floor is higher (tests/cad/analysis/test_torsion_levels.py).
 """
 
@@ -25,11 +25,11 @@ class Level:
     name: str
     fineness: Fineness
     order: int
-    factor: float  # of the change from the order below: the error that is told
-    floor: float  # what no order of elements mends, relative: it is added to that
+    factor: float  # of the change from the order below: the error that is reported
+    floor: float  # what no order of elements corrects, relative: it is added to that
     sharp_factor: float  # both where there are sharp inner edges
     sharp_floor: float
-    typical: float  # the error that is usually told, relative
+    typical: float  # the error that is usually reported, relative
 
     def error(self, low: float, high: float, *, is_sharp: bool = False) -> float:
         """The relative error to tell of a value, from that of one order less."""

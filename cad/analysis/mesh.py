@@ -115,12 +115,12 @@ def curve(mesh: Any, order: int) -> Any:
 def _coordinates(mesh: Any, curving: int, order: int) -> list[Any]:
     """The coordinates of the points of a mesh as functions on it."""
     mesh.Curve(curving)
-    found = []
+    vectors = []
     for axis in (ng.x, ng.y, ng.z):
         function = ng.GridFunction(ng.H1(mesh, order=order))
         function.Set(axis)
-        found.append(function.vec)
-    return found
+        vectors.append(function.vec)
+    return vectors
 
 
 def bound_sizes(solid: Solid, fineness: Fineness) -> None:

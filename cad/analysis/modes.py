@@ -1,6 +1,6 @@
 """The first torsional natural frequency of a held shaft.
 
-Which mode is torsional is not told by its number: a throw bends first. A mode φ of unit mass has the
+The number of a mode does not say whether it is torsional: a throw bends first. A mode φ of unit mass has the
 effective inertia (rᵀ M φ)², r being the rigid rotation about z; over all modes they add up to that of the
 solid.
 """
@@ -32,7 +32,7 @@ class Mode:
 
 
 def torsional_mode(response: Response) -> Mode:
-    """The mode with the largest effective inertia about z; as many are found as it takes to be sure.
+    """The mode with the largest effective inertia about z; as many are computed as it takes to be sure.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def natural_modes(response: Response, count: int) -> list[Mode]:
     turned.data = mass * rotation.vec
     start = np.array(response.displacement.vec.FV().NumPy()[free])
     squares, shapes = eigsh(
-        LinearOperator(size, matvec=times_mass, dtype=float),  # its own size is all that is asked of it here
+        LinearOperator(size, matvec=times_mass, dtype=float),  # only its size is used here
         count,
         M=LinearOperator(size, matvec=times_mass, dtype=float),
         sigma=0.0,

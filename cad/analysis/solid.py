@@ -1,6 +1,6 @@
 """The solid in a STEP file as it is to be analysed: its end faces named, and halved where it mirrors itself.
 
-Faces are found by geometry, never by number. A mirror plane is used only if both halves are proven to be
+Faces are recognised by geometry, never by number. A mirror plane is used only if both halves are proven to be
 images of each other: equal volume, centre, inertia, and one face for each face.
 """
 
@@ -90,7 +90,7 @@ def _halves(whole: Any, mirrors: Iterable[str]) -> Any:
         unit = [float(other == axis) for other in _AXES]
         sides = [whole * HalfSpace(Pnt(0, 0, 0), Vec(*(sign * u for u in unit))) for sign in (-1, 1)]
         solids = [list(side.solids) for side in sides]
-        if all(len(found) == 1 for found in solids):
+        if all(len(group) == 1 for group in solids):
             one, other = solids[0][0], solids[1][0]
             if _images(one, other, axis, whole.mass):
                 yield axis, max((one, other), key=lambda half: half.center[_AXES.index(axis)])
@@ -122,8 +122,8 @@ def _moments(shape: Any, flip: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _inertia(shape: Any) -> NDArray[np.float64]:
-    found = shape.inertia
-    return np.array([[found[i, j] for j in range(3)] for i in range(3)])
+    inertia = shape.inertia
+    return np.array([[inertia[i, j] for j in range(3)] for i in range(3)])
 
 
 def _name(face: Any, mirror: str, ends: dict[str, float]) -> str:

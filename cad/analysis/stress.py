@@ -97,18 +97,18 @@ def greatest_stress(
     measure: Measure = von_mises,
 ) -> Peaks:
     """Refine where the stress is high until its greatest value settles, in at most five steps."""
-    found: list[Peak] = []
+    peaks: list[Peak] = []
     near: tuple[Near, ...] = ()
     for step in range(STEPS):
         report(step)
         grid = make_grid(solid, START, near)
         response = respond(System(grid, ORDER, material, load, few_forces=True), boundary)
         highest, high = peak(response, measure)
-        found.append(highest)
-        if Peaks(tuple(found)).converged:
+        peaks.append(highest)
+        if Peaks(tuple(peaks)).converged:
             break
         near += high
-    return Peaks(tuple(found))
+    return Peaks(tuple(peaks))
 
 
 def peak(response: Response, measure: Measure = von_mises) -> tuple[Peak, tuple[Near, ...]]:
@@ -131,9 +131,9 @@ def peak(response: Response, measure: Measure = von_mises) -> tuple[Peak, tuple[
     element, place = np.unravel_index(int(np.argmax(values)), values.shape)
     highest = float(values[element, place])
     x, y, z = (float(c) for c in points[element, place])
-    told = Peak(highest, (x, y, z), mesh.ne, system.space.ndof)
+    peak = Peak(highest, (x, y, z), mesh.ne, system.space.ndof)
     corners = _corners(mesh)[values.max(axis=1) > _HIGH * highest]
-    return told, tuple(_halved(one) for one in corners)
+    return peak, tuple(_halved(one) for one in corners)
 
 
 def searched(solid: Solid) -> tuple[float, float]:
@@ -186,9 +186,9 @@ def recover(response: Response) -> Components:
     system = response.system
     raw = stress(response.displacement, system.material)
     space = ng.H1(system.grid.mesh, order=system.order - 1)
-    found = []
+    components = []
     for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)):
         component = ng.GridFunction(space)
         component.Set(raw[i, j])
-        found.append(component)
-    return found
+        components.append(component)
+    return components

@@ -2,11 +2,12 @@
 
 From the response of one mesh, of one order, under a load of 1 N·m. Every curved surface element is divided
 into plane triangles, so that a shaft looks round; points are shared between triangles, so the surface is
-closed. Of a solid that was halved by its symmetry the other half is added, with the signs that the load asks
-for (see `cad.analysis.elastic`); faces within the mirror plane are no part of the surface. It is a picture:
-what is told with an error is found by `cad.analysis.analyse`, and greatest stresses by `cad.analysis.stress`.
+closed. Of a solid that was halved by its symmetry the other half is added, with the signs that the load
+requires (see `cad.analysis.elastic`); faces within the mirror plane are no part of the surface. It is a
+picture: `cad.analysis.analyse` computes outputs with their errors, `cad.analysis.stress` the greatest
+stresses.
 
-Twist is the local rotation about z, (∂u_y/∂x − ∂u_x/∂y)/2: it needs no axis, so it is as well known on the
+Twist is the local rotation about z, (∂u_y/∂x − ∂u_x/∂y)/2: it needs no axis, so it is as accurate on the
 axis of the shaft as on a pin far from it, and for a circular shaft it is Coulomb's angle of the section.
 """
 
@@ -46,7 +47,7 @@ class Surface:
     stress: Array  # (n,) [MPa/(N·m)], von Mises, recovered
     load: str
 
-    def told(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, Any]:
         """As it is written in JSON: six significant digits, a unit beside every field."""
         fields = {"points": (self.points, "mm"), "displacement": (self.displacement, "mm")}
         if self.twist is not None:
@@ -65,15 +66,15 @@ def surface(response: Response) -> Surface:
     division = _division(len(corners) * system.grid.solid.parts)
     lattice = _lattice(division)
     where = mesh.MapToAllElements(_rule(lattice, division), region)
-    found = _fields(response, where)
+    fields = _fields(response, where)
     number, first = _shared(corners, lattice)
     triangles = number.reshape(len(corners), -1)[:, _pieces(lattice)].reshape(-1, 3)
     half = Surface(
-        found["points"][first],
+        fields["points"][first],
         triangles,
-        found["displacement"][first],
-        found["twist"][first] if system.load == "torsion" else None,
-        found["stress"][first],
+        fields["displacement"][first],
+        fields["twist"][first] if system.load == "torsion" else None,
+        fields["stress"][first],
         LOADS[system.load],
     )
     return _whole(half, "xyz".index(mirror), is_antisymmetric(mirror, system.load)) if mirror else half
@@ -125,7 +126,7 @@ def _pieces(lattice: Integers) -> Integers:
 
 def _shared(corners: Integers, lattice: Integers) -> tuple[Integers, Integers]:
     """Of every point of every element: its number among those that differ; and where each number is first."""
-    known: dict[tuple[tuple[int, int], ...], int] = {}
+    numbers: dict[tuple[tuple[int, int], ...], int] = {}
     number: list[int] = []
     first: list[int] = []
     for vertices in corners.tolist():
@@ -133,9 +134,9 @@ def _shared(corners: Integers, lattice: Integers) -> tuple[Integers, Integers]:
             pairs = zip(vertices, weights, strict=True)
             key = tuple(sorted((vertex, weight) for vertex, weight in pairs if weight))
             # Points within an element have all its vertices; elements with equal vertices do not exist.
-            if known.setdefault(key, len(known)) == len(first):
+            if numbers.setdefault(key, len(numbers)) == len(first):
                 first.append(len(number))
-            number.append(known[key])
+            number.append(numbers[key])
     return np.array(number), np.array(first)
 
 

@@ -70,19 +70,19 @@ class CrankModel(CrankRules):
 
     def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
         """Every parameter; the angle of a counterweight only if there is one."""
-        found, webs = seen[self.id], Webs.of(seen[self.id])
-        front, rear = (stub[0] for stub in stubs(found, webs))
+        surfaces, webs = seen[self.id], Webs.of(seen[self.id])
+        front, rear = (stub[0] for stub in stubs(surfaces, webs))
         length = (front.reach[1] + webs.faces[0] + rear.reach[1] - webs.faces[3]) / 2
         return {
             "journal_diameter": max(front.diameter, rear.diameter),
             "journal_length": length * float(self.L_j / self.L_s),
-            "journal_bore": journal_bore(found, webs),
-            **pin(found, webs),
+            "journal_bore": journal_bore(surfaces, webs),
+            **pin(surfaces, webs),
             "pin_length": webs.apart,
             "web_thickness": webs.thickness,
-            "web_width": found.length(Y),
-            "fillet": fillet(found),
-            "oil_drilling_diameter": drilling(found),
-            **counterweight(found, webs),
-            "face_inclination": inclination(found),
+            "web_width": surfaces.length(Y),
+            "fillet": fillet(surfaces),
+            "oil_drilling_diameter": drilling(surfaces),
+            **counterweight(surfaces, webs),
+            "face_inclination": inclination(surfaces),
         }

@@ -2,7 +2,7 @@
 
 The body runs from half a width below the journal's axis to half a width above the pin's, its ends round or
 square. The counterweight is a sector about the journal's axis, on the side away from the pin, as thick as the
-web. Areas and moments here are closed forms; nothing is asked of the kernel.
+web. Areas and moments here are closed forms; the kernel computes nothing here.
 """
 
 from __future__ import annotations

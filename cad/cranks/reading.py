@@ -1,7 +1,7 @@
 """The parameters of a crank, read back from the surfaces of the finished solid.
 
-Whatever is there is found by where it is, not by what it should measure: planes across the shaft tell the
-webs, cylinders about the shaft beyond the webs the journals and ends, other cylinders along it the pin.
+Each feature is recognised by its place, not by its expected size: planes across the shaft are the faces of
+webs, cylinders about the shaft beyond the webs are journals and ends, another cylinder along it is the pin.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ def pin(seen: Seen, webs: Webs) -> dict[str, float]:
     """Pin diameter, bore and throw: the pin stands between the webs, its bore goes through both."""
     _, front, rear, _ = webs.faces
     beside = [c.turned(Z) for c in seen.cylinders if c.along(Z) and not c.about(Z)]
-    found = next(c for c in beside if front - _CLEAR < c.reach[0] and c.reach[1] < rear + _CLEAR)
+    pin_surface = next(c for c in beside if front - _CLEAR < c.reach[0] and c.reach[1] < rear + _CLEAR)
     bores = [c.diameter for c in beside if c.reach[0] < front - _CLEAR and rear + _CLEAR < c.reach[1]]
-    throw = found.point.cross(Z).Length
-    return {"pin_diameter": found.diameter, "pin_bore": max(bores, default=0.0), "throw": throw}
+    throw = pin_surface.point.cross(Z).Length
+    return {"pin_diameter": pin_surface.diameter, "pin_bore": max(bores, default=0.0), "throw": throw}
 
 
 def stubs(seen: Seen, webs: Webs) -> tuple[list[Surface], list[Surface]]:
@@ -85,12 +85,12 @@ def fillet(seen: Seen) -> float:
     LookupError
         If there are any, but not four that are alike.
     """
-    found = seen.tori
-    if not found:
+    radii = seen.tori
+    if not radii:
         return 0.0
-    if len(found) != 4 or max(found) - min(found) > _CLEAR:
-        raise LookupError(f"four fillets alike; there are {found}")
-    return found[0]
+    if len(radii) != 4 or max(radii) - min(radii) > _CLEAR:
+        raise LookupError(f"four fillets alike; there are {radii}")
+    return radii[0]
 
 
 def drilling(seen: Seen) -> float:

@@ -1,7 +1,7 @@
 """What a crank is refused for, always by the names of the parameters and with a way out.
 
-The rules are a little stricter than geometry asks (by some per cent), so that edges keep clear of each other
-and the kernel draws whatever they accept; and what they accept, the closed form of the volume covers.
+The rules are a little stricter than geometry requires (by some per cent), so that edges keep clear of each
+other and the kernel draws whatever they accept; and what they accept, the closed form of the volume covers.
 """
 
 from __future__ import annotations

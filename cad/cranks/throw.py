@@ -4,7 +4,7 @@ z is the axis of the main journals, x points from it to the crankpin, z = 0 is t
 lies at pin_length/2 ≤ |z| ≤ pin_length/2 + web_thickness; front is at -z, rear at +z.
 
 Whatever turns is turned from one outline, fillets included, and the webs are plates: so the parts only touch,
-in flat faces, and their union asks little of the kernel. Only bores, drilling and inclined faces are cut.
+in flat faces, and their union is easy for the kernel. Only bores, drilling and inclined faces are cut.
 """
 
 from __future__ import annotations

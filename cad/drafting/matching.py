@@ -42,24 +42,24 @@ def matched(parameters: Mapping[str, str], measures: Sequence[Measure]) -> tuple
 
     `parameters` are as in the header of a STEP file: `{"inner_diameter": "50 mm", "shell": "half"}`.
     """
-    found: list[Dimension] = []
+    matches: list[Dimension] = []
     unseen: list[str] = []
     for name, text in parameters.items():
         size = _size(text)
         if size is None or size[0] == 0:
             continue  # a word, a count, or what is not there
         fitting = _fitting(name, *size, measures)
-        fresh = [m for m in fitting if all(m.points != taken.measure.points for taken in found)]
+        fresh = [m for m in fitting if all(m.points != taken.measure.points for taken in matches)]
         if fitting:
-            found.append(Dimension(_clearest(fresh or fitting, found), name))
+            matches.append(Dimension(_clearest(fresh or fitting, matches), name))
         else:
             unseen.append(name)
-    return found, unseen
+    return matches, unseen
 
 
-def _clearest(fitting: Sequence[Measure], found: Sequence[Dimension]) -> Measure:
-    """The first; of equal ones told within the view, that which is farthest from the others there."""
-    others = [d.measure.points[0] for d in found if d.measure.form in _WITHIN]
+def _clearest(fitting: Sequence[Measure], matches: Sequence[Dimension]) -> Measure:
+    """The first; of equal ones drawn within the view, that which is farthest from the others there."""
+    others = [d.measure.points[0] for d in matches if d.measure.form in _WITHIN]
     first = fitting[0]
     if first.form not in _WITHIN or not others:
         return first
@@ -81,8 +81,8 @@ def _sorts(name: str, is_angle: bool) -> tuple[Sort, ...]:
     if is_angle:
         return ("angle",)
     words = name.split("_")
-    told = next((_WORDS[word] for word in reversed(words) if word in _WORDS), None)
-    return told or (_LENGTHS if {"length", "width", "thickness", "height"} & set(words) else _ANY)
+    forms = next((_WORDS[word] for word in reversed(words) if word in _WORDS), None)
+    return forms or (_LENGTHS if {"length", "width", "thickness", "height"} & set(words) else _ANY)
 
 
 def _size(text: str) -> tuple[float, bool] | None:
@@ -103,10 +103,10 @@ def references(taken: Sequence[Dimension], measures: Sequence[Measure]) -> Itera
     lengths = [m for m in measures if m.sort == "length" and m.place == "section"]
     places = sorted({point[0] for m in lengths for point in m.points})
     spans = [*pairwise(places), *([(places[0], places[-1])] if len(places) > 2 else [])]
-    known = {_span(d.measure) for d in taken}
+    dimensioned = {_span(d.measure) for d in taken}
     for low, high in spans:
         fits = (m for m in lengths if _span(m) == (round(low, 6), round(high, 6)))
-        if (round(low, 6), round(high, 6)) not in known and (measure := next(fits, None)):
+        if (round(low, 6), round(high, 6)) not in dimensioned and (measure := next(fits, None)):
             yield Dimension(measure, None)
 
 

@@ -1,4 +1,4 @@
-"""What can be dimensioned in the two views of a drawing: found on surfaces, whatever model they are of."""
+"""What can be dimensioned in the two views of a drawing, read from surfaces of any model."""
 
 from __future__ import annotations
 
@@ -41,16 +41,16 @@ class Measure:
 
 def measures(bodies: Sequence[Body], section: View, end: View) -> list[Measure]:
     """Every size that the views show."""
-    found: list[Measure] = []
+    results: list[Measure] = []
     seen = look_at(bodies)
     for one in seen.values():
-        found += _of_cylinders(one, section, end)
-        found += _of_planes(one, section, end)
-        found += _of_flanks(one, end)
-    found += _of_axes([c for one in seen.values() for c in one.cylinders if c.along(Z)], section)
-    found += _of_arcs(section, {d: one.count for one in seen.values() for d in one.spheres})
-    found += _of_slopes(section)
-    return found
+        results += _of_cylinders(one, section, end)
+        results += _of_planes(one, section, end)
+        results += _of_flanks(one, end)
+    results += _of_axes([c for one in seen.values() for c in one.cylinders if c.along(Z)], section)
+    results += _of_arcs(section, {d: one.count for one in seen.values() for d in one.spheres})
+    results += _of_slopes(section)
+    return results
 
 
 def _of_cylinders(seen: Seen, section: View, end: View) -> Iterator[Measure]:

@@ -1,7 +1,7 @@
 """A drawing on its sheet as DXF: views, dimensions, table of parameters and title block, all in millimetres.
 
 The section stands at its true coordinates, everything is drawn 1:1, and the A3 sheet around it is as large as
-the scale asks; so a DIMENSION measures what the part measures. Each carries the name of its parameter.
+the scale requires; so a DIMENSION measures what the part measures. Each carries the name of its parameter.
 """
 
 from __future__ import annotations
@@ -81,8 +81,8 @@ def draw(bodies: Sequence[Body], header: Header | None) -> Drawing:
     section, end = views(bodies)
     seen = measures(bodies, section, end)
     parameters = header.parameters if header else {}
-    found, unseen = matched(parameters, seen)
-    plan = Plan.of(section, end, [*found, *references(found, seen)])
+    matches, unseen = matched(parameters, seen)
+    plan = Plan.of(section, end, [*matches, *references(matches, seen)])
     document = _document(plan)
     page = Page(document, plan)
     page.view(section, 0.0)
@@ -128,7 +128,7 @@ class Plan:
         return self.corner[0] + x / self.scale, self.corner[1] + y / self.scale
 
     @property
-    def told(self) -> str:
+    def scale_text(self) -> str:
         """The scale in words."""
         return f"{self.scale:g}:1" if self.scale >= 1 else f"1:{1 / self.scale:g}"
 
@@ -205,25 +205,25 @@ class Page:
     def _drawn(self, measure: Measure, base: Point, right: float, text: str) -> Any:
         """A DIMENSION of the right kind."""
         points: Any = [(x + right, y) for x, y in measure.points]
-        told: Any = {"text": text, "dimstyle": STYLE}
-        level: Any = {**told, "override": {"dimtih": 1, "dimtoh": 1}}
+        style: Any = {"text": text, "dimstyle": STYLE}
+        level: Any = {**style, "override": {"dimtih": 1, "dimtoh": 1}}
         match measure.form:
             case "across":
                 one, other = points
-                return self.space.add_linear_dim((base[0] + right, base[1]), one, other, angle=0, **told)
+                return self.space.add_linear_dim((base[0] + right, base[1]), one, other, angle=0, **style)
             case "up":
                 one, other = points
-                return self.space.add_linear_dim((base[0] + right, base[1]), one, other, angle=90, **told)
+                return self.space.add_linear_dim((base[0] + right, base[1]), one, other, angle=90, **style)
             case "aligned":
                 one, other = sorted(points)
-                return self.space.add_aligned_dim(one, other, -8 / self.plan.scale, **told)
+                return self.space.add_aligned_dim(one, other, -8 / self.plan.scale, **style)
             case "circle":
                 size, place = measure.value / 2, self._beyond(*points)
                 return self.space.add_diameter_dim(points[0], radius=size, location=place, **level)
             case "arc":
                 size, place = measure.value, self._beyond(*points)
                 return self.space.add_radius_dim(points[0], radius=size, location=place, **level)
-        return self.space.add_angular_dim_3p(self._between(points), *_counter_clockwise(points), **told)
+        return self.space.add_angular_dim_3p(self._between(points), *_counter_clockwise(points), **style)
 
     def _beyond(self, centre: Point, on: Point) -> Point:
         """Where the words of a circle stand: outside it, or within a large one."""
@@ -281,7 +281,7 @@ class Page:
         title = f"{header.model.replace('_', ' ')}, version {header.version}" if header else "part"
         lines = [
             (title, 5.0),
-            (f"scale {self.plan.told} on A3, first-angle projection", 3.0),
+            (f"scale {self.plan.scale_text} on A3, first-angle projection", 3.0),
             ("dimensions in mm, measured on the solid; ( ) for reference", 2.5),
             (f"build {header.build[:32]}" if header else "", 2.5),
             ("checked:", 3.0),
@@ -299,8 +299,8 @@ def _text(dimension: Dimension) -> str:
     measure = dimension.measure
     several = f"{measure.count}×" if measure.count > 1 else ""
     sign = "Ø" if measure.sort == "diameter" and measure.form != "circle" else ""  # circles have theirs
-    told = f"{several}{sign}<>"
-    return told if dimension.name else f"({told})"
+    label = f"{several}{sign}<>"
+    return label if dimension.name else f"({label})"
 
 
 def _angle(corner: Point, point: Point) -> float:

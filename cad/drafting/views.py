@@ -129,13 +129,15 @@ def _sides(shape: Shape, normal: Vector) -> tuple[float, float]:
 
 def _section(shapes: Sequence[Shape], parts: Sequence[int], frame: Frame) -> View:
     """The half behind the plane, and the faces that the plane cuts."""
-    found = [
+    sections = [
         (part, face) for part, shape in zip(parts, shapes, strict=True) for face in _cut(shape, frame.towards)
     ]
-    faces = [face for _, face in found]
+    faces = [face for _, face in sections]
     behind = [half for shape in shapes for half in _behind(shape, frame.towards)]
     view = _projected(behind or shapes, frame)  # a part beside the plane is seen whole
-    outlines = [Cut(part, [_polyline(wire.Edges(), frame) for wire in _wires(face)]) for part, face in found]
+    outlines = [
+        Cut(part, [_polyline(wire.Edges(), frame) for wire in _wires(face)]) for part, face in sections
+    ]
     edges = [edge for face in faces for edge in face.Edges()]
     straight = [
         (frame.flat(e.startPoint()), frame.flat(e.endPoint())) for e in edges if e.geomType() == "LINE"
@@ -180,13 +182,13 @@ def _projected(shapes: Sequence[Shape], frame: Frame) -> View:
     algorithm.Projector(HLRAlgo_Projector(eye))
     algorithm.Update()
     algorithm.Hide()
-    found = HLRBRep_HLRToShape(algorithm)
+    edges = HLRBRep_HLRToShape(algorithm)
     visible, smooth, hidden = (
         [[(x / shrunk, -y / shrunk) for x, y in line] for line in lines_of(some)]
         for some in (
-            (found.VCompound(), found.OutLineVCompound()),
-            (found.Rg1LineVCompound(),),
-            (found.HCompound(), found.OutLineHCompound()),
+            (edges.VCompound(), edges.OutLineVCompound()),
+            (edges.Rg1LineVCompound(),),
+            (edges.HCompound(), edges.OutLineHCompound()),
         )
     )
     return View(frame, visible, smooth, hidden, [], [], [])

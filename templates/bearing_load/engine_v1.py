@@ -78,7 +78,7 @@ class Engine(Cylinder):
     Errata
     ------
     DYREMI drops r in the secondary force m_rec ω² r cos 2θ/n.
-    The errata of the loads are told at `bearing_load`.
+    The errata of the loads stand at `bearing_load`.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""What can be wrong with a calculation, said so that its user can mend it.
+"""What can be wrong with a calculation, said so that its user can correct it.
 
 TemplateError
     InvalidInputs       wrong inputs, all of them at once, each a `Fault`
@@ -97,18 +97,18 @@ class FaultyText(TemplateError):
         return Fault(name, self.code, str(self))
 
 
-def unknown_name(name: str, known: Iterable[str], kind: str) -> Fault:
+def unknown_name(name: str, candidates: Iterable[str], kind: str) -> Fault:
     """A fault for a name that nobody declared, with the nearest that somebody did."""
-    near = nearest(name, known := list(known))
-    remedy = f"did you mean {', '.join(near)}?" if near else f"known are {listed(known)}"
+    near = nearest(name, candidates := list(candidates))
+    remedy = f"did you mean {', '.join(near)}?" if near else f"known are {listed(candidates)}"
     return Fault(plain(name), "unknown_name", f"{kind} {plain(name)!r} is unknown; {remedy}")
 
 
-def unknown_names(names: Iterable[str], known: Iterable[str], kind: str) -> list[Fault]:
+def unknown_names(names: Iterable[str], candidates: Iterable[str], kind: str) -> list[Fault]:
     """A fault for each name that nobody declared, the first of them with the nearest declared ones."""
     if not (unknown := list(names)):
         return []
-    declared, each = list(known), iter(unknown)
+    declared, each = list(candidates), iter(unknown)
     faults = [unknown_name(name, declared, kind) for name in islice(each, MOST_SUGGESTED)]
     return faults + [Fault(plain(n), "unknown_name", f"{kind} {plain(n)!r} is unknown") for n in each]
 

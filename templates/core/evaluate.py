@@ -5,13 +5,16 @@ from templates.core.language.evaluate import (
     Echo,
     Evaluation,
     evaluate,
-    is_told,
+    is_reported,
 )
+
+is_told = is_reported
 
 __all__ = [
     "Answer",
     "Echo",
     "Evaluation",
     "evaluate",
+    "is_reported",
     "is_told",
 ]

@@ -21,7 +21,7 @@ class JournalFriction(Template):
     Limits
     ------
     Petrov's journal carries no load; under load it runs eccentric and rubs more.
-    Give the radial load, and the answer tells by how much: the eccentricity and the friction over Petrov's
+    Give the radial load, and the answer says by how much: the eccentricity and the friction over Petrov's
     come from the Reynolds solution (full circle, Swift–Stieber rupture), and from 5 % on a warning says so.
     Measured by `benchmarks/petrov.py` for B/D 0.01 to 100, Petrov is low by 2.0 to 5.5 % at eps 0.2, by 13 to
     27 % at 0.5, by 56 to 70 % at 0.9 and by 86 to 91 % at 0.99.

@@ -91,16 +91,16 @@ class OilFilm(Template):
     maximum pressure and no stiffness.
     Levels map and reynolds: B/D 0.01 … 100 and eps up to 1 − 1e-7.
     Level mass_conserving alone knows grooves and supply pressure; where either is given it is taken unless
-    another level is asked for by name. Its friction is by the oil there is; elsewhere shear acts over the
+    another level is requested by name. Its friction is by the oil there is; elsewhere shear acts over the
     full circle, as in the standards. Its error was measured without grooves and supply pressure; with them
-    none is told: grooves narrower than 5° or nearer to each other are not resolved.
+    none is reported: grooves narrower than 5° or nearer to each other are not resolved.
     Angles count from the load in the sense of the hydrodynamic speed, those of grooves too.
-    Laminar flow: a warning tells where the film Reynolds number exceeds 41.3 √(D/c).
+    Laminar flow: a warning says where the film Reynolds number exceeds 41.3 √(D/c).
     The heat balance takes power and side flow from level map whatever the level, so that temperature and
     viscosity do not depend on it; flow driven by the supply pressure is left out, which errs to the hot side.
     Vogel's law eta = a exp(b/(t + c)), t in °C, takes two viscosities and its offset c, 95 K after Cameron,
     or all its constants.
-    A multigrade oil is thinner at a bearing's shear rates than its kinematic viscosity tells.
+    A multigrade oil is thinner at a bearing's shear rates than its kinematic viscosity suggests.
     Whirl: coefficients are those at the speed given; the rotor is rigid and carries the load by its mass,
     unless rotor_mass says otherwise.
 
@@ -309,7 +309,7 @@ class OilFilm(Template):
 
     @shared
     def balance(self) -> HeatBalance:
-        """The heat balance, if one is asked for."""
+        """The heat balance, if one is requested."""
         return heat_balance(
             Running(
                 self.F, self.D, self.W, self.psi, self.omega_h, self.omega_s,

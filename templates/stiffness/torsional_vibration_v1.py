@@ -1,7 +1,7 @@
 """Torsional vibration of a chain of inertias: natural frequencies, mode shapes, critical speeds.
 
 For the free, undamped vibration of a crankshaft or drive line as a row of inertias joined by massless
-shafts. It tells where resonances lie, not how high they are.
+shafts. It shows where resonances lie, not how high they are.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class TorsionalVibration(Template):
     """Torsional vibration of a chain of inertias: natural frequencies, mode shapes, critical speeds.
 
     For the free, undamped vibration of a crankshaft or drive line as a row of inertias joined by massless
-    shafts. It tells where resonances lie, not how high they are.
+    shafts. It shows where resonances lie, not how high they are.
 
     Limits
     ------

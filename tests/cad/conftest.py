@@ -10,9 +10,9 @@ from cad.regenerate import Build, regenerate
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """A test that asks for `model` runs for every model found: a new file is covered when it is there."""
     if "model" in metafunc.fixturenames:
-        found = list(models())
+        result = list(models())
         metafunc.parametrize(
-            "model", found, ids=[f"{cls.id}_v{cls.version}" for cls in found], scope="session"
+            "model", result, ids=[f"{cls.id}_v{cls.version}" for cls in result], scope="session"
         )
 
 

@@ -32,10 +32,10 @@ print(hashlib.sha256(regenerate(*json.load(sys.stdin)).step).hexdigest())
 
 def test_example_builds_and_shows_its_parameters(model: type[CadModel], example: Build) -> None:
     asked = model.from_quantities(model.example)
-    for name, found in example.dimensions.items():
+    for name, result in example.dimensions.items():
         declared = model.inputs[name]
         wanted = declared.meaning.scale.from_si(getattr(asked, declared.attribute))
-        assert found == pytest.approx(wanted, abs=1e-6), name
+        assert result == pytest.approx(wanted, abs=1e-6), name
 
 
 def test_every_number_is_read_back(model: type[CadModel], example: Build) -> None:

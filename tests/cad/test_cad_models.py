@@ -31,8 +31,8 @@ class TestBallBearing:
     def size(self, row: Any) -> None:
         """A row of the table builds, and every number of it is read back from the STEP file."""
         names = ("inner_diameter", "outer_diameter", "width")
-        found = build(BallBearing, **{name: f"{row[name]} mm" for name in names}).dimensions
-        assert [found[name] for name in names] == [row[name] for name in names]
+        result = build(BallBearing, **{name: f"{row[name]} mm" for name in names}).dimensions
+        assert [result[name] for name in names] == [row[name] for name in names]
 
     @pytest.mark.parametrize("row", QUICK, ids=lambda row: row["designation"])
     def test_literature_some_standard_sizes_build(self, row: Any) -> None:
@@ -47,8 +47,8 @@ class TestBallBearing:
         ("bore", "outside", "width"), [(3, 10, 4), (25, 52, 15), (50, 90, 20), (300, 540, 85)]
     )
     def test_literature_series_02_of_iso_15(self, bore: int, outside: int, width: int) -> None:
-        found = build(BallBearing, inner_diameter=f"{bore} mm").dimensions
-        assert (found["outer_diameter"], found["width"]) == (outside, width)
+        result = build(BallBearing, inner_diameter=f"{bore} mm").dimensions
+        assert (result["outer_diameter"], result["width"]) == (outside, width)
 
     def test_6210_has_about_the_mass_of_a_catalogue(self) -> None:
         # SKF 6210: 0.46 kg with its cage and 10 balls of 12.7 mm. Ours has no cage, and 11 balls of 12 mm.
@@ -78,8 +78,8 @@ class TestBallBearing:
         assert any(isclose(span, 37.123456, abs_tol=1e-6) for span in spans)
 
     def test_wanted_inside_is_drawn(self) -> None:
-        found = build(BallBearing, inner_diameter="50 mm", balls="10", ball_diameter="12.7 mm").dimensions
-        assert (found["balls"], found["ball_diameter"]) == (10, 12.7)
+        result = build(BallBearing, inner_diameter="50 mm", balls="10", ball_diameter="12.7 mm").dimensions
+        assert (result["balls"], result["ball_diameter"]) == (10, 12.7)
 
     def test_turns_alike_in_all_directions(self) -> None:
         measures = build(BallBearing, inner_diameter="50 mm").measures
@@ -111,20 +111,20 @@ class TestPlainBearing:
     def test_every_combination_is_the_solid_it_should_be(
         self, shell: str, hole: str, groove: str, depth: str
     ) -> None:
-        found = build(
+        result = build(
             PlainBearing, inner_diameter="48 mm", shell=shell, oil_hole_diameter=hole,
             oil_groove_width=groove, oil_groove_depth=depth,
         )  # fmt: skip
-        assert f"{found.dimensions['oil_hole_diameter']:g} mm" == hole
-        assert found.dimensions.get("oil_groove_depth", 0.0) == (0.8 if depth == "0.8 mm" else 0.0)
-        assert found.measures["low_y"] == (0 if shell == "half" else -26.4)
+        assert f"{result.dimensions['oil_hole_diameter']:g} mm" == hole
+        assert result.dimensions.get("oil_groove_depth", 0.0) == (0.8 if depth == "0.8 mm" else 0.0)
+        assert result.measures["low_y"] == (0 if shell == "half" else -26.4)
 
     def test_analytic_half_ring(self) -> None:
-        found = build(PlainBearing, inner_diameter="48 mm", oil_hole_diameter="0 mm").measures
+        result = build(PlainBearing, inner_diameter="48 mm", oil_hole_diameter="0 mm").measures
         outer, inner = 26.4, 24.0
-        assert found["volume"] == pytest.approx(pi / 2 * (outer**2 - inner**2) * 24, rel=1e-9)
+        assert result["volume"] == pytest.approx(pi / 2 * (outer**2 - inner**2) * 24, rel=1e-9)
         centroid = 4 / (3 * pi) * (outer**3 - inner**3) / (outer**2 - inner**2)
-        assert found["centre_y"] == pytest.approx(centroid, rel=1e-9)
+        assert result["centre_y"] == pytest.approx(centroid, rel=1e-9)
 
     def test_analytic_two_halves_are_a_whole(self) -> None:
         half, full = (build(PlainBearing, inner_diameter="48 mm", shell=shell) for shell in ("half", "full"))

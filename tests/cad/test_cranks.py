@@ -154,9 +154,9 @@ class TestSolids:
         assert measures["high_z"] == pytest.approx(throw + 20, abs=1e-6)
         assert measures["high_y"] == 45
 
-    def test_end_as_thick_as_the_journal_is_told_from_it(self) -> None:
-        found = build(Crankshaft, {"journal_diameter": "40 mm", "rear_diameter": "40 mm"}).dimensions
-        assert (found["rear_diameter"], found["rear_length"], found["journal_length"]) == (40, 32, 28)
+    def test_end_as_thick_as_the_journal_is_separated_from_it(self) -> None:
+        result = build(Crankshaft, {"journal_diameter": "40 mm", "rear_diameter": "40 mm"}).dimensions
+        assert (result["rear_diameter"], result["rear_length"], result["journal_length"]) == (40, 32, 28)
 
     def test_drilling_whose_mouth_touches_the_bore_at_the_web_is_whole(self) -> None:
         # With bores drawn part by part, OpenCASCADE lost nearly all of this shaft.

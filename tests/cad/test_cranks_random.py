@@ -93,8 +93,8 @@ def drawn(cls: type[CadModel], given: dict[str, Any]) -> bool:
     if named := refused(cls, given):
         assert named & set(given)
         return False
-    model, found = cls.from_si(given), regenerate(cls.id, cls.version, given)
-    for name, value in found.dimensions.items():
+    model, result = cls.from_si(given), regenerate(cls.id, cls.version, given)
+    for name, value in result.dimensions.items():
         declared = cls.inputs[name]
         wanted = declared.meaning.scale.from_si(float(getattr(model, declared.attribute)))
         assert value == pytest.approx(wanted, rel=1e-12, abs=1e-6), name

@@ -67,18 +67,20 @@ def test_every_dimension_measures_its_parameter(example: Build, drawing: Drawing
     header = read_header(example.step)
     assert header is not None
     sizes = {n: text for n, text in header.parameters.items() if " " in text and wanted(text) != 0}
-    found = dimensions(drawing)
-    assert found.keys() <= sizes.keys()
-    assert len(found) >= SHOWN * len(sizes), sorted(sizes.keys() - found.keys())
-    for name, value in found.items():
+    result = dimensions(drawing)
+    assert result.keys() <= sizes.keys()
+    assert len(result) >= SHOWN * len(sizes), sorted(sizes.keys() - result.keys())
+    for name, value in result.items():
         assert value == pytest.approx(wanted(sizes[name]), rel=1e-6), name
 
 
 def test_dimensions_are_drawn_with_their_numbers(drawing: Drawing) -> None:
     for entity in drawing.modelspace().query("DIMENSION"):
-        told = "".join(part.plain_text() for part in entity.virtual_entities() if part.dxftype() == "MTEXT")
-        number = told.strip("()°").rpartition("×")[2].lstrip("ØR")
-        assert float(number) == pytest.approx(entity.get_measurement(), abs=5.1e-4), told
+        reported = "".join(
+            part.plain_text() for part in entity.virtual_entities() if part.dxftype() == "MTEXT"
+        )
+        number = reported.strip("()°").rpartition("×")[2].lstrip("ØR")
+        assert float(number) == pytest.approx(entity.get_measurement(), abs=5.1e-4), reported
 
 
 def test_views_are_true_to_the_part(example: Build) -> None:
@@ -127,10 +129,10 @@ def test_svg_shows_the_same(example: Build, drawing: Drawing) -> None:
 def test_a_size_is_matched_by_value_and_by_sort() -> None:
     build = regenerate("plain_bearing", 1, {"inner_diameter": 0.04, "width": 0.04, "shell": "full"})
     bodies = read_step(build.step)
-    found, unseen = matched(
+    result, unseen = matched(
         {"width": "40 mm", "inner_diameter": "40 mm", "wall": "7 mm"}, measures(bodies, *views(bodies))
     )
-    sorts = {one.name: one.measure.sort for one in found}
+    sorts = {one.name: one.measure.sort for one in result}
     assert sorts == {"width": "length", "inner_diameter": "diameter"}
     assert unseen == ["wall"]
 

@@ -97,8 +97,8 @@ def test_coefficients_near_those_of_the_ruptured_film(eps: float) -> None:
     """Fed at the widest gap both films rupture alike."""
     K, B = fed_coefficients(eps, 0.5, 0.0, Feed())
     ruptured = plain_coefficients(eps, 0.5, 256, 32)
-    for found, known in ((K, ruptured.So * ruptured.K), (B, ruptured.So * ruptured.B)):
-        assert found == pytest.approx(known, abs=0.015 * np.abs(known).max())
+    for result, expected in ((K, ruptured.So * ruptured.K), (B, ruptured.So * ruptured.B)):
+        assert result == pytest.approx(expected, abs=0.015 * np.abs(expected).max())
 
 
 def drawn_feeds(seed: int, count: int) -> list[tuple[float, float, Feed]]:

@@ -65,9 +65,9 @@ def test_butenschoen_1976_squeeze(row: dict[str, float]) -> None:
 def test_lund_thomsen_1978(row: dict[str, float]) -> None:
     grooves = [(side * np.pi / 2, np.radians(20)) for side in (-1, 1)]
     film = grooved_coefficients(row["eps"], row["length_ratio"], grooves, 96, 16)
-    found = dict(zip(("Kxx", "Kxy", "Kyx", "Kyy"), film.K.ravel(), strict=True))
-    found |= {"Bxx": film.B[0, 0], "Bxy": film.B[0, 1], "Byy": film.B[1, 1]}
-    for name, value in found.items():
+    result = dict(zip(("Kxx", "Kxy", "Kyx", "Kyy"), film.K.ravel(), strict=True))
+    result |= {"Bxx": film.B[0, 0], "Bxy": film.B[0, 1], "Byy": film.B[1, 1]}
+    for name, value in result.items():
         assert value == pytest.approx(row[name], rel=0.05, abs=0.03), name
     assert np.degrees(film.attitude) == pytest.approx(row["phi_deg"], abs=0.15)
     assert 1 / (2 * np.pi * film.So) == pytest.approx(row["S"], rel=0.005)

@@ -104,8 +104,8 @@ class TestTable:
         out = values(raw)
         expected = np.interp(out["crank_angle"], [*angle, 720], [*p, p[0]])
         assert out["gas_pressure"] == pytest.approx(expected, rel=1e-12)
-        told = {**raw, "pressure_angle": {"value": angle.tolist(), "unit": "deg"}}
-        assert values(told)["gas_pressure"] == pytest.approx(expected, rel=1e-12)
+        reported = {**raw, "pressure_angle": {"value": angle.tolist(), "unit": "deg"}}
+        assert values(reported)["gas_pressure"] == pytest.approx(expected, rel=1e-12)
 
     def test_analytic_last_point_may_repeat_the_first(self):
         angle, p = indicated(5)

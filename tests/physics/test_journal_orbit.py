@@ -74,13 +74,19 @@ def booker_rate(angle: float, e: Array, S: float, w: float) -> Array:
 def test_short_orbit_meets_an_independent_integration(S: float, w: float) -> None:
     """Radau's method of fifth order, cycle after cycle until it repeats."""
     orbit = periodic_orbit(duty(S, w), law(ShortLaw))
-    start, told = np.zeros(2), angles(720)
+    start, reported = np.zeros(2), angles(720)
     for _ in range(30):
         run = solve_ivp(
-            booker_rate, (0, FOUR_STROKE), start, "Radau", told, args=(S, w), rtol=1e-9, atol=1e-12
+            booker_rate, (0, FOUR_STROKE), start, "Radau", reported, args=(S, w), rtol=1e-9, atol=1e-12
         )
         end = solve_ivp(
-            booker_rate, (told[-1], FOUR_STROKE), run.y[:, -1], "Radau", args=(S, w), rtol=1e-9, atol=1e-12
+            booker_rate,
+            (reported[-1], FOUR_STROKE),
+            run.y[:, -1],
+            "Radau",
+            args=(S, w),
+            rtol=1e-9,
+            atol=1e-12,
         ).y[:, -1]
         if np.hypot(*(end - start)) < 1e-8:
             break
@@ -153,7 +159,7 @@ def test_step_is_of_second_order(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("S", [0.5, 5.0, 50.0, 500.0])
-def test_step_error_is_told(S: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_step_error_is_reported(S: float, monkeypatch: pytest.MonkeyPatch) -> None:
     orbit = periodic_orbit(duty(S), law(MapLaw))
     monkeypatch.setattr(journal_orbit, "LARGEST_STEP", np.radians(0.125))
     fine = periodic_orbit(duty(S), law(MapLaw))
@@ -175,11 +181,11 @@ def test_unequal_steps_tell_the_same() -> None:
 def test_mean_speed_of_a_journal_in_a_fixed_sleeve_is_half_its_own() -> None:
     """A load that turns at half the speed leaves no wedge: there is no orbit; any other speed has one."""
     angle = angles(720)
-    for turning, found in ((0.5, False), (0.45, True), (0.55, True), (1.0, True), (-0.5, True)):
+    for turning, result in ((0.5, False), (0.45, True), (0.55, True), (1.0, True), (-0.5, True)):
         S = np.stack([np.cos(turning * angle), np.sin(turning * angle)])
         seen = turned(CyclicLoad(angle, FOUR_STROKE, S[:, None], np.full((1, 720), 0.5)), turning * angle)
         still = CyclicLoad(angle, FOUR_STROKE, seen.S, seen.w - turning)
-        assert np.isfinite(periodic_orbit(still, law(MapLaw)).least_gap[0]) == found, turning
+        assert np.isfinite(periodic_orbit(still, law(MapLaw)).least_gap[0]) == result, turning
     half = CyclicLoad(angle, FOUR_STROKE, np.stack([np.cos(angle / 2), np.sin(angle / 2)])[:, None],
                       np.full((1, 720), 0.5))  # fmt: skip
     assert np.isnan(periodic_orbit(half, law(MapLaw)).least_gap[0])
@@ -272,13 +278,13 @@ def check_random(count: int, seed: int) -> None:
     """Every orbit that is told lies in its bearing, repeats, and obeys its equation; nearly all are found."""
     load, ratio = random_duties(np.random.default_rng(seed), count, 72)
     orbit = periodic_orbit(load, MapLaw(ratio))
-    found = np.isfinite(orbit.least_gap)
-    assert found.mean() > 0.97
-    assert (orbit.least_gap[found] > 0).all()
-    assert (orbit.least_gap[found] <= gap(orbit)[found].min(axis=-1) * (1 + 1e-9)).all()
-    assert (orbit.step_error[found] < journal_orbit.UNKNOWN).all()
-    assert np.isnan(orbit.eps[:, ~found]).all()
-    assert np.isfinite(orbit.eps[:, found]).all()
+    result = np.isfinite(orbit.least_gap)
+    assert result.mean() > 0.97
+    assert (orbit.least_gap[result] > 0).all()
+    assert (orbit.least_gap[result] <= gap(orbit)[result].min(axis=-1) * (1 + 1e-9)).all()
+    assert (orbit.step_error[result] < journal_orbit.UNKNOWN).all()
+    assert np.isnan(orbit.eps[:, ~result]).all()
+    assert np.isfinite(orbit.eps[:, result]).all()
 
 
 def test_property_random_duties() -> None:

@@ -27,8 +27,8 @@ def by_complementarity(a, width, n, m):
 class TestLiterature:
     def test_literature_infinite_pad(self):
         """References README: film ratio 2 → 0.02648051, best 2.1889 → 0.02670719."""
-        found = pad_film("infinite", np.array([2.0, 2.1889]), 1.0).load
-        assert found == pytest.approx([0.02648051, 0.02670719], abs=5e-9)
+        result = pad_film("infinite", np.array([2.0, 2.1889]), 1.0).load
+        assert result == pytest.approx([0.02648051, 0.02670719], abs=5e-9)
 
     @pytest.mark.parametrize("width", [1.0, 0.5, 2.0])
     def test_analytic_leakage_is_that_of_the_journal_solver(self, width):
@@ -175,8 +175,8 @@ class TestProperty:
         assert np.isfinite(film.friction_fixed).all()
         assert (film.friction_moving > 0).all()
         assert np.isfinite(film.gradient(rng.uniform(0, 1, a.size))).all()
-        told = film.pressure(STATIONS).max(axis=1)
-        assert (told <= film.P_max * (1 + 1e-3)).all()
+        reported = film.pressure(STATIONS).max(axis=1)
+        assert (reported <= film.P_max * (1 + 1e-3)).all()
 
     def test_property_load_rises_with_width(self):
         width = np.geomspace(0.01, 100, 400)

@@ -43,16 +43,16 @@ def torque_left_over(omega, J, k):
 class TestAnalytic:
     @pytest.mark.parametrize("n", [1, 2, 3, 10, 200, 500])
     def test_analytic_equal_inertias_free(self, n):
-        found = angular_frequencies(np.full(n, 0.3), np.full(n - 1, 7.0), FREE)
+        result = angular_frequencies(np.full(n, 0.3), np.full(n - 1, 7.0), FREE)
         exact = [2 * (7 / 0.3) ** 0.5 * sin(m * pi / (2 * n)) for m in range(n)]
-        assert found[0] == 0
-        assert found == pytest.approx(exact, rel=1e-13, abs=0)
+        assert result[0] == 0
+        assert result == pytest.approx(exact, rel=1e-13, abs=0)
 
     @pytest.mark.parametrize("n", [1, 2, 3, 10, 200, 500])
     def test_analytic_equal_inertias_fixed(self, n):
-        found = angular_frequencies(np.full(n, 0.3), np.full(n, 7.0), FIXED)
+        result = angular_frequencies(np.full(n, 0.3), np.full(n, 7.0), FIXED)
         exact = [2 * (7 / 0.3) ** 0.5 * sin((2 * m + 1) * pi / (2 * (2 * n + 1))) for m in range(n)]
-        assert found == pytest.approx(exact, rel=1e-13, abs=0)
+        assert result == pytest.approx(exact, rel=1e-13, abs=0)
 
     @pytest.mark.parametrize(("one", "other"), [(1.0, 2.0), (1e-9, 1e9), (1e-100, 1e100), (1e9, 1e-9)])
     def test_analytic_two_inertias(self, one, other):
@@ -73,8 +73,8 @@ class TestAnalytic:
             step = length / n
             J = np.full(n, rho * polar * step)
             J[-1] /= 2
-            found = angular_frequencies(J, np.full(n, G * polar / step), FIXED)[0] / (2 * pi)
-            errors.append(exact - found)
+            result = angular_frequencies(J, np.full(n, G * polar / step), FIXED)[0] / (2 * pi)
+            errors.append(exact - result)
         assert [log2(a / b) for a, b in pairwise(errors)] == pytest.approx([2, 2], abs=0.01)
 
     def test_analytic_many_chains_are_each_as_alone(self):

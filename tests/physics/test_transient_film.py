@@ -78,14 +78,14 @@ def test_orbit_repeats_near_that_by_mobility(w: float) -> None:
     S = np.stack([2 + 1.5 * np.cos(angle), np.sin(angle)])[:, None]
     load = CyclicLoad(angle, 2 * np.pi, S, np.full((1, 90), w))
     by_mobility = periodic_orbit(load, MapLaw(np.array([0.5])))
-    found = transient_orbit(load, 0.5, by_mobility.eps[:, 0, 0], Marching(64, 4, STEP))
-    assert found is not None
-    assert 1 < found.cycles < 8
-    gap = 1 - np.hypot(*found.eps)
+    result = transient_orbit(load, 0.5, by_mobility.eps[:, 0, 0], Marching(64, 4, STEP))
+    assert result is not None
+    assert 1 < result.cycles < 8
+    gap = 1 - np.hypot(*result.eps)
     assert gap.min() == pytest.approx(by_mobility.least_gap[0], rel=0.1)
-    assert found.P_max.min() > 0
-    assert np.all(found.shear < np.pi / np.sqrt(gap * (2 - gap)) * 1.05)
-    assert np.all(found.side_flow > 0)
+    assert result.P_max.min() > 0
+    assert np.all(result.shear < np.pi / np.sqrt(gap * (2 - gap)) * 1.05)
+    assert np.all(result.side_flow > 0)
 
 
 def test_mirrored_load_and_speed_give_the_mirrored_orbit() -> None:

@@ -18,7 +18,7 @@ from templates.core.catalogue.digests import digests, release_file
 from templates.core.catalogue.finding import find
 from templates.core.errors import InvalidInputs
 from templates.core.language import dimensions
-from templates.core.language.evaluate import evaluate, is_told
+from templates.core.language.evaluate import evaluate, is_reported
 from templates.core.language.intake import is_single
 from templates.core.language.spec import Choice, Curve, Derived, Given, Profile, Text
 from templates.core.language.template import Template
@@ -47,8 +47,8 @@ def as_typed(declared, value):
 
 def example_si(cls):
     template = cls.from_quantities(cls.example)
-    told = {name: declared for name, declared in cls.inputs.items() if is_told(template, declared)}
-    return {name: getattr(template, declared.attribute) for name, declared in told.items()}
+    reported = {name: declared for name, declared in cls.inputs.items() if is_reported(template, declared)}
+    return {name: getattr(template, declared.attribute) for name, declared in reported.items()}
 
 
 class TestDeclarations:
@@ -196,11 +196,16 @@ def check_case(cls, case, precision):
     assert results.keys() == case["outputs"].keys()
     for name, value in case["outputs"].items():
         if isinstance(value, list):
-            found, known = np.asarray(results[name], dtype=float), np.asarray(value, dtype=float)
-            assert found == pytest.approx(known, rel=precision, abs=0, nan_ok=True), (name, case["inputs"])
+            measured, reference = np.asarray(results[name], dtype=float), np.asarray(value, dtype=float)
+            assert measured == pytest.approx(reference, rel=precision, abs=0, nan_ok=True), (
+                name,
+                case["inputs"],
+            )
             continue
-        known = value if isinstance(value, (str, type(None))) else pytest.approx(value, rel=precision, abs=0)
-        assert results[name] == known, (name, case["inputs"])
+        reference = (
+            value if isinstance(value, (str, type(None))) else pytest.approx(value, rel=precision, abs=0)
+        )
+        assert results[name] == reference, (name, case["inputs"])
 
 
 class TestArrays:

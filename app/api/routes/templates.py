@@ -51,7 +51,7 @@ def show_accuracy(id: Id, number: Number, catalogues: TheCatalogues) -> Accuracy
     measured = accuracy(cls)
     if measured is None:
         raise UnknownTemplate(id, f"the error of {id} version {number} is not measured")
-    return Accuracy.model_validate(measured.told)
+    return Accuracy.model_validate(measured.content)
 
 
 def listed(catalogue: Catalogue[Any], limit: int, cursor: str | None) -> TemplateList:

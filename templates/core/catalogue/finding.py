@@ -25,7 +25,7 @@ OUTSIDE = "_outside"
 
 @dataclass(frozen=True)
 class Catalogue(Generic[T]):
-    """All versions of all templates (or models) found; `kind` names them in messages."""
+    """All versions of all templates (or models) in the folders; `kind` names them in messages."""
 
     versions: dict[tuple[str, int], type[T]]
     kind: str = "template"
@@ -43,12 +43,12 @@ class Catalogue(Generic[T]):
         UnknownTemplate
             If there is none.
         """
-        found = {version: cls for (name, version), cls in sorted(self.versions.items()) if name == id}
-        if not found:
+        classes = {version: cls for (name, version), cls in sorted(self.versions.items()) if name == id}
+        if not classes:
             raise UnknownTemplate(
                 id, f"there is no {self.kind} {plain(id)!r}; there are {', '.join(self.ids)}"
             )
-        return found
+        return classes
 
     def get(self, id: str, version: int) -> type[T]:
         """One version of one id.
@@ -58,10 +58,10 @@ class Catalogue(Generic[T]):
         UnknownTemplate
             If there is none.
         """
-        if (found := self.versions.get((id, version))) is None:
-            known = ", ".join(map(str, self.of(id)))
-            raise UnknownTemplate(id, f"{self.kind} {id} has no version {version}; it has {known}")
-        return found
+        if (version_class := self.versions.get((id, version))) is None:
+            listing = ", ".join(map(str, self.of(id)))
+            raise UnknownTemplate(id, f"{self.kind} {id} has no version {version}; it has {listing}")
+        return version_class
 
     def latest(self, id: str) -> type[T]:
         """The newest version that is not withdrawn, else the newest."""
@@ -148,11 +148,11 @@ def _usable(path: Path) -> ModuleType:
 
 
 def _declared_in(module: ModuleType, path: Path) -> type[Template]:
-    found = [
+    classes = [
         value
         for value in vars(module).values()
         if isinstance(value, type) and issubclass(value, Template) and value.__module__ == module.__name__
     ]
-    if len(found) != 1:
-        raise UnusableFile(str(path), f"it declares {len(found)} templates; it must declare one")
-    return found[0]
+    if len(classes) != 1:
+        raise UnusableFile(str(path), f"it declares {len(classes)} templates; it must declare one")
+    return classes[0]

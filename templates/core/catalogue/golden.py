@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from templates.core.catalogue.digests import digests, release_file
 from templates.core.errors import InvalidInputs
-from templates.core.language.evaluate import is_told
+from templates.core.language.evaluate import is_reported
 from templates.core.language.intake import Input
 from templates.core.language.spec import Choice
 from templates.core.language.template import Template
@@ -94,8 +94,8 @@ def cases_of_levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
 def _given(cls: type[Template]) -> dict[str, Any]:
     """The example's inputs in SI with defaults; without what is missing or shown as an output."""
     template = cls.from_quantities(cls.example)
-    told = {name: declared for name, declared in cls.inputs.items() if is_told(template, declared)}
-    return {name: getattr(template, declared.attribute) for name, declared in told.items()}
+    reported = {name: declared for name, declared in cls.inputs.items() if is_reported(template, declared)}
+    return {name: getattr(template, declared.attribute) for name, declared in reported.items()}
 
 
 def _steps(declared: Input, value: Any) -> list[Any]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.language.ledger import Ledger, Mask, Notice
+from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Declaration, Formula, Profile
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:
     used = (self.declarations[n].name for n in beneath)
     inputs = ", ".join(name for name in used if name in self.inputs) or "constants alone"
     if np.isfinite(value):
-        what = f"would be {meaning.told(value)}; it must be {meaning.wanted}"
+        what = f"would be {meaning.with_unit(value)}; it must be {meaning.wanted}"
     else:
         what = "has no finite value here"
     remedy = f"; {meaning.remedy}" if meaning.remedy else ""
@@ -55,30 +55,32 @@ def masked(self: Template, declaration: Formula[Any], value: Array) -> Array:
     inside = meaning.admits(value)
     if inside.all():
         return value
-    known = ~np.isnan(value)
+    present = ~np.isnan(value)
     if isinstance(declaration, Profile):
-        inside, known = declaration.inside(inside), declaration.inside(known)
-    if (known & ~inside).any():
+        inside, present = declaration.inside(inside), declaration.inside(present)
+    if (present & ~inside).any():
         remedy = f"; {meaning.remedy}" if meaning.remedy else ""
         reason = f"{declaration.name} must be {meaning.wanted}{remedy}"
-        self.ledger.masks.append(Mask((declaration.attribute,), known & ~inside, reason))
-    if not known.all() and (why := absence(self, declaration)):
-        self.ledger.masks.append(Mask((declaration.attribute,), ~known, why, tells=True))
+        self.ledger.masks.append(Mask((declaration.attribute,), present & ~inside, reason))
+    if not present.all() and (why := absence(self, declaration)):
+        self.ledger.masks.append(Mask((declaration.attribute,), ~present, why, explains=True))
     return np.where(declaration.spread(inside) if isinstance(declaration, Profile) else inside, value, np.nan)
 
 
-def warn_if_outside(ledger: Ledger, declaration: Declaration, value: Any, level: str = "") -> None:
-    """Note a warning that names the limit where a value leaves its published range."""
+def outside_published(declaration: Declaration, value: Any, level: str = "") -> Notice | None:
+    """A warning that names the limit where a value leaves its published range; None where it does not."""
     meaning = declaration.meaning.at(level)
-    outside = ~np.isnan(value) & ~np.asarray(meaning.published_si.admits(value))  # type: ignore[union-attr]
+    if meaning.published_si is None:
+        return None
+    outside = ~np.isnan(value) & ~np.asarray(meaning.published_si.admits(value))
     if not outside.any():
-        return
+        return None
     if np.ndim(value):
         where = f"leaves it at {int(outside.sum())} of {outside.size} points"
     else:
-        where = f"is {meaning.told(value)}"
+        where = f"is {meaning.with_unit(value)}"
     source = f" ({meaning.source})" if meaning.source else ""
     remedy = f"; {meaning.remedy}" if meaning.remedy and meaning.domain.open else ""
     limits = meaning.published.text(meaning.unit)
     detail = f"published for {meaning.words} {limits}{source}; here it {where}{remedy}"
-    ledger.warnings.append(Notice("outside_published_range", declaration.name, detail))
+    return Notice("outside_published_range", declaration.name, detail)

@@ -3,7 +3,7 @@
 Each is declared once. Its words make the API name, the label and the line in the report; its symbol makes
 the formula on paper; its bounds make the check, the schema and the message.
 
-Two kinds of bounds are told apart. The *domain* is where a quantity means anything: outside it a value is
+There are two kinds of bounds. The *domain* is where a quantity means anything: outside it a value is
 refused. The *published* range is where the source claims its formula: outside it the answer carries a
 warning that names the limit.
 """

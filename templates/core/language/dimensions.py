@@ -96,13 +96,13 @@ def _units(result: Any) -> str:
     return f"{result.units:~P}" if isinstance(result, pint.Quantity) else "a pure number"
 
 
-def rebound(function: Callable[..., Any], known: dict[Any, Any]) -> Callable[..., Any]:
+def rebound(function: Callable[..., Any], copies: dict[Any, Any]) -> Callable[..., Any]:
     """The same function, in a scope where every physics function checks its border."""
-    if function in known:
-        return known[function]
+    if function in copies:
+        return copies[function]
     if hasattr(function, "border"):
-        known[function] = _bordered(function)
-        return known[function]
+        copies[function] = _bordered(function)
+        return copies[function]
     if not isinstance(function, FunctionType) or function.__module__.partition(".")[0] in LIBRARIES:
         return function
     scope = dict(function.__globals__)
@@ -110,9 +110,9 @@ def rebound(function: Callable[..., Any], known: dict[Any, Any]) -> Callable[...
         function.__code__, scope, function.__name__, function.__defaults__, function.__closure__
     )
     copy.__kwdefaults__ = function.__kwdefaults__
-    known[function] = copy
+    copies[function] = copy
     for name in _names(function.__code__) & scope.keys():
-        scope[name] = _in_scope(scope[name], known)
+        scope[name] = _in_scope(scope[name], copies)
     return copy
 
 
@@ -122,11 +122,11 @@ def _names(code: CodeType) -> set[str]:
     return set(code.co_names).union(*map(_names, nested))
 
 
-def _in_scope(value: Any, known: dict[Any, Any]) -> Any:
+def _in_scope(value: Any, copies: dict[Any, Any]) -> Any:
     if isinstance(value, FunctionType):
-        return rebound(value, known)
+        return rebound(value, copies)
     if isinstance(value, ModuleType) and value.__name__.partition(".")[0] not in LIBRARIES:
-        return _Record({name: _in_scope(v, known) for name, v in vars(value).items() if callable(v)})
+        return _Record({name: _in_scope(v, copies) for name, v in vars(value).items() if callable(v)})
     return value
 
 
@@ -138,8 +138,8 @@ def _bordered(function: Callable[..., Any]) -> Callable[..., Any]:
     def checked(*given: Any, **named: Any) -> Any:
         bound = list(signature(function).bind(*given, **named).arguments.items())
         if len(bound) != len(arguments):
-            told = f"{function.__name__} declares {len(arguments)} units for {len(bound)} arguments"
-            raise TypeError(told)
+            message = f"{function.__name__} declares {len(arguments)} units for {len(bound)} arguments"
+            raise TypeError(message)
         values = [_inside(function, *pair) for pair in zip(bound, arguments, strict=True)]
         result = function(*values)
         if isinstance(returns, str):
@@ -161,6 +161,6 @@ def _inside(function: Callable[..., Any], argument: tuple[str, Any], declared: s
         return value
     si = _magnitude(value, declared)
     if si is None:
-        told = f"{function.__name__} takes {name} in {declared}, not in {_units(value)}"
-        raise TypeError(told)
+        message = f"{function.__name__} takes {name} in {declared}, not in {_units(value)}"
+        raise TypeError(message)
     return si

@@ -1,4 +1,4 @@
-"""Evaluate a template: from a user's inputs to named answers, computing only what is asked for."""
+"""Evaluate a template: from a user's inputs to named answers, computing only the requested outputs."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def evaluate(
 ) -> Evaluation:
     """Evaluate the outputs named (all, if None) for inputs as a user types them.
 
-    `units` asks for outputs in other units. Arrays of inputs give arrays of outputs.
+    `units` names other units for outputs. Arrays of inputs give arrays of outputs.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def evaluate(
         echoes = {
             name: _echo(template, declared)
             for name, declared in cls.inputs.items()
-            if name in template.ledger.typed or is_told(template, declared)
+            if name in template.ledger.typed or is_reported(template, declared)
         }
     notices = [*_standing(cls), *_noticed(rungs), *_unmet(cls, whole, names, tolerance)]
     seconds = time.perf_counter() - start
@@ -170,15 +170,15 @@ def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
     if isinstance(value, str):
         return Answer(value or None, None, reason=None if value else why)
     beneath = template.depends_on(formula.attribute)
-    masks = [m for m in template.ledger.masks if not (m.tells or beneath.isdisjoint(m.names))]
+    masks = [m for m in template.ledger.masks if not (m.explains or beneath.isdisjoint(m.names))]
     shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), value.shape)
-    told = np.broadcast_to(value, shape).astype(object)
+    texts = np.broadcast_to(value, shape).astype(object)
     reasons = np.full(shape, None, dtype=object)
-    reasons[told == ""] = why
+    reasons[texts == ""] = why
     for mask in reversed(masks):
         reasons[np.broadcast_to(mask.where, shape)] = mask.reason
-    told[reasons != None] = None  # noqa: E711
-    return Answer(told, None, reasons=reasons if reasons.any() else None)
+    texts[reasons != None] = None  # noqa: E711
+    return Answer(texts, None, reasons=reasons if reasons.any() else None)
 
 
 def _with_reasons(
@@ -195,7 +195,7 @@ def _with_reasons(
         return si, None
     points = si.shape[: -profile.axes] if profile else si.shape
     shape = reduce(np.broadcast_shapes, (mask.where.shape for mask in masks), points)
-    covering = (mask.where for mask in masks if not mask.tells)
+    covering = (mask.where for mask in masks if not mask.explains)
     covered = reduce(np.logical_or, covering, np.zeros(shape, dtype=bool))
     value = np.where(profile.spread(covered) if profile else covered, np.nan, si)
     holes = ~profile.inside(~np.isnan(value)) if profile else np.isnan(value)
@@ -206,8 +206,8 @@ def _with_reasons(
     return value, reasons
 
 
-def is_told(template: Template, declared: Input) -> bool:
-    """Whether an input is worth telling: given, or with a default that exists and is no output anyway."""
+def is_reported(template: Template, declared: Input) -> bool:
+    """Whether an answer reports an input: given, or with a default that exists and is no output anyway."""
     if declared.name in template.ledger.typed:
         return True
     if isinstance(declared, Derived):

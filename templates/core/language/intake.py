@@ -1,8 +1,9 @@
-"""From what a user typed to the SI values of a template; everything that is wrong is found at once."""
+"""From what a user typed to the SI values of a template; all faults are collected before any is reported."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,8 +11,8 @@ from numpy.typing import NDArray
 
 from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_names
-from templates.core.language.admission import warn_if_outside
-from templates.core.language.ledger import Ledger, Mask, Notice
+from templates.core.language.admission import outside_published
+from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Requirement, Table
 from templates.core.units.quantity import Typed, read
 from templates.core.units.units import unit
@@ -40,7 +41,9 @@ def read_inputs(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, 
 
 def _read_one(declared: Input, raw: Any) -> Typed | str:
     if isinstance(declared, Choice):
-        option = raw["value"] if isinstance(raw, dict) and raw.keys() == {"value"} else raw  # as it is told
+        option = (
+            raw["value"] if isinstance(raw, dict) and raw.keys() == {"value"} else raw
+        )  # as answers write it
         if isinstance(option, str) and option in declared.options:
             return option
         raise FaultyText("not_an_option", f"{excerpt(raw)} is none of {', '.join(declared.options)}")
@@ -54,26 +57,39 @@ def _example(declared: Input) -> str:
     return "; give a number" if scale == "1" else f"; give it in {scale} or its like"
 
 
-def admitted(
-    cls: type[Template], typed: Mapping[str, Typed | str], ledger: Ledger
-) -> tuple[dict[str, Any], list[Fault]]:
-    """The SI value of every input that was given or has a constant default, by attribute; and the faults."""
-    values: dict[str, Any] = {}
-    faults: list[Fault] = []
+@dataclass(frozen=True)
+class Intake:
+    """SI values of inputs by attribute, with the faults, masked points and warnings that came up."""
+
+    values: dict[str, Any] = field(default_factory=dict)
+    faults: list[Fault] = field(default_factory=list)
+    masks: list[Mask] = field(default_factory=list)
+    warnings: list[Notice] = field(default_factory=list)
+    missing: set[str] = field(default_factory=set)
+
+
+def admitted(cls: type[Template], typed: Mapping[str, Typed | str]) -> Intake:
+    """The SI value of every input that was given or has a constant default, and what is wrong with it."""
+    intake = Intake()
     for name, declared in cls.inputs.items():
         source = typed.get(name) or (None if isinstance(declared, Derived) else declared.default)
         if isinstance(source, Typed):
-            values[declared.attribute], fault = _bounded(declared, source, ledger)
-            faults += [fault] if fault else []
+            value, remark = _bounded(declared, source)
+            intake.values[declared.attribute] = value
+            intake.faults.extend([remark] if isinstance(remark, Fault) else [])
+            intake.masks.extend([remark] if isinstance(remark, Mask) else [])
+            if declared.meaning.published_si is not None and not isinstance(declared, Table):
+                warning = outside_published(declared, value)
+                intake.warnings.extend([warning] if warning else [])
         elif source is not None:
-            values[declared.attribute] = source
+            intake.values[declared.attribute] = source
         elif isinstance(declared, Given) and declared.optional:
-            ledger.missing |= set() if declared.alternative else {declared.attribute}
-            values[declared.attribute] = () if isinstance(declared, Table) else np.float64(np.nan)
-    return values, faults
+            intake.missing.update(set() if declared.alternative else {declared.attribute})
+            intake.values[declared.attribute] = () if isinstance(declared, Table) else np.float64(np.nan)
+    return intake
 
 
-def _bounded(declared: Input, typed: Typed, ledger: Ledger) -> tuple[Any, Fault | None]:
+def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:
     """The value and what is wrong with it; a faulty point of an array is masked, and is no fault."""
     if isinstance(declared, Table):
         return _rows(declared, typed.si)
@@ -81,15 +97,15 @@ def _bounded(declared: Input, typed: Typed, ledger: Ledger) -> tuple[Any, Fault 
         detail = f"{declared.meaning.words} is one value for all points: give a number, not an array"
         return np.float64(np.nan), Fault(declared.name, "not_single", detail)
     if isinstance(declared, Curve) and not (declared.constant and isinstance(typed.si, float)):
-        value, fault = _along_a_cycle(declared, typed)
-    elif isinstance(typed.si, np.ndarray):
-        value, fault = _mask_given(declared, typed.si, declared.meaning.admits(typed.si), ledger), None
-    else:
-        inside = declared.meaning.admits(typed.si)
-        value, fault = np.float64(typed.si), None if inside else _out_of_bounds(declared, typed, inside)
-    if declared.meaning.published_si is not None:
-        warn_if_outside(ledger, declared, value)
-    return value, fault
+        return _along_a_cycle(declared, typed)
+    if isinstance(typed.si, np.ndarray):
+        return _masked_points(declared, typed.si, declared.meaning.admits(typed.si))
+    return _one_number(declared, typed)
+
+
+def _one_number(declared: Input, typed: Typed) -> tuple[np.float64, Fault | None]:
+    inside = declared.meaning.admits(typed.si)
+    return np.float64(typed.si), None if inside else _out_of_bounds(declared, typed, inside)
 
 
 def _along_a_cycle(declared: Curve, typed: Typed) -> tuple[Any, Fault | None]:
@@ -124,12 +140,13 @@ def _out_of_bounds(declared: Declaration, typed: Typed, inside: Any) -> Fault:
     return Fault(declared.name, "out_of_range", detail)
 
 
-def _mask_given(declared: Declaration, value: Array, inside: NDArray[np.bool_], ledger: Ledger) -> Array:
+def _masked_points(
+    declared: Declaration, value: Array, inside: NDArray[np.bool_]
+) -> tuple[Array, Mask | None]:
     if inside.all():
-        return value
+        return value, None
     reason = f"{declared.name} must be {declared.meaning.wanted}"
-    ledger.masks.append(Mask((declared.attribute,), ~inside, reason))
-    return np.where(inside, value, np.nan)
+    return np.where(inside, value, np.nan), Mask((declared.attribute,), ~inside, reason)
 
 
 def as_typed(cls: type[Template], name: str, value: Any) -> Any:
@@ -162,9 +179,9 @@ def check_shapes(self: Template) -> None:
             )
     except ValueError:
         names = {self.declarations[n].name: v.shape for n, v in arrays.items()}
-        told = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
+        shapes = ", ".join(f"{name} {'×'.join(map(str, shape))}" for name, shape in names.items())
         detail = (
-            f"arrays of different shapes do not fit together ({told}); give equal lengths or a single value"
+            f"arrays of different shapes do not fit together ({shapes}); give equal lengths or a single value"
         )
         raise InvalidInputs([Fault(name, "shape", detail) for name in names]) from None
 
@@ -195,13 +212,13 @@ def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
             names = tuple(self.inputs[name].attribute for name in rule.names)
             self.ledger.masks.append(Mask(names, ~holds, f"{rule.sentence}: {rule.remedy}"))
     elif not holds:
-        told = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in rule.names)
-        detail = f"{rule.sentence}, but {told}; {rule.remedy}"
+        values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in rule.names)
+        detail = f"{rule.sentence}, but {values}; {rule.remedy}"
         yield from (Fault(name, "inconsistent", detail) for name in rule.names)
 
 
 def remarks(self: Template) -> Iterator[Notice]:
-    """A warning for every rule that asks for no more than attention, where it does not hold."""
+    """A warning for every rule that refuses nothing, where it does not hold."""
     for rule in (rule for rule in self.requirements if rule.warning):
         if not np.all(rule.function(self)):
             yield from (Notice(rule.warning, name, f"{rule.sentence}; {rule.remedy}") for name in rule.names)
@@ -214,5 +231,5 @@ def _shown(self: Template, declared: Declaration) -> str:
     if isinstance(value, tuple):
         return str([[float(f"{declared.meaning.scale.from_si(v):.6g}") for v in row] for row in value])
     if np.ndim(value):
-        return f"{np.shape(value)[-1]} values from {declared.meaning.told(value.flat[0])}"
-    return "not given" if np.isnan(value) else declared.meaning.told(value)
+        return f"{np.shape(value)[-1]} values from {declared.meaning.with_unit(value.flat[0])}"
+    return "not given" if np.isnan(value) else declared.meaning.with_unit(value)

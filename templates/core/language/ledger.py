@@ -23,13 +23,13 @@ class Notice:
 class Mask:
     """Points of an array that mean nothing, and why; `names` are the attributes it comes from.
 
-    What follows from them means nothing either, unless the mask only `tells` why a result is absent.
+    What follows from them means nothing either, unless the mask only `explains` why a result is absent.
     """
 
     names: tuple[str, ...]
     where: NDArray[np.bool_]
     reason: str
-    tells: bool = False
+    explains: bool = False
 
 
 @dataclass

@@ -34,8 +34,10 @@ class Accuracy:
 
     axes: tuple[str, str]  # attributes of the template
     grids: tuple[Array, Array]  # ascending edges of the cells
-    errors: dict[str, dict[str, Array]]  # by level and output: the largest found in each cell, NaN unmeasured
-    told: dict[str, Any]  # the whole file, as it is served
+    errors: dict[
+        str, dict[str, Array]
+    ]  # by level and output: the largest measured in each cell, NaN unmeasured
+    content: dict[str, Any]  # the whole file, as it is served
 
     def of(self, template: Template, outputs: Iterable[str]) -> dict[str, Any]:
         """What `evaluate` reports: none of a text, 0 where the level does not matter, else the estimate.
@@ -45,13 +47,13 @@ class Accuracy:
         """
         names, tables = list(outputs), self.errors.get(template.level or SINGLE, {})
         exact = {name for name in names if _same_at_all_levels(template, name)} if template.levels else set()
-        known = tables if template.is_measured() else {}
-        measured = [name for name in names if name in known and name not in exact]
+        available = tables if template.is_measured() else {}
+        measured = [name for name in names if name in available and name not in exact]
         cell = self._cell(template) if measured else None
-        found = {name: _looked_up(tables[name], cell) for name in measured}
+        estimates = {name: _looked_up(tables[name], cell) for name in measured}
         none = np.zeros(template.shape_of_points())[()]
         unknown = none + np.nan
-        return {n: found[n] if n in found else none if n in exact else unknown for n in names}
+        return {n: estimates[n] if n in estimates else none if n in exact else unknown for n in names}
 
     def _cell(self, template: Template) -> tuple[Any, Any, Any]:
         """Row and column of the cell in which each point lies, and whether it lies in any."""
@@ -103,25 +105,25 @@ def accuracy_file(cls: type[Template]) -> Path:
     return Path(inspect.getfile(cls)).with_suffix(".accuracy.json")
 
 
-_known: dict[Any, Accuracy | None] = {}
+_cache: dict[Any, Accuracy | None] = {}
 
 
 def accuracy(cls: type[Template]) -> Accuracy | None:
     """The measured errors of a version, if they were measured."""
-    if cls not in _known:
+    if cls not in _cache:
         path = accuracy_file(cls)
-        _known[cls] = _loaded(path) if path.exists() else None
-    return _known[cls]
+        _cache[cls] = _loaded(path) if path.exists() else None
+    return _cache[cls]
 
 
 def _loaded(path: Path) -> Accuracy:
-    told = json.loads(path.read_text(encoding="utf-8"))
-    (one, first), (two, second) = ((axis["attribute"], np.array(axis["values"])) for axis in told["axes"])
+    content = json.loads(path.read_text(encoding="utf-8"))
+    (one, first), (two, second) = ((axis["attribute"], np.array(axis["values"])) for axis in content["axes"])
     errors = {
         level: {output: np.array(table, dtype=float) for output, table in measured["errors"].items()}
-        for level, measured in told["levels"].items()
+        for level, measured in content["levels"].items()
     }
-    return Accuracy((one, two), (first, second), errors, told)
+    return Accuracy((one, two), (first, second), errors, content)
 
 
 @dataclass(frozen=True)
@@ -166,8 +168,10 @@ def at_level(template: Template, level: str, where: NDArray[np.bool_] | None = N
     count = int(np.prod(template.shape_of_points())) if where is None else int(where.sum())
     most = template.most_points.get(level, count)
     if count > most:
-        told = f"level {level} takes at most {most} points at once, not {count}; ask for fewer, or for less"
-        raise InvalidInputs([Fault("level", "too_many_points", told)])
+        message = (
+            f"level {level} takes at most {most} points at once, not {count}; ask for fewer, or for less"
+        )
+        raise InvalidInputs([Fault("level", "too_many_points", message)])
     return template.at(level, where)
 
 

@@ -94,7 +94,7 @@ class Meaning:
         limits = self.domain.text(self.unit)
         return " ".join(filter(None, ("a whole number" if self.integer else "", limits))) or "finite"
 
-    def told(self, si: float) -> str:
+    def with_unit(self, si: float) -> str:
         """An SI value in the declared unit, for a message."""
         return f"{self.scale.from_si(float(si)):.6g}{'' if self.unit == '1' else ' ' + self.unit}"
 

@@ -24,13 +24,13 @@ from templates.core.units.quantity import Typed, read
 
 SAMPLES = 1025  # of the scan; cheap as one array call
 INTERVALS, FINER, ROUNDS = 20, 65, 5  # where something happens: so many intervals, in so many parts, so often
-POLISHES, POLISHED = 8, 1e-9  # steps at a dear level, and the relative miss with which they end
+POLISHES, POLISHED = 8, 1e-9  # steps at an expensive level, and the relative miss with which they end
 JUMP = 1e-6  # relative residual at a crossing beyond which it is a jump, not a solution
 
 
 @dataclass(frozen=True)
 class Solution:
-    """The value found [declared unit of the unknown], and the evaluation there."""
+    """The value of the solution [declared unit of the unknown], and the evaluation there."""
 
     unknown: float
     unit: str
@@ -48,7 +48,7 @@ def solve(
 ) -> Solution:
     """Find the input `unknown` between `bounds` for which the one output in `target` has its value.
 
-    `options` go to `evaluate`. Where several solutions exist the lowest is returned and a warning tells of
+    `options` go to `evaluate`. Where several solutions exist the lowest is returned and a warning names
     the others.
 
     Raises
@@ -60,23 +60,23 @@ def solve(
     """
     declared, (low, high), formula, wanted = read_question(cls, raw, unknown, bounds, target, **options)
     fidelity: dict[str, Any] = {name: options[name] for name in ("level", "tolerance") if name in options}
-    asked = _Curve(cls, dict(raw), declared, formula, wanted, fidelity)
-    curve = replace(asked, fidelity=_cheap(cls, fidelity))
+    requested = _Curve(cls, dict(raw), declared, formula, wanted, fidelity)
+    curve = replace(requested, fidelity=_cheap(cls, fidelity))
     grid, residual = curve.scan(low, high)
     roots = curve.roots(grid, residual)
     if not roots:
         raise curve.unreachable(grid, residual)
     unit = declared.meaning.unit
-    root = roots[0] if curve == asked else asked.polished(roots[0], curve)
-    found = float(declared.meaning.scale.from_si(root))
-    evaluation = evaluate(cls, {**raw, unknown: {"value": found, "unit": unit}}, **options)
+    root = roots[0] if curve == requested else requested.polished(roots[0], curve)
+    value = float(declared.meaning.scale.from_si(root))
+    evaluation = evaluate(cls, {**raw, unknown: {"value": value, "unit": unit}}, **options)
     return Solution(
-        found, unit, evaluation, [*_not_monotone(declared, formula, residual), *_others(declared, roots)]
+        value, unit, evaluation, [*_not_monotone(declared, formula, residual), *_others(declared, roots)]
     )
 
 
 def _cheap(cls: type[Template], fidelity: dict[str, Any]) -> dict[str, Any]:
-    """The fidelity of the scan: the one asked for, or the default level where that may take few points."""
+    """The fidelity of the scan: the one requested, or the default level where that may take few points."""
     if not cls.most_points or ((level := fidelity.get("level")) and level not in cls.most_points):
         return fidelity
     return {"level": cls.default_level}
@@ -125,8 +125,8 @@ def _unknown(cls: type[Template], name: str, faults: list[Fault]) -> Input | Non
     """The declaration of the unknown, if it is a quantity that can take any value."""
     declared = cls.inputs.get(name)
     if declared is None:
-        known = unknown_name(name, _solvable(cls), "input")
-        faults.append(Fault("unknown", known.code, known.detail))
+        fault = unknown_name(name, _solvable(cls), "input")
+        faults.append(Fault("unknown", fault.code, fault.detail))
     elif name not in _solvable(cls):
         detail = f"{name} takes no continuous values; one of {', '.join(_solvable(cls))} can be solved for"
         faults.append(Fault("unknown", "not_solvable", detail))
@@ -224,14 +224,14 @@ class _Curve:
     def scan(self, low: float, high: float) -> tuple[Array, Array]:
         """Values of the unknown and their residuals; dense where the target is crossed or the domain ends.
 
-        So a jump is told from a crossing, and the end of the reachable range is found.
+        This separates a jump from a crossing, and locates the end of the reachable range.
         """
         grid = _grid(low, high)
         for _ in range(ROUNDS):
             residual = self.residual(grid)
             edge = np.isnan(residual[:-1]) != np.isnan(residual[1:])
-            found = np.flatnonzero(edge | _crosses(residual))[:INTERVALS]
-            fine = (np.linspace(grid[i], grid[i + 1], FINER) for i in found)
+            intervals = np.flatnonzero(edge | _crosses(residual))[:INTERVALS]
+            fine = (np.linspace(grid[i], grid[i + 1], FINER) for i in intervals)
             grid = np.unique(np.concatenate([grid, *fine]))
         return grid, self.residual(grid)
 
@@ -260,14 +260,17 @@ class _Curve:
         return root
 
     def unreachable(self, grid: Array, residual: Array) -> Unreachable:
-        """The error that tells what can be reached between the bounds, and why the target cannot."""
+        """The error that says what can be reached between the bounds, and why the target cannot."""
         meaning, name = self.formula.meaning, self.formula.name
         if np.isnan(residual).all():
             detail = f"{name} has no value anywhere between the bounds; give other bounds or inputs"
             return Unreachable(name, detail, (np.nan, np.nan), meaning.unit)
         ends = np.nanmin(residual) + self.wanted, np.nanmax(residual) + self.wanted
         low, high = (float(meaning.scale.from_si(end)) for end in ends)
-        shown, target = f"{meaning.told(ends[0])} … {meaning.told(ends[1])}", meaning.told(self.wanted)
+        shown, target = (
+            f"{meaning.with_unit(ends[0])} … {meaning.with_unit(ends[1])}",
+            meaning.with_unit(self.wanted),
+        )
         if ends[0] < self.wanted < ends[1]:
             detail = (
                 f"{target} lies in a jump of {name}, or where it has no value: no input gives exactly this"
@@ -278,8 +281,8 @@ class _Curve:
 
 
 def _not_monotone(declared: Input, formula: Formula[Any], residual: Array) -> list[Notice]:
-    known = residual[np.isfinite(residual)]
-    steps, rounding = np.diff(known), 1e-12 * np.max(np.abs(known), initial=0.0)
+    finite = residual[np.isfinite(residual)]
+    steps, rounding = np.diff(finite), 1e-12 * np.max(np.abs(finite), initial=0.0)
     if (steps >= -rounding).all() or (steps <= rounding).all():
         return []
     detail = f"{formula.name} is not monotone in {declared.name} between the bounds, in this version"
@@ -289,6 +292,6 @@ def _not_monotone(declared: Input, formula: Formula[Any], residual: Array) -> li
 def _others(declared: Input, roots: list[float]) -> list[Notice]:
     if len(roots) == 1:
         return []
-    others = ", ".join(declared.meaning.told(root) for root in roots[1:5])
+    others = ", ".join(declared.meaning.with_unit(root) for root in roots[1:5])
     detail = f"{others} give the target too; the lowest is returned"
     return [Notice("several_solutions", declared.name, detail)]

@@ -93,7 +93,7 @@ class Choice(Declaration):
 
 
 class Formula(Declaration, Generic[T]):
-    """An output: evaluated when first asked for, then kept with the template it belongs to."""
+    """An output: evaluated at its first use, then kept with the template it belongs to."""
 
     def __init__(self, function: Callable[[T], Any], meaning: Meaning, latex: str | None = None) -> None:
         super().__init__(meaning)
@@ -164,7 +164,7 @@ class Text(Formula[T]):
 
 
 class Shared(Generic[T]):
-    """An intermediate result that several formulas use: made when first asked for, then kept; no output."""
+    """An intermediate result that several formulas use: computed at its first use, then kept; no output."""
 
     attribute: str
 

@@ -1,7 +1,7 @@
 """Template: declare once what is given and what follows; everything else is derived.
 
 A template is a class in a file `<id>_v<version>.py`. Its instance holds SI values: givens as attributes,
-formulas evaluated when first asked for and then kept. The same code runs for one point and for 10⁶.
+formulas evaluated at their first use and then kept. The same code runs for one point and for 10⁶.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Truth
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.language.admission import absence, masked, refusal, warn_if_outside, whole
+from templates.core.language.admission import absence, masked, outside_published, refusal, whole
 from templates.core.language.declare import (
     by_name,
     choice,
@@ -81,7 +81,7 @@ class Template:
 
     levels: ClassVar[tuple[str, ...]] = ()  # fidelities, cheapest first
     default_level: ClassVar[str] = ""
-    most_points: ClassVar[Mapping[str, int]] = {}  # that a dear level takes at once
+    most_points: ClassVar[Mapping[str, int]] = {}  # that an expensive level takes at once
     level: str
 
     _ancestry: ClassVar[dict[str, frozenset[str]]] = {}
@@ -93,8 +93,8 @@ class Template:
         everything = {name: v for base in reversed(cls.__mro__) for name, v in vars(base).items()}
         declared = {name: v for name, v in everything.items() if isinstance(v, Declaration)}
         if reserved := sorted(name for name in declared if name in cls._own_words()):
-            told = ", ".join(reserved)
-            raise TypeError(f"{cls.__name__}: {told} has a meaning in every template; name it otherwise")
+            names = ", ".join(reserved)
+            raise TypeError(f"{cls.__name__}: {names} has a meaning in every template; name it otherwise")
         cls.declarations, cls._ancestry = declared, {}
         named = by_name(declared)
         cls.inputs = {name: v for name, v in named.items() if isinstance(v, (Given, Choice, Derived))}
@@ -148,13 +148,13 @@ class Template:
             Naming all that is wrong at once.
         """
         typed, faults = read_inputs(cls, raw)
-        ledger = Ledger(typed=typed)
-        values, refused = admitted(cls, typed, ledger)
-        if faults := [*faults, *refused]:
+        intake = admitted(cls, typed)
+        if faults := [*faults, *intake.faults]:
             faults = [fault for fault in faults if fault.name not in pending]
         if faults:
             raise InvalidInputs(faults)
-        return cls._checked(values, ledger, pending)
+        ledger = Ledger(typed=typed, warnings=intake.warnings, masks=intake.masks, missing=intake.missing)
+        return cls._checked(intake.values, ledger, pending)
 
     def at(self, level: str, where: NDArray[np.bool_] | None = None) -> Self:
         """The same inputs at another level; only those points of arrays where `where` holds, if given."""
@@ -180,7 +180,7 @@ class Template:
         return vars(self)[attribute] if attribute in self.ledger.handed else np.float64(np.nan)
 
     def ladder(self) -> tuple[str, ...]:
-        """The levels that answer the question these inputs ask, cheapest first."""
+        """The levels that can calculate these inputs, cheapest first."""
         return self.levels
 
     def is_measured(self) -> bool:
@@ -188,12 +188,12 @@ class Template:
         return True
 
     def starting_level(self) -> str:
-        """The level that is taken when none is asked for."""
+        """The level that is taken when none is requested."""
         ladder = self.ladder()
         return self.default_level if self.default_level in ladder else ladder[-1]
 
     def _own_masks(self) -> list[Mask]:
-        """The masks that come from inputs; those of formulas come anew with the level."""
+        """The masks that come from inputs; those of formulas follow again at the new level."""
         inputs = {declared.attribute for declared in self.inputs.values()}
         return [mask for mask in self.ledger.masks if inputs.issuperset(mask.names)]
 
@@ -211,7 +211,7 @@ class Template:
             for rule in cls._due(pending) if pending else cls.requirements:
                 try:
                     faults += violations(self, rule)
-                except InvalidInputs as error:  # a default that the rule asks for is refused
+                except InvalidInputs as error:  # a default that the rule reads is refused
                     faults += (fault for fault in error.faults if fault not in faults)
         if faults:
             raise InvalidInputs(faults)
@@ -256,11 +256,11 @@ class Template:
 
     @classmethod
     def _beneath(cls, attribute: str) -> Iterator[str]:
-        found, waiting = {attribute}, [attribute]
+        attributes, waiting = {attribute}, [attribute]
         while waiting:
             yield (name := waiting.pop())
-            new = dict.fromkeys(n for n in getattr(cls._node(name), "uses", ()) if n not in found)
-            found |= new.keys()
+            new = dict.fromkeys(n for n in getattr(cls._node(name), "uses", ()) if n not in attributes)
+            attributes |= new.keys()
             waiting += new
 
     def inputs_si(self) -> dict[str, Any]:
@@ -284,8 +284,8 @@ class Template:
             value = whole(self, declaration, value)
         elif isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
             value = masked(self, declaration, value)
-        if meaning.published_si is not None:
-            warn_if_outside(self.ledger, declaration, value, self.level)
+        if warning := outside_published(declaration, value, self.level):
+            self.ledger.warnings.append(warning)
         for assumed in meaning.assumes:
             getattr(self, assumed)
         return value

@@ -104,10 +104,10 @@ def mathml(latex: str) -> str:
     """LaTeX as MathML that browsers draw themselves; what it quotes of a user's words is escaped."""
     # latex2mathml copies texts as they are: signs of its own stand for the brackets of markup meanwhile.
     upright = _OPERATOR.sub(_upright, latex)
-    told: str = latex2mathml.converter.convert(upright.replace("<", _LESS).replace(">", _MORE))
+    markup: str = latex2mathml.converter.convert(upright.replace("<", _LESS).replace(">", _MORE))
     for letter, entity in ((_LESS, "&lt;"), (_MORE, "&gt;")):
-        told = told.replace(f"<mi>{letter}</mi>", f"<mo>{entity}</mo>").replace(letter, entity)
-    return _NAMES.sub(r'\1<mspace width="0.167em" />', told)
+        markup = markup.replace(f"<mi>{letter}</mi>", f"<mo>{entity}</mo>").replace(letter, entity)
+    return _NAMES.sub(r'\1<mspace width="0.167em" />', markup)
 
 
 def _upright(operator: re.Match[str]) -> str:
@@ -166,7 +166,9 @@ class Writer:
             case ast.Pow():
                 return f"{self._in(node.left, ATOM)}^{{{self.write(node.right)[0]}}}", POWER
             case ast.Mult():
-                return f"{self._in(node.left, PRODUCT)}{self.times}{self._in(node.right, PRODUCT)}", PRODUCT
+                left, right = self._in(node.left, PRODUCT), self._in(node.right, PRODUCT)
+                times = r"\cdot " if right[0].isdigit() else self.times  # "2 3" reads as one number
+                return f"{left}{times}{right}", PRODUCT
             case ast.Add():
                 return f"{self._in(node.left, SUM)}+{self._in(node.right, SUM)}", SUM
             case ast.Sub():

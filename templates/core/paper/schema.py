@@ -168,19 +168,19 @@ def _declared_beneath(cls: type[Template], attributes: Iterable[str]) -> Iterato
 
 def declared_limits(cls: type[Template]) -> list[dict[str, Any]]:
     """Every bound and rule, in words: where a value is refused, and where an answer carries a warning."""
-    found: list[dict[str, Any]] = []
+    ranges: list[dict[str, Any]] = []
     for declared in cls.declarations.values():
         meaning = declared.meaning
         for kind, bounds in (("refused_unless", meaning.domain), ("warned_unless", meaning.published)):
             if not bounds.open:
                 text = f"{meaning.words} {bounds.text(meaning.unit)}"
-                found.append({"name": declared.name, "kind": kind, "text": text, "source": meaning.source})
-        found += _limits_of_levels(declared)
+                ranges.append({"name": declared.name, "kind": kind, "text": text, "source": meaning.source})
+        ranges += _limits_of_levels(declared)
     for rule in cls.requirements:
-        found += (
+        ranges += (
             {"name": n, "kind": _consequence(rule), "text": rule.sentence, "source": None} for n in rule.names
         )
-    return found
+    return ranges
 
 
 def _consequence(rule: Requirement) -> str:

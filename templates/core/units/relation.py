@@ -132,8 +132,8 @@ def _constant(text: str) -> Constant:
 def _call(called: str, arguments: tuple[Any, ...]) -> Apply:
     operation = FUNCTIONS.get(called)
     if operation is None:
-        told = f"{called[:60]} is no function; there are {', '.join(FUNCTIONS)}"
-        raise FaultyText("unknown_function", told)
+        message = f"{called[:60]} is no function; there are {', '.join(FUNCTIONS)}"
+        raise FaultyText("unknown_function", message)
     if operation.arity not in (None, len(arguments)):
         raise FaultyText("syntax", f"{called} takes {operation.arity} value, not {len(arguments)}")
     return Apply(operation, arguments)

@@ -63,7 +63,7 @@ MOST_REMEMBERED = 20_000
 
 
 def forget_units() -> None:
-    """Keep what Pint remembers of units bounded: it keeps everything that it was ever asked for.
+    """Keep what Pint remembers of units bounded: it keeps every unit that it ever parsed.
 
     Call it where units come in that a user made up. What was forgotten is calculated again.
     """
@@ -144,14 +144,14 @@ def _counts_angle(got: Unit, want: Unit) -> bool:
 
 def _why_not(got: Unit, want: Unit) -> tuple[str, str]:
     if registry.get_dimensionality(got.base) != registry.get_dimensionality(want.base):
-        told = f"{got.text} measures {_measured(got)}; here {_measured(want)} is wanted: {_remedy(want)}"
-        return "wrong_unit", told + _meant(got, want)
+        message = f"{got.text} measures {_measured(got)}; here {_measured(want)} is wanted: {_remedy(want)}"
+        return "wrong_unit", message + _meant(got, want)
     if _mixes_difference(got, want):
-        told = "a difference of temperatures" if want.difference else "a temperature, not a difference,"
-        return "wrong_unit", f"{got.text} does not fit: here {told} is wanted; {_remedy(want)}"
+        expected = "a difference of temperatures" if want.difference else "a temperature, not a difference,"
+        return "wrong_unit", f"{got.text} does not fit: here {expected} is wanted; {_remedy(want)}"
     if _radians(want.base):
-        told = f"{got.text} is ambiguous for a speed (turns or radians?): write rpm or rad/s"
-        return "ambiguous_unit", told
+        message = f"{got.text} is ambiguous for a speed (turns or radians?): write rpm or rad/s"
+        return "ambiguous_unit", message
     return "ambiguous_unit", f"{got.text} counts angle; {_remedy(want)}, without rad or turn"
 
 

@@ -43,11 +43,11 @@ class LinearFilm:
         return LinearFilm(turn @ self.force, turn @ self.K @ turn.T, turn @ self.B @ turn.T)
 
 
-def linear_film(found: SolvedRing) -> LinearFilm:
+def linear_film(film: SolvedRing) -> LinearFilm:
     """Force, stiffness and damping of a solved film."""
-    ring, P, fill = found.ring, found.solution.P, 1 - found.solution.void
+    ring, P, fill = film.ring, film.solution.P, 1 - film.solution.void
     phi, middle = ring.phi, midpoints(ring.phi)
-    respond, storage = _response(found), 12 * ring.cells()
+    respond, storage = _response(film), 12 * ring.cells()
     H = np.repeat(gap(phi[:-1], ring.eps), ring.zeta.size)
     columns = []
     for shape in (np.cos, np.sin):
@@ -58,10 +58,10 @@ def linear_film(found: SolvedRing) -> LinearFilm:
     return LinearFilm(force(ring, P), np.array(columns[::2]).T, np.array(columns[1::2]).T)
 
 
-def _response(found: SolvedRing) -> Callable[[Array], tuple[Array, Array]]:
+def _response(film: SolvedRing) -> Callable[[Array], tuple[Array, Array]]:
     """A function from what nodes lose to the changes of pressure and void that make up for it."""
-    network, free = found.network, ~found.network.fixed
-    full = found.solution.void == 0
+    network, free = film.network, ~film.network.fixed
+    full = film.solution.void == 0
     matrix = csc_array(network.A * full - network.T * ~full)[free][:, free]
     diagonal = np.abs(matrix.diagonal())
     factors = splu(csc_array(matrix + diags_array(_DAMPING * np.where(full[free], diagonal, -diagonal))))

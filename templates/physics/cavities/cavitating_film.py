@@ -73,7 +73,7 @@ def cavitating_film(
 def solved_ring(
     eps: float, ratio: float, grooves: list[Groove], ambient: float = 0.0, around: int = 128, across: int = 16
 ) -> SolvedRing:
-    """Solve the static film with cavities, from a coarse mesh to the one asked for.
+    """Solve the static film with cavities, from a coarse mesh to the requested one.
 
     Parameters
     ----------
@@ -99,27 +99,27 @@ def solved_ring(
     require(np.asarray(len(grooves) > 0), "grooves: at least one must feed the film")
     pressures = np.array([ambient, *(groove.P for groove in grooves)])
     require((pressures >= 0) & np.isfinite(pressures), "pressures must be 0 or more above that of the cavity")
-    found: SolvedRing | None = None
+    solved: SolvedRing | None = None
     meshes = [(max(around >> k, _COARSEST[0]), max(across >> k, _COARSEST[1])) for k in (3, 2, 1, 0)]
     for n, m in dict.fromkeys(meshes):
         ring = grooved_ring(eps, ratio, grooves, n, m)
         network, fed = fed_network(ring, grooves, ambient)
-        solution = cavitation(network, None if found is None else _interpolated(found, ring))
-        found = SolvedRing(ring, network, solution, fed)
-    assert found is not None
-    return found
+        solution = cavitation(network, None if solved is None else _interpolated(solved, ring))
+        solved = SolvedRing(ring, network, solution, fed)
+    assert solved is not None
+    return solved
 
 
-def _interpolated(found: SolvedRing, finer: Ring) -> tuple[Array, Array]:
+def _interpolated(solved: SolvedRing, finer: Ring) -> tuple[Array, Array]:
     """Carry pressure and void to the nodes of a finer mesh, linearly along each direction."""
-    ring = found.ring
+    ring = solved.ring
 
     def carried(values: Array) -> Array:
         columns = ring.closed(values).T
         rows = np.stack([np.interp(finer.phi[:-1], ring.phi, column) for column in columns], axis=1)
         return np.stack([np.interp(finer.zeta, ring.zeta, row) for row in rows]).ravel()
 
-    return carried(found.solution.P), carried(found.solution.void)
+    return carried(solved.solution.P), carried(solved.solution.void)
 
 
 def force(ring: Ring, P: Array) -> Array:
@@ -129,13 +129,13 @@ def force(ring: Ring, P: Array) -> Array:
     return axes @ ring.closed(P) @ dual_widths(ring.zeta) / 2
 
 
-def measured(found: SolvedRing) -> CavitatingFilm:
+def measured(solved: SolvedRing) -> CavitatingFilm:
     """Integrate load, friction and flow."""
-    ring, solution, fed = found.ring, found.solution, found.fed
+    ring, solution, fed = solved.ring, solved.solution, solved.fed
     P, void = ring.closed(solution.P), ring.closed(solution.void)
     along, ahead = force(ring, solution.P)
     shear = dual_widths(ring.phi) / gap(ring.phi, ring.eps) @ (1 - void) @ dual_widths(ring.zeta) / 2
-    loss = found.network.loss(solution.P, solution.void).reshape(fed.shape)
+    loss = solved.network.loss(solution.P, solution.void).reshape(fed.shape)
     supply, side = loss[fed].sum(), -loss[:, -1][~fed[:, -1]].sum()
     return CavitatingFilm(
         So=float(np.hypot(along, ahead)),

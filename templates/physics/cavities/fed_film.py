@@ -1,4 +1,4 @@
-"""Static position of a journal in a mass-conserving film, from its load: eccentricity and attitude found.
+"""Static position of a journal in a mass-conserving film, from its load: eccentricity and attitude.
 
 The film is fed by a line at the widest gap, or by grooves that stand still relative to the load. Films are
 those of `cavitating_film`, searched for on 64 × 8 intervals and then extrapolated from twice as many, after
@@ -128,7 +128,7 @@ def fed_coefficients(eps: float, ratio: float, attitude: float, feed: Feed) -> t
 
 
 def fed_film(So: float, ratio: float, feed: Feed) -> FedFilm | None:
-    """Find the film that bears So; None if there is none or it is not found.
+    """Find the film that bears So; None if there is none or the search fails.
 
     Parameters
     ----------
@@ -142,8 +142,8 @@ def fed_film(So: float, ratio: float, feed: Feed) -> FedFilm | None:
     smallest = 0.0 if feed.pressure > 0 else float(mapped_load(np.array(_SMALLEST), np.array(ratio)))
     search = Search(max(So, smallest), ratio, feed)
     try:
-        found = search.found()
-        film = None if found is None else search.extrapolated(*found)
+        balance = search.balance()
+        film = None if balance is None else search.extrapolated(*balance)
     except (ArithmeticError, ValueError, RuntimeError):  # the last two: a singular matrix
         return None
     return film if film is None or So >= smallest else replace(film, eps=film.eps * So / smallest)
@@ -160,7 +160,7 @@ class Search:
     feed: Feed
     """Grooves, which stand still, or none: then the line that feeds turns with the journal."""
 
-    def found(self) -> tuple[Place, SolvedRing] | None:
+    def balance(self) -> tuple[Place, SolvedRing] | None:
         """The place and its film on the coarse mesh, by Newton's method; steps are halved when it turns back.
 
         The mesh follows the grooves, so that the force has steps; where the search hunts about one, the place

@@ -85,8 +85,8 @@ class Balance:
         bands[2 * m, rows[feed]] = 1
         right = np.zeros((n * m, len(columns)))
         right[rows] = np.moveaxis(np.where(np.arange(n)[:, None] == feed, 0, columns), 0, -1)
-        found = solve_banded((2 * m, 2 * m), bands, right, overwrite_ab=True, check_finite=False)
-        return np.moveaxis(found[rows], -1, 0)
+        solution = solve_banded((2 * m, 2 * m), bands, right, overwrite_ab=True, check_finite=False)
+        return np.moveaxis(solution[rows], -1, 0)
 
     def _couplings(self, alpha: Array, beta: Array, rows: Index) -> list[tuple[Index, Index, Array]]:
         """Row, column and value of the entries of A alpha + T beta: itself, around, and across."""

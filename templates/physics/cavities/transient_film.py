@@ -6,9 +6,9 @@ r"""The film of a moving journal with mass-conserving cavities, one step of time
 
 alpha is the fill of the gap, P = p psi²/(eta Omega) the pressure above that of the cavity, which is ambient;
 angles phi are fixed in the frame of the load, in which the gap is carried at w. The journal has no mass: at
-every step its place is found together with pressure and fill so that the film bears the load. Newton's method
-on the complementarity (Fischer, Burmeister), as in `cavitation`, with two more unknowns. Finite volumes on
-half the width, backward differences of second order in time, upwind in the cavities.
+every step its place is solved for together with pressure and fill so that the film bears the load. Newton's
+method on the complementarity (Fischer, Burmeister), as in `cavitation`, with two more unknowns. Finite
+volumes on half the width, backward differences of second order in time, upwind in the cavities.
 Oil is fed at ambient pressure along the line of the widest gap, as by `cavitating_film` without grooves.
 
 References
@@ -30,7 +30,7 @@ _ACCURACY = 1e-8
 _THINNER = 0.3
 """A Newton step leaves this share of the gap."""
 _NUDGE = 1e-7
-"""Change of the eccentricity, over the gap, by which its influence is told."""
+"""Change of the eccentricity, over the gap, by which its influence is measured."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def stepped(
 
 
 def _share(eps: Array, de: Array) -> float:
-    """How much of a step is made, so that the journal stays in its bearing."""
+    """How much of a step is taken, so that the journal stays in its bearing."""
     share, gap = 1.0, 1 - np.hypot(*eps)
     while share > 1e-6 and 1 - np.hypot(*(eps + share * de)) < _THINNER * gap:
         share /= 2

@@ -1,4 +1,4 @@
-r"""Forces in a crank mechanism at constant speed, after Rao & Singh (DYREMI), with their errata mended.
+r"""Forces in a crank mechanism at constant speed, after Rao & Singh (DYREMI), with their errata corrected.
 
 x points from the crankshaft to the cylinder head, y to where the crankpin moves first; F_ij acts from body i
 on body j: 1 frame, 2 crank, 3 rod, 4 piston. No gravity, no friction.
@@ -20,7 +20,7 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 from templates.physics.engine.slider_crank import Motion
 
-GRAVITY = 9.80665  # m/s², by which a pendulum's period tells its inertia
+GRAVITY = 9.80665  # m/s², by which a pendulum's period gives its inertia
 
 
 def _column(value: Array) -> Array:

@@ -50,7 +50,7 @@ def energy_fluctuation(theta: Array, torque: Array) -> Array:
 
 @units("N*m", "1", "rad/s", returns="kg*m**2", latex=r"\frac{{{0}}}{{{1}\,{2}^2}}")
 def inertia_of_fluctuation(E: Array, delta: Array, omega: Array) -> Array:
-    """Inertia [kg m²] that keeps the speed within delta of itself; not known (NaN) at rest."""
+    """Inertia [kg m²] that keeps the speed within delta of itself; NaN at rest."""
     moving = np.where(omega == 0, np.nan, omega)
     return (E / (delta * moving**2))[()]
 

@@ -1,4 +1,4 @@
-"""Whether the data of a gas cycle are whole and in order: what rules of templates ask."""
+"""Whether the data of a gas cycle are whole and in order: for rules of templates."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ def valves_in_order(io: Array, ic: Array, eo: Array, ec: Array) -> Truth:
 
 @units(None, None, returns="1")
 def burns_before_exhaust(name: str, gas: Callable[[], GasCycle]) -> Truth:
-    """Whether combustion ends before the exhaust opens; what is not given is told by other rules."""
-    if name not in POLYTROPIC or not isinstance(made := gas(), Polytropic):
+    """Whether combustion ends before the exhaust opens; other rules report what is not given."""
+    if name not in POLYTROPIC or not isinstance(cycle := gas(), Polytropic):
         return True
-    return ~(made.v_cut >= made.v_opened)
+    return ~(cycle.v_cut >= cycle.v_opened)
 
 
 @units(None, returns="1")
@@ -66,7 +66,7 @@ def angles_rise(name: str, angle: Array, p: Array) -> Truth:
 def full_cycle(name: str, strokes: Array, angle: Array, p: Array) -> Truth:
     """Whether a table of rising angles covers the cycle: from its end to its begin is at most a step."""
     if name != "table" or np.ndim(p) == 0 or not angles_rise(name, angle, p):
-        return True  # which another rule tells
+        return True  # another rule reports it
     if np.shape(p)[-1:] < (FEWEST,):
         return False
     if np.ndim(angle) == 0:

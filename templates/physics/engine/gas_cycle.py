@@ -8,7 +8,7 @@ the exhaust's pressure at bottom dead centre (at once if it opens later); exhaus
 
 Otto is this with cutoff 1, Diesel with the combustion at the end pressure of the compression, both with
 valves that open and close at dead centres. In two strokes the charge changes at bottom dead centre.
-Polytropes ask for absolute pressures.
+Polytropes need absolute pressures.
 
 References
 ----------
@@ -29,7 +29,7 @@ from templates.physics.engine.gas_pressure import GasCycle, NoGas, Tabulated, on
 from templates.physics.engine.slider_crank import Motion, angle_of_travel, travel_integral
 
 _SAME = 1e-9
-"""Angles closer than this [rad] are one: at an event the pressure after it is told, whatever the rounding."""
+"""Angles closer than this [rad] are one: at an event the pressure is that after it, whatever the rounding."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-r"""What every gas cycle tells, and the simplest two: no gas at all, and a pressure tabulated over the angle.
+r"""Results of every gas cycle, and the simplest two: no gas, and a pressure tabulated over the angle.
 
 The zero of the crank angle: suction begins at 0° and combustion at 360° in a four-stroke engine, combustion
 at 0° in a two-stroke engine. Pressures are arrays over the angle (last axis) for each point.
@@ -25,7 +25,7 @@ class GasCycle(ABC):
 
     @abstractmethod
     def mean_effective(self) -> Array:
-        """Work of the gas in a cycle over the swept volume [Pa], exact, whatever angles are asked for."""
+        """Work of the gas in a cycle over the swept volume [Pa], exact, whatever angles are requested."""
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from templates.core.arrays import Array
 from templates.core.language.declare import units
 
 _ROUNDING = 1e-14
-"""Sines and cosines below it are those of dead centres and right angles, known to no more digits."""
+"""Sines and cosines below it are those of dead centres and right angles, accurate to no more digits."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class Motion:
 
 
 def _exact(value: Array) -> Array:
-    """Zero where no more than rounding is left, so that no load at a dead centre is made of it."""
+    """Zero where no more than rounding is left, so that it makes no load at a dead centre."""
     return np.where(np.abs(value) < _ROUNDING, 0.0, value)
 
 

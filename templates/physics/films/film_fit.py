@@ -17,7 +17,7 @@ from templates.physics.films.short_bearing import load_Ocvirk_1952
 from templates.physics.numerics.arrays import require, require_film
 
 NARROWEST, WIDEST = 0.125, 1.0
-"""Width ratios B/D between which the fit was made [-]."""
+"""Width ratios B/D that the fit covers [-]."""
 
 _A1 = (1.1642, -1.9456, 7.1161, -10.1073, 5.0141)
 _A2 = (-1.000026, -0.023634, -0.4215, -0.038817, -0.090551)

@@ -24,7 +24,7 @@ from templates.physics.numerics.arrays import require, require_film
 from templates.physics.numerics.uniform_spline import Axis, surface
 
 NARROWEST, WIDEST = 0.01, 100.0
-"""Width ratios B/D between which the map was made [-]."""
+"""Width ratios B/D that the map covers [-]."""
 
 _DATA = Path(__file__).with_name("film_map.npz")
 _STIFFNESS_SCALE = np.array([[2, 1], [1, 0]])
@@ -46,7 +46,7 @@ class FilmMap:
     linear: Array
     """Spline coefficients of `encode_linear`."""
     error: Array
-    """(cells over eps, cells over B/D, 8) largest error found in each cell: see `map_error`."""
+    """(cells over eps, cells over B/D, 8) largest error measured in each cell: see `map_error`."""
 
 
 @cache
@@ -123,7 +123,7 @@ def mapped_coefficients(eps: Array, ratio: Array) -> tuple[Array, Array]:
 
 
 def map_error(eps: Array, ratio: Array) -> Array:
-    """Largest error found about a point between the map and fresh, finer solutions.
+    """Largest error measured about a point between the map and fresh, finer solutions.
 
     Returns
     -------

@@ -75,7 +75,7 @@ def extrapolated_film(eps: float, ratio: float, around: int = 128, across: int =
 
 
 def static_field(eps: float, ratio: float, around: int = 128, across: int = 16) -> Field:
-    """Solve for the pressure, from a coarse mesh to the one asked for."""
+    """Solve for the pressure, from a coarse mesh to the requested one."""
     require_film(np.asarray(eps), np.asarray(ratio))
     mesh = journal_mesh(eps, ratio, around, across)
     equations, solution = _nested(eps, ratio, mesh)

@@ -123,7 +123,7 @@ class Running:
 
 @dataclass(frozen=True)
 class HeatBalance:
-    """The balance found; NaN where it was not asked for."""
+    """The balance; NaN where it was not requested."""
 
     T: Array
     """Film temperature [K]; infinite where there is no balance below 500 °C."""
@@ -138,11 +138,11 @@ def heat_balance(running: Running) -> HeatBalance:
     names = [field.name for field in fields(running)]
     parts = np.broadcast_arrays(*(np.asarray(getattr(running, name), dtype=float) for name in names))
     everything = Running(**dict(zip(names, parts, strict=True)))
-    asked = asked_for(everything.T_supply, everything.T_ambient, everything.kA)
-    T, residual = np.full(asked.shape, np.nan), np.full(asked.shape, np.nan)
-    if asked.any():
-        point = Running(**{name: part[asked] for name, part in zip(names, parts, strict=True)})
-        T[asked], residual[asked] = _found(point)
+    wanted = asked_for(everything.T_supply, everything.T_ambient, everything.kA)
+    T, residual = np.full(wanted.shape, np.nan), np.full(wanted.shape, np.nan)
+    if wanted.any():
+        point = Running(**{name: part[wanted] for name, part in zip(names, parts, strict=True)})
+        T[wanted], residual[wanted] = _balance(point)
     return HeatBalance(T[()], (2 * T - everything.T_supply)[()], residual[()])
 
 
@@ -151,7 +151,7 @@ def asked_for(T_supply: Array, T_ambient: Array, kA: Array) -> Mask:
     return np.asarray(np.isfinite(T_supply) | (np.isfinite(T_ambient) & np.isfinite(kA)))
 
 
-def _found(point: Running) -> tuple[Array, Array]:
+def _balance(point: Running) -> tuple[Array, Array]:
     """Temperature and residual of points in a row; infinite and NaN where there is none, NaN unknown."""
     coldest = point.coldest()
     most = HOTTEST - coldest

@@ -56,10 +56,10 @@ def linear_at(
         for name, matrix in (("K", K), ("B", B))
         for xy, i, j in (("xx", 0, 0), ("xy", 0, 1), ("yx", 1, 0), ("yy", 1, 1))
     }
-    known = np.asarray(np.isfinite(K).all(axis=(-1, -2)))
+    valid = np.asarray(np.isfinite(K).all(axis=(-1, -2)))
     unit = np.broadcast_to(np.eye(2), K.shape)
-    mass = threshold_mass(*(np.where(known[..., None, None], matrix, unit) for matrix in (K, B)))
-    return Linear(**entries, M_c=np.where(known, mass, np.nan)[()])
+    mass = threshold_mass(*(np.where(valid[..., None, None], matrix, unit) for matrix in (K, B)))
+    return Linear(**entries, M_c=np.where(valid, mass, np.nan)[()])
 
 
 def coefficients_at(
@@ -88,12 +88,12 @@ def coefficients_at(
         (angle from the load, width) of each; likewise [rad].
     """
     points = np.broadcast_arrays(*(np.asarray(a, float) for a in (eps, ratio, attitude, pressure)))
-    known = np.isfinite(points).all(axis=0) & (level in SOLVERS)
-    K, B = np.full((2, *known.shape, 2, 2), np.nan)
-    if known.any():
-        eps, ratio, attitude, pressure = (point[known] for point in points)
+    valid = np.isfinite(points).all(axis=0) & (level in SOLVERS)
+    K, B = np.full((2, *valid.shape, 2, 2), np.nan)
+    if valid.any():
+        eps, ratio, attitude, pressure = (point[valid] for point in points)
         feeds = [Feed(p, grooves) for p in pressure]
-        K[known], B[known] = SOLVERS[level](np.maximum(eps, _CENTRED), ratio, attitude, feeds)
+        K[valid], B[valid] = SOLVERS[level](np.maximum(eps, _CENTRED), ratio, attitude, feeds)
     return K, B
 
 

@@ -1,4 +1,4 @@
-"""Which temperature a journal bearing's film has: a mean, that of a heat balance, or none that is known."""
+"""Which temperature a journal bearing's film has: a mean, that of a heat balance, or none."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from templates.physics.journals.heat_balance import HeatBalance, asked_for
 
 @units("K", None, returns="K", latex=r"{0}\ \text{{or that of the heat balance}}")
 def film_temperature(T_mean: Array, balance: HeatBalance) -> Array:
-    """The heat balance's temperature where there is one, else the mean; NaN if neither is known [K]."""
+    """The heat balance's temperature where there is one, else the mean; NaN if there is neither [K]."""
     return np.where(np.isnan(balance.T), T_mean, balance.T)[()]
 
 
@@ -23,7 +23,7 @@ def outlet_temperature(balance: HeatBalance) -> Array:
 
 @units("K", "K", returns="K", latex=r"{0}")
 def or_reference(T: Array, T_ref: Array) -> Array:
-    """The temperature T, or where it is not known the reference, which leaves a density as it is [K]."""
+    """The temperature T, or where there is none the reference, which leaves a density as it is [K]."""
     return np.where(np.isnan(T), T_ref, T)[()]
 
 

@@ -48,9 +48,9 @@ def eccentricity_of_load(So: Array, ratio: Array) -> Array:
     ratio
         Width over diameter B/D [-].
     """
-    known = np.isfinite(So) & (So >= 0) & (ratio >= NARROWEST) & (ratio <= WIDEST)
-    eps = mapped_eccentricity(np.where(known, So, 0.0), np.where(known, ratio, 1.0))
-    return np.where(known, eps, np.nan)[()]
+    valid = np.isfinite(So) & (So >= 0) & (ratio >= NARROWEST) & (ratio <= WIDEST)
+    eps = mapped_eccentricity(np.where(valid, So, 0.0), np.where(valid, ratio, 1.0))
+    return np.where(valid, eps, np.nan)[()]
 
 
 @units("1", "1", returns="1")
@@ -69,6 +69,6 @@ def friction_over_Petrov(eps: Array, ratio: Array) -> Array:
     >>> round(float(friction_over_Petrov(np.float64(0.965), np.float64(2.0))), 1)
     5.3
     """
-    known = np.isfinite(eps)
-    film = mapped_film(np.where(known, eps, 0.0), np.where(known, ratio, 1.0))
-    return np.where(known, film["friction"] / friction_number_Petrov_1883(), np.nan)[()]
+    valid = np.isfinite(eps)
+    film = mapped_film(np.where(valid, eps, 0.0), np.where(valid, ratio, 1.0))
+    return np.where(valid, film["friction"] / friction_number_Petrov_1883(), np.nan)[()]

@@ -132,17 +132,17 @@ def static_film_at(
     """
     So, ratio, pressure = np.broadcast_arrays(*(np.asarray(a, float) for a in (So, ratio, pressure)))
     low, high = WIDTHS[level]
-    known = np.isfinite(So) & (So >= 0) & (ratio >= low) & (ratio <= high) & np.isfinite(pressure)
-    feeds = [Feed(p, grooves) for p in pressure[known]] if level == "mass_conserving" else []
-    found = SOLVERS[level](So[known], ratio[known], feeds)
-    unborne = replace(found, eps=np.where(np.isnan(found.eps), np.inf, found.eps))
-    return unborne._each(lambda values: _scattered(values, known))
+    valid = np.isfinite(So) & (So >= 0) & (ratio >= low) & (ratio <= high) & np.isfinite(pressure)
+    feeds = [Feed(p, grooves) for p in pressure[valid]] if level == "mass_conserving" else []
+    film = SOLVERS[level](So[valid], ratio[valid], feeds)
+    unborne = replace(film, eps=np.where(np.isnan(film.eps), np.inf, film.eps))
+    return unborne._each(lambda values: _scattered(values, valid))
 
 
-def _scattered(values: Array, known: Mask) -> Array:
-    """Values of the known points among NaN; a single one as a number."""
-    whole = np.full(known.shape, np.nan)
-    whole[known] = values
+def _scattered(values: Array, valid: Mask) -> Array:
+    """Values of the valid points among NaN; a single one as a number."""
+    whole = np.full(valid.shape, np.nan)
+    whole[valid] = values
     return whole[()]
 
 
@@ -195,26 +195,26 @@ def _solved(eps: float, ratio: float) -> list[float]:
 def conserving_film(So: Array, ratio: Array, feeds: list[Feed]) -> JournalFilm:
     """Film by film with cavities; shear as there is oil; measures moved to the load as the map's would."""
     films = [fed_film(*point) for point in zip(So, ratio, feeds, strict=True)]
-    found = {
+    film = {
         name: np.array([np.nan if film is None else getattr(film, name) for film in films])
         for name in ("eps", "solved_eps", "attitude", "P_max", "peak", "shear", "side_flow")
     }
-    there, here = (_mapped(np.nan_to_num(found[name]), ratio) for name in ("eps", "solved_eps"))
+    there, here = (_mapped(np.nan_to_num(film[name]), ratio) for name in ("eps", "solved_eps"))
     with np.errstate(invalid="ignore"):
-        moved = {n: found[n] * getattr(there, n) / getattr(here, n) for n in ("P_max", "shear", "side_flow")}
-    return JournalFilm(eps=found["eps"], So=So, attitude=found["attitude"], peak=found["peak"], **moved)
+        moved = {n: film[n] * getattr(there, n) / getattr(here, n) for n in ("P_max", "shear", "side_flow")}
+    return JournalFilm(eps=film["eps"], So=So, attitude=film["attitude"], peak=film["peak"], **moved)
 
 
 def _moved(So: Array, ratio: Array, near: Array) -> JournalFilm:
     """Films near the load wanted, (N, 7), moved there as the map's film would."""
     film = JournalFilm(*near.reshape(-1, 7).T)
-    known = np.isfinite(film.eps)
-    at = np.where(known, film.eps, 0.5)
+    valid = np.isfinite(film.eps)
+    at = np.where(valid, film.eps, 0.5)
     here = _mapped(at, ratio)
-    there = interpolated_film(np.where(known, So * here.So / np.where(known, film.So, 1.0), 0.0), ratio, [])
+    there = interpolated_film(np.where(valid, So * here.So / np.where(valid, film.So, 1.0), 0.0), ratio, [])
     names = ("attitude", "P_max", "peak", "shear", "side_flow")
     moved = {name: getattr(film, name) * getattr(there, name) / getattr(here, name) for name in names}
-    return JournalFilm(eps=np.where(known, there.eps, np.nan), So=So, **moved)
+    return JournalFilm(eps=np.where(valid, there.eps, np.nan), So=So, **moved)
 
 
 SOLVERS: dict[str, Callable[[Array, Array, list[Feed]], JournalFilm]] = {

@@ -1,5 +1,8 @@
 """Roots of many equations at once, each inside its bracket.
 
+New versions use `root_between`, which is SciPy's. Released versions keep `bracketed_root`, of the same
+method: their results are frozen to the last digits.
+
 References
 ----------
 T. R. Chandrupatla, Adv. Eng. Software 28, 1997, p. 145;
@@ -9,10 +12,32 @@ P. O. J. Scherer, Computational Physics, 2010, section 6.1.7.3.
 from collections.abc import Callable
 
 import numpy as np
+from scipy.optimize.elementwise import find_root
 
 from templates.core.arrays import Array
 
 _STEPS = 200
+
+
+def root_between(f: Callable[..., Array], low: Array, high: Array, *parameters: Array) -> Array:
+    """Find x in [low, high] with f(x, *parameters) = 0 by SciPy's `find_root`, elementwise.
+
+    Parameters
+    ----------
+    f
+        A function of arrays, elementwise. It is called for the elements that are not solved yet, so what
+        differs between elements must come in as a parameter, not by a closure.
+    low, high
+        The brackets; f has opposite signs at their ends.
+    parameters
+        Further arguments of f, arrays that broadcast with the brackets.
+
+    Returns
+    -------
+    x; NaN where the bracket holds no change of sign or f is not finite.
+    """
+    result = find_root(f, (np.asarray(low, float), np.asarray(high, float)), args=parameters)
+    return np.where(result.success, result.x, np.nan)[()]
 
 
 def bracketed_root(f: Callable[[Array], Array], low: Array, high: Array, tolerance: float = 4e-16) -> Array:

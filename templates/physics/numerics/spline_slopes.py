@@ -43,11 +43,11 @@ def surfaces_with_slopes(
     (3, functions, N): values, slopes by x, slopes by y.
     """
     flat = coefficients.reshape(-1, coefficients.shape[-1])
-    found = np.empty((3, flat.shape[1], x.size))
+    values = np.empty((3, flat.shape[1], x.size))
     for start in range(0, x.size, _BLOCK):
         part = slice(start, start + _BLOCK)
-        found[:, :, part] = _block(flat, coefficients.shape, which[part], first, second, x[part], y[part])
-    return found
+        values[:, :, part] = _block(flat, coefficients.shape, which[part], first, second, x[part], y[part])
+    return values
 
 
 def _block(

@@ -94,7 +94,7 @@ class CycleOrbit:
     step_error: Array
     """Relative error of the smallest gap by the step, (...); NaN at level transient."""
     marched: TransientOrbit | None = None
-    """What was found by marching in time."""
+    """Results of marching in time."""
 
     def admitted(self, eps_max: Array) -> "CycleOrbit":
         """The same with NaN where the largest eccentricity was not admitted."""
@@ -226,14 +226,14 @@ def _under_load(level: str, ratio: Array, S: Array, eps: Array) -> tuple[Array, 
     """Pressure, side flow, shear and the load's work on the film at the mobility levels, (C, N) each."""
     size = np.hypot(*S)
     c, s = np.where(size > 0, S / np.where(size > 0, size, 1.0), 0.0)
-    known = np.isfinite(eps[0])
-    xi, eta = (np.where(known, v, 0.0) for v in (eps[0] * c + eps[1] * s, eps[1] * c - eps[0] * s))
+    valid = np.isfinite(eps[0])
+    xi, eta = (np.where(valid, v, 0.0) for v in (eps[0] * c + eps[1] * s, eps[1] * c - eps[0] * s))
     M = _law(level, ratio)(xi, eta)[0]
     under = short_film_under_load if level == "mobility_short" else mapped_film_under_load
     share, leak = under(xi, eta, ratio[:, None])
-    gap = 1 - np.hypot(*np.where(known, eps, 0.0))
-    found = size * share, leak * size * np.hypot(*M), np.pi / np.sqrt(gap * (2 - gap)), size**2 * M[0]
-    P, flow, shear, work = (np.where(known, values, np.nan) for values in found)
+    gap = 1 - np.hypot(*np.where(valid, eps, 0.0))
+    integrands = size * share, leak * size * np.hypot(*M), np.pi / np.sqrt(gap * (2 - gap)), size**2 * M[0]
+    P, flow, shear, work = (np.where(valid, values, np.nan) for values in integrands)
     return P, flow, shear, work
 
 

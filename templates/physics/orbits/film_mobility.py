@@ -1,8 +1,8 @@
-"""The motion that a load gives a journal, by the full solution: pressure, film and velocity found together.
+"""The motion that a load gives a journal, by the full solution: pressure, film and velocity solved together.
 
 The same film as in `moving_film`, whose boundary condition holds; there the motion is given and the load
 follows, here the load is given. On a supposed film pressure is linear in the velocity, so the load gives
-the velocity, and the pressure then tells the film. Valid as `moving_film`; the mesh is graded to the gap
+the velocity, and the pressure then determines the film. Valid as `moving_film`; the mesh is graded to the gap
 that lies in the direction of the load, so that separating motion is resolved as well as closing motion.
 """
 

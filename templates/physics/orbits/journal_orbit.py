@@ -7,7 +7,7 @@ theta is the crank angle, which turns with Omega; the load on the journal is lin
 film is massless and always full where it bears: what it was before is of no account. Every node of the cycle
 is solved for at once, from a coarse ring of nodes to the finest, so the orbit is periodic to the tolerance
 of Newton's method and no cycles are run in. Second order in the step, 1° or less, and a quarter of that where
-the smallest gap would err by more than 0.2 per cent; the difference from twice the step tells the error.
+the smallest gap would err by more than 0.2 per cent; the difference from twice the step gives the error.
 
 References
 ----------
@@ -41,7 +41,7 @@ _THINNER, _LONGEST = 0.25, 0.7
 _STUCK = 0.1
 """A journal at the wall that moves less than this, over its gap, stays there."""
 ROUGHEST = 2e-3
-"""Relative error of the smallest gap by the step, beyond which the steps are made shorter [-]."""
+"""Relative error of the smallest gap by the step, beyond which the steps are shortened [-]."""
 UNKNOWN = 0.1
 """The same beyond which an orbit is not taken for one: it may owe its film to the steps [-]."""
 _FINER = 4
@@ -79,7 +79,7 @@ class Orbit:
     least_angle: Array
     """(C,) its crank angle [rad]."""
     step_error: Array
-    """(C,) relative error of the smallest gap by the step; NaN where it is not known [-]."""
+    """(C,) relative error of the smallest gap by the step; NaN where it is not measured [-]."""
 
 
 @dataclass(frozen=True)
@@ -161,13 +161,13 @@ def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: i
         return
     ring, own = ring_of(load.of(part), finer)
     e, settled, error = _nested(ring, law.of(part))
-    found = np.flatnonzero(part)[settled]
+    cases = np.flatnonzero(part)[settled]
     gap = 1 - np.hypot(*e[:, settled])
     place = gap.argmin(axis=-1)
-    whole.eps[:, found] = e[:, settled][..., own]
-    whole.least_gap[found] = gap[np.arange(found.size), place]
-    whole.least_angle[found] = ring.place[place]
-    whole.step_error[found] = error[settled]
+    whole.eps[:, cases] = e[:, settled][..., own]
+    whole.least_gap[cases] = gap[np.arange(cases.size), place]
+    whole.least_angle[cases] = ring.place[place]
+    whole.step_error[cases] = error[settled]
 
 
 def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array]:
@@ -179,13 +179,13 @@ def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array]:
     error = np.full(settled.shape, np.nan)
     while stride > 1:
         stride //= 2
-        coarse, known = e, settled
+        coarse, settled_before = e, settled
         finer, tolerance = ring.every(stride), _ROUGH if stride > 1 else TOLERANCE
-        start = np.where(known[:, None], _halved(coarse, finer.place.size), 0.0)
-        e, settled = _settled(finer, law, start, tolerance, known | (stride <= _LAST))
+        start = np.where(settled_before[:, None], _halved(coarse, finer.place.size), 0.0)
+        e, settled = _settled(finer, law, start, tolerance, settled_before | (stride <= _LAST))
         shared = 1 - np.hypot(*e[..., ::2]).max(axis=-1)
         change = shared - (1 - np.hypot(*coarse).max(axis=-1))
-        error = np.where(known, np.abs(change) / (3 * shared), np.nan)
+        error = np.where(settled_before, np.abs(change) / (3 * shared), np.nan)
     return e, settled, error
 
 
@@ -217,7 +217,7 @@ def _settled(ring: Ring, law: MobilityLaw, e: Array, tolerance: float, tried: Ma
 
 
 def _limited(e: Array, change: Array) -> tuple[Array, Array]:
-    """The change made, each node held within its bearing; and its largest size over the gap, (C,)."""
+    """The change applied, each node held within its bearing; and its largest size over the gap, (C,)."""
     gap, length = 1 - np.hypot(*e), np.hypot(*change)
     share = np.minimum(1.0, _LONGEST / np.maximum(length, _LONGEST))
     radius = 1 - np.maximum(_THINNER * gap, THINNEST / 2)

@@ -66,8 +66,8 @@ class MapLaw:
         x, v = coordinates(xi, eta)
         width = np.repeat(self.width, xi.shape[1])
         axes = mobility_map().axes
-        found = surfaces_with_slopes(self.surfaces, width, axes[0], axes[1], x.ravel(), v.ravel())
-        (p, q), by_x, by_v = found.reshape(3, 2, *xi.shape)
+        values = surfaces_with_slopes(self.surfaces, width, axes[0], axes[1], x.ravel(), v.ravel())
+        (p, q), by_x, by_v = values.reshape(3, 2, *xi.shape)
         h, chord = 1 - xi, np.sqrt(np.maximum((1 - xi) * (1 + xi), 1e-30))
         x_xi, v_xi, v_eta = -(1 + 1 / h), v * xi / chord**2, np.sign(eta) / chord
         (p_xi, q_xi), (p_eta, q_eta) = by_x * x_xi + by_v * v_xi, by_v * v_eta

@@ -29,7 +29,7 @@ from templates.physics.numerics.volume_spline import Axes, at_third, volume
 from templates.physics.orbits.film_mobility import Motion
 
 NARROWEST, WIDEST = 0.02, 10.0
-"""Width ratios B/D between which the map was made [-]."""
+"""Width ratios B/D that the map covers [-]."""
 LARGEST = 1 - 1e-6
 """The largest relative eccentricity of the map [-]."""
 
@@ -47,7 +47,7 @@ class MobilityMap:
     film: Array
     """Spline coefficients of the last two."""
     error: Array
-    """(cells over gap, chord, width, 4) largest error found in each cell: see `mobility_error`."""
+    """(cells over gap, chord, width, 4) largest error measured in each cell: see `mobility_error`."""
 
 
 @cache
@@ -142,7 +142,7 @@ def mapped_film_under_load(xi: Array, eta: Array, ratio: Array) -> Array:
 
 
 def mobility_error(xi: Array, eta: Array, ratio: Array) -> Array:
-    """Largest error found about a point between the map and fresh, finer solutions.
+    """Largest error measured about a point between the map and fresh, finer solutions.
 
     Returns
     -------

@@ -1,8 +1,8 @@
 """The orbit of a journal with mass-conserving cavities, run in until it repeats: the reference level.
 
 The film of `transient_film`, marched over cycle after cycle from the orbit by mobility and a full film.
-Measured by `benchmarks/film_cycle.py` on big ends against twice as fine a mesh and half the step; the cost is
-told there too. Bounded by `MOST_CYCLES`.
+Measured by `benchmarks/film_cycle.py` on big ends against twice as fine a mesh and half the step; it
+reports the cost too. Bounded by `MOST_CYCLES`.
 """
 
 from dataclasses import dataclass
@@ -58,7 +58,7 @@ class TransientOrbit:
 def transient_orbit(
     load: CyclicLoad, ratio: float, start: Array, marching: Marching
 ) -> TransientOrbit | None:
-    """March one case until it repeats; None where the film is not found or does not repeat.
+    """March one case until it repeats; None where the search for the film fails or the orbit does not repeat.
 
     Parameters
     ----------
@@ -119,10 +119,10 @@ def _next(journal: Journal, states: list[State], S: Array, w: float, step: float
             return after
     part, after = step / _SUBSTEPS, here
     for _ in range(_SUBSTEPS):
-        found = stepped(journal, after, S, w, 1 / part, -after.content / part)
-        if found is None:
+        advanced = stepped(journal, after, S, w, 1 / part, -after.content / part)
+        if advanced is None:
             return None
-        after = found
+        after = advanced
     return after
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from templates.core.arrays import Array
 
 _FLATTEST = 1e-9
-"""The smallest ln(a) with which the map is made; below it the film is even to rounding."""
+"""The smallest ln(a) in the map; below it the film is even to rounding."""
 _NEWTON_STEPS = 12
 
 

@@ -40,13 +40,13 @@ from templates.physics.pads.slider import (
 )
 
 STEEPEST = 1000.0
-"""The largest film ratio h_i/h_o for which the mesh is made [-]."""
+"""The largest film ratio h_i/h_o that the mesh resolves [-]."""
 NARROWEST, WIDEST = 0.01, 100.0
-"""Widths b/l between which the mesh is made [-]."""
+"""Widths b/l that the mesh resolves [-]."""
 STATIONS = np.linspace(0, 1, 101)
-"""Places x/l at which the pressure along a pad is told [-]."""
+"""Places x/l at which the pressure along a pad is reported [-]."""
 HEIGHTS = np.linspace(0, 1, 41)
-"""Places z/h at which the velocity across the film is told [-]."""
+"""Places z/h at which the velocity across the film is reported [-]."""
 
 _BLOCK = 512
 
@@ -254,13 +254,13 @@ def finite_pad(a: Array, width: Array, along: int = 64, across_half: int = 16) -
     """
     a, width = np.broadcast_arrays(a, width)
     size = along, across_half
-    known = np.isfinite(a * width)
-    wedge, ratio = np.where(known, _bearing(a), 1.0), np.where(known, width, 1.0)
+    valid = np.isfinite(a * width)
+    wedge, ratio = np.where(valid, _bearing(a), 1.0), np.where(valid, width, 1.0)
     blocks = [slice(i, i + _BLOCK) for i in range(0, a.size, _BLOCK)]
     solved = [_extrapolated(wedge.ravel()[part], ratio.ravel()[part], *size) for part in blocks]
     measures, P = (np.concatenate(parts).reshape(*a.shape, -1) for parts in zip(*solved, strict=True))
     load, moment, inlet_flow, side_flow = np.moveaxis(measures, -1, 0)
-    mesh, nothing, bears = grading(wedge, ratio), np.where(known, 0.0, np.nan), known & (a > 1)
+    mesh, nothing, bears = grading(wedge, ratio), np.where(valid, 0.0, np.nan), valid & (a > 1)
     P_max, peak = _peak(P)
     return FinitePad(
         a=a + nothing,

@@ -27,7 +27,7 @@ from templates.core.language.declare import units
 
 GOODMAN, GERBER, MORROW, NONE = "goodman", "gerber", "morrow", "none"
 
-_LONGEST = np.log(1e300)  # of a life that is told as a number
+_LONGEST = np.log(1e300)  # of a life that is reported as a number
 
 
 @units(None, "Pa", "Pa", "Pa", returns="1", latex=r"c_{{m}}\left({1},{2},{3}\right)")
@@ -56,9 +56,9 @@ def cycles_Basquin_1910(amplitude: Array, coefficient: Array, exponent: Array, e
 
 @units("Pa", "Pa", "1", "1", returns="Pa", latex=r"\max\left({1}\,\left(2\,{3}\right)^{{{2}}},{0}\right)")
 def allowable_amplitude(endurance: Array, coefficient: Array, exponent: Array, life: Array) -> Array:
-    """The reversed amplitude [Pa] that is borne for so many cycles, or for ever where no life is asked for.
+    """The reversed amplitude [Pa] that is borne for so many cycles, or for ever where no life is given.
 
-    The higher of Basquin's line at that life and the endurance limit [Pa]; NaN where neither is known.
+    The higher of Basquin's line at that life and the endurance limit [Pa]; NaN where there is neither.
     """
     return np.fmax(coefficient * (2 * life) ** exponent, endurance)
 
@@ -108,5 +108,5 @@ def is_below(one: Array, other: Array) -> Any:
 @units("1", "Pa", returns="1")
 def life_in_words(cycles: Array, amplitude: Array) -> Any:
     """Whether a life is finite or endless; empty where the amplitude [Pa] means nothing."""
-    told = np.select([np.isnan(amplitude), np.isnan(cycles)], ["", "endless"], "finite")
-    return told if told.ndim else str(told)
+    words = np.select([np.isnan(amplitude), np.isnan(cycles)], ["", "endless"], "finite")
+    return words if words.ndim else str(words)

@@ -51,18 +51,18 @@ def resonances(critical: Array, orders: Array, speeds: Array) -> Any:
     if not np.ndim(speeds) or np.isnan(critical).any():
         return ""
     points = np.broadcast_shapes(critical.shape[:-2], speeds.shape[:-1], np.shape(orders)[:-1])
-    told = np.empty(points, dtype=object)
+    sentences = np.empty(points, dtype=object)
     each = (np.broadcast_to(critical, (*points, *critical.shape[-2:])),
             np.broadcast_to(np.atleast_1d(orders), (*points, critical.shape[-2])),
             np.broadcast_to(speeds, (*points, 2)))  # fmt: skip
     for point in np.ndindex(points):
-        told[point] = _sentence(*(values[point] for values in each))
-    return told if points else str(told[()])
+        sentences[point] = _sentence(*(values[point] for values in each))
+    return sentences if points else str(sentences[()])
 
 
 def _sentence(critical: Array, orders: Array, speeds: Array) -> str:
     """The critical speeds of one chain within the range, ascending; mode 0 of a free chain has none."""
     inside = (critical >= speeds[0]) & (critical <= speeds[1]) & (critical > 0)
-    found = sorted((critical[order, mode], orders[order], mode) for order, mode in np.argwhere(inside))
-    met = (f"order {order:g} meets mode {mode} at {speed / RPM:.5g} rpm" for speed, order, mode in found)
+    crossings = sorted((critical[order, mode], orders[order], mode) for order, mode in np.argwhere(inside))
+    met = (f"order {order:g} meets mode {mode} at {speed / RPM:.5g} rpm" for speed, order, mode in crossings)
     return "; ".join(met) or f"none from {speeds[0] / RPM:.5g} to {speeds[1] / RPM:.5g} rpm"

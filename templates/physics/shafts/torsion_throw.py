@@ -57,5 +57,5 @@ def recommended_stiffness(overlap: Array, carter: Array, wilson: Array) -> Array
 
 
 def _told(cases: list[Any], words: list[str]) -> Any:
-    told = np.select(cases, words, "")
-    return told if told.ndim else str(told)
+    texts = np.select(cases, words, "")
+    return texts if texts.ndim else str(texts)

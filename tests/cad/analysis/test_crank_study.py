@@ -3,7 +3,7 @@
 import pytest
 
 from benchmarks.crank_study import CHANGES, SLENDER
-from cad.analysis.analyse import Asked, analyse
+from cad.analysis.analyse import AnalysisRequest, analyse
 from cad.models.crankshaft_v1 import Crankshaft
 from cad.regenerate import regenerate
 
@@ -13,8 +13,10 @@ def stiffness_and_mass(parameters: dict[str, str]) -> tuple[float, float]:
     shape = Crankshaft.from_quantities(parameters)
     built, shaft = regenerate("crankshaft", 1, shape.inputs_si()), shape.shaft()
     assert shaft is not None
-    found = analyse(built.step, shaft, Asked(), ["stiffness"], lambda done, what: None).outputs["stiffness"]
-    return found["value"], built.measures["mass"]
+    result = analyse(built.step, shaft, AnalysisRequest(), ["stiffness"], lambda done, what: None).outputs[
+        "stiffness"
+    ]
+    return result["value"], built.measures["mass"]
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ from benchmarks.shoulder_fillet import (
     peterson,
     shoulder,
 )
-from cad.analysis.analyse import Asked, analyse
+from cad.analysis.analyse import AnalysisRequest, analyse
 from cad.analysis.kinds import Kind
 from cad.analysis.solid import read_solid
 from cad.analysis.stress import CONVERGED, SMALL, Peak, Peaks, searched
@@ -28,15 +28,17 @@ from cad.step import write_step
 @pytest.mark.slow
 @pytest.mark.parametrize("load", LOADS)
 def test_a_shoulder_fillet_concentrates_stress_as_peterson_says(load: Kind) -> None:
-    found = peaks(load)
-    assert found.converged
-    assert factors(load, found)[-1] == pytest.approx(peterson(load), rel=0.05)
+    result = peaks(load)
+    assert result.converged
+    assert factors(load, result)[-1] == pytest.approx(peterson(load), rel=0.05)
 
 
 @pytest.mark.slow
 def test_a_sharp_corner_has_no_greatest_stress() -> None:
-    found = analyse(shoulder(0.0), Shaft(0.0, END), Asked(), ["maximum_stress"], lambda done, what: None)
-    stress = found.outputs["maximum_stress"]
+    result = analyse(
+        shoulder(0.0), Shaft(0.0, END), AnalysisRequest(), ["maximum_stress"], lambda done, what: None
+    )
+    stress = result.outputs["maximum_stress"]
     assert stress["value"] is None
     assert "sharp inner corner" in stress["reason"]
 
@@ -44,7 +46,7 @@ def test_a_sharp_corner_has_no_greatest_stress() -> None:
 def test_a_shaft_without_a_free_length_is_refused() -> None:
     disc = disc_of(2.0)
     with pytest.raises(AnalysisError, match="so short"):
-        analyse(disc, Shaft(0.0, 2.0), Asked(), ["maximum_stress"], lambda done, what: None)
+        analyse(disc, Shaft(0.0, 2.0), AnalysisRequest(), ["maximum_stress"], lambda done, what: None)
 
 
 def test_a_fillet_close_to_an_end_is_looked_at() -> None:

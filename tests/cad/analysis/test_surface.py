@@ -7,7 +7,7 @@ import pytest
 from cadquery import Shape, Workplane
 from test_torsion_analytic import mirrored
 
-from cad.analysis.analyse import Asked, analyse
+from cad.analysis.analyse import AnalysisRequest, analyse
 from cad.analysis.elastic import System, respond
 from cad.analysis.kinds import KINDS, Kind
 from cad.analysis.mesh import Fineness, Grid, make_grid
@@ -43,15 +43,15 @@ def surface_of(grid: Grid, load: Kind) -> Surface:
     return surface(respond(System(grid, 3, STEEL_MATERIAL, load), "free_end"))
 
 
-def volume(found: Surface) -> float:
+def volume(result: Surface) -> float:
     """What the triangles enclose [mm³], by the theorem of Gauss; positive if they turn outward."""
-    a, b, c = (found.points[found.triangles[:, corner]] for corner in range(3))
+    a, b, c = (result.points[result.triangles[:, corner]] for corner in range(3))
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
-def edges(found: Surface) -> set[int]:
+def edges(result: Surface) -> set[int]:
     """How often an edge of the surface is that of a triangle."""
-    sides = np.concatenate([found.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+    sides = np.concatenate([result.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
     return {int(n) for n in np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)[1]}
 
 
@@ -99,9 +99,9 @@ def test_an_image_moves_as_the_other_half_does(load: Kind, mirrors: tuple[str, .
     """In sign and size: another mesh, of the whole, tells the same up to what two meshes differ by."""
     block = step_of(Workplane().rect(40, 30).extrude(60))
     half, whole = seen(block, 60.0, load, mirrors), seen(block, 60.0, load, ())
-    for found in (half, whole):
-        assert edges(found) == {2}
-        assert volume(found) == pytest.approx(72e3, rel=1e-9)
+    for result in (half, whole):
+        assert edges(result) == {2}
+        assert volume(result) == pytest.approx(72e3, rel=1e-9)
     apart = np.linalg.norm(half.points[:, None] - whole.points[None], axis=2)
     same, other = np.nonzero(apart < 1e-9)  # on the edges of the block
     assert len(same) > 8
@@ -132,17 +132,23 @@ def test_a_half_with_its_image_is_the_mirrored_mesh() -> None:
 def test_it_is_found_only_by_name_and_told_with_units() -> None:
     """Of a level alone; by a tolerance at the level at which the stiffness meets it."""
     shaft, seen_at = Shaft(0.0, LENGTH), []
-    for asked in (Asked(level="coarse"), Asked("bending", level="coarse"), Asked(tolerance=0.05)):
-        found = analyse(ROUND, shaft, asked, ["surface"], lambda done, what: None).outputs
-        assert found.keys() == {"surface"}
-        told = found["surface"]["value"].told()
-        units = {name: part["unit"] for name, part in told.items() if name not in ("load", "triangles")}
+    for asked in (
+        AnalysisRequest(level="coarse"),
+        AnalysisRequest("bending", level="coarse"),
+        AnalysisRequest(tolerance=0.05),
+    ):
+        result = analyse(ROUND, shaft, asked, ["surface"], lambda done, what: None).outputs
+        assert result.keys() == {"surface"}
+        reported = result["surface"]["value"].as_json()
+        units = {name: part["unit"] for name, part in reported.items() if name not in ("load", "triangles")}
         twist = {"twist": "deg"} if asked.load == "torsion" else {}
         assert units == {"points": "mm", "displacement": "mm", **twist, "stress": "MPa"}
-        assert {len(told[name]["value"]) for name in units} == {len(told["points"]["value"])}
-        assert max(max(corners) for corners in told["triangles"]) == len(told["points"]["value"]) - 1
-        assert found["surface"]["mesh"]["degrees_of_freedom"] > 0
-        seen_at.append(told["load"])
+        assert {len(reported[name]["value"]) for name in units} == {len(reported["points"]["value"])}
+        assert max(max(corners) for corners in reported["triangles"]) == len(reported["points"]["value"]) - 1
+        assert result["surface"]["mesh"]["degrees_of_freedom"] > 0
+        seen_at.append(reported["load"])
     assert seen_at == ["a torque of 1 N*m about z", "a moment of 1 N*m about y", "a torque of 1 N*m about z"]
-    both = analyse(ROUND, shaft, Asked(level="coarse"), ["stiffness", "surface"], lambda done, what: None)
+    both = analyse(
+        ROUND, shaft, AnalysisRequest(level="coarse"), ["stiffness", "surface"], lambda done, what: None
+    )
     assert both.outputs["stiffness"]["mesh"] == both.outputs["surface"]["mesh"]

@@ -58,10 +58,10 @@ def test_a_moment_bends_as_its_sign_says() -> None:
 def test_sharp_inner_edges_are_found_and_no_others() -> None:
     plain, stepped = (read_solid(shoulder(fillet), Shaft(0.0, END)) for fillet in (FILLET, 0.0))
     assert len(sharp_inner_edges(plain.shape, plain.scale).ends) == 0
-    found = sharp_inner_edges(stepped.shape, 1.5 * NARROW)
-    assert np.hypot(found.ends[..., 0], found.ends[..., 1]) == pytest.approx(NARROW / 2, rel=1e-6)
-    assert found.ends[..., 2] == pytest.approx(SHOULDER)
-    assert found.radius == pytest.approx(NARROW / 2, rel=0.1)  # by polygons: its ends lie on the edge
+    result = sharp_inner_edges(stepped.shape, 1.5 * NARROW)
+    assert np.hypot(result.ends[..., 0], result.ends[..., 1]) == pytest.approx(NARROW / 2, rel=1e-6)
+    assert result.ends[..., 2] == pytest.approx(SHOULDER)
+    assert result.radius == pytest.approx(NARROW / 2, rel=0.1)  # by polygons: its ends lie on the edge
 
 
 def test_a_square_bar_has_saint_venants_torsion_constant() -> None:
@@ -87,17 +87,17 @@ def test_half_of_a_shaft_is_exactly_half_of_the_mirrored_mesh() -> None:
 
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)
-def test_half_and_whole_agree_within_what_is_told(boundary: Boundary) -> None:
+def test_half_and_whole_agree_within_what_is_reported(boundary: Boundary) -> None:
     block = write_step((Part("shaft", flat(), 1.0),), Header("shaft", 1, {}, "0" * 64))
-    told = []
+    reported = []
     for mirrors in (("y",), ()):
         solid = read_solid(block, Shaft(0.0, 60.0), mirrors)
         grid = make_grid(solid, LEVELS[1].fineness)
         low, high = (
             respond(System(grid, order, STEEL_MATERIAL, "torsion"), boundary).compliance for order in (2, 3)
         )
-        told.append((high, LEVELS[1].error(low, high)))
-    (half, error), (full, other) = told
+        reported.append((high, LEVELS[1].error(low, high)))
+    (half, error), (full, other) = reported
     assert abs(half / full - 1) <= error + other
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from cad.analysis.analyse import _ELASTIC as ELASTIC
-from cad.analysis.analyse import Asked, Found, analyse
+from cad.analysis.analyse import AnalysisRequest, AnalysisResult, analyse
 from cad.analysis.elastic import Response
 from cad.errors import AnalysisError
 from cad.regenerate import regenerate
@@ -26,7 +26,7 @@ def step() -> bytes:
     return regenerate("crank_throw", 1, THROW).step
 
 
-def stiffness(step: bytes, asked: Asked) -> Found:
+def stiffness(step: bytes, asked: AnalysisRequest) -> AnalysisResult:
     return analyse(step, Shaft(-54.0, 54.0), asked, ["stiffness"], lambda done, what: None)
 
 
@@ -34,15 +34,15 @@ def stiffness(step: bytes, asked: Asked) -> Found:
     ("level", "within"), [("default", 5e-3), pytest.param("fine", 1e-3, marks=pytest.mark.slow)]
 )
 def test_the_reference_throw_is_as_stiff_as_it_should_be(step: bytes, level: str, within: float) -> None:
-    found = stiffness(step, Asked(level=level)).outputs["stiffness"]
-    assert found["value"] == pytest.approx(456_600, rel=within)
-    assert abs(found["value"] / 456_600 - 1) <= found["error"] <= 2 * within
-    assert found["mesh"]["mirror_plane"] == "xz"
+    result = stiffness(step, AnalysisRequest(level=level)).outputs["stiffness"]
+    assert result["value"] == pytest.approx(456_600, rel=within)
+    assert abs(result["value"] / 456_600 - 1) <= result["error"] <= 2 * within
+    assert result["mesh"]["mirror_plane"] == "xz"
 
 
 def test_a_guided_end_is_stiffer(step: bytes) -> None:
-    found = stiffness(step, Asked(boundary="guided_end")).outputs["stiffness"]
-    assert found["value"] == pytest.approx(511_600, rel=5e-3)
+    result = stiffness(step, AnalysisRequest(boundary="guided_end")).outputs["stiffness"]
+    assert result["value"] == pytest.approx(511_600, rel=5e-3)
 
 
 def test_one_output_that_is_refused_leaves_the_others(step: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -51,12 +51,16 @@ def test_one_output_that_is_refused_leaves_the_others(step: bytes, monkeypatch: 
 
     monkeypatch.setattr("cad.analysis.analyse.torsional_mode", refuse)
     wanted, seen = ["stiffness", "torsional_frequency"], []
-    found = analyse(
-        step, Shaft(-54.0, 54.0), Asked(tolerance=0.01), wanted, lambda done, what: seen.append(done)
+    result = analyse(
+        step,
+        Shaft(-54.0, 54.0),
+        AnalysisRequest(tolerance=0.01),
+        wanted,
+        lambda done, what: seen.append(done),
     )
-    assert found.outputs["torsional_frequency"]["value"] is None
-    assert found.outputs["torsional_frequency"]["reason"] == "no mode stands out"
-    assert found.outputs["stiffness"]["error"] <= 0.01
+    assert result.outputs["torsional_frequency"]["value"] is None
+    assert result.outputs["torsional_frequency"]["reason"] == "no mode stands out"
+    assert result.outputs["stiffness"]["error"] <= 0.01
     assert seen == sorted(seen)
     assert seen[-1] == 1
 
@@ -66,6 +70,6 @@ def test_no_value_where_elements_are_folded(step: bytes, monkeypatch: pytest.Mon
     values = iter([2e6, 1e6, 1e5, -1e5])
     monkeypatch.setitem(ELASTIC, "stiffness", lambda response: next(values))
     for _ in range(2):
-        found = stiffness(step, Asked(level="coarse")).outputs["stiffness"]
-        assert found["value"] is None
-        assert "finer" in found["reason"]
+        result = stiffness(step, AnalysisRequest(level="coarse")).outputs["stiffness"]
+        assert result["value"] is None
+        assert "finer" in result["reason"]

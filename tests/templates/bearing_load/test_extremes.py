@@ -65,7 +65,7 @@ class TestSingleExtremes:
         forward = evaluate(BearingLoad, BearingLoad.example)
         back = evaluate(BearingLoad, {**BearingLoad.example, "speed": "-3000 rpm"})
         assert np.array_equal(forward.outputs["main_load_y"].value, back.outputs["main_load_y"].value)
-        spin = [made.outputs["rod_angular_velocity"].value for made in (forward, back)]
+        spin = [built.outputs["rod_angular_velocity"].value for built in (forward, back)]
         assert np.array_equal(spin[0], -spin[1])
         assert back.outputs["mean_power"].value == -forward.outputs["mean_power"].value
         assert [w.code for w in back.warnings] == ["reversed_cycle"]
@@ -80,11 +80,11 @@ class TestSingleExtremes:
     def test_property_default_that_does_not_exist_is_not_told(self, cls):
         """No suction, no exhaust pressure; and null for the point of an array at which there is none."""
         raw = {n: v for n, v in cls.example.items() if n not in ("suction_pressure", "exhaust_pressure")}
-        told = rendering.evaluation(evaluate(cls, {**raw, "gas_cycle": "none"}))
-        assert "exhaust_pressure" not in told["inputs"]
+        reported = rendering.evaluation(evaluate(cls, {**raw, "gas_cycle": "none"}))
+        assert "exhaust_pressure" not in reported["inputs"]
         some = {**raw, "suction_pressure": {"value": [1, -1], "unit": "bar"}}
-        told = json.loads(json.dumps(rendering.evaluation(evaluate(cls, some)), allow_nan=False))
-        assert told["inputs"]["exhaust_pressure"]["value"] == [1, None]
+        reported = json.loads(json.dumps(rendering.evaluation(evaluate(cls, some)), allow_nan=False))
+        assert reported["inputs"]["exhaust_pressure"]["value"] == [1, None]
 
     @BOTH
     def test_property_too_many_values_are_refused(self, cls):
@@ -122,14 +122,14 @@ def drawn(cls, rng):
 
 def check(cls, seed, count):
     rng = np.random.default_rng(seed)
-    told = 0
+    reported = 0
     for _ in range(count):
         raw = drawn(cls, rng)
         outputs = answered(cls, raw)
         for name, answer in (outputs or {}).items():
-            told += 1
+            reported += 1
             assert answer["value"] is not None or answer["reason"], (name, raw)
-    assert told > count
+    assert reported > count
 
 
 @BOTH

@@ -124,10 +124,10 @@ class TestInputs:
     def test_property_curve_reduces_along_its_last_axis(self):
         assert evaluate(Shaft, Shaft.example).outputs["largest_load"].value == pytest.approx(3000)
         two = {"value": [[1, 3, 2], [5, 4, 4]], "unit": "kN"}
-        found = evaluate(Shaft, {**Shaft.example, "load": two}, outputs=["largest_load"]).outputs[
+        answer = evaluate(Shaft, {**Shaft.example, "load": two}, outputs=["largest_load"]).outputs[
             "largest_load"
         ]
-        np.testing.assert_allclose(found.value, [3000, 5000])
+        np.testing.assert_allclose(answer.value, [3000, 5000])
 
     @pytest.mark.parametrize(
         ("inputs", "name", "code", "words"),
@@ -158,9 +158,9 @@ class TestInputs:
         assert words in detail
         detail.encode("utf-8")
 
-    def test_property_an_option_is_taken_as_it_is_told(self):
-        told = {**Shaft.example, "web_shape": {"value": "square_cut"}}
-        assert evaluate(Shaft, told, outputs=[]).inputs["web_shape"].value == "square_cut"
+    def test_property_an_option_is_taken_as_answers_write_it(self):
+        reported = {**Shaft.example, "web_shape": {"value": "square_cut"}}
+        assert evaluate(Shaft, reported, outputs=[]).inputs["web_shape"].value == "square_cut"
 
     def test_property_missing_inputs_are_named_with_their_unit(self):
         with pytest.raises(InvalidInputs, match="bore is needed; give it in mm") as refusal:
@@ -187,8 +187,8 @@ class TestInputs:
     def test_property_curve_is_one_thing_for_each_point(self):
         """Points of other inputs have nothing to do with the places of a curve, only with its other axes."""
         two = {"bore": {"value": [10, 20], "unit": "mm"}, "outer_diameter": "40 mm"}
-        found = evaluate(Shaft, {**Shaft.example, **two}, outputs=["pressure"]).outputs["pressure"]
-        assert found.value.shape == (2,)
+        answer = evaluate(Shaft, {**Shaft.example, **two}, outputs=["pressure"]).outputs["pressure"]
+        assert answer.value.shape == (2,)
         rows = {"load": {"value": [[1, 3, 2]] * 3, "unit": "kN"}}
         with pytest.raises(InvalidInputs, match="bore 2, load 3×3"):
             Shaft.from_quantities({**Shaft.example, **two, **rows})
@@ -200,23 +200,23 @@ class TestLimits:
     def test_property_rule_masks_points_of_arrays(self):
         outside = {"value": [60, 40, 70], "unit": "mm"}
         raw = {**Shaft.example, "outer_diameter": outside}
-        found = evaluate(Shaft, raw, outputs=["wall", "largest_load"]).outputs
-        np.testing.assert_allclose(found["wall"].value, [5, np.nan, 10])
-        assert list(found["wall"].reasons) == [
+        answer = evaluate(Shaft, raw, outputs=["wall", "largest_load"]).outputs
+        np.testing.assert_allclose(answer["wall"].value, [5, np.nan, 10])
+        assert list(answer["wall"].reasons) == [
             None,
             "The outside is larger than the bore: make the outside larger",
             None,
         ]
-        assert found["largest_load"].value == pytest.approx(3000)
+        assert answer["largest_load"].value == pytest.approx(3000)
 
     def test_property_masks_reach_what_is_beneath_only(self):
         bores = {"value": [50, 500, 20], "unit": "mm"}
-        found = evaluate(
+        answer = evaluate(
             Shaft, {**Shaft.example, "bore": bores}, outputs=["wall", "largest_load", "pressure"]
         ).outputs
-        assert found["wall"].reasons[1] == "bore must be > 1 mm and ≤ 100 mm"
-        assert np.isnan(found["pressure"].value).tolist() == [False, True, False]
-        assert found["largest_load"].reasons is None
+        assert answer["wall"].reasons[1] == "bore must be > 1 mm and ≤ 100 mm"
+        assert np.isnan(answer["pressure"].value).tolist() == [False, True, False]
+        assert answer["largest_load"].reasons is None
 
     def test_property_result_outside_its_domain(self):
         heavy = {**Shaft.example, "load": {"value": [1, 9e9], "unit": "N"}}
@@ -314,9 +314,9 @@ class TestProfiles:
         pairs = evaluate(Chain, {"masses": ["1 kg", "2 kg", "3 kg"], "springs": ["1 N/m", "5 N/m"]})
         np.testing.assert_array_equal(pairs.outputs["sums_of_masses"].value[0], [2, 3, 4])
         many = {"masses": {"value": [[1, 2], [9, 1], [3, 3]], "unit": "kg"}}
-        found = evaluate(Chain, many).outputs["sums_of_masses"]
-        assert [bool(reason) for reason in found.reasons] == [False, True, False]
-        assert rendering.answer(found)["value"] == [[[2, 3], [3, 4]], None, [[6, 6], [6, 6]]]
+        answer = evaluate(Chain, many).outputs["sums_of_masses"]
+        assert [bool(reason) for reason in answer.reasons] == [False, True, False]
+        assert rendering.answer(answer)["value"] == [[[2, 3], [3, 4]], None, [[6, 6], [6, 6]]]
         limits = evaluate(Chain, {"masses": ["1 kg"], "limit": ["1 kg", "2 kg"]})
         assert limits.outputs["sums_of_masses"].value.shape == (2, 1, 1)
 

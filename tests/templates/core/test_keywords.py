@@ -41,5 +41,5 @@ def test_property_a_type_checker_sees_a_wrong_keyword(tmp_path, line, complaint)
         f"from templates.core.template import formula, given\n\nwidth = {line}\n", encoding="utf-8"
     )
     command = [sys.executable, "-m", "mypy", "--follow-imports=silent", str(file)]
-    told = subprocess.run(command, capture_output=True, text=True, check=False).stdout
-    assert (complaint in told) if complaint else "Success" in told
+    reported = subprocess.run(command, capture_output=True, text=True, check=False).stdout
+    assert (complaint in reported) if complaint else "Success" in reported

@@ -84,9 +84,9 @@ def measured(monkeypatch):
         "rough": {"size": np.array([[0.1, 0.1], [0.3, np.nan]])},
         "fine": {"size": np.array([[0.001, 0.001], [0.002, 0.002]])},
     }
-    known = Accuracy(("x", "b"), (grid, 2 * grid), errors, {})
-    monkeypatch.setitem(levels._known, Ladder, known)
-    return known
+    accuracy = Accuracy(("x", "b"), (grid, 2 * grid), errors, {})
+    monkeypatch.setitem(levels._cache, Ladder, accuracy)
+    return accuracy
 
 
 def evaluated(*names, level=None, tolerance=None, **raw):
@@ -101,9 +101,9 @@ class TestLadder:
     def test_property_cheapest_that_will_do(self, measured):
         assert evaluated("size", tolerance=0.2).level == "rough"
         assert evaluated("size", tolerance=0.01).level == "fine"
-        made = evaluated("size", tolerance=0.2, length=metres(5, 20, 30))
-        assert made.level.tolist() == ["rough", "fine", "fine"]
-        np.testing.assert_allclose(made.error["size"], [0.1, 0.002, 0.002])
+        evaluation = evaluated("size", tolerance=0.2, length=metres(5, 20, 30))
+        assert evaluation.level.tolist() == ["rough", "fine", "fine"]
+        np.testing.assert_allclose(evaluation.error["size"], [0.1, 0.002, 0.002])
 
     def test_property_a_level_that_refuses_does_not_do(self, measured):
         assert evaluated("size", tolerance=0.5, length="0.5 m").level == "fine"
@@ -116,7 +116,7 @@ class TestLadder:
         with pytest.raises(InvalidInputs, match="level fine takes at most 3 points at once, not 4"):
             evaluated("size", length=metres(1, 2, 3, 4))
 
-    def test_property_unmeasured_is_told(self):
+    def test_property_unmeasured_is_reported(self):
         assert [w.code for w in evaluated("size", tolerance=0.1).warnings] == ["tolerance_unmet"]
 
 
@@ -140,8 +140,8 @@ class TestLimits:
         assert "≥ 1 m" in reasons[0]
 
     def test_property_limits_of_a_level_are_on_the_page(self):
-        told = [limit["text"] for limit in describe(Ladder)["limits"]]
-        assert any("at level rough" in text for text in told)
+        texts = [limit["text"] for limit in describe(Ladder)["limits"]]
+        assert any("at level rough" in text for text in texts)
 
     def test_property_remark_warns(self):
         assert [w.code for w in evaluated("breadth", length="200 m").warnings] == ["long"]

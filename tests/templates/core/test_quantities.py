@@ -260,10 +260,10 @@ class TestFuzz:
         try:
             scale = unit(text)
         except FaultyText as refusal:
-            known, code = False, refusal.code
+            is_usable, code = False, refusal.code
         else:
-            known, code = 0 < scale.factor < math.inf and require_same_kind(text, text) is scale, None
-        assert known or code == "unknown_unit"
+            is_usable, code = 0 < scale.factor < math.inf and require_same_kind(text, text) is scale, None
+        assert is_usable or code == "unknown_unit"
 
     @given(json_values | surrogates)
     def test_property_excerpts_are_short_ascii(self, raw):

@@ -119,8 +119,8 @@ class TestUnits:
         ],
     )
     def test_analytic_kind(self, text, measured):
-        found = kind(text, d=LENGTH, scale=PURE)
-        assert registry.get_dimensionality(found.base) == registry.get_dimensionality(unit(measured).base)
+        result = kind(text, d=LENGTH, scale=PURE)
+        assert registry.get_dimensionality(result.base) == registry.get_dimensionality(unit(measured).base)
 
     @pytest.mark.parametrize(
         ("text", "words"),
@@ -297,9 +297,9 @@ class TestFuzz:
     @given(st.text("ab.()+-*/ 019eE mkN°²_,=sincopimax\t", max_size=80) | st.text(max_size=60))
     def test_property_any_text_is_a_relation_or_refused(self, text):
         try:
-            relation, found = checked(text)
-            known = isinstance(found, Kind)
+            relation, result = checked(text)
+            is_answered = isinstance(result, Kind)
             float(relation.value(dict.fromkeys(relation.names, 2.0)))
         except FaultyText as refusal:
-            known = bool(str(refusal).encode("utf-8"))
-        assert known
+            is_answered = bool(str(refusal).encode("utf-8"))
+        assert is_answered

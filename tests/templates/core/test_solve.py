@@ -46,20 +46,20 @@ def solved(output, target, low="0 m", high="10 m", **raw):
 class TestSolutions:
     @pytest.mark.parametrize("target", [1e-8, 0.3, 4.0, 99.9])
     def test_analytic_parabola(self, target):
-        found = solved("parabola", f"{target} m**2")
-        assert found.unknown == pytest.approx(target**0.5, rel=1e-7)
-        assert found.evaluation.outputs["parabola"].value == pytest.approx(target, rel=1e-9)
-        assert (found.unit, found.warnings) == ("m", [])
+        result = solved("parabola", f"{target} m**2")
+        assert result.unknown == pytest.approx(target**0.5, rel=1e-7)
+        assert result.evaluation.outputs["parabola"].value == pytest.approx(target, rel=1e-9)
+        assert (result.unit, result.warnings) == ("m", [])
 
     @pytest.mark.parametrize(("low", "high"), [("1e-9 m", "1e9 m"), ("10 mm", "1e7 mm")])
     def test_analytic_bounds_decades_apart(self, low, high):
         assert solved("parabola", "4 m**2", low, high).unknown == pytest.approx(2, rel=1e-12)
 
     def test_analytic_several_solutions_are_said(self):
-        found = solved("parabola", "4 m**2", "-5 m", "5 m")
-        assert found.unknown == pytest.approx(-2)
-        assert [w.code for w in found.warnings] == ["not_monotone", "several_solutions"]
-        assert "2 m give the target too" in found.warnings[1].detail
+        result = solved("parabola", "4 m**2", "-5 m", "5 m")
+        assert result.unknown == pytest.approx(-2)
+        assert [w.code for w in result.warnings] == ["not_monotone", "several_solutions"]
+        assert "2 m give the target too" in result.warnings[1].detail
 
     def test_analytic_solution_beside_the_end_of_the_domain(self):
         """The root function begins at 0.7 m, between two samples."""
@@ -69,10 +69,10 @@ class TestSolutions:
         assert solved("parabola", "100 m**2").unknown == pytest.approx(10)
 
     def test_property_options_reach_the_evaluation(self):
-        found = solve(
+        result = solve(
             Curves, {}, "x", ["0 m", "5 m"], {"parabola": "4 m**2"}, outputs=["wave"], units={"wave": "%"}
         )
-        assert found.evaluation.outputs["wave"].value == pytest.approx(100 * np.sin(2))
+        assert result.evaluation.outputs["wave"].value == pytest.approx(100 * np.sin(2))
 
 
 class TestRefusals:

@@ -48,40 +48,40 @@ class Beam(Template):
         return self.b * self.h
 
 
-def told(**inputs):
-    made = evaluate(Beam, {"width": "20 mm", "height": "50 mm", "span": "400 mm", **inputs})
-    return {(check.kind, check.words): check for check in checks(made.template)}
+def reported(**inputs):
+    evaluation = evaluate(Beam, {"width": "20 mm", "height": "50 mm", "span": "400 mm", **inputs})
+    return {(check.kind, check.words): check for check in checks(evaluation.template)}
 
 
 def test_share_of_an_upper_and_a_lower_limit():
-    found = told()
-    assert found["domain", "height"].used == pytest.approx(50 / 200)
-    assert found["domain", "area"].used == pytest.approx(1000 / 1e5)
-    assert told(height="11 mm", width="5 mm")["domain", "height"].used == pytest.approx(10 / 11)
+    result = reported()
+    assert result["domain", "height"].used == pytest.approx(50 / 200)
+    assert result["domain", "area"].used == pytest.approx(1000 / 1e5)
+    assert reported(height="11 mm", width="5 mm")["domain", "height"].used == pytest.approx(10 / 11)
 
 
 def test_a_sign_is_no_check_and_a_temperature_uses_no_share():
-    found = told()
-    assert ("domain", "width") not in found
-    assert found["domain", "temperature"].used is None
-    assert found["domain", "temperature"].holds
+    result = reported()
+    assert ("domain", "width") not in result
+    assert result["domain", "temperature"].used is None
+    assert result["domain", "temperature"].holds
 
 
 def test_of_a_sign_no_share_is_used():
-    check = told()["rule", "The height exceeds the width, or equals it"]
+    check = reported()["rule", "The height exceeds the width, or equals it"]
     assert check.used is None
     assert check.demand == r"h-b\ge 0"
 
 
 def test_a_published_range_that_is_left_does_not_hold():
-    check = told(span="2 m")["published", "span"]
+    check = reported(span="2 m")["published", "span"]
     assert not check.holds
     assert check.used == pytest.approx(2)
     assert check.demand == r"100\,\text{mm}\le s\le 1000\,\text{mm}"
 
 
 def test_a_rule_is_written_out_with_symbols_and_numbers():
-    check = told()["rule", "The beam is at least as high as wide"]
+    check = reported()["rule", "The beam is at least as high as wide"]
     assert check.demand == r"b\le h"
     assert check.numbers == r"20\,\text{mm}\le 50\,\text{mm}"
     assert check.used == pytest.approx(0.4)
@@ -90,8 +90,8 @@ def test_a_rule_is_written_out_with_symbols_and_numbers():
 
 def test_a_rule_within_a_function_is_written_out_once_it_applies():
     words = "The height is not below the least one"
-    assert ("warning", words) not in told()
-    check = told(least_height="60 mm")["warning", words]
+    assert ("warning", words) not in reported()
+    check = reported(least_height="60 mm")["warning", words]
     assert check.demand == r"h\ge m"
     assert check.used == pytest.approx(60 / 50)
     assert not check.holds
@@ -99,16 +99,18 @@ def test_a_rule_within_a_function_is_written_out_once_it_applies():
 
 def test_of_alternatives_that_counts_which_applies():
     words = "A beam of any width is short, or high"
-    assert told()["warning", words].used == pytest.approx(40 / 50)
-    short = told(span="150 mm")["warning", words]
+    assert reported()["warning", words].used == pytest.approx(40 / 50)
+    short = reported(span="150 mm")["warning", words]
     assert short.used is None
     assert short.holds
 
 
 def test_of_many_points_the_worst_counts():
-    check = told(height={"value": [30, 50, 190], "unit": "mm"})["domain", "height"]
+    check = reported(height={"value": [30, 50, 190], "unit": "mm"})["domain", "height"]
     assert check.used == pytest.approx(190 / 200)
     assert check.points == 3
-    bad = told(height={"value": [30, 10, 190], "unit": "mm"})["rule", "The beam is at least as high as wide"]
+    bad = reported(height={"value": [30, 10, 190], "unit": "mm"})[
+        "rule", "The beam is at least as high as wide"
+    ]
     assert (bad.holds, bad.broken, bad.points) == (False, 1, 3)
     assert bad.numbers == ""

@@ -23,10 +23,10 @@ def outputs(raw):
 
 class TestLiterature:
     def test_literature_worked_case(self):
-        found = outputs(CASE)
-        assert found["friction_force"] == pytest.approx(2.9305, abs=5e-5)
-        assert found["friction_torque"] == pytest.approx(0.073263, abs=5e-7)
-        assert found["power_loss"] == pytest.approx(11.508, abs=5e-4)
+        measured = outputs(CASE)
+        assert measured["friction_force"] == pytest.approx(2.9305, abs=5e-5)
+        assert measured["friction_torque"] == pytest.approx(0.073263, abs=5e-7)
+        assert measured["power_loss"] == pytest.approx(11.508, abs=5e-4)
 
     def test_literature_form_of_the_course(self):
         """4 pi² r² eta N b/(60 c), N in rpm."""
@@ -35,36 +35,36 @@ class TestLiterature:
 
     def test_literature_load_of_the_course(self):
         answer = evaluate(JournalFriction, {**CASE, "radial_load": "3 kN"})
-        found = answer.outputs
-        assert found["sommerfeld_number"].value == pytest.approx(32, abs=0.5)
-        assert found["relative_eccentricity"].value == pytest.approx(0.965, abs=5e-4)
-        assert found["friction_ratio"].value == pytest.approx(5.3, abs=0.05)
-        assert found["friction_force"].value == pytest.approx(2.9305, abs=5e-5)
+        measured = answer.outputs
+        assert measured["sommerfeld_number"].value == pytest.approx(32, abs=0.5)
+        assert measured["relative_eccentricity"].value == pytest.approx(0.965, abs=5e-4)
+        assert measured["friction_ratio"].value == pytest.approx(5.3, abs=0.05)
+        assert measured["friction_force"].value == pytest.approx(2.9305, abs=5e-5)
         (warning,) = answer.warnings
         assert (warning.name, warning.code) == ("friction_ratio", "outside_published_range")
         assert "5.34" in warning.detail
-        true = 1 - 1 / found["friction_ratio"].value
+        true = 1 - 1 / measured["friction_ratio"].value
         assert true <= answer.error["friction_force"] < 1.15 * true
 
 
 class TestAnalytic:
     @pytest.mark.parametrize(("load", "width"), [(30, 100), (300, 50), (3000, 25), (30, 12.5), (3000, 200)])
     def test_analytic_ratio_is_that_of_the_full_solution(self, load, width):
-        found = outputs({**CASE, "radial_load": f"{load} N", "bearing_width": f"{width} mm"})
-        film = extrapolated_film(found["relative_eccentricity"], width / 50)[0]
-        assert found["sommerfeld_number"] == pytest.approx(film.So, rel=1e-3)
-        assert found["friction_ratio"] == pytest.approx(film.friction / pi, rel=1e-3)
+        measured = outputs({**CASE, "radial_load": f"{load} N", "bearing_width": f"{width} mm"})
+        film = extrapolated_film(measured["relative_eccentricity"], width / 50)[0]
+        assert measured["sommerfeld_number"] == pytest.approx(film.So, rel=1e-3)
+        assert measured["friction_ratio"] == pytest.approx(film.friction / pi, rel=1e-3)
 
     def test_analytic_no_load_is_concentric(self):
-        found = outputs({**CASE, "radial_load": "0 N"})
-        assert (found["relative_eccentricity"], found["friction_ratio"]) == (0, pytest.approx(1))
+        measured = outputs({**CASE, "radial_load": "0 N"})
+        assert (measured["relative_eccentricity"], measured["friction_ratio"]) == (0, pytest.approx(1))
 
     def test_analytic_ratio_rises_with_the_load(self):
         loads = {"value": [0, *np.geomspace(1e-3, 1e6, 200).tolist()], "unit": "N"}
-        found = outputs({**CASE, "radial_load": loads})
-        assert (np.diff(found["relative_eccentricity"]) > 0).all()
-        assert (np.diff(found["friction_ratio"]) > -1e-9).all()
-        assert np.unique(found["friction_force"]).size == 1
+        measured = outputs({**CASE, "radial_load": loads})
+        assert (np.diff(measured["relative_eccentricity"]) > 0).all()
+        assert (np.diff(measured["friction_ratio"]) > -1e-9).all()
+        assert np.unique(measured["friction_force"]).size == 1
 
     def test_analytic_proportions(self):
         """Twice the speed or viscosity or width, twice the force; half the clearance likewise."""
@@ -145,8 +145,8 @@ class TestLimits:
         for name in ("friction_force", "friction_torque", "power_loss"):
             assert np.isfinite(answer.outputs[name].value).all()
         ratio = answer.outputs["friction_ratio"].value
-        known = np.isfinite(ratio)
-        assert known.mean() > 0.8
-        assert (ratio[known] > 1 - 1e-6).all()
+        present = np.isfinite(ratio)
+        assert present.mean() > 0.8
+        assert (ratio[present] > 1 - 1e-6).all()
         low = np.abs(1 / ratio - 1)
-        assert (low[known] <= answer.error["friction_force"][known] + 1e-5).all()
+        assert (low[present] <= answer.error["friction_force"][present] + 1e-5).all()

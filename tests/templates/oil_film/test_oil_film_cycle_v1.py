@@ -65,9 +65,9 @@ class TestStatics:
     )  # fmt: skip
     def test_literature_settles_at_the_static_eccentricity(self, eps, ratio, within):
         So = float(mapped_load(np.array(eps), np.array(ratio)))
-        found = outputs(inputs(So, 0.0, ratio))
-        assert found["maximum_eccentricity"] == pytest.approx(eps, rel=within)
-        assert np.ptp(found["film_thickness"]) < 1e-6 * found["minimum_film_thickness"]
+        result = outputs(inputs(So, 0.0, ratio))
+        assert result["maximum_eccentricity"] == pytest.approx(eps, rel=within)
+        assert np.ptp(result["film_thickness"]) < 1e-6 * result["minimum_film_thickness"]
 
     @pytest.mark.parametrize(("eps", "ratio"), [(0.3, 0.1), (0.8, 0.25), (0.9, 0.5)])
     def test_analytic_static_pressure_loss_and_flow_are_those_of_oil_film_2(self, eps, ratio):
@@ -76,10 +76,10 @@ class TestStatics:
         shared = ("bearing_diameter", "bearing_width", "diametral_clearance", "speed", "dynamic_viscosity")
         load = si(raw["load_x"]["value"][0], "N")
         static = evaluate(OilFilm, {"radial_load": load, **{n: raw[n] for n in shared}}).outputs
-        found = outputs(raw)
+        result = outputs(raw)
         for name, within in (("maximum_pressure", 3e-3), ("power_loss", 1e-3), ("side_flow", 3e-2)):
-            assert found[name] == pytest.approx(static[name].value, rel=within), name
-        attitude = np.degrees(np.arctan2(found["eccentricity_y"], found["eccentricity_x"]))
+            assert result[name] == pytest.approx(static[name].value, rel=within), name
+        attitude = np.degrees(np.arctan2(result["eccentricity_y"], result["eccentricity_x"]))
         assert attitude == pytest.approx(static["attitude_angle"].value, abs=0.3)
 
     def test_analytic_closed_form_settles_off_by_its_own_error(self):
@@ -149,9 +149,9 @@ class TestMotion:
 
     def test_analytic_pure_squeeze_without_mean_speed(self):
         raw = inputs(5 * np.cos(ANGLE), 0.0, speed=si(OMEGA, "rad/s"), sleeve_speed=si(-OMEGA, "rad/s"))
-        found = outputs(raw)
-        assert np.abs(found["eccentricity_y"]).max() < 1e-9
-        assert 0 < found["maximum_eccentricity"] < 1
+        result = outputs(raw)
+        assert np.abs(result["eccentricity_y"]).max() < 1e-9
+        assert 0 < result["maximum_eccentricity"] < 1
 
     def test_analytic_orbit_scales(self):
         """Load, viscosity, speed and clearance count only together."""
@@ -165,20 +165,20 @@ class TestMotion:
 
 class TestAnswers:
     def test_analytic_film_follows_from_the_eccentricity(self):
-        found = outputs(inputs(X, Y))
-        eps = np.hypot(found["eccentricity_x"], found["eccentricity_y"])
-        assert found["film_thickness"] == pytest.approx(0.5 * D * PSI * 1e6 * (1 - eps), rel=1e-12)
-        assert found["minimum_film_thickness"] <= found["film_thickness"].min() * (1 + 1e-12)
-        assert found["minimum_film_thickness"] == pytest.approx(found["film_thickness"].min(), rel=2e-2)
-        assert found["maximum_pressure"] == found["peak_pressure"].max()
-        place = np.degrees(ANGLE)[found["peak_pressure"].argmax()]
-        assert found["maximum_pressure_angle"] == pytest.approx(place)
+        result = outputs(inputs(X, Y))
+        eps = np.hypot(result["eccentricity_x"], result["eccentricity_y"])
+        assert result["film_thickness"] == pytest.approx(0.5 * D * PSI * 1e6 * (1 - eps), rel=1e-12)
+        assert result["minimum_film_thickness"] <= result["film_thickness"].min() * (1 + 1e-12)
+        assert result["minimum_film_thickness"] == pytest.approx(result["film_thickness"].min(), rel=2e-2)
+        assert result["maximum_pressure"] == result["peak_pressure"].max()
+        place = np.degrees(ANGLE)[result["peak_pressure"].argmax()]
+        assert result["maximum_pressure_angle"] == pytest.approx(place)
 
-    def test_analytic_spread_of_the_levels_is_told(self):
+    def test_analytic_spread_of_the_levels_is_reported(self):
         by_level = {level: outputs(inputs(X, Y), level) for level in ("mobility_short", "mobility")}
-        films = [found["minimum_film_thickness"] for found in by_level.values()]
-        for found in by_level.values():
-            assert found["level_spread"] == pytest.approx(max(films) / min(films) - 1, rel=1e-9)
+        films = [result["minimum_film_thickness"] for result in by_level.values()]
+        for result in by_level.values():
+            assert result["level_spread"] == pytest.approx(max(films) / min(films) - 1, rel=1e-9)
         assert by_level["mobility"]["boundary_condition"] != by_level["mobility_short"]["boundary_condition"]
 
     def test_analytic_many_loads_are_many_orbits(self):
@@ -192,8 +192,8 @@ class TestAnswers:
 
     def test_analytic_many_speeds_and_an_unborne_one(self):
         speeds = si([[OMEGA], [2 * OMEGA], [0.5 * OMEGA]], "rad/s")
-        found = evaluate(OilFilmCycle, inputs(1.0, 0.0, speed=speeds, frame_speed=si(OMEGA / 2, "rad/s")))
-        film = found.outputs["minimum_film_thickness"]
+        result = evaluate(OilFilmCycle, inputs(1.0, 0.0, speed=speeds, frame_speed=si(OMEGA / 2, "rad/s")))
+        film = result.outputs["minimum_film_thickness"]
         assert np.isnan(film.value).tolist() == [True, False, False]
         assert "turn at the mean speed" in film.reasons[0]
 
@@ -207,25 +207,25 @@ class TestAnswers:
             "load_x": si(np.interp(angle, ANGLE, X, period=2 * np.pi) * scale, "N"),
             "load_y": si(np.interp(angle, ANGLE, Y, period=2 * np.pi) * scale, "N"),
         }
-        found = outputs({**inputs(X, Y), **curves})
+        result = outputs({**inputs(X, Y), **curves})
         expected = outputs(inputs(X, Y))["minimum_film_thickness"]
-        assert found["minimum_film_thickness"] == pytest.approx(expected, rel=5e-3)
+        assert result["minimum_film_thickness"] == pytest.approx(expected, rel=5e-3)
 
     def test_analytic_limits_warn(self):
         raw = inputs(X, Y, permissible_film=si(1e-3, "m"), permissible_pressure=si(1e3, "Pa"))
-        told = {warning.code for warning in evaluate(OilFilmCycle, raw, level="mobility").warnings}
-        assert told == {"below_permissible_film", "above_permissible_pressure"}
+        reported = {warning.code for warning in evaluate(OilFilmCycle, raw, level="mobility").warnings}
+        assert reported == {"below_permissible_film", "above_permissible_pressure"}
         raw = inputs(X, Y, permissible_film=si(1e-9, "m"), permissible_pressure=si(1e12, "Pa"))
         assert evaluate(OilFilmCycle, raw, level="mobility").warnings == []
 
     @pytest.mark.slow
     def test_analytic_transient_level_is_near_the_others(self):
-        found = outputs(inputs(X, Y), "transient")
+        result = outputs(inputs(X, Y), "transient")
         mobility = outputs(inputs(X, Y))
-        assert found["minimum_film_thickness"] == pytest.approx(mobility["minimum_film_thickness"], rel=0.15)
-        assert found["power_loss"] < mobility["power_loss"]
-        assert found["maximum_pressure"] == pytest.approx(mobility["maximum_pressure"], rel=0.3)
-        assert found["level_spread"] > 0
+        assert result["minimum_film_thickness"] == pytest.approx(mobility["minimum_film_thickness"], rel=0.15)
+        assert result["power_loss"] < mobility["power_loss"]
+        assert result["maximum_pressure"] == pytest.approx(mobility["maximum_pressure"], rel=0.3)
+        assert result["level_spread"] > 0
 
 
 class TestRefusals:
@@ -268,9 +268,9 @@ class TestRefusals:
 
     def test_property_load_through_zero_is_borne(self):
         pulse = np.where(np.cos(ANGLE) > 0, np.cos(ANGLE), 0.0)
-        found = outputs(inputs(3 * pulse, 0.0))
-        assert np.isfinite(found["film_thickness"]).all()
-        assert found["peak_pressure"][COUNT // 2] == 0
+        result = outputs(inputs(3 * pulse, 0.0))
+        assert np.isfinite(result["film_thickness"]).all()
+        assert result["peak_pressure"][COUNT // 2] == 0
 
     @pytest.mark.parametrize("ratio", [0.01, 11.0])
     def test_property_widths_outside_of_the_map(self, ratio):
@@ -285,15 +285,15 @@ class TestAccuracy:
     def test_property_tolerance_takes_the_cheapest_level_that_meets_it(self):
         """Measured differences from level transient: large, as the boundary conditions differ."""
         raw, film = inputs(X, Y, 0.4), "minimum_film_thickness"
-        told = {
+        reported = {
             level: evaluate(OilFilmCycle, raw, level=level, outputs=[film]).error[film]
             for level in ("mobility_short", "mobility")
         }
-        assert 0.05 < told["mobility"] < told["mobility_short"]
-        for level, error in told.items():
-            found = evaluate(OilFilmCycle, raw, outputs=[film], tolerance=error * 1.01)
-            assert found.level == level
-            assert found.warnings == [] or found.warnings[0].code == "outside_published_range"
+        assert 0.05 < reported["mobility"] < reported["mobility_short"]
+        for level, error in reported.items():
+            result = evaluate(OilFilmCycle, raw, outputs=[film], tolerance=error * 1.01)
+            assert result.level == level
+            assert result.warnings == [] or result.warnings[0].code == "outside_published_range"
 
     def test_property_error_is_not_told_where_it_was_not_measured(self):
         film = "minimum_film_thickness"

@@ -55,29 +55,29 @@ class TestLiterature:
     @pytest.mark.parametrize("width", [12, 18.07, 30])
     @pytest.mark.parametrize("temperature", [60, 84, 120])
     def test_literature_worked_case(self, width, temperature):
-        found = outputs(speed_for(3.948, width, temperature))
-        assert found["sommerfeld_number"] == pytest.approx(3.948, rel=1e-12)
-        assert found["relative_eccentricity"] == pytest.approx(0.8821, abs=5e-5)
-        assert found["minimum_film_thickness"] == pytest.approx(3.245, abs=5e-4)
+        result = outputs(speed_for(3.948, width, temperature))
+        assert result["sommerfeld_number"] == pytest.approx(3.948, rel=1e-12)
+        assert result["relative_eccentricity"] == pytest.approx(0.8821, abs=5e-5)
+        assert result["minimum_film_thickness"] == pytest.approx(3.245, abs=5e-4)
 
     def test_literature_example_is_the_worked_case(self):
-        found = outputs(OilFilm.example)
-        assert found["minimum_film_thickness"] == pytest.approx(3.2449, abs=5e-5)
-        assert found["journal_diameter"] == pytest.approx(47.945)
+        result = outputs(OilFilm.example)
+        assert result["minimum_film_thickness"] == pytest.approx(3.2449, abs=5e-5)
+        assert result["journal_diameter"] == pytest.approx(47.945)
 
     @pytest.mark.parametrize(("temperature", "viscosity"), [(40, 110), (100, 14.5)])
     def test_literature_oil_at_its_two_temperatures(self, temperature, viscosity):
         """SAE 15W-40 as the paper gives it."""
-        found = outputs(case(18, 3000, temperature), "kinematic_viscosity")
-        assert found["kinematic_viscosity"] == pytest.approx(viscosity, rel=1e-9)
+        result = outputs(case(18, 3000, temperature), "kinematic_viscosity")
+        assert result["kinematic_viscosity"] == pytest.approx(viscosity, rel=1e-9)
 
     @pytest.mark.parametrize(("sommerfeld", "k1", "k2"), K_TABLE)
     def test_literature_table_of_the_fit(self, sommerfeld, k1, k2):
         """10 and 100 are nudged into their row: by rounding the computed So may fall on either side."""
         nudged = sommerfeld * {10.0: 1 + 1e-12, 100.0: 1 - 1e-12}.get(sommerfeld, 1)
-        found = outputs(load_for(nudged))
-        assert (found["fit_factor"], found["fit_exponent"]) == (k1, k2)
-        assert found["relative_eccentricity"] == pytest.approx(k1 * sommerfeld**k2, rel=1e-10)
+        result = outputs(load_for(nudged))
+        assert (result["fit_factor"], result["fit_exponent"]) == (k1, k2)
+        assert result["relative_eccentricity"] == pytest.approx(k1 * sommerfeld**k2, rel=1e-10)
 
     def test_literature_fit_drops_at_its_seams(self):
         """Errata: eps 0.9441 → 0.9436 at So = 10, where h0 jumps up 0.8 %; at 100 h0 falls by 1 %."""
@@ -94,7 +94,7 @@ class TestLiterature:
 
     def test_literature_every_intermediate_value_is_there(self):
         """The rows of the paper's worksheet, recalculated here step by step from its formulas."""
-        found = evaluate(OilFilm, OilFilm.example).template
+        result = evaluate(OilFilm, OilFilm.example).template
         F, c, D, W, omega, T = 25e3, 55e-6, 48e-3, 18e-3, 5000 * pi / 30, (80 + 87.762) / 2 + 273.15
         d, C = D - c, c / (D - c)
         rho = 875 * (1 - 0.0007 * (T - 293.15))
@@ -109,7 +109,7 @@ class TestLiterature:
         h0 = D * C * (1 - eps) / 2
         expected = {"d": d, "C": C, "T": T, "rho": rho, "B": B, "A": A, "nu": nu, "eta": eta, "S_0": So,
                     "k_1": 0.798, "k_2": 0.073, "eps": eps, "h_0": h0}  # fmt: skip
-        assert {name: getattr(found, name) for name in expected} == pytest.approx(expected, rel=1e-12)
+        assert {name: getattr(result, name) for name in expected} == pytest.approx(expected, rel=1e-12)
 
 
 class TestUnits:
@@ -204,13 +204,13 @@ class TestExtremes:
     """physics.md, section 5, as far as it touches version 1."""
 
     def test_analytic_no_load_means_concentric(self):
-        found = outputs({**OilFilm.example, "radial_load": "0 N"})
-        assert found["relative_eccentricity"] == 0
-        assert found["minimum_film_thickness"] == pytest.approx(24e3 * 0.055 / 47.945)
+        result = outputs({**OilFilm.example, "radial_load": "0 N"})
+        assert result["relative_eccentricity"] == 0
+        assert result["minimum_film_thickness"] == pytest.approx(24e3 * 0.055 / 47.945)
 
     def test_analytic_equal_viscosities_do_not_change_with_temperature(self):
-        found = outputs({**OilFilm.example, "kinematic_viscosity_2": "110 mm²/s"})
-        assert found["kinematic_viscosity"] == pytest.approx(110)
+        result = outputs({**OilFilm.example, "kinematic_viscosity_2": "110 mm²/s"})
+        assert result["kinematic_viscosity"] == pytest.approx(110)
 
     def test_property_whole_range_is_finite_or_refused(self):
         rng, n = np.random.default_rng(5), 20_000
@@ -229,10 +229,10 @@ class TestExtremes:
         ).outputs
         thickness, sommerfeld = (answers[name] for name in ("minimum_film_thickness", "sommerfeld_number"))
         assert np.isfinite(sommerfeld.value).all()
-        known = np.isfinite(thickness.value)
-        np.testing.assert_array_equal(known, 0.98 * sommerfeld.value**0.0028 < 1)
-        assert (thickness.value[known] > 0).all()
-        assert all("1360" in reason for reason in thickness.reasons[~known])
+        present = np.isfinite(thickness.value)
+        np.testing.assert_array_equal(present, 0.98 * sommerfeld.value**0.0028 < 1)
+        assert (thickness.value[present] > 0).all()
+        assert all("1360" in reason for reason in thickness.reasons[~present])
 
     def test_analytic_million_points(self):
         speed = np.linspace(1000, 8000, 10**6)
@@ -248,12 +248,12 @@ class TestSolve:
     RAW = {name: value for name, value in OilFilm.example.items() if name != "bearing_width"}
 
     def test_literature_width_of_the_worked_case(self):
-        found = solve(
+        result = solve(
             OilFilm, self.RAW, "bearing_width", ["10 mm", "80 mm"], {"minimum_film_thickness": "3.2449 um"}
         )
-        assert found.evaluation.outputs["minimum_film_thickness"].value == pytest.approx(3.2449, rel=1e-12)
-        assert found.evaluation.outputs["relative_eccentricity"].value == pytest.approx(0.8821, abs=5e-5)
-        assert (found.unit, found.warnings) == ("mm", [])
+        assert result.evaluation.outputs["minimum_film_thickness"].value == pytest.approx(3.2449, rel=1e-12)
+        assert result.evaluation.outputs["relative_eccentricity"].value == pytest.approx(0.8821, abs=5e-5)
+        assert (result.unit, result.warnings) == ("mm", [])
 
     def test_literature_out_of_reach_says_what_is(self):
         with pytest.raises(Unreachable, match="out of reach") as error:
@@ -269,9 +269,9 @@ class TestSolve:
         seam = outputs(load_for(10 * (1 - 1e-9)), "minimum_film_thickness")["minimum_film_thickness"]
         raw = {name: value for name, value in load_for(1).items() if name != "radial_load"}
         target = {"minimum_film_thickness": f"{1.004 * seam} um"}
-        found = solve(OilFilm, raw, "radial_load", ["1 kN", "200 kN"], target)
-        assert {w.code for w in found.warnings} == {"not_monotone", "several_solutions"}
-        assert found.evaluation.outputs["sommerfeld_number"].value < 10
+        result = solve(OilFilm, raw, "radial_load", ["1 kN", "200 kN"], target)
+        assert {w.code for w in result.warnings} == {"not_monotone", "several_solutions"}
+        assert result.evaluation.outputs["sommerfeld_number"].value < 10
 
     def test_literature_target_within_a_jump(self):
         """At So = 100 h0 falls by 1 %: no load gives a value between."""

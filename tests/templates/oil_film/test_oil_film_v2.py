@@ -73,16 +73,16 @@ class TestLiterature:
         rows = table("static_film_butenschoen_1976.csv")
         inside = (rows["width_ratio"] >= 0.125) & (rows["width_ratio"] <= 1)
         rows = {name: values[inside] for name, values in rows.items()}
-        found = outputs(bearing(rows["So"], rows["width_ratio"]), level=level)
-        np.testing.assert_allclose(1 - found["relative_eccentricity"], 1 - rows["eps"], rtol=film)
-        np.testing.assert_allclose(found["attitude_angle"], rows["beta_deg"], atol=angle)
+        result = outputs(bearing(rows["So"], rows["width_ratio"]), level=level)
+        np.testing.assert_allclose(1 - result["relative_eccentricity"], 1 - rows["eps"], rtol=film)
+        np.testing.assert_allclose(result["attitude_angle"], rows["beta_deg"], atol=angle)
 
     def test_literature_butenschoen_1976_at_full_solution(self):
         rows = table("static_film_butenschoen_1976.csv")
         some = slice(4, None, 23)
-        found = outputs(bearing(rows["So"][some], rows["width_ratio"][some]), level="reynolds")
-        np.testing.assert_allclose(1 - found["relative_eccentricity"], 1 - rows["eps"][some], rtol=0.012)
-        np.testing.assert_allclose(found["attitude_angle"], rows["beta_deg"][some], atol=0.12)
+        result = outputs(bearing(rows["So"][some], rows["width_ratio"][some]), level="reynolds")
+        np.testing.assert_allclose(1 - result["relative_eccentricity"], 1 - rows["eps"][some], rtol=0.012)
+        np.testing.assert_allclose(result["attitude_angle"], rows["beta_deg"][some], atol=0.12)
 
     def test_literature_raimondi_boyd_1958(self):
         rows = table("raimondi_boyd_1958.csv")
@@ -95,11 +95,11 @@ class TestLiterature:
             "radial_load": "1 kN", "bearing_diameter": "100 mm", "bearing_width": "25 mm",
             "speed": "3000 rpm", "diametral_clearance": "200 um", "dynamic_viscosity": "20 mPa*s",
         }  # fmt: skip
-        found = outputs(raw, level="short_bearing")
-        assert found["relative_eccentricity"] == pytest.approx(0.6757879254, rel=1e-9)
-        assert found["minimum_film_thickness"] == pytest.approx(32.421207, rel=1e-7)
+        result = outputs(raw, level="short_bearing")
+        assert result["relative_eccentricity"] == pytest.approx(0.6757879254, rel=1e-9)
+        assert result["minimum_film_thickness"] == pytest.approx(32.421207, rel=1e-7)
         attitude = np.degrees(attitude_Ocvirk_1952(0.6757879254))
-        assert found["attitude_angle"] == pytest.approx(attitude, rel=1e-9)
+        assert result["attitude_angle"] == pytest.approx(attitude, rel=1e-9)
 
     def test_literature_oil_of_the_paper(self):
         """SAE 15W-40: 110 and 14.5 mm²/s at 40 and 100 °C (Bhadke et al. 2015)."""
@@ -130,17 +130,17 @@ class TestLiterature:
         grooves = {"value": [[90, 20], [270, 20]], "unit": "deg"}
         So = 1 / (2 * np.pi * rows["S"])
         for i in range(len(So)):
-            found = outputs(bearing(float(So[i]), float(rows["length_ratio"][i]), grooves=grooves))
-            assert found["relative_eccentricity"] == pytest.approx(rows["eps"][i], abs=0.002)
-            assert found["attitude_angle"] == pytest.approx(rows["phi_deg"][i], abs=0.3)
+            result = outputs(bearing(float(So[i]), float(rows["length_ratio"][i]), grooves=grooves))
+            assert result["relative_eccentricity"] == pytest.approx(rows["eps"][i], abs=0.002)
+            assert result["attitude_angle"] == pytest.approx(rows["phi_deg"][i], abs=0.3)
             unit = (
                 So[i] * rows["length_ratio"][i] * 2 * ETA * OMEGA * D / PSI**3
             )  # load over radial clearance
             for xy in ("xx", "xy", "yx", "yy"):
-                over_load = found[f"stiffness_{xy}"] / unit
+                over_load = result[f"stiffness_{xy}"] / unit
                 assert over_load == pytest.approx(rows[f"K{xy}"][i], rel=0.05, abs=0.03), xy
             for xy in ("xx", "xy", "yy"):
-                over_load = found[f"damping_{xy}"] * OMEGA / unit
+                over_load = result[f"damping_{xy}"] * OMEGA / unit
                 assert over_load == pytest.approx(rows[f"B{xy}"][i], rel=0.05, abs=0.03), xy
 
     @pytest.mark.parametrize(
@@ -177,15 +177,15 @@ class TestLevels:
 
     def test_property_level_and_boundary_are_told(self):
         for level in OilFilm.levels:
-            made = evaluate(OilFilm, bearing(1, 0.5), outputs=["boundary_condition"], level=level)
-            assert made.level == level
-            assert made.outputs["boundary_condition"].value
+            evaluation = evaluate(OilFilm, bearing(1, 0.5), outputs=["boundary_condition"], level=level)
+            assert evaluation.level == level
+            assert evaluation.outputs["boundary_condition"].value
         assert evaluate(OilFilm, bearing(1, 0.5)).level == "map"
 
     def test_property_feed_takes_the_level_that_knows_it(self):
         grooves = {"value": [[90, 20], [270, 20]], "unit": "deg"}
-        made = evaluate(OilFilm, bearing(1, 0.5, grooves=grooves), outputs=["relative_eccentricity"])
-        assert made.level == "mass_conserving"
+        evaluation = evaluate(OilFilm, bearing(1, 0.5, grooves=grooves), outputs=["relative_eccentricity"])
+        assert evaluation.level == "mass_conserving"
         named = evaluate(OilFilm, bearing(1, 0.5, supply_pressure="2 bar"), level="map")
         assert {w.code for w in named.warnings} == {"unused_input"}
 
@@ -213,20 +213,20 @@ class TestSolve:
         raw = bearing(1.0, 0.5)
         del raw["radial_load"]
         target = {"minimum_film_thickness": "10 um"}
-        found = solve(OilFilm, raw, "radial_load", ["1 N", "1 MN"], target, level=level)
-        answer = found.evaluation.outputs["minimum_film_thickness"].value
-        assert found.evaluation.level == (level or "map")
+        result = solve(OilFilm, raw, "radial_load", ["1 N", "1 MN"], target, level=level)
+        answer = result.evaluation.outputs["minimum_film_thickness"].value
+        assert result.evaluation.level == (level or "map")
         assert answer == pytest.approx(10, rel=1e-4 if level == "mass_conserving" else 1e-8)
 
     def test_property_solve_with_a_tolerance(self):
         raw = bearing(1.0, 0.5)
         del raw["radial_load"]
         target = {"minimum_film_thickness": "10 um"}
-        found = solve(
+        result = solve(
             OilFilm, raw, "radial_load", ["1 N", "1 MN"], target, tolerance=0.1, outputs=list(target)
         )
-        assert found.evaluation.level == "fit"
-        assert found.evaluation.outputs["minimum_film_thickness"].value == pytest.approx(10, rel=1e-8)
+        assert result.evaluation.level == "fit"
+        assert result.evaluation.outputs["minimum_film_thickness"].value == pytest.approx(10, rel=1e-8)
 
 
 class TestMotion:
@@ -310,9 +310,9 @@ class TestVogel:
             kinematic_viscosity_1=nu[0],
             kinematic_viscosity_2=nu[1],
         )
-        found = outputs(raw, "vogel_factor", "vogel_slope")
-        assert found["vogel_factor"] == pytest.approx(0.1, rel=1e-10)
-        assert found["vogel_slope"] == pytest.approx(900, rel=1e-10)
+        result = outputs(raw, "vogel_factor", "vogel_slope")
+        assert result["vogel_factor"] == pytest.approx(0.1, rel=1e-10)
+        assert result["vogel_slope"] == pytest.approx(900, rel=1e-10)
 
     def test_property_laws_agree_between_their_points_and_part_beyond(self):
         def film(law, temperature):
@@ -325,12 +325,12 @@ class TestVogel:
 
     def test_analytic_heat_balance_closes_with_vogels_viscosity(self):
         raw = balanced(**VOGEL, supply_temperature="40 degC")
-        found = outputs(raw)
-        assert found["dynamic_viscosity"] == pytest.approx(
-            0.1 * np.exp(900 / (found["film_temperature"] + 90))
+        result = outputs(raw)
+        assert result["dynamic_viscosity"] == pytest.approx(
+            0.1 * np.exp(900 / (result["film_temperature"] + 90))
         )
-        carried = 1.8e6 * found["side_flow"] / 6e4 * found["temperature_rise"]
-        assert carried == pytest.approx(found["power_loss"], rel=1e-8)
+        carried = 1.8e6 * result["side_flow"] / 6e4 * result["temperature_rise"]
+        assert carried == pytest.approx(result["power_loss"], rel=1e-8)
 
     @pytest.mark.parametrize(
         ("change", "names"),
@@ -380,8 +380,8 @@ class TestHeatBalance:
 
     def test_property_temperature_does_not_depend_on_level(self):
         raw = balanced(supply_temperature="60 degC")
-        found = {level: outputs(raw, "film_temperature", level=level) for level in OilFilm.levels}
-        assert len(set(found.values())) == 1
+        result = {level: outputs(raw, "film_temperature", level=level) for level in OilFilm.levels}
+        assert len(set(result.values())) == 1
 
     def test_property_array_is_pointwise(self):
         rng = np.random.default_rng(1)

@@ -31,20 +31,22 @@ def drawn(rng, n):
     return eps, b, mapped_load(eps, b)
 
 
-def true_errors(found, truth):
+def true_errors(result, truth):
     """Relative errors; of the angle to 90°."""
-    errors = {name: np.abs(found[name].value / truth[name].value - 1) for name in NAMES}
-    angle = found["attitude_angle"].value - truth["attitude_angle"].value
+    errors = {name: np.abs(result[name].value / truth[name].value - 1) for name in NAMES}
+    angle = result["attitude_angle"].value - truth["attitude_angle"].value
     return {**errors, "attitude_angle": np.abs(angle) / 90}
 
 
-def share_bounded(made, truth):
+def share_bounded(evaluation, truth):
     """For each output the share of points at which the reported error is at least the true one."""
-    errors = true_errors(made.outputs, truth)
+    errors = true_errors(evaluation.outputs, truth)
     shares = {}
     for name in NAMES:
-        known = np.isfinite(made.error[name]) & np.isfinite(errors[name])
-        shares[name] = (made.error[name][known] >= errors[name][known]).mean() if known.any() else 1.0
+        present = np.isfinite(evaluation.error[name]) & np.isfinite(errors[name])
+        shares[name] = (
+            (evaluation.error[name][present] >= errors[name][present]).mean() if present.any() else 1.0
+        )
     return shares
 
 
@@ -54,44 +56,46 @@ class TestTolerance:
         loose = evaluate(OilFilm, raw, outputs=names, tolerance=0.05)
         tight = evaluate(OilFilm, raw, outputs=names, tolerance=1e-3)
         assert OilFilm.levels.index(loose.level) < OilFilm.levels.index(tight.level)
-        for made, tolerance in ((loose, 0.05), (tight, 1e-3)):
-            assert made.error["minimum_film_thickness"] <= tolerance
-            assert not [w for w in made.warnings if w.code == "tolerance_unmet"]
+        for evaluation, tolerance in ((loose, 0.05), (tight, 1e-3)):
+            assert evaluation.error["minimum_film_thickness"] <= tolerance
+            assert not [w for w in evaluation.warnings if w.code == "tolerance_unmet"]
 
-    def test_property_unmet_tolerance_is_told_at_the_finest(self):
-        made = evaluate(OilFilm, bearing(1.0, 0.5), outputs=["minimum_film_thickness"], tolerance=1e-9)
-        assert made.level == "reynolds"
-        assert [w.code for w in made.warnings] == ["tolerance_unmet"]
+    def test_property_unmet_tolerance_is_reported_at_the_finest(self):
+        evaluation = evaluate(OilFilm, bearing(1.0, 0.5), outputs=["minimum_film_thickness"], tolerance=1e-9)
+        assert evaluation.level == "reynolds"
+        assert [w.code for w in evaluation.warnings] == ["tolerance_unmet"]
 
     def test_property_points_climb_one_by_one(self):
         raw = bearing(np.array([0.001, 1.0, 5.0]), np.array([0.05, 0.5, 2.0]))
-        made = evaluate(OilFilm, raw, outputs=["relative_eccentricity"], tolerance=0.02)
-        assert made.level.tolist() == ["short_bearing", "fit", "map"]
-        assert (made.error["relative_eccentricity"] <= 0.02).all()
+        evaluation = evaluate(OilFilm, raw, outputs=["relative_eccentricity"], tolerance=0.02)
+        assert evaluation.level.tolist() == ["short_bearing", "fit", "map"]
+        assert (evaluation.error["relative_eccentricity"] <= 0.02).all()
 
     def test_property_what_does_not_depend_on_level_is_exact(self):
-        made = evaluate(OilFilm, bearing(1.0, 0.5), outputs=["sommerfeld_number", "boundary_condition"])
-        assert made.error["sommerfeld_number"] == 0
-        assert np.isnan(made.error["boundary_condition"])
+        evaluation = evaluate(OilFilm, bearing(1.0, 0.5), outputs=["sommerfeld_number", "boundary_condition"])
+        assert evaluation.error["sommerfeld_number"] == 0
+        assert np.isnan(evaluation.error["boundary_condition"])
 
-    def test_property_no_error_is_told_where_none_was_measured(self):
+    def test_property_no_error_is_reported_where_none_was_measured(self):
         """The tables were made without grooves."""
         grooves = {"grooves": {"value": [[90, 20], [270, 20]], "unit": "deg"}}
-        made = evaluate(OilFilm, {**bearing(1.0, 0.5), **grooves}, outputs=["attitude_angle"], tolerance=0.01)
-        assert made.level == "mass_conserving"
-        assert np.isnan(made.error["attitude_angle"])
-        assert [w.code for w in made.warnings] == ["tolerance_unmet"]
+        evaluation = evaluate(
+            OilFilm, {**bearing(1.0, 0.5), **grooves}, outputs=["attitude_angle"], tolerance=0.01
+        )
+        assert evaluation.level == "mass_conserving"
+        assert np.isnan(evaluation.error["attitude_angle"])
+        assert [w.code for w in evaluation.warnings] == ["tolerance_unmet"]
         plain = evaluate(OilFilm, bearing(1.0, 0.5), outputs=["attitude_angle"], level="mass_conserving")
         assert 0 < plain.error["attitude_angle"] < 0.01
 
     def test_property_paper_tells_its_own_error(self):
         """The worked case: +22 % at So 3.95, W/D 0.376 (physics.md 1.1)."""
-        made = evaluate(Paper, Paper.example, outputs=["minimum_film_thickness", "density"])
-        assert 0.2 < made.error["minimum_film_thickness"] < 0.3
-        assert np.isnan(made.error["density"])
+        evaluation = evaluate(Paper, Paper.example, outputs=["minimum_film_thickness", "density"])
+        assert 0.2 < evaluation.error["minimum_film_thickness"] < 0.3
+        assert np.isnan(evaluation.error["density"])
 
     def test_property_cost_rises_with_the_ladder(self):
-        cost = [about["cost"]["vectorised"] for about in accuracy(OilFilm).told["levels"].values()]
+        cost = [about["cost"]["vectorised"] for about in accuracy(OilFilm).content["levels"].values()]
         assert cost[0] < cost[2] < cost[3] < cost[4]
 
 
@@ -99,8 +103,8 @@ class TestTolerance:
 def test_property_reported_error_bounds_the_true_one(level):
     """At 500 random points, against the map, which is a hundred times nearer to the truth."""
     _, b, So = drawn(np.random.default_rng(11), 500)
-    made, truth = (evaluate(OilFilm, bearing(So, b), level=name) for name in (level, "map"))
-    for name, share in share_bounded(made, truth.outputs).items():
+    evaluation, truth = (evaluate(OilFilm, bearing(So, b), level=name) for name in (level, "map"))
+    for name, share in share_bounded(evaluation, truth.outputs).items():
         assert share >= 0.99, name
 
 
@@ -111,9 +115,11 @@ def test_property_reported_error_bounds_that_of_full_solutions(level, count):
     eps, b, _ = drawn(np.random.default_rng(12), count)
     films = [extrapolated_film(*point, 256, 32)[0] for point in zip(eps, b, strict=True)]
     So, attitude, P_max = (np.array([getattr(f, n) for f in films]) for n in ("So", "attitude", "P_max"))
-    made = evaluate(OilFilm, bearing(So, b), level=level)
-    thickness = np.abs(made.outputs["minimum_film_thickness"].value / (1e6 * D * PSI / 2 * (1 - eps)) - 1)
-    angle = np.abs(made.outputs["attitude_angle"].value - np.degrees(attitude)) / 90
-    pressure = np.abs(made.outputs["maximum_pressure"].value / (P_max * ETA * OMEGA / PSI**2 / 1e6) - 1)
+    evaluation = evaluate(OilFilm, bearing(So, b), level=level)
+    thickness = np.abs(
+        evaluation.outputs["minimum_film_thickness"].value / (1e6 * D * PSI / 2 * (1 - eps)) - 1
+    )
+    angle = np.abs(evaluation.outputs["attitude_angle"].value - np.degrees(attitude)) / 90
+    pressure = np.abs(evaluation.outputs["maximum_pressure"].value / (P_max * ETA * OMEGA / PSI**2 / 1e6) - 1)
     for name, error in zip(NAMES[:3], (thickness, angle, pressure), strict=True):
-        assert (made.error[name] >= error).mean() >= 0.99, name
+        assert (evaluation.error[name] >= error).mean() >= 0.99, name

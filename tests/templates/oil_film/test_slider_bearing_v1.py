@@ -23,16 +23,16 @@ def outputs(raw=None, *names, **options):
     return {name: answer.value for name, answer in answers.outputs.items()}
 
 
-def load_number(found, h_i):
+def load_number(result, h_i):
     """W h_o²/(6 eta U l² b) of the example's pad."""
-    return found["load"] * (h_i / 2) ** 2 / (6 * 0.03 * 10 * 0.05**2 * 0.05)
+    return result["load"] * (h_i / 2) ** 2 / (6 * 0.03 * 10 * 0.05**2 * 0.05)
 
 
 class TestLiterature:
     @pytest.mark.parametrize(("ratio", "printed"), [(2.0, 0.02648051), (2.1889, 0.02670719)])
     def test_literature_load(self, ratio, printed):
-        found = outputs({"inlet_film": f"{ratio * 30} um"}, level="infinite")
-        number = found["load"] * 30e-6**2 / (6 * 0.03 * 10 * 0.05**2 * 0.05)
+        result = outputs({"inlet_film": f"{ratio * 30} um"}, level="infinite")
+        number = result["load"] * 30e-6**2 / (6 * 0.03 * 10 * 0.05**2 * 0.05)
         assert number == pytest.approx(printed, abs=5e-9)
 
     def test_literature_best_film_ratio(self):
@@ -46,23 +46,23 @@ class TestLiterature:
         """Two pads carry what is below the best load; the lower film ratio is told, and the other."""
         target = {"load": f"{0.0266 * 6 * 0.03 * 10 * 0.05**2 * 0.05 / 30e-6**2} N"}
         raw = {name: value for name, value in SliderBearing.example.items() if name != "inlet_film"}
-        found = solve(SliderBearing, raw, "inlet_film", ["31 um", "150 um"], target, level="infinite")
-        assert found.unknown / 30 < 2.1889
-        assert {w.code for w in found.warnings} >= {"several_solutions"}
+        result = solve(SliderBearing, raw, "inlet_film", ["31 um", "150 um"], target, level="infinite")
+        assert result.unknown / 30 < 2.1889
+        assert {w.code for w in result.warnings} >= {"several_solutions"}
         with pytest.raises(Unreachable, match="out of reach"):
             solve(SliderBearing, raw, "inlet_film", ["31 um", "150 um"], {"load": "20 kN"})
 
     def test_literature_velocity_meets_both_faces(self):
         """The course's print, without z in its last terms, does not."""
-        found = outputs()
-        assert found["velocity"][[0, -1]] == pytest.approx([0, 10])
-        assert found["height_above_pad"][[0, -1]] == pytest.approx([0, 36])
+        result = outputs()
+        assert result["velocity"][[0, -1]] == pytest.approx([0, 10])
+        assert result["height_above_pad"][[0, -1]] == pytest.approx([0, 36])
 
     def test_literature_numbers_of_the_course(self):
         """R_x = rho u h²/(eta l), sigma_s = rho h²/(eta t): with t = l/u they are the same."""
-        found = outputs()
-        assert found["reynolds_number_x"] == pytest.approx(860 * 10 * 30e-6**2 / (0.03 * 0.05))
-        assert found["squeeze_number"] == pytest.approx(found["reynolds_number_x"])
+        result = outputs()
+        assert result["reynolds_number_x"] == pytest.approx(860 * 10 * 30e-6**2 / (0.03 * 0.05))
+        assert result["squeeze_number"] == pytest.approx(result["reynolds_number_x"])
         slow = outputs({"film_change_time": "1 s"}, "squeeze_number")["squeeze_number"]
         assert slow == pytest.approx(860 * 30e-6**2 / 0.03)
 
@@ -72,57 +72,57 @@ class TestAnalytic:
     @pytest.mark.parametrize("film", [31, 45, 60, 300])
     def test_analytic_forces_balance(self, level, film):
         """Friction on the runner less that on the pad is the load's part along the incline."""
-        found = outputs({"inlet_film": f"{film} um"}, level=level)
-        along = found["load"] * (film - 30) * 1e-6 / 0.05
-        assert found["friction_force_moving"] - found["friction_force_fixed"] == pytest.approx(along)
+        result = outputs({"inlet_film": f"{film} um"}, level=level)
+        along = result["load"] * (film - 30) * 1e-6 / 0.05
+        assert result["friction_force_moving"] - result["friction_force_fixed"] == pytest.approx(along)
 
     @pytest.mark.parametrize("level", LEVELS)
     def test_analytic_power_and_coefficient(self, level):
-        found = outputs(level=level)
-        assert found["power_loss"] == pytest.approx(found["friction_force_moving"] * 10)
-        friction = found["friction_force_moving"] / found["load"]
-        assert found["friction_coefficient"] == pytest.approx(friction)
+        result = outputs(level=level)
+        assert result["power_loss"] == pytest.approx(result["friction_force_moving"] * 10)
+        friction = result["friction_force_moving"] / result["load"]
+        assert result["friction_coefficient"] == pytest.approx(friction)
 
     def test_analytic_flow_is_the_same_everywhere_without_leakage(self):
         """U h/2 − h³ p'/(12 eta) at any place, and it enters at the inlet."""
         places = {"value": np.linspace(0, 50, 11).tolist(), "unit": "mm"}
-        found = outputs({"place": places}, level="infinite")
-        h, slope = found["local_film"] * 1e-6, found["pressure_gradient"] * 1e9
+        result = outputs({"place": places}, level="infinite")
+        h, slope = result["local_film"] * 1e-6, result["pressure_gradient"] * 1e9
         flow = 0.05 * (10 * h / 2 - h**3 * slope / (12 * 0.03)) * 1e6
-        np.testing.assert_allclose(flow, found["inlet_flow"], rtol=1e-12)
-        assert found["side_flow"] == 0
+        np.testing.assert_allclose(flow, result["inlet_flow"], rtol=1e-12)
+        assert result["side_flow"] == 0
 
     @pytest.mark.parametrize("level", LEVELS)
     def test_analytic_velocity_carries_the_flow(self, level):
-        found = outputs({"width": "5 m"}, level=level)
-        flow = np.trapezoid(found["velocity"], found["height_above_pad"] * 1e-6) * 5 * 1e6
-        assert flow == pytest.approx(found["inlet_flow"], rel=5e-3)
+        result = outputs({"width": "5 m"}, level=level)
+        flow = np.trapezoid(result["velocity"], result["height_above_pad"] * 1e-6) * 5 * 1e6
+        assert flow == pytest.approx(result["inlet_flow"], rel=5e-3)
 
     def test_analytic_flow_closes(self):
         """What enters leaves at the outlet and at the sides, and the narrower the pad, the more there."""
-        found = outputs({"width": {"value": [5, 50, 500], "unit": "mm"}})
-        outlet = found["inlet_flow"] - found["side_flow"]
+        result = outputs({"width": {"value": [5, 50, 500], "unit": "mm"}})
+        outlet = result["inlet_flow"] - result["side_flow"]
         sheared = 10 * 30e-6 / 2 * np.array([0.005, 0.05, 0.5]) * 1e6
         assert (outlet > sheared).all()
-        assert (np.diff(found["side_flow"] / found["inlet_flow"]) < 0).all()
+        assert (np.diff(result["side_flow"] / result["inlet_flow"]) < 0).all()
 
     @pytest.mark.parametrize("level", LEVELS)
     def test_analytic_pressure_curve(self, level):
         """Ambient at both ends, its highest the maximum pressure at its place, its slope the gradient."""
-        found = outputs(level=level)
-        x, p = found["place_along_pad"], found["pressure"]
+        result = outputs(level=level)
+        x, p = result["place_along_pad"], result["pressure"]
         assert p[[0, -1]] == pytest.approx([0, 0], abs=1e-12)
-        assert x[int(p.argmax())] == pytest.approx(found["place_of_maximum_pressure"], abs=0.5)
-        assert p.max() == pytest.approx(found["maximum_pressure"], rel=1e-3)
+        assert x[int(p.argmax())] == pytest.approx(result["place_of_maximum_pressure"], abs=0.5)
+        assert p.max() == pytest.approx(result["maximum_pressure"], rel=1e-3)
         slope = (p[81] - p[79]) / (x[81] - x[79])
-        assert found["pressure_gradient"] == pytest.approx(slope, rel=5e-3)
+        assert result["pressure_gradient"] == pytest.approx(slope, rel=5e-3)
 
     def test_analytic_pressure_carries_the_load_without_leakage(self):
-        found = outputs(level="infinite")
-        x, p = found["place_along_pad"] * 1e-3, found["pressure"] * 1e6
-        assert np.trapezoid(p, x) * 0.05 == pytest.approx(found["load"], rel=2e-4)
+        result = outputs(level="infinite")
+        x, p = result["place_along_pad"] * 1e-3, result["pressure"] * 1e6
+        assert np.trapezoid(p, x) * 0.05 == pytest.approx(result["load"], rel=2e-4)
         centre = np.trapezoid(p * x, x) / np.trapezoid(p, x)
-        assert found["centre_of_pressure"] == pytest.approx(1e3 * centre, rel=1e-4)
+        assert result["centre_of_pressure"] == pytest.approx(1e3 * centre, rel=1e-4)
 
     def test_analytic_wide_pad_tends_to_no_leakage(self):
         wide = {"width": "5 m"}
@@ -157,13 +157,13 @@ class TestLimits:
     @pytest.mark.parametrize("level", LEVELS)
     def test_analytic_diverging_pad_ruptures(self, level):
         """It bears nothing, and streamers that carry the inlet's flow shear: the mean of h_i h_o/h² is 1."""
-        found = evaluate(SliderBearing, {**SliderBearing.example, "inlet_film": "15 um"}, level=level)
-        assert found.outputs["load"].value == 0
+        result = evaluate(SliderBearing, {**SliderBearing.example, "inlet_film": "15 um"}, level=level)
+        assert result.outputs["load"].value == 0
         for face in ("moving", "fixed"):
-            friction = found.outputs[f"friction_force_{face}"].value
+            friction = result.outputs[f"friction_force_{face}"].value
             assert friction == pytest.approx(0.03 * 10 * 0.05**2 / 30e-6)
-        assert found.outputs["inlet_flow"].value == pytest.approx(0.05 * 10 * 15e-6 / 2 * 1e6)
-        (warning,) = found.warnings
+        assert result.outputs["inlet_flow"].value == pytest.approx(0.05 * 10 * 15e-6 / 2 * 1e6)
+        (warning,) = result.warnings
         assert warning.name == "convergence"
         assert "ruptures" in warning.detail
 
@@ -185,10 +185,10 @@ class TestLimits:
         raw = {
             name: value for name, value in SliderBearing.example.items() if name not in ("density", "place")
         }
-        found = evaluate(SliderBearing, raw)
-        assert found.warnings == []
-        assert found.outputs["reynolds_number_x"].reason == "needs density"
-        assert found.outputs["velocity"].reason == "needs place"
+        result = evaluate(SliderBearing, raw)
+        assert result.warnings == []
+        assert result.outputs["reynolds_number_x"].reason == "needs density"
+        assert result.outputs["velocity"].reason == "needs place"
 
     @pytest.mark.parametrize(
         ("raw", "name", "code"),
@@ -251,11 +251,11 @@ class TestAccuracy:
     def test_property_profiles_of_two_levels_are_joined(self):
         widths = {"value": [50, 5000], "unit": "mm"}
         raw = {**SliderBearing.example, "width": widths}
-        found = evaluate(SliderBearing, raw, tolerance=0.05, outputs=["load", "pressure"])
-        assert list(found.level) == ["finite", "infinite"]
-        for i, level in enumerate(found.level):
+        result = evaluate(SliderBearing, raw, tolerance=0.05, outputs=["load", "pressure"])
+        assert list(result.level) == ["finite", "infinite"]
+        for i, level in enumerate(result.level):
             alone = evaluate(SliderBearing, {**raw, "width": f"{widths['value'][i]} mm"}, level=level)
-            np.testing.assert_allclose(found.outputs["pressure"].value[i], alone.outputs["pressure"].value)
+            np.testing.assert_allclose(result.outputs["pressure"].value[i], alone.outputs["pressure"].value)
 
     @pytest.mark.parametrize("level", LEVELS)
     def test_property_measured_error_bounds_the_error(self, level):
@@ -268,19 +268,19 @@ class TestAccuracy:
             "width": {"value": (50 * width).tolist(), "unit": "mm"},
         }
         names = ["load", "friction_force_moving", "inlet_flow"]
-        found = evaluate(SliderBearing, raw, outputs=names, level=level)
+        result = evaluate(SliderBearing, raw, outputs=names, level=level)
         true = finer(ratio, width)
         for name in names:
-            error = np.abs(found.outputs[name].value / true[name] - 1)
-            assert (error <= found.error[name]).mean() >= 0.99, name
+            error = np.abs(result.outputs[name].value / true[name] - 1)
+            assert (error <= result.error[name]).mean() >= 0.99, name
 
     def test_property_every_output_that_has_a_level_is_measured(self):
         measured = accuracy(SliderBearing)
-        told = {
+        reported = {
             n for n, f in SliderBearing.formulas.items() if "level" in SliderBearing.ancestors(f.attribute)
         }
         for level in LEVELS:
-            assert set(measured.errors[level]) == told
+            assert set(measured.errors[level]) == reported
 
 
 def finer(ratio, width):

@@ -70,59 +70,59 @@ def typed(throws):
 
 class TestLiterature:
     def test_literature_thin_throw_by_hand(self):
-        found = outputs(HAND)
-        assert found["stiffness_carter"] == pytest.approx(2.56442e6, rel=2e-6)
-        assert found["stiffness_wilson"] == pytest.approx(2.64334e6, rel=2e-6)
-        assert found["overlap"] == pytest.approx(24)
-        assert found["recommended"] == "wilson"
+        result = outputs(HAND)
+        assert result["stiffness_carter"] == pytest.approx(2.56442e6, rel=2e-6)
+        assert result["stiffness_wilson"] == pytest.approx(2.64334e6, rel=2e-6)
+        assert result["overlap"] == pytest.approx(24)
+        assert result["recommended"] == "wilson"
 
     def test_literature_throw_of_the_finite_elements(self):
         raw = {"journal_diameter": "55 mm", "journal_length": "40 mm", "pin_diameter": "48 mm",
                "pin_length": "32 mm", "throw": "42 mm", "web_thickness": "18 mm", "web_width": "80 mm",
                "shear_modulus": {"value": 210 / 2.6, "unit": "GPa"},
                "reference_stiffness": "456.6 kN*m/rad"}  # fmt: skip
-        found = outputs(raw)
-        assert found["stiffness_carter"] == pytest.approx(458.3e3, abs=50)
-        assert found["stiffness_wilson"] == pytest.approx(423.1e3, abs=50)
-        assert found["carter_minus_reference_of_reference"] == pytest.approx(0.37, abs=0.01)
+        result = outputs(raw)
+        assert result["stiffness_carter"] == pytest.approx(458.3e3, abs=50)
+        assert result["stiffness_wilson"] == pytest.approx(423.1e3, abs=50)
+        assert result["carter_minus_reference_of_reference"] == pytest.approx(0.37, abs=0.01)
 
     def test_literature_bases_of_the_paper_s_differences(self):
         """15.711 % of Carter's value is 18.64 % of the finite elements' value."""
         base = outputs(HAND)["stiffness_carter"]
         raw = {**HAND, "reference_stiffness": {"value": base * (1 - 0.15711), "unit": "N*m/rad"}}
-        found = outputs(raw)
-        assert found["carter_minus_reference_of_carter"] == pytest.approx(15.711, rel=1e-9)
-        assert found["carter_minus_reference_of_reference"] == pytest.approx(18.64, abs=5e-3)
+        result = outputs(raw)
+        assert result["carter_minus_reference_of_carter"] == pytest.approx(15.711, rel=1e-9)
+        assert result["carter_minus_reference_of_reference"] == pytest.approx(18.64, abs=5e-3)
 
 
 class TestAnalytic:
     @pytest.mark.parametrize("size", [200, pytest.param(10_000, marks=pytest.mark.slow)])
     def test_analytic_both_formulas_as_printed(self, size):
         throws = random_throws(size)
-        found = outputs(typed(throws), "stiffness_carter", "stiffness_wilson")
+        result = outputs(typed(throws), "stiffness_carter", "stiffness_wilson")
         metres = [throws[name] * 1e-3 for name in DIMENSIONS]
-        assert found["stiffness_carter"] == pytest.approx(80e9 * pi / 32 * carter(*metres), rel=1e-12)
-        assert found["stiffness_wilson"] == pytest.approx(80e9 * pi / 32 * wilson(*metres), rel=1e-12)
+        assert result["stiffness_carter"] == pytest.approx(80e9 * pi / 32 * carter(*metres), rel=1e-12)
+        assert result["stiffness_wilson"] == pytest.approx(80e9 * pi / 32 * wilson(*metres), rel=1e-12)
 
     @pytest.mark.parametrize("size", [200, pytest.param(10_000, marks=pytest.mark.slow)])
     @pytest.mark.parametrize(("formula", "name"), [(carter, "carter"), (wilson, "wilson")])
     def test_analytic_sensitivities_are_those_of_a_complex_step(self, formula, name, size):
         throws = random_throws(size)
-        found, step = outputs(typed(throws)), 1e-30
+        result, step = outputs(typed(throws)), 1e-30
         for moved in DIMENSIONS:
             metres = [throws[n] * 1e-3 * (1 + 1j * step * (n == moved)) for n in DIMENSIONS]
             K = formula(*metres)
             exact = K.imag / step / K.real
-            assert found[f"sensitivity_of_{name}_to_{moved}"] == pytest.approx(exact, rel=1e-9, abs=1e-12), (
+            assert result[f"sensitivity_of_{name}_to_{moved}"] == pytest.approx(exact, rel=1e-9, abs=1e-12), (
                 moved
             )
 
     def test_analytic_scaling_all_dimensions_gives_the_cube(self):
         """K is G times a length cubed: by Euler the sensitivities of each formula add up to 3."""
-        found = outputs({**HAND, "journal_bore": "40 mm", "pin_bore": "30 mm"})
+        result = outputs({**HAND, "journal_bore": "40 mm", "pin_bore": "30 mm"})
         for formula in ("carter", "wilson"):
             assert sum(
-                v for n, v in found.items() if n.startswith(f"sensitivity_of_{formula}")
+                v for n, v in result.items() if n.startswith(f"sensitivity_of_{formula}")
             ) == pytest.approx(3)
 
     @pytest.mark.parametrize(("outer", "wall"), [(0.1, 1e-3), (0.1, 1e-9), (0.1, 1e-15)])
@@ -139,7 +139,7 @@ class TestAnalytic:
             outputs({**HAND, "pin_bore": {"value": 85 * (1 - wall), "unit": "mm"}}, "stiffness_wilson")
             for wall in (1e-3, 1e-6, 1e-9, 1e-12)
         ]
-        values = [found["stiffness_wilson"] for found in stiffness]
+        values = [result["stiffness_wilson"] for result in stiffness]
         assert values == sorted(values, reverse=True)
         assert values[3] / values[2] == pytest.approx(1e-3, rel=1e-3)
 
@@ -151,10 +151,10 @@ class TestRecommendation:
          (92.5, "carter", "webs bend"), (100, "carter", "webs bend")],
     )  # fmt: skip
     def test_property_overlap_decides(self, throw, word, reason):
-        found = outputs({**HAND, "throw": f"{throw} mm"})
-        assert found["recommended"] == word
-        assert reason in found["reason"]
-        assert found["recommended_stiffness"] == found[f"stiffness_{word}"]
+        result = outputs({**HAND, "throw": f"{throw} mm"})
+        assert result["recommended"] == word
+        assert reason in result["reason"]
+        assert result["recommended_stiffness"] == result[f"stiffness_{word}"]
 
     def test_property_a_bad_throw_has_no_recommendation(self):
         many = {**HAND, "throw": {"value": [68.5, -1, 100], "unit": "mm"}}
@@ -163,10 +163,10 @@ class TestRecommendation:
         assert [bool(reason) for reason in answer.reasons] == [False, True, False]
 
     def test_property_differences_name_their_base(self):
-        found = outputs(HAND)
-        one, other = found["stiffness_carter"], found["stiffness_wilson"]
-        assert found["wilson_minus_carter_of_carter"] == pytest.approx(100 * (other / one - 1))
-        assert found["wilson_minus_carter_of_wilson"] == pytest.approx(100 * (1 - one / other))
+        result = outputs(HAND)
+        one, other = result["stiffness_carter"], result["stiffness_wilson"]
+        assert result["wilson_minus_carter_of_carter"] == pytest.approx(100 * (other / one - 1))
+        assert result["wilson_minus_carter_of_wilson"] == pytest.approx(100 * (1 - one / other))
         answer = evaluate(CrankStiffness, HAND).outputs["carter_minus_reference_of_carter"]
         assert (answer.value, answer.reason) == (None, "needs reference_stiffness")
 

@@ -76,8 +76,8 @@ class TestLiterature:
     )
     def test_literature_basquin(self, coefficient, exponent, amplitude, reversals):
         raw = {"fatigue_strength_coefficient": f"{coefficient} MPa", "fatigue_strength_exponent": exponent}
-        found = outputs({**local(amplitude, 0), **raw, "ultimate_strength": "1172 MPa"})
-        assert found["cycles"] == pytest.approx(reversals / 2, rel=1e-9)
+        result = outputs({**local(amplitude, 0), **raw, "ultimate_strength": "1172 MPa"})
+        assert result["cycles"] == pytest.approx(reversals / 2, rel=1e-9)
 
     def test_literature_dowling_morrow(self):
         """sigma_a = (sigma_f' - sigma_m)(2 N)^b: AISI 4340, 1758 MPa, -0.0977 (Dowling, table 9.1)."""
@@ -100,9 +100,9 @@ class TestLiterature:
 class TestAnalytic:
     @pytest.mark.parametrize("line", [*LINES, "none"])
     def test_analytic_without_mean_stress_all_are_basquin(self, line):
-        found = outputs(local(300, 0, mean_stress_correction=line))
-        assert found["equivalent_amplitude"] == pytest.approx(300)
-        assert found["cycles"] == pytest.approx(0.5 * (300 / 1150) ** (1 / -0.09), rel=1e-12)
+        result = outputs(local(300, 0, mean_stress_correction=line))
+        assert result["equivalent_amplitude"] == pytest.approx(300)
+        assert result["cycles"] == pytest.approx(0.5 * (300 / 1150) ** (1 / -0.09), rel=1e-12)
 
     @pytest.mark.parametrize(
         ("line", "equivalent"),
@@ -110,8 +110,8 @@ class TestAnalytic:
          ("morrow", 200 / (1 - 300 / 1150)), ("none", 200)],
     )  # fmt: skip
     def test_analytic_equivalent_amplitude(self, line, equivalent):
-        found = outputs(local(200, 300, mean_stress_correction=line))
-        assert found["equivalent_amplitude"] == pytest.approx(equivalent, rel=1e-12)
+        result = outputs(local(200, 300, mean_stress_correction=line))
+        assert result["equivalent_amplitude"] == pytest.approx(equivalent, rel=1e-12)
 
     @pytest.mark.parametrize("line", [*LINES, "none"])
     def test_analytic_a_part_loaded_by_its_safety_factor_is_at_the_limit(self, line):
@@ -123,9 +123,9 @@ class TestAnalytic:
     @pytest.mark.parametrize("line", [*LINES, "none"])
     def test_analytic_design_life_is_where_the_safety_factor_is_one(self, line):
         life = outputs(local(250, 100, mean_stress_correction=line))["cycles"]
-        found = outputs(local(250, 100, mean_stress_correction=line, design_life=life))
-        assert found["safety_factor"] == pytest.approx(1, rel=1e-12)
-        assert found["amplitude_safety_factor"] == pytest.approx(1, rel=1e-12)
+        result = outputs(local(250, 100, mean_stress_correction=line, design_life=life))
+        assert result["safety_factor"] == pytest.approx(1, rel=1e-12)
+        assert result["amplitude_safety_factor"] == pytest.approx(1, rel=1e-12)
 
     def test_analytic_slope_of_the_line(self):
         """In log-log the line falls by b for each decade of reversals."""
@@ -151,8 +151,8 @@ class TestAnalytic:
 
     def test_analytic_solve_finds_the_amplitude_of_a_life(self):
         raw = {**STEEL, "mean_stress": "100 MPa"}
-        found = solve(FatigueLife, raw, "stress_amplitude", ["100 MPa", "600 MPa"], {"cycles": 1e6})
-        assert found.unknown == pytest.approx((1 - 100 / 800) * 1150 * 2e6**-0.09, rel=1e-9)
+        result = solve(FatigueLife, raw, "stress_amplitude", ["100 MPa", "600 MPa"], {"cycles": 1e6})
+        assert result.unknown == pytest.approx((1 - 100 / 800) * 1150 * 2e6**-0.09, rel=1e-9)
 
 
 class TestEndless:
@@ -251,14 +251,14 @@ class TestProperty:
         def lives(amplitude, mean):
             raw = {"stress_amplitude": {"value": amplitude.tolist(), "unit": "MPa"},
                    "mean_stress": {"value": mean.tolist(), "unit": "MPa"}}  # fmt: skip
-            found = evaluate(
+            result = evaluate(
                 FatigueLife, {**STEEL, **raw, "mean_stress_correction": line}, outputs=["cycles"]
             )
-            return found.outputs["cycles"].value
+            return result.outputs["cycles"].value
 
         life = lives(amplitude, mean)
-        known = ~np.isnan(life)
-        assert known.mean() > 0.5
+        present = ~np.isnan(life)
+        assert present.mean() > 0.5
         for shorter in (lives(amplitude * growth, mean), lives(amplitude, mean + abs(mean) * (growth - 1))):
-            both = known & ~np.isnan(shorter)
+            both = present & ~np.isnan(shorter)
             assert np.all(shorter[both] <= life[both] * (1 + 1e-12))

@@ -40,9 +40,9 @@ class TestLiterature:
             "inertias": {"value": case["inertias"], "unit": "kg*m**2"},
             "stiffnesses": {"value": case["stiffnesses"], "unit": "N*m/rad"},
         }
-        found = outputs(raw)["natural_frequencies"]
-        assert found[0] == 0
-        assert found == pytest.approx(case["frequencies"], rel=1e-6, abs=0)
+        result = outputs(raw)["natural_frequencies"]
+        assert result[0] == 0
+        assert result == pytest.approx(case["frequencies"], rel=1e-6, abs=0)
 
     @pytest.mark.parametrize(("stiffness", "unit"), [(1.882e5, "N*m/rad"), (3.285e6, "N*mm/deg")])
     def test_literature_the_paper_s_crankshaft(self, stiffness, unit):
@@ -52,26 +52,26 @@ class TestLiterature:
 
 class TestAnalytic:
     def test_analytic_one_free_inertia_only_turns(self):
-        found = outputs({"inertias": ["2 kg*m**2"]}, "natural_frequencies", "mode_shapes")
-        assert found["natural_frequencies"].tolist() == [0]
-        assert found["mode_shapes"].tolist() == [[1]]
+        result = outputs({"inertias": ["2 kg*m**2"]}, "natural_frequencies", "mode_shapes")
+        assert result["natural_frequencies"].tolist() == [0]
+        assert result["mode_shapes"].tolist() == [[1]]
 
     def test_analytic_two_inertias(self):
-        found = outputs(TWO, "natural_frequencies", "mode_shapes")
-        assert found["natural_frequencies"] == pytest.approx([0, 9000**0.5 / (2 * pi)], rel=1e-14)
-        assert found["mode_shapes"] == pytest.approx(np.array([[1, 1], [1, -0.5]]), rel=1e-14)
+        result = outputs(TWO, "natural_frequencies", "mode_shapes")
+        assert result["natural_frequencies"] == pytest.approx([0, 9000**0.5 / (2 * pi)], rel=1e-14)
+        assert result["mode_shapes"] == pytest.approx(np.array([[1, 1], [1, -0.5]]), rel=1e-14)
 
     def test_analytic_orders_meet_frequencies(self):
         raw = {**TWO, "engine_orders": [0.5, 3], "speed_range": ["100 rpm", "400 rpm"]}
-        found = outputs(raw)
+        result = outputs(raw)
         critical = 9000**0.5 / (2 * pi) * 60
-        assert found["critical_speeds"] == pytest.approx(np.array([[0, critical / 0.5], [0, critical / 3]]))
-        assert found["resonances"] == f"order 3 meets mode 1 at {critical / 3:.5g} rpm"
-        speeds, lines = found["campbell_speeds"], found["excitation_frequencies"]
+        assert result["critical_speeds"] == pytest.approx(np.array([[0, critical / 0.5], [0, critical / 3]]))
+        assert result["resonances"] == f"order 3 meets mode 1 at {critical / 3:.5g} rpm"
+        speeds, lines = result["campbell_speeds"], result["excitation_frequencies"]
         assert (speeds[0], speeds[-1]) == pytest.approx((100, 400))
         assert lines == pytest.approx(np.outer([0.5, 3], speeds) / 60)
         at = np.interp(critical / 3, speeds, lines[1])
-        assert at == pytest.approx(found["natural_frequencies"][1], rel=1e-12)
+        assert at == pytest.approx(result["natural_frequencies"][1], rel=1e-12)
 
     def test_analytic_no_resonance_in_the_range_is_said(self):
         raw = {**TWO, "engine_orders": 1, "speed_range": ["10 rpm", "20 rpm"]}
@@ -82,10 +82,10 @@ class TestAnalytic:
         raw = {"inertias": {"value": [[1, 2], [2, 4]], "unit": "kg*m**2"}, "engine_orders": [1, 2],
                "stiffnesses": {"value": [[6000], [12000]], "unit": "N*m"},
                "speed_range": ["1 rpm", "9000 rpm"]}  # fmt: skip
-        found = outputs(raw)
-        assert found["natural_frequencies"][0] == pytest.approx(found["natural_frequencies"][1], rel=1e-14)
-        assert found["critical_speeds"].shape == found["mode_shapes"].shape == (2, 2, 2)
-        assert found["resonances"][0] == found["resonances"][1]
+        result = outputs(raw)
+        assert result["natural_frequencies"][0] == pytest.approx(result["natural_frequencies"][1], rel=1e-14)
+        assert result["critical_speeds"].shape == result["mode_shapes"].shape == (2, 2, 2)
+        assert result["resonances"][0] == result["resonances"][1]
 
 
 class TestRefusals:
@@ -149,10 +149,10 @@ class TestExtremes:
                 values = (10 ** rng.uniform(-reach, reach, springs)).tolist()
                 raw["stiffnesses"] = {"value": values, "unit": "N*m/rad"}
             try:
-                found = outputs(raw, "natural_frequencies", "mode_shapes")
+                result = outputs(raw, "natural_frequencies", "mode_shapes")
             except InvalidInputs:
                 refusals.append(reach)
                 continue
-            assert np.all(np.diff(found["natural_frequencies"]) >= 0)
-            assert np.abs(found["mode_shapes"]).max(axis=1) == pytest.approx(np.ones(n), abs=1e-15)
+            assert np.all(np.diff(result["natural_frequencies"]) >= 0)
+            assert np.abs(result["mode_shapes"]).max(axis=1) == pytest.approx(np.ones(n), abs=1e-15)
         assert set(refusals) == {300}

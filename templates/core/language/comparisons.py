@@ -1,0 +1,285 @@
+"""The comparisons of a rule, recorded while the rule runs.
+
+A rule reads the values of a template. Here it reads `Operand`s: values that also carry how they were
+calculated. Where two are compared the result is an `Outcome`: a truth that also carries both sides. So a
+report can say how close each compared value is to its limit. Nothing reads the source of the rule.
+
+Rules combine truths by `&`, `|` and `~`. Where Python itself needs a truth (`and`, `or`, `if`), it chooses
+what the rule returns, and only what the rule returns is recorded.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
+from numpy.typing import NDArray
+
+from templates.core.arrays import Truth
+
+if TYPE_CHECKING:
+    from templates.core.language.spec import Requirement
+    from templates.core.language.template import Template
+
+Sign = Literal["<", "<=", ">", ">="]
+Mask = NDArray[np.bool_]
+
+_SIGNS: dict[Any, Sign] = {np.less: "<", np.less_equal: "<=", np.greater: ">", np.greater_equal: ">="}
+_OPPOSITE: dict[Sign, Sign] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
+_OPERATORS: dict[Any, type[ast.operator]] = {
+    np.add: ast.Add, np.subtract: ast.Sub, np.multiply: ast.Mult, np.true_divide: ast.Div, np.power: ast.Pow,
+}  # fmt: skip
+_WRITTEN = {  # functions that a formula on paper may have
+    "absolute": "abs",
+    **{name: name for name in ("sqrt", "log", "log10", "exp", "sin", "cos", "tan", "minimum", "maximum")},
+}
+
+
+class _Recording(NDArrayOperatorsMixin):
+    """A value of numpy that records; all its operators become ufuncs, and those come to `__array_ufunc__`."""
+
+    value: Any
+
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **keywords: Any) -> Any:
+        result = getattr(ufunc, method)(*map(plain, inputs), **keywords)
+        if method != "__call__" or keywords or ufunc.nout > 1:
+            return result
+        return _recorded(ufunc, inputs, result)
+
+    def __array_function__(
+        self, function: Callable[..., Any], types: Any, arguments: Sequence[Any], keywords: Mapping[str, Any]
+    ) -> Any:
+        """Other functions of numpy take the plain values; a number that they return is an operand again."""
+        result = function(*map(plain, arguments), **{name: plain(v) for name, v in keywords.items()})
+        is_number = isinstance(result, (np.floating, np.ndarray)) and np.issubdtype(result.dtype, np.floating)
+        return Operand(result, _call(function.__name__, arguments)) if is_number else result
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        return np.asarray(self.value, dtype=dtype)
+
+    def __bool__(self) -> bool:
+        return bool(self.value)
+
+    def __getattr__(self, name: str) -> Any:
+        """What else numpy's values have, as `shape` and `max`, of the plain value."""
+        if name.startswith("__") or name == "value":
+            raise AttributeError(name)
+        return getattr(self.value, name)
+
+
+class Operand(_Recording):
+    """A value and how it was calculated: a syntax tree, or None where it cannot be written as a formula."""
+
+    def __init__(self, value: Any, node: ast.expr | None = None) -> None:
+        self.value, self.node = value, node
+
+    def __float__(self) -> float:
+        return float(self.value)
+
+    def __int__(self) -> int:
+        return int(self.value)
+
+    def __len__(self) -> int:
+        return len(self.value)
+
+    def __getitem__(self, key: Any) -> Operand:
+        return Operand(self.value[plain(key)])
+
+    @property
+    def attribute(self) -> str | None:
+        """The attribute of the template whose value this is, if it is one's."""
+        match self.node:
+            case ast.Attribute(value=ast.Name(id="self"), attr=name):
+                return name
+        return None
+
+    @property
+    def constant(self) -> float | None:
+        """The number, if nothing of the template was used for it."""
+        return self.node.value if isinstance(self.node, ast.Constant) else None  # type: ignore[return-value]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two sides, the sign between them, whether it holds, and at which points the rule depends on it."""
+
+    left: Operand
+    sign: Sign
+    right: Operand
+    holds: Truth
+    where: Truth = True
+
+    @property
+    def ordered(self) -> tuple[Operand, Operand]:
+        """The side that must be smaller, then the one that must be larger."""
+        return (self.left, self.right) if self.sign in ("<", "<=") else (self.right, self.left)
+
+    @property
+    def share(self) -> float | None:
+        """What must be smaller over what must be larger, at the worst point that counts.
+
+        None where it has no meaning: a side is the constant 0, or is no amount at one of the points.
+        """
+        small, large = self.ordered
+        if small.constant == 0 or large.constant == 0:
+            return None
+        return worst_share(small.value, large.value, self.where)
+
+
+def worst_share(small: Any, large: Any, where: Truth = True) -> float | None:
+    """The largest ratio of what must be smaller to what must be larger, over the points in `where`.
+
+    None if no point has both values, or one of the values is no amount: below 0, or 0 as the larger.
+    """
+    low, high, counts = np.broadcast_arrays(
+        np.asarray(small, dtype=float), np.asarray(large, dtype=float), np.asarray(where)
+    )
+    counts = counts.astype(bool) & np.isfinite(low) & np.isfinite(high)
+    low, high = low[counts], high[counts]
+    return None if not counts.any() or (high <= 0).any() or (low < 0).any() else float(np.max(low / high))
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome(_Recording):
+    """A truth and what it follows from: one comparison, all or any of several outcomes, or unknown causes."""
+
+    value: Any
+    comparison: Comparison | None = None
+    parts: tuple[Outcome, ...] = ()
+    needs_all: bool = True
+
+    def decisive(self, where: Truth = True) -> Iterator[Comparison]:
+        """The comparisons on which the truth depends, each with the points at which it does.
+
+        Of alternatives the last counts, at points where no other holds: the others say where it does not
+        apply.
+        """
+        if self.comparison is not None:
+            if np.any(where):
+                yield replace(self.comparison, where=where)
+        elif self.needs_all:
+            for part in self.parts:
+                yield from part.decisive(where)
+        else:
+            *guards, last = sorted(self.parts, key=lambda part: part.has_comparisons)
+            yield from last.decisive(_none_of(guards, where))
+
+    @property
+    def has_comparisons(self) -> bool:
+        """Whether it follows from any comparison."""
+        return self.comparison is not None or any(part.has_comparisons for part in self.parts)
+
+    def negated(self) -> Outcome:
+        """The opposite truth: `<` becomes `>=`, "all" becomes "any"."""
+        value, one = np.logical_not(self.value), self.comparison
+        opposite = one and replace(one, sign=_OPPOSITE[one.sign], holds=value)
+        return Outcome(value, opposite, tuple(part.negated() for part in self.parts), not self.needs_all)
+
+
+def _none_of(guards: Sequence[Outcome], where: Truth) -> Mask:
+    free = np.asarray(where, dtype=bool)
+    for guard in guards:
+        free = free & ~np.asarray(guard.value, dtype=bool)
+    return free
+
+
+def outcome(template: Template, rule: Requirement) -> Outcome:
+    """Run a rule and record its comparisons.
+
+    A rule that does not run with operands has its truth alone.
+    """
+    truth = rule.function(template)
+    try:
+        recorded = rule.function(_Recorded(template))
+    except (TypeError, ValueError, AttributeError, LookupError):  # it needs true arrays or numbers
+        return Outcome(truth)
+    agrees = isinstance(recorded, Outcome) and np.array_equal(recorded.value, truth)
+    return recorded if agrees else Outcome(truth)
+
+
+class _Recorded:
+    """A template whose values are operands, for the time of one rule."""
+
+    def __init__(self, template: Template) -> None:
+        self._template = template
+
+    def __getattr__(self, name: str) -> Any:
+        return _read(name, getattr(self._template, name))
+
+    def as_given(self, attribute: str) -> Any:
+        """An input as it was given; an operand without its formula."""
+        return _read(attribute, self._template.as_given(attribute))
+
+
+def _read(attribute: str, value: Any) -> Any:
+    """A value of the template as an operand, if it is a number or an array."""
+    if not isinstance(value, (int, float, np.ndarray)) or isinstance(value, bool):
+        return value
+    return Operand(value, ast.Attribute(ast.Name("self"), attribute))
+
+
+def plain(value: Any) -> Any:
+    """A value without what was recorded about it."""
+    if isinstance(value, _Recording):
+        return value.value
+    return type(value)(map(plain, value)) if type(value) in (list, tuple) else value
+
+
+def _recorded(ufunc: np.ufunc, inputs: Sequence[Any], result: Any) -> Any:
+    """The result of a ufunc with what it follows from."""
+    if ufunc in _SIGNS:
+        left, right = map(_operand, inputs)
+        return Outcome(result, Comparison(left, _SIGNS[ufunc], right, result))
+    if ufunc in (np.bitwise_and, np.logical_and, np.bitwise_or, np.logical_or):
+        needs_all = ufunc in (np.bitwise_and, np.logical_and)
+        return Outcome(result, parts=tuple(map(_outcome, inputs)), needs_all=needs_all)
+    if ufunc in (np.invert, np.logical_not):
+        return _outcome(inputs[0]).negated()
+    return result if np.asarray(result).dtype == bool else Operand(result, _calculated(ufunc, inputs))
+
+
+def _calculated(ufunc: np.ufunc, inputs: Sequence[Any]) -> ast.expr | None:
+    """How a ufunc's result is written."""
+    nodes = _nodes(inputs)
+    if nodes is None:
+        return None
+    if ufunc in _OPERATORS:
+        return ast.BinOp(nodes[0], _OPERATORS[ufunc](), nodes[1])
+    if ufunc is np.negative:
+        return ast.UnaryOp(ast.USub(), nodes[0])
+    return _call(ufunc.__name__, inputs)
+
+
+def _call(name: str, arguments: Sequence[Any]) -> ast.expr | None:
+    nodes = _nodes(arguments) if name in _WRITTEN else None
+    return None if nodes is None else ast.Call(ast.Name(_WRITTEN[name]), nodes, [])
+
+
+def _nodes(values: Sequence[Any]) -> list[ast.expr] | None:
+    """How values are written, or None if one of them cannot be."""
+    nodes = [_operand(value).node for value in values]
+    return None if any(node is None for node in nodes) else nodes  # type: ignore[return-value]
+
+
+def _operand(value: Any) -> Operand:
+    if isinstance(value, Operand):
+        return value
+    return Operand(value, _written(value))
+
+
+def _written(value: Any) -> ast.expr | None:
+    """A number that the rule names, if it is one."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        return None
+    if value == math.pi:
+        return ast.Name("pi")
+    return ast.Constant(value if isinstance(value, int) else float(value))
+
+
+def _outcome(value: Any) -> Outcome:
+    return value if isinstance(value, Outcome) else Outcome(plain(value))
