@@ -22,6 +22,17 @@ def group_of(item):
     return file
 
 
+def name_group(item):
+    """Append the group to the id of a test, where the scheduler of pytest-xdist reads it.
+
+    pytest-xdist 3.8 writes it to an attribute that pytest 9.2 no longer reads, so that every test would be a group
+    of its own and every fixture of a module be set up on both workers (pytest-xdist issue 1386). Older versions of
+    pytest have no `_id`.
+    """
+    if hasattr(item, "_id"):
+        item._id = type(item._id).parse(f"{item.nodeid}@{group_of(item)}")
+
+
 def rank(group):
     """The place of a group in the order."""
     return LONGEST.index(group) if group in LONGEST else len(LONGEST)

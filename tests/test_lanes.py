@@ -1,6 +1,7 @@
 """Which tests run together, which slow ones after a change, and how tests wait."""
 
 import importlib.util
+import os
 import shutil
 import subprocess
 import sys
@@ -35,6 +36,11 @@ def item(file, *fixtures):
 )
 def test_tests_of_one_server_or_one_file_share_a_worker(test, group):
     assert group_of(test) == group
+
+
+@pytest.mark.skipif("PYTEST_XDIST_WORKER" not in os.environ, reason="needs pytest-xdist: pytest -n 2")
+def test_the_scheduler_reads_the_group(request):
+    assert request.node.nodeid.endswith("@tests/test_lanes.py")
 
 
 def test_servers_begin_first():
