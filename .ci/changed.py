@@ -24,7 +24,8 @@ ABOUT = {
         *("app/*jobs/*.py", "app/*storage/*.py", "app/*designs/*.py", "app/*workers/*.py"),
         "app/*idempotency*.py",
     ),
-    "tests/app/test_contract.py": HTTP,
+    "tests/app/test_contract_at_length.py": HTTP,
+    "tests/app/test_interface_at_length.py": HTTP,
     "tests/app/test_openapi_fuzz.py": HTTP,
 }
 """Patterns of the files that a test of a whole server is about; `*` stands for folders too."""

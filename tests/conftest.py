@@ -27,6 +27,12 @@ def pytest_configure(config):
         config.option.hypothesis_seed = str(SEED)
 
 
+def pytest_ignore_collect(collection_path, config):
+    """Leave out the files of the slow lane in the quick one: to import them makes up thousands of requests."""
+    is_quick = config.getoption("markexpr") == "not slow"
+    return True if is_quick and collection_path.name.endswith("_at_length.py") else None
+
+
 def pytest_report_header(config):
     seed = "the usual" if CHOSEN is None else f"CRANKWRIGHT_TEST_SEED={SEED}"
     return f"lanes: seed {seed}, patience {FACTOR:g}"

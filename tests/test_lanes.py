@@ -60,7 +60,7 @@ def test_servers_begin_first():
         ("cad/models/crank_throw_v1.py", "tests/cad/test_cranks_random.py", "tests/app/test_crash.py"),
         ("templates/oil_film/oil_film_v2.py", changed.CATALOGUE, "tests/cad/test_cranks_random.py"),
         ("app/storage/database.py", "tests/app/test_crash.py", "tests/physics/test_film_map.py"),
-        ("tests/app/serving.py", "tests/app/test_contract.py", "tests/physics/test_film_map.py"),
+        ("tests/app/serving.py", "tests/app/test_contract_at_length.py", "tests/physics/test_film_map.py"),
         ("tests/references/lund_thomsen_1978.csv", "tests/templates/oil_film/test_oil_film_v2.py", "none"),
     ],
 )
