@@ -29,6 +29,8 @@ ABOUT = {
     "tests/app/test_old_database.py": ("app/*storage/*.py",),
     "tests/app/test_stopping.py": ("app/server.py", "app/*jobs/*.py", "app/*workers/*.py"),
     "tests/web/test_browser_properties.py": WEB,
+    "tests/web/test_elements.py": WEB,
+    "tests/web/test_newcomer.py": WEB,
     "tests/web/test_foreign_pages.py": ("app/*guard.py", "app/api/gate/*.py"),
     "tests/app/test_contract_at_length.py": HTTP,
     "tests/app/test_interface_at_length.py": HTTP,

@@ -28,7 +28,7 @@ def pytest_configure(config):
 
 
 def pytest_ignore_collect(collection_path, config):
-    """Leave out the files of the slow lane in the quick one: to import them makes up thousands of requests."""
+    """Leave out files of the slow lane in the quick one: their import makes up thousands of requests."""
     is_quick = config.getoption("markexpr") == "not slow"
     return True if is_quick and collection_path.name.endswith("_at_length.py") else None
 
