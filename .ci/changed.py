@@ -19,12 +19,21 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 HTTP = ("app/*routes*.py", "app/*schemas*.py", "app/*api/*.py", "app/api/problems.py", "app/*guard.py")
+WEB = ("app/*web/*.py", "app/*presentation/*.py", "app/web/*.js", "app/web/*.css", "app/web/*.html")
 ABOUT = {
     "tests/app/test_crash.py": (
         *("app/*jobs/*.py", "app/*storage/*.py", "app/*designs/*.py", "app/*workers/*.py"),
         "app/*idempotency*.py",
     ),
-    "tests/app/test_contract.py": HTTP,
+    "tests/app/test_backup.py": ("app/*maintenance/*.py", "app/*storage/*.py"),
+    "tests/app/test_old_database.py": ("app/*storage/*.py",),
+    "tests/app/test_stopping.py": ("app/server.py", "app/*jobs/*.py", "app/*workers/*.py"),
+    "tests/web/test_browser_properties.py": WEB,
+    "tests/web/test_elements.py": WEB,
+    "tests/web/test_newcomer.py": WEB,
+    "tests/web/test_foreign_pages.py": ("app/*guard.py", "app/api/gate/*.py"),
+    "tests/app/test_contract_at_length.py": HTTP,
+    "tests/app/test_interface_at_length.py": HTTP,
     "tests/app/test_openapi_fuzz.py": HTTP,
 }
 """Patterns of the files that a test of a whole server is about; `*` stands for folders too."""

@@ -9,7 +9,7 @@ use_one_thread()  # before NumPy is imported, here and in the servers that tests
 
 import pytest  # noqa: E402
 from hypothesis import settings  # noqa: E402
-from lanes import group_of, rank  # noqa: E402
+from lanes import group_of, name_group, rank  # noqa: E402
 from patience import BUDGET, FACTOR, SLOW_TEST, TEST  # noqa: E402
 from seeds import CHOSEN, SEED  # noqa: E402
 
@@ -27,6 +27,12 @@ def pytest_configure(config):
         config.option.hypothesis_seed = str(SEED)
 
 
+def pytest_ignore_collect(collection_path, config):
+    """Leave out files of the slow lane in the quick one: their import makes up thousands of requests."""
+    is_quick = config.getoption("markexpr") == "not slow"
+    return True if is_quick and collection_path.name.endswith("_at_length.py") else None
+
+
 def pytest_report_header(config):
     seed = "the usual" if CHOSEN is None else f"CRANKWRIGHT_TEST_SEED={SEED}"
     return f"lanes: seed {seed}, patience {FACTOR:g}"
@@ -42,9 +48,11 @@ def pytest_runtest_setup(item):
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the groups
-def pytest_collection_modifyitems(items):
+def pytest_collection_modifyitems(config, items):
     for item in items:
         item.add_marker(pytest.mark.xdist_group(group_of(item)))
+        if getattr(config.option, "loadgroup", False):  # in a worker
+            name_group(item)
         if item.get_closest_marker("slow") and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(SLOW_TEST))
     items.sort(key=lambda item: rank(group_of(item)))

@@ -8,7 +8,7 @@ a wrong order costs some balance and nothing else.
 SERVED = "served"  # every test that needs the server of tests/app/conftest.py
 PAGES = "pages"  # every test that needs the server or the browser of tests/web/conftest.py
 
-LONGEST = (PAGES, SERVED)
+LONGEST = (PAGES, SERVED, "tests/templates/test_catalogue_properties.py")
 """Groups that begin first, the longest in front."""
 
 
@@ -20,6 +20,17 @@ def group_of(item):
     if file.startswith("tests/app/") and "served" in item.fixturenames:
         return SERVED
     return file
+
+
+def name_group(item):
+    """Append the group to the id of a test, where the scheduler of pytest-xdist reads it.
+
+    pytest-xdist 3.8 writes it to an attribute that pytest 9.2 no longer reads, so that every test would be a
+    group of its own and every fixture of a module be set up on both workers (pytest-xdist issue 1386). Older
+    versions of pytest have no `_id`.
+    """
+    if hasattr(item, "_id"):
+        item._id = type(item._id).parse(f"{item.nodeid}@{group_of(item)}")
 
 
 def rank(group):

@@ -1,6 +1,7 @@
 """Which tests run together, which slow ones after a change, and how tests wait."""
 
 import importlib.util
+import os
 import shutil
 import subprocess
 import sys
@@ -37,6 +38,11 @@ def test_tests_of_one_server_or_one_file_share_a_worker(test, group):
     assert group_of(test) == group
 
 
+@pytest.mark.skipif("PYTEST_XDIST_WORKER" not in os.environ, reason="needs pytest-xdist: pytest -n 2")
+def test_the_scheduler_reads_the_group(request):
+    assert request.node.nodeid.endswith("@tests/test_lanes.py")
+
+
 def test_servers_begin_first():
     groups = ["tests/physics/test_oil.py", SERVED, PAGES]
     assert sorted(groups, key=rank) == [PAGES, SERVED, "tests/physics/test_oil.py"]
@@ -54,7 +60,7 @@ def test_servers_begin_first():
         ("cad/models/crank_throw_v1.py", "tests/cad/test_cranks_random.py", "tests/app/test_crash.py"),
         ("templates/oil_film/oil_film_v2.py", changed.CATALOGUE, "tests/cad/test_cranks_random.py"),
         ("app/storage/database.py", "tests/app/test_crash.py", "tests/physics/test_film_map.py"),
-        ("tests/app/serving.py", "tests/app/test_contract.py", "tests/physics/test_film_map.py"),
+        ("tests/app/serving.py", "tests/app/test_contract_at_length.py", "tests/physics/test_film_map.py"),
         ("tests/references/lund_thomsen_1978.csv", "tests/templates/oil_film/test_oil_film_v2.py", "none"),
     ],
 )

@@ -46,7 +46,7 @@ def settings(tmp_path_factory, log):
             calculation_processes=1,
             calculation_waiting=2,
             calculation_deadline=2,
-            calculation_job_deadline=8,
+            calculation_job_deadline=5,
             calculation_memory_mb=1024,
         )
 
@@ -471,7 +471,7 @@ def test_a_job_runs_again_after_a_restart(tmp_path, monkeypatch, log):
     own = folder_of_sleeper(tmp_path / "own")
     chosen = Settings(data=tmp_path / "data", template_folders=(own,), calculation_processes=1)
     with serving(chosen) as server, httpx.Client(base_url=server.url, timeout=60, trust_env=False) as http:
-        job = sleep(http, "4 s", Prefer="respond-async").headers["Location"]
+        job = sleep(http, "3 s", Prefer="respond-async").headers["Location"]
         begun(log)
     with serving(chosen) as server, httpx.Client(base_url=server.url, timeout=60, trust_env=False) as http:
         assert ended(http, job)["state"] == "done"

@@ -1,6 +1,7 @@
 """The service keeps what /openapi.json promises: all checks of schemathesis, on requests made up from it.
 
 CRANKWRIGHT_TEST_SEED chooses other requests; pytest prints the seed of a run that fails.
+test_contract_at_length.py asks many more in the slow lane.
 """
 
 from pathlib import Path
@@ -27,7 +28,6 @@ QUICK = settings(
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),
 )
-THOROUGH = settings(QUICK, max_examples=150)
 
 
 def ask(case, url):
@@ -42,14 +42,6 @@ def ask(case, url):
 @seed(SEED)
 @QUICK
 def test_contract(served, case):
-    ask(case, served.url)
-
-
-@pytest.mark.slow
-@INTERFACE.parametrize()
-@seed(SEED)
-@THOROUGH
-def test_contract_at_length(served, case):
     ask(case, served.url)
 
 

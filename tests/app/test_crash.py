@@ -95,6 +95,8 @@ def battle(data, kills: int, seed: int, changes: int) -> None:
             if chance.random() < 0.7:  # else it is killed while it starts, or resumes
                 server.ready()
         server.ready()
+        accepted = lambda: sum(len(writer.accepted) for writer in writers)  # noqa: E731
+        until(lambda: accepted() >= changes or any(writer.failure for writer in writers), seconds=120)
         peace(writers)
         nothing_lives(family)
         with httpx.Client(base_url=server.url, timeout=30, trust_env=False) as http:
@@ -160,6 +162,11 @@ def nothing_lives(family: set[int]) -> None:
     until(lambda: {pid for pid in family if alive(pid)}, lambda left: left == set(), seconds=20)
 
 
+def test_a_kill(tmp_path):
+    battle(tmp_path / "data", kills=1, seed=1, changes=12)
+
+
+@pytest.mark.slow
 def test_a_few_kills(tmp_path):
     battle(tmp_path / "data", kills=4, seed=1, changes=20)
 
@@ -170,6 +177,7 @@ def test_dozens_of_kills_during_200_accepted_changes(tmp_path, seed):
     battle(tmp_path / "data", kills=36, seed=seed, changes=200)
 
 
+@pytest.mark.slow
 def test_a_killed_servers_loop_is_ended_with_it_and_resumed(tmp_path):
     """A job that loops for ever neither outlives its server nor is forgotten by the next one."""
     environment = {

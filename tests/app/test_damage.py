@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+from contextlib import contextmanager
 
 import httpx
 import pytest
@@ -176,28 +177,44 @@ class TestServed:
         problem(http.get(f"{API}/artifacts/{sha}"), 503, "artifact-damaged")
 
 
-@pytest.fixture
-def own(tmp_path):
+@contextmanager
+def own_server(place):
     """A server of its own, whose rows and models a test may change."""
-    folder = folder_of_models(tmp_path / "templates")
-    with serving(Settings(data=tmp_path / "data", template_folders=(folder,), wait_seconds=20)) as server:
+    folder = folder_of_models(place / "templates")
+    with serving(Settings(data=place / "data", template_folders=(folder,), wait_seconds=20)) as server:
         with httpx.Client(base_url=server.url, timeout=90, trust_env=False) as http:
             yield server, http, folder
 
 
+@pytest.fixture
+def own(tmp_path):
+    """For one test, which changes a model or the whole database."""
+    with own_server(tmp_path) as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory):
+    """For tests that change rows of their own builds."""
+    with own_server(tmp_path_factory.mktemp("shared")) as server:
+        yield server
+
+
 class TestAnotherMaker:
-    def test_another_recipe_is_another_build(self, own):
+    def test_another_recipe_is_another_build(self, shared):
         """The row as an older recipe left it: its key is none that this program computes."""
-        served, http, _ = own
+        served, http, _ = shared
         design = created(http, moody("12 mm"))
         sha, new = files(http, design)["step"], revision(http, design)["models"]["model"]["build"]
         with served.app.state.services.database.read() as session:
-            assert session.scalar(select(BuildRow.made_by)) == MADE_BY
+            assert session.scalar(select(BuildRow.made_by).where(BuildRow.key == new)) == MADE_BY
 
         def older(session):
             session.connection().exec_driver_sql("PRAGMA defer_foreign_keys = on")
-            session.execute(update(BuildRow).values(key="0" * 64, made_by="Old Kernel 1, recipe 1"))
-            session.execute(update(ArtifactRow).values(build_key="0" * 64))
+            older_row = update(BuildRow).where(BuildRow.key == new)
+            session.execute(older_row.values(key="0" * 64, made_by="Old Kernel 1, recipe 1"))
+            older_files = update(ArtifactRow).where(ArtifactRow.build_key == new)
+            session.execute(older_files.values(build_key="0" * 64))
 
         served.app.state.services.database.write(older)
         flip(place(served, sha))
@@ -224,31 +241,32 @@ class TestAnotherMaker:
         problem(http.get(f"{API}/artifacts/{sha}", headers=WAIT), 410, "artifact-gone")
         assert len(http.get(f"{API}/jobs").json()["items"]) == jobs, "it was tried again in vain"
 
-    def test_a_model_that_is_gone(self, own):
-        served, http, _ = own
+    def test_a_model_that_is_gone(self, shared):
+        served, http, _ = shared
         design = created(http, moody("14 mm"))
-        sha = files(http, design)["step"]
-        served.app.state.services.database.write(
-            lambda session: session.execute(update(BuildRow).values(model="gone"))
-        )
+        sha, build = files(http, design)["step"], revision(http, design)["models"]["model"]["build"]
+        change = update(BuildRow).where(BuildRow.key == build).values(model="gone")
+        served.app.state.services.database.write(lambda session: session.execute(change))
         delete(place(served, sha))
         told = problem(http.get(f"{API}/artifacts/{sha}", headers=WAIT), 410, "artifact-gone")
         assert told["errors"][0]["code"] == "model_gone"
         assert "gone version 1" in told["detail"]
 
-    def test_a_picture_with_other_bytes_is_another_artifact(self, own):
-        served, http, _ = own
+    def test_a_picture_with_other_bytes_is_another_artifact(self, shared):
+        served, http, _ = shared
         design = created(http, moody("15 mm"))
+        build = revision(http, design)["models"]["model"]["build"]
         first = http.get(f"{API}/designs/{design['id']}/model.png", headers=WAIT)
         old = served.app.state.services.store.put(b"as an older library painted it")
-        change = update(ArtifactRow).where(ArtifactRow.kind == "png").values(sha256=old)
+        pictures = update(ArtifactRow).where(ArtifactRow.kind == "png", ArtifactRow.build_key == build)
+        change = pictures.values(sha256=old)
         served.app.state.services.database.write(lambda session: session.execute(change))
         delete(place(served, old))
         problem(http.get(f"{API}/artifacts/{old}", headers=WAIT), 410, "artifact-gone")
         assert http.get(f"{API}/designs/{design['id']}/model.png", headers=WAIT).content == first.content
 
-    def test_a_surface_of_another_recipe(self, own):
-        served, http, _ = own
+    def test_a_surface_of_another_recipe(self, shared):
+        served, http, _ = shared
         body = {
             "parameters": {"diameter": "22 mm", "length": "44 mm"},
             "level": "coarse",

@@ -34,7 +34,17 @@ def read(http, design, kind="html", number=None, **query):
 
 def on_paper(http, design, **more):
     """The text of the PDF; letters of mathematics as plain ones, broken lines joined."""
-    pages = pypdf.PdfReader(io.BytesIO(read(http, design, "pdf", **more).content)).pages
+    return text_of(read(http, design, "pdf", **more).content)
+
+
+@pytest.fixture(scope="module")
+def printed(http, bearing):
+    """The PDF of the paper's design, as text and number of pages; printing it takes seconds."""
+    return on_paper(http, bearing)
+
+
+def text_of(pdf):
+    pages = pypdf.PdfReader(io.BytesIO(pdf)).pages
     text = unicodedata.normalize("NFKC", "\n".join(page.extract_text() for page in pages))
     return " ".join(text.replace("\u200b", "").split()), len(pages)
 
@@ -66,12 +76,12 @@ def on_screen(http, design, **more):
 
 
 class TestContents:
-    def test_html_and_pdf_say_the_same(self, http, bearing):
+    def test_html_and_pdf_say_the_same(self, http, bearing, printed):
         told = http.get(f"{DESIGNS}/{bearing['id']}/revisions/2").json()
         digest = told["steps"]["film"]["template"]["digest"]
         step = told["models"]["model"]["artifacts"]["step"]
         build = told["models"]["model"]["build"]
-        paper_text, _ = on_paper(http, bearing)
+        paper_text, _ = printed
         for text in (on_screen(http, bearing).text, paper_text):
             for wanted in (
                 bearing["id"], digest, step, build, "Crankwright", "Radial load", "25", "kN", "25000",
@@ -80,23 +90,23 @@ class TestContents:
             ):  # fmt: skip
                 assert wanted in text, (wanted, text[:3000])
 
-    def test_numbers_of_formulas_and_result_stand_in_the_pdf(self, http, bearing):
+    def test_numbers_of_formulas_and_result_stand_in_the_pdf(self, http, bearing, printed):
         outputs = http.get(f"{DESIGNS}/{bearing['id']}/revisions/2").json()["steps"]["film"]["outputs"]
-        text, _ = on_paper(http, bearing)
+        text, _ = printed
         film = f"{outputs['minimum_film_thickness']['value']:.5g}"
         assert f"Minimum film thickness h0 {film}" in text
         assert text.replace(" ", "").count(f"={film}µm") + text.replace(" ", "").count(f"={film}μm") == 1
         assert "60mm−0.055mm" in text.replace(" ", "")
 
-    def test_mapping_tells_old_and_new_and_what_the_solid_has(self, http, bearing):
-        text, _ = on_paper(http, bearing)
+    def test_mapping_tells_old_and_new_and_what_the_solid_has(self, http, bearing, printed):
+        text, _ = printed
         assert "48 mm → 60 mm 60 mm" in text
         first, _ = on_paper(http, bearing, number=1)
         assert "→" not in first
         assert "= film.bearing_diameter 48 mm 48 mm" in first
 
-    def test_pages_are_numbered(self, http, bearing):
-        text, pages = on_paper(http, bearing)
+    def test_pages_are_numbered(self, printed):
+        text, pages = printed
         assert pages > 2
         assert [f"page {n} of {pages}" in text for n in range(1, pages + 1)] == [True] * pages
 

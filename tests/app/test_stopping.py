@@ -101,6 +101,7 @@ def test_a_hung_job_goes_back_into_the_queue(server):
     assert server.states() == ["queued"]
 
 
+@pytest.mark.slow
 def test_a_stopped_forkserver_and_a_job_that_waits_for_it(server):
     own = server.process.pid
     forkserver, *_ = (pid for pid in descendants(own) if parent_of(Path(f"/proc/{pid}")) == own)
@@ -110,6 +111,7 @@ def test_a_stopped_forkserver_and_a_job_that_waits_for_it(server):
     assert server.states() == ["queued"]
 
 
+@pytest.mark.slow
 def test_a_long_calculation_is_cut(server):
     speeds = {"value": [3000.0 + number for number in range(20)], "unit": "rpm"}
     body = {"inputs": {**OIL_FILM, "speed": speeds}, "level": "mass_conserving"}
@@ -220,6 +222,7 @@ def test_what_hangs_beyond_the_time_is_ended_hard(server):
     assert "still ran: thread database-writer" in log
 
 
+@pytest.mark.slow
 def test_a_second_signal_ends_at_once(tmp_path):
     with Stopping(tmp_path, drain=3600) as server:
         server.running_job()

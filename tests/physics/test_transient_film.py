@@ -30,7 +30,14 @@ def marched(journal: Journal, eps: Array, loads: Array, w: float) -> list[State]
     return states
 
 
-@pytest.mark.parametrize(("eps", "ratio"), [(0.5, 0.5), (0.8, 0.5), (0.7, 1.0)])
+@pytest.mark.parametrize(
+    ("eps", "ratio"),
+    [
+        (0.8, 0.5),
+        pytest.param(0.5, 0.5, marks=pytest.mark.slow),
+        pytest.param(0.7, 1.0, marks=pytest.mark.slow),
+    ],
+)
 def test_constant_load_settles_in_the_static_cavitating_film(eps: float, ratio: float) -> None:
     """That of oil_film 2 with oil fed along the widest gap, on a mesh four times as fine."""
     static = cavitating_film(eps, ratio, [Groove(np.pi, 0.0)])
@@ -71,7 +78,7 @@ def test_linear_solution_is_that_of_the_flows() -> None:
             assert np.abs(k[7]).max() < 1e-12
 
 
-@pytest.mark.parametrize("w", [0.5, -0.5])
+@pytest.mark.parametrize("w", [-0.5, pytest.param(0.5, marks=pytest.mark.slow)])
 def test_orbit_repeats_near_that_by_mobility(w: float) -> None:
     """A load that swings about a mean: the same film, but for the history of its oil and a coarse mesh."""
     angle = np.arange(90) * np.radians(4.0)
@@ -88,6 +95,7 @@ def test_orbit_repeats_near_that_by_mobility(w: float) -> None:
     assert np.all(result.side_flow > 0)
 
 
+@pytest.mark.slow
 def test_mirrored_load_and_speed_give_the_mirrored_orbit() -> None:
     angle = np.arange(60) * np.radians(6.0)
     S = np.stack([2 + np.cos(angle), np.sin(angle)])[:, None]

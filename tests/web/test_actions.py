@@ -1,9 +1,18 @@
 """What forms of a design do beside saving, and where one is afterwards."""
 
+import httpx
 import pytest
+from browsing import created
 from playwright.sync_api import expect
 
 ADDED = (("parameter", "scale"), ("parameter", "film"), ("template", "film"), ("model", "model"))
+
+
+@pytest.fixture(scope="module")
+def paper(served):
+    """The address of a design that no test here changes."""
+    with httpx.Client(base_url=served.url, timeout=90, trust_env=False) as http:
+        return created(http, "paper")
 
 
 @pytest.mark.parametrize(("kind", "name"), ADDED)

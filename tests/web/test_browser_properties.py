@@ -29,6 +29,12 @@ def paths(http):
     return ["/", "/designs", design, f"{design}/revisions/1", explained, *listed]
 
 
+@pytest.fixture
+def kinds(paths):
+    """One page of every kind."""
+    return [*paths[:5], "/templates/oil_film/1", "/models/plain_bearing/1"]
+
+
 def seen_whole(watched, path):
     """Open a page and look at all of it, so that everything that waits to be seen is drawn."""
     watched.open(path, wait_until="load")
@@ -41,14 +47,17 @@ def seen_whole(watched, path):
     expect(page.locator("[aria-busy]")).to_have_count(0, timeout=60_000)
 
 
-def test_no_page_asks_an_outside_address_fails_or_breaks_the_policy(watched, paths):
-    for path in paths:
+@pytest.mark.parametrize("all_or_one", ["kinds", pytest.param("paths", marks=pytest.mark.slow)])
+def test_no_page_asks_an_outside_address_fails_or_breaks_the_policy(watched, request, all_or_one):
+    for path in request.getfixturevalue(all_or_one):
         seen_whole(watched, path)
         assert watched.faults() == [], path
         assert watched.page.get_by_text("could not be drawn").count() == 0, path
 
 
-def test_no_page_is_wider_than_a_narrow_screen(browser, watched, http, paths):
+@pytest.mark.parametrize("all_or_one", ["kinds", pytest.param("paths", marks=pytest.mark.slow)])
+def test_no_page_is_wider_than_a_narrow_screen(browser, watched, http, request, all_or_one):
+    paths = request.getfixturevalue(all_or_one)
     watched.page.set_viewport_size(NARROW)
     document = {"name": "unbroken" * 20, "parameters": {"k": "1"}}
     named = http.post("/api/v1/designs", json=document).json()["id"]
@@ -58,8 +67,10 @@ def test_no_page_is_wider_than_a_narrow_screen(browser, watched, http, paths):
         assert watched.page.evaluate("document.documentElement.scrollWidth") <= NARROW["width"], path
 
 
-def test_pages_have_no_serious_fault_of_accessibility(watched, paths):
-    for path in [*paths[:5], "/templates/oil_film/1", "/models/plain_bearing/1", "/nowhere"]:
+@pytest.mark.parametrize("is_all", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_pages_have_no_serious_fault_of_accessibility(watched, kinds, is_all):
+    design, template, model = kinds[2], *kinds[5:]
+    for path in (*kinds, "/nowhere") if is_all else (design, template, model):
         watched.open(path, wait_until="networkidle")
         found = Axe().run(watched.page).response["violations"]
         serious = [

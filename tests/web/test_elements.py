@@ -106,6 +106,7 @@ def test_nothing_is_found_twice_and_what_is_known_is_shown_without_a_script(watc
     assert plain.page.locator('[data-found="surface"]').count() == 0
 
 
+@pytest.mark.slow
 def test_another_load_changes_the_stress_and_starts_no_job(watched, http):
     asked(http, outputs=["stiffness", "torsional_frequency", "surface"])
     watched.open(PAGE)
@@ -154,6 +155,7 @@ def test_a_job_that_is_cancelled_says_so(watched):
     expect(page.get_by_role("button", name="Analyse")).to_be_enabled()
 
 
+@pytest.mark.slow
 def test_a_design_is_analysed_as_it_declares(watched, http):
     analyses = {"torsion": {"tolerance": 0.05, "boundary": "guided_end", "load": "500 N*m"}}
     wider = {**THROW, "web_width": "72 mm"}  # no other test asks about it

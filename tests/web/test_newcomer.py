@@ -121,6 +121,7 @@ def test_what_is_not_saved_survives_a_reload_and_can_be_discarded(watched):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_a_change_by_somebody_else_is_told_and_ours_is_kept(watched, http):
     page = created(watched)
     place = page.url.removeprefix(watched.url)
@@ -180,6 +181,7 @@ def test_the_back_button_and_deep_links(watched):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_long_work_shows_its_progress_and_can_be_cancelled(watched, http):
     made = http.post("/api/v1/designs", json=moody(), headers={"Prefer": "wait=60"}).json()
     page = watched.page

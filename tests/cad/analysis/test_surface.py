@@ -93,8 +93,14 @@ def test_the_surface_is_round_and_closed(coulomb: Surface) -> None:
     assert 1000 < len(coulomb.triangles) <= MOST_TRIANGLES
 
 
-@pytest.mark.parametrize("load", KINDS)
-@pytest.mark.parametrize("mirrors", [("y",), ("x",)])
+IMAGES = [(load, mirrors) for load in KINDS for mirrors in (("y",), ("x",))]
+QUICK = [("torsion", ("x",)), ("bending", ("y",))]  # each load and each plane once
+
+
+@pytest.mark.parametrize(
+    ("load", "mirrors"),
+    [image if image in QUICK else pytest.param(*image, marks=pytest.mark.slow) for image in IMAGES],
+)
 def test_an_image_moves_as_the_other_half_does(load: Kind, mirrors: tuple[str, ...]) -> None:
     """In sign and size: another mesh, of the whole, tells the same up to what two meshes differ by."""
     block = step_of(Workplane().rect(40, 30).extrude(60))

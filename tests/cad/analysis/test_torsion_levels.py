@@ -45,6 +45,7 @@ def test_property_it_does_so_where_an_end_is_slender(ends: tuple[str, float, flo
         assert abs(reported["value"] / true - 1) <= reported["error"] <= 0.05
 
 
+@pytest.mark.slow
 def test_two_runs_tell_the_same() -> None:
     step, shaft = shaft_of(next(random_throws(1, OTHER_SEED)))
     asked = AnalysisRequest(level="coarse")

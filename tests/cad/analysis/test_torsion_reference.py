@@ -40,6 +40,7 @@ def test_the_reference_throw_is_as_stiff_as_it_should_be(step: bytes, level: str
     assert result["mesh"]["mirror_plane"] == "xz"
 
 
+@pytest.mark.slow
 def test_a_guided_end_is_stiffer(step: bytes) -> None:
     result = stiffness(step, AnalysisRequest(boundary="guided_end")).outputs["stiffness"]
     assert result["value"] == pytest.approx(511_600, rel=5e-3)
