@@ -98,7 +98,7 @@ def recorded(record: Path) -> dict[str, dict[str, Any]]:
 
 
 def is_valid(old: dict[str, Any], new: dict[str, object]) -> bool:
-    """Whether an older result still holds: same change of the same file, and for a survivor the same tests."""
+    """Whether an older result still holds: same change, same code, and for a survivor the same tests."""
     same = all(old[name] == new[name] for name in ("file", "diff", "code"))
     return (
         same and (old["outcome"] == "killed" or old["tests"] == new["tests"]) and old["outcome"] != "unclear"

@@ -1,4 +1,4 @@
-"""Mutants that somebody thought of: each is a text that occurs once in the code, and what to put in its place.
+"""Mutants that somebody thought of: each is a text that occurs once in the code, and another in its place.
 
 They stand under `[[named]]` in `.ci/mutants.toml`, found by their text, so that files may move.
 """

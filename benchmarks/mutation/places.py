@@ -1,9 +1,9 @@
 """Where the code can be mutated, and a random sample of it that stays the same while lines move.
 
-The operators are Cosmic Ray's, and one of our own that drops a call whose result nobody uses. A place is one token
-and one family of operators, such as `+` replaced by any other sign: places are sampled, not mutants, because a
-single `+` has eleven mutants and a `not` has one. A place is ranked by a hash of the seed, the name of the file and
-the text of the line; so the sample changes only with the lines that it is about.
+The operators are Cosmic Ray's, and one of our own that drops a call whose result nobody uses. A place is one
+token and one family of operators, such as `+` replaced by any other sign: places are sampled, not mutants,
+because a single `+` has many mutants and a `not` has one. A place is ranked by a hash of seed, name of
+the file and the text of the line; so the sample changes only with the lines that it is about.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 from cosmic_ray.ast import ast_nodes, get_ast
 from cosmic_ray.mutating import mutate_code
@@ -29,7 +30,7 @@ TARGETS = (
     *("cad/checks.py", "cad/regenerate.py", "cad/inspect.py", "cad/surfaces.py", "app/**/questions.py"),
     *("app/designs/**/*.py", "app/jobs/**/*.py", "app/storage/**/*.py"),
 )
-"""The files that are mutated: the language, the physics, checks and keys of solids, designs, jobs and storage."""
+"""The files that are mutated: language, physics, checks and keys of solids, designs, jobs, storage."""
 
 Span = tuple[tuple[int, int], tuple[int, int]]
 
@@ -37,21 +38,21 @@ Span = tuple[tuple[int, int], tuple[int, int]]
 class DropCall(Operator):
     """Replaces a call that is a statement, such as `file.flush()`, by `pass`."""
 
-    def mutation_positions(self, node):
+    def mutation_positions(self, node: Any) -> Iterator[Span]:
         """Yield the span of a statement that is a call, or an awaited one."""
         if isinstance(node, PythonNode) and node.type == "simple_stmt":
             first = node.children[0]
             if first.type in ("atom_expr", "power") and first.get_code().rstrip().endswith(")"):
                 yield first.start_pos, first.end_pos
 
-    def mutate(self, node, index):
+    def mutate(self, node: Any, index: int) -> Any:
         """Put `pass` in its place."""
         first = node.children[0]
         node.children[0] = Keyword("pass", first.start_pos, prefix=first.get_first_leaf().prefix)
         return node
 
     @classmethod
-    def examples(cls):
+    def examples(cls) -> tuple[Example, ...]:
         """One change as it is made."""
         return (Example("f(x)\n", "pass\n"),)
 
@@ -66,7 +67,7 @@ ALIKE = (
     {"Not", "Delete"},
     {"Invert", "Delete"},
 )
-"""Signs that replace each other. Cosmic Ray also puts `<<` for a product of floats, which any test notices."""
+"""Signs that replace each other. Cosmic Ray also puts `<<` for a product of floats: any test sees that."""
 
 
 def is_plausible(name: str) -> bool:
@@ -131,7 +132,7 @@ def places(file: str, seed: int) -> list[Place]:
 
 
 def occurrences(source: str) -> Iterator[tuple[str, int, Span]]:
-    """Yield each change that an operator can make: its name, its number in the file, the span of its token."""
+    """Yield each change that an operator can make: name, number in the file, span of its token."""
     numbers = Counter[str]()
     for node in ast_nodes(get_ast(source)):
         for name, operator in OPERATORS.items():

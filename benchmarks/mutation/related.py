@@ -1,8 +1,8 @@
 """Which test files are about a file, the nearest first.
 
-The distance is the number of imports between test and file; a template's version is found by its name in the text
-of the test, as it is not imported. A name in common, as of `tests/app/test_jobs.py` and `app/jobs/turns.py`, counts
-as nearer, because tests of the whole server reach every file of it equally far.
+The distance is the number of imports between test and file; a template's version is found by its name in the
+text of the test, as it is not imported. A word in common, as of `tests/app/test_jobs.py` and
+`app/jobs/turns.py`, counts as nearer, because tests of the whole server reach every file of it equally far.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import importlib.util
 import re
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 
 from benchmarks.mutation.places import ROOT
 
@@ -21,8 +22,10 @@ _NOT_REACHED = 9  # imports, if none leads there: migrations are found by their 
 _OF_NO_USE = {"tests", "test", "app", "cad", "templates", "v1", "v2", "py", "and", "of"}
 
 
-def _changed():
+def _changed() -> ModuleType:
     spec = importlib.util.spec_from_file_location("changed", ROOT / ".ci" / "changed.py")
+    assert spec is not None
+    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -33,7 +36,7 @@ changed = _changed()
 
 @cache
 def related(file: str, nearest: int = NEAREST) -> tuple[str, ...]:
-    """Return the test files about a file, the nearest first, at most `nearest`; of a template also the golden ones."""
+    """Return the `nearest` test files about a file, nearest first; of templates also the golden records."""
     near = [
         (far - _NAME_IN_COMMON * in_common(file, test), test)
         for test in tests()

@@ -1,7 +1,7 @@
-"""One mutant on a copy of the repository: do its related tests notice it?
+"""One mutant on a copy of the repository, and whether its related tests notice it.
 
-A mutant counts as killed only if the test file that fails passes without it. The copy is the tree as it stands,
-with what is not committed yet; the repository itself is never changed.
+A mutant counts as killed only if the test file that fails passes without it. The copy is the tree as it
+stands, with what is not committed yet; the repository itself is never changed.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The figure: how many mutants the tests killed, and whether somebody has argued for each survivor.
 
-A reason in `.ci/mutants.toml` names a file by its last part, the text of the line, and a part of the changed line.
-`equivalent = true` says that no test can tell the two programs apart: such a mutant is left out of the figure. Any
-other survivor with a reason counts as a survivor that the team accepts.
+A reason in `.ci/mutants.toml` names a file by its last part, the text of the line, and a part of the changed
+line. `equivalent = true` says that no test can tell the two programs apart: such a mutant is left out of the
+figure. Any other survivor with a reason counts as a survivor that the team accepts.
 """
 
 from __future__ import annotations
