@@ -19,7 +19,7 @@ NEAREST = 8
 """So many test files of a mutated file are run."""
 _NAME_IN_COMMON = 1.5  # imports that one word in common is worth
 _NOT_REACHED = 9  # imports, if none leads there: migrations are found by their folder
-_OF_NO_USE = {"tests", "test", "app", "cad", "templates", "v1", "v2", "py", "and", "of"}
+_OF_NO_USE = {"tests", "test", "app", "templates", "v1", "v2", "py", "and", "of"}
 
 
 def _changed() -> ModuleType:
@@ -37,14 +37,16 @@ changed = _changed()
 @cache
 def related(file: str, nearest: int = NEAREST) -> tuple[str, ...]:
     """Return the `nearest` test files about a file, nearest first; of templates also the golden records."""
-    near = [
-        (far - _NAME_IN_COMMON * in_common(file, test), test)
-        for test in tests()
-        if (far := steps(file, test))
-    ]
-    chosen = [test for _, test in sorted(near)[:nearest]]
+    far = {test: steps(file, test) for test in tests()}
+    near = sorted((nearness(file, test, n), test) for test, n in far.items() if n)
+    chosen = [test for _, test in near[:nearest]]
     golden = [changed.CATALOGUE] if file.startswith("templates/") else []
     return tuple(dict.fromkeys([*chosen, *golden]))
+
+
+def nearness(file: str, test: str, steps: int) -> tuple[float, int]:
+    """Return the order of test files: of two equally far, the one that reaches less is more about it."""
+    return steps - _NAME_IN_COMMON * in_common(file, test), len(distances(test))
 
 
 def steps(file: str, test: str) -> int | None:
