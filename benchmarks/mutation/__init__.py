@@ -4,3 +4,7 @@ Cosmic Ray makes the changes. `places` lists and samples them, `related` says wh
 file, `trial` applies one mutant to a copy of the repository and runs these tests, `verdict` sums up and
 compares the survivors with the reasons in `.ci/mutants.toml`.
 """
+
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]

@@ -19,6 +19,7 @@ from typing import Any
 
 from benchmarks.mutation.named import named
 from benchmarks.mutation.places import Mutant, sample
+from benchmarks.mutation.related import NEAREST, related
 from benchmarks.mutation.trial import Copies, Copy, row
 from benchmarks.mutation.verdict import REASONS, reasons, report, verdict
 
@@ -32,6 +33,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "--limit", type=float, default=900, help="seconds of a run of tests; longer is a hang"
     )
+    parser.add_argument("--nearest", type=int, default=NEAREST, help="how many test files for a file")
     parser.add_argument("--only", default="", help="of the sample, those in files that begin so")
     parser.add_argument("--named", action="store_true", help="try the named mutants instead of random ones")
     parser.add_argument("--record", type=Path, help="file of results, one JSON object a line; is appended to")
@@ -60,12 +62,12 @@ def main() -> None:
 def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[str, Any]]:
     """Return a row for each mutant, from the record or from a trial."""
     earlier = recorded(options.record) if options.resume and options.record else {}
-    current = {mutant.key: row(mutant) for mutant in chosen}
+    current = {mutant.key: row(mutant, related(mutant.file, options.nearest)) for mutant in chosen}
     rows = {key: old for key, old in earlier.items() if key in current and is_valid(old, current[key])}
     ahead = [mutant for mutant in chosen if mutant.key not in rows]
     lock = Lock()
     with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
-        copies = Copies(Path(folder), options.limit)
+        copies = Copies(Path(folder), options.limit, options.nearest)
         for result in threads.map(partial(tried, copies, options.record, lock), ahead):
             rows[str(result["key"])] = result
     return [rows[mutant.key] for mutant in chosen]

@@ -9,7 +9,8 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
-from benchmarks.mutation.places import ROOT, Mutant, difference, digest, is_another
+from benchmarks.mutation import ROOT
+from benchmarks.mutation.places import Mutant, difference, digest, is_another
 
 
 def named(file: Path) -> list[Mutant]:

@@ -24,7 +24,8 @@ from cosmic_ray.operators.operator import Example, Operator
 from cosmic_ray.plugins import get_operator, operator_names
 from parso.python.tree import Keyword, PythonNode
 
-ROOT = Path(__file__).parents[2]
+from benchmarks.mutation import ROOT
+
 TARGETS = (
     *("templates/core/**/*.py", "templates/physics/**/*.py"),
     *("cad/checks.py", "cad/regenerate.py", "cad/inspect.py", "cad/surfaces.py", "app/**/questions.py"),

@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-from benchmarks.mutation.places import ROOT
+from benchmarks.mutation import ROOT
 
 NEAREST = 8
 """So many test files of a mutated file are run."""

@@ -22,7 +22,8 @@ from pathlib import Path
 from threading import Lock
 from uuid import uuid4
 
-from benchmarks.mutation.places import ROOT, Mutant
+from benchmarks.mutation import ROOT
+from benchmarks.mutation.places import Mutant
 from benchmarks.mutation.related import related
 
 PYTEST = ("-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", "--no-header", "--tb=line")
@@ -43,9 +44,10 @@ class Run:
 class Copy:
     """A copy of the repository on which one mutant at a time is tried."""
 
-    def __init__(self, folder: Path, limit: float) -> None:
+    def __init__(self, folder: Path, limit: float, nearest: int) -> None:
         self.folder = folder
         self.limit = limit
+        self.nearest = nearest
         self._passing: dict[str, bool] = {}
         shutil.copytree(
             ROOT, folder, ignore=shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*_cache")
@@ -53,7 +55,7 @@ class Copy:
 
     def try_out(self, mutant: Mutant) -> dict[str, object]:
         """Return what became of a mutant, as a row of the record."""
-        begin, tests = time.monotonic(), related(mutant.file)
+        begin, tests = time.monotonic(), related(mutant.file, self.nearest)
         self._write(mutant.file, mutant.source)
         try:
             run = self._first_failure(tests)
@@ -63,7 +65,7 @@ class Copy:
         if run.outcome == "failed" and not self._passes(run.file):
             outcome = "unclear"  # the test fails without the mutant too
         seconds = round(time.monotonic() - begin, 1)
-        return {**row(mutant), "outcome": outcome, "by": run.by or run.outcome, "seconds": seconds}
+        return {**row(mutant, tests), "outcome": outcome, "by": run.by or run.outcome, "seconds": seconds}
 
     def _first_failure(self, tests: Sequence[str]) -> Run:
         """Run the nearest file alone, and the others only if it does not notice."""
@@ -86,10 +88,18 @@ class Copy:
 
     def _run(self, tests: Sequence[str]) -> Run:
         mark = uuid4().hex
-        command = ("sh", "-c", f'ulimit -v {MEMORY}; exec "$@"', "sh", sys.executable, *PYTEST, *tests)
+        command = (
+            "sh",
+            "-c",
+            f'ulimit -v {MEMORY}; exec "$@"',
+            "sh",
+            sys.executable,
+            *PYTEST,
+            *plugins(tests),
+        )
         environment = {**os.environ, MARK: mark, "PYTHONPATH": str(self.folder)}
         process = subprocess.Popen(
-            command,
+            (*command, *tests),
             cwd=self.folder,
             env=environment,
             start_new_session=True,
@@ -105,6 +115,12 @@ class Copy:
         finally:
             end(process, mark)
         return understood(process.returncode, output, tests)
+
+
+def plugins(tests: Sequence[str]) -> tuple[str, ...]:
+    """Return options that leave out a plugin which takes longer to import than most tests run."""
+    uses = any("schemathesis" in (ROOT / test).read_text(encoding="utf-8") for test in tests)
+    return () if uses else ("-p", "no:schemathesis")
 
 
 def understood(code: int, output: str, tests: Sequence[str]) -> Run:
@@ -135,7 +151,7 @@ def marked(mark: str) -> list[int]:
     return pids
 
 
-def row(mutant: Mutant) -> dict[str, object]:
+def row(mutant: Mutant, tests: tuple[str, ...]) -> dict[str, object]:
     """Return what the record says of a mutant, whatever becomes of it."""
     return {
         "key": mutant.key,
@@ -145,7 +161,7 @@ def row(mutant: Mutant) -> dict[str, object]:
         "operator": mutant.operator,
         "diff": mutant.diff,
         "code": fingerprint((mutant.file,)),
-        "tests": fingerprint(related(mutant.file)),
+        "tests": fingerprint(tests),
     }
 
 
@@ -159,8 +175,8 @@ def fingerprint(files: tuple[str, ...]) -> str:
 class Copies:
     """Copies for as many threads as ask for one."""
 
-    def __init__(self, folder: Path, limit: float) -> None:
-        self._folder, self._limit = folder, limit
+    def __init__(self, folder: Path, limit: float, nearest: int) -> None:
+        self._folder, self._limit, self._nearest = folder, limit, nearest
         self._idle: list[Copy] = []
         self._number = 0
         self._lock = Lock()
@@ -169,8 +185,11 @@ class Copies:
         """Return what some work on an idle copy returns; makes a copy if none is idle."""
         with self._lock:
             self._number += not self._idle
-            copy = self._idle.pop() if self._idle else Copy(self._folder / str(self._number), self._limit)
+            copy = self._idle.pop() if self._idle else self._copy()
         try:
             return work(copy)
         finally:
             self._idle.append(copy)
+
+    def _copy(self) -> Copy:
+        return Copy(self._folder / str(self._number), self._limit, self._nearest)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.mutation.places import ROOT
+from benchmarks.mutation import ROOT
 
 REASONS = ROOT / ".ci" / "mutants.toml"
 LEAST_KILLED = 0.85
