@@ -15,7 +15,7 @@ from types import ModuleType
 
 from benchmarks.mutation import ROOT
 
-NEAREST = 8
+NEAREST = 12
 """So many test files of a mutated file are run."""
 _NAME_IN_COMMON = 1.5  # imports that one word in common is worth
 _NOT_REACHED = 9  # imports, if none leads there: migrations are found by their folder
