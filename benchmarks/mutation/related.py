@@ -17,6 +17,8 @@ from benchmarks.mutation import ROOT
 
 NEAREST = 12
 """So many test files of a mutated file are run."""
+VALUES = "tests/test_values.py"
+"""A test about all modules, which it finds by their folders."""
 _NAME_IN_COMMON = 1.5  # imports that one word in common is worth
 _NOT_REACHED = 9  # imports, if none leads there: migrations are found by their folder
 _OF_NO_USE = {"tests", "test", "app", "templates", "v1", "v2", "py", "and", "of"}
@@ -41,7 +43,7 @@ def related(file: str, nearest: int = NEAREST) -> tuple[str, ...]:
     near = sorted((nearness(file, test, n), test) for test, n in far.items() if n)
     chosen = [test for _, test in near[:nearest]]
     golden = [changed.CATALOGUE] if file.startswith("templates/") else []
-    return tuple(dict.fromkeys([*chosen, *golden]))
+    return tuple(dict.fromkeys([*chosen, VALUES, *golden]))
 
 
 def nearness(file: str, test: str, steps: int) -> tuple[float, int]:
