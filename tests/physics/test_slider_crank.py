@@ -17,9 +17,9 @@ STEP = 1e-4
 
 
 def geometry(theta, n):
-    """Angle of the rod and way of the piston from top dead centre over the crank radius, by trigonometry."""
+    """Angle of the rod and way of the piston from top dead centre over the crank radius, free of cancellation."""
     phi = np.arcsin(np.sin(theta) / n)
-    return phi, 1 + n - np.cos(theta) - n * np.cos(phi)
+    return phi, 2 * np.sin(theta / 2) ** 2 + 2 * n * np.sin(phi / 2) ** 2
 
 
 def differences(n, which):
