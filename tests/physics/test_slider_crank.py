@@ -17,7 +17,7 @@ STEP = 1e-4
 
 
 def geometry(theta, n):
-    """Angle of the rod and way of the piston from top dead centre over the crank radius, free of cancellation."""
+    """Angle of the rod, way of the piston from top dead centre over the crank radius; nothing cancels."""
     phi = np.arcsin(np.sin(theta) / n)
     return phi, 2 * np.sin(theta / 2) ** 2 + 2 * n * np.sin(phi / 2) ** 2
 
