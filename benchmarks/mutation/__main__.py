@@ -1,0 +1,111 @@
+"""Try random mutants and print the figure; `python -m benchmarks.mutation --help` names the options.
+
+Exits with 1 if a mutant survives without a reason, fewer than 85 % are killed, or more than 10 % are called
+equivalent.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from threading import Lock
+from typing import Any
+
+from benchmarks.mutation.named import named
+from benchmarks.mutation.places import Mutant, sample
+from benchmarks.mutation.related import NEAREST, related
+from benchmarks.mutation.trial import Copies, Copy, row
+from benchmarks.mutation.verdict import REASONS, reasons, report, verdict
+
+
+def arguments() -> argparse.Namespace:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.mutation", description=__doc__)
+    parser.add_argument("--seed", type=int, default=12, help="of the random sample")
+    parser.add_argument("--count", type=int, default=300, help="how many mutants")
+    parser.add_argument("--jobs", type=int, default=2, help="how many at a time")
+    parser.add_argument(
+        "--limit", type=float, default=900, help="seconds of a run of tests; longer is a hang"
+    )
+    parser.add_argument("--nearest", type=int, default=NEAREST, help="how many test files for a file")
+    parser.add_argument("--only", default="", help="of the sample, those in files that begin so")
+    parser.add_argument("--named", action="store_true", help="try the named mutants instead of random ones")
+    parser.add_argument("--record", type=Path, help="file of results, one JSON object a line; is appended to")
+    parser.add_argument(
+        "--resume", action="store_true", help="skip what the record has, if its files are the same"
+    )
+    parser.add_argument("--list", action="store_true", help="print the mutants and try none")
+    return parser.parse_args()
+
+
+def main() -> None:
+    """Try the mutants and exit with the verdict."""
+    options = arguments()
+    chosen = named(REASONS) if options.named else sample(options.seed, options.count)
+    chosen = [mutant for mutant in chosen if mutant.file.startswith(options.only)]
+    if options.list:
+        print("\n".join(f"{m.key} {m.file}:{m.line} {m.operator}\n{m.diff}" for m in chosen))
+        return
+    print(f"seed {options.seed}, {len(chosen)} mutants", flush=True)
+    rows = results(chosen, options)
+    outcome = verdict(rows, reasons())
+    print(report(rows, outcome))
+    sys.exit(not outcome.holds)
+
+
+def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[str, Any]]:
+    """Return a row for each mutant, from the record or from a trial."""
+    earlier = recorded(options.record) if options.resume and options.record else {}
+    current = {mutant.key: row(mutant, related(mutant.file, options.nearest)) for mutant in chosen}
+    rows = {key: old for key, old in earlier.items() if key in current and is_valid(old, current[key])}
+    ahead = [mutant for mutant in chosen if mutant.key not in rows]
+    lock = Lock()
+    with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
+        copies = Copies(Path(folder), options.limit, options.nearest)
+        for result in threads.map(partial(tried, copies, options.record, lock), ahead):
+            rows[str(result["key"])] = result
+    return [rows[mutant.key] for mutant in chosen]
+
+
+def tried(copies: Copies, record: Path | None, lock: Lock, mutant: Mutant) -> dict[str, Any]:
+    """Try a mutant, and record the result at once."""
+
+    def work(copy: Copy) -> dict[str, object]:
+        return copy.try_out(mutant)
+
+    result = copies.using(work)
+    with lock:
+        print(
+            f"{result['outcome']:9} {mutant.file}:{mutant.line} {result['by']} ({result['seconds']} s)",
+            flush=True,
+        )
+        if record:
+            with record.open("a", encoding="utf-8") as file:
+                file.write(json.dumps(result) + "\n")
+    return result
+
+
+def recorded(record: Path) -> dict[str, dict[str, Any]]:
+    """Return the rows of a record, the last of each mutant."""
+    if not record.exists():
+        return {}
+    rows = map(json.loads, record.read_text(encoding="utf-8").splitlines())
+    return {row["key"]: row for row in rows}
+
+
+def is_valid(old: dict[str, Any], new: dict[str, object]) -> bool:
+    """Whether an older result still holds: same change, same code, and for a survivor the same tests."""
+    same = all(old[name] == new[name] for name in ("file", "diff", "code"))
+    return (
+        same and (old["outcome"] == "killed" or old["tests"] == new["tests"]) and old["outcome"] != "unclear"
+    )
+
+
+if __name__ == "__main__":
+    main()

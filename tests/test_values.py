@@ -1,0 +1,32 @@
+"""Property: values that modules hand to each other cannot be changed by whoever receives them."""
+
+import importlib
+import pkgutil
+from dataclasses import is_dataclass
+
+import pytest
+
+import app
+import templates
+
+GROWING = {"Ledger", "Calculation", "Graph", "Findings", "Contents", "Restored"}
+"""Records that one function fills step by step before it returns them."""
+
+
+def modules(package):
+    for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+        if not found.name.endswith(("__main__", "migrations.env")):
+            yield importlib.import_module(found.name)
+
+
+@pytest.mark.parametrize("package", [templates, app], ids=["templates", "app"])
+def test_dataclasses_are_frozen(package):
+    classes = {
+        value
+        for module in modules(package)
+        for value in vars(module).values()
+        if isinstance(value, type) and is_dataclass(value) and value.__module__ == module.__name__
+    }
+    assert len(classes) > 20
+    open_ones = {cls.__name__ for cls in classes if not cls.__dataclass_params__.frozen}
+    assert open_ones <= GROWING
