@@ -95,8 +95,8 @@ def test_points_without_a_value_say_why():
 
 
 def test_an_optional_input_that_was_not_given_has_no_value():
-    with pytest.raises(NoValue, match="rotor_mass"):
-        _ = FILM(**FILM.example).rotor_mass
+    with pytest.raises(NoValue, match="ambient_temperature"):
+        _ = FILM(**FILM.example).ambient_temperature
 
 
 def test_an_unknown_name_is_refused_with_the_nearest():
