@@ -59,7 +59,9 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     return files
 
 
-_LOADED = re.compile(r"<(?:script|img|iframe|link|source)\b[^>]*?\b(?:src|href)=[\"']?((?:https?:)?//[^\"'\s>]+)")
+_LOADED = re.compile(
+    r"<(?:script|img|iframe|link|source)\b[^>]*?\b(?:src|href)=[\"']?((?:https?:)?//[^\"'\s>]+)"
+)
 
 
 def on_post_page(output: str, page: Any, **_: Any) -> str:

@@ -1,5 +1,6 @@
 """The documentation site: pages that MkDocs writes from the code when it builds `docs/`.
 
-`mkdocs build --strict` runs `mkdocs_hooks.py`. A page is written here if the code says what stands on it: each
-template and model, the language, the REST interface, the client, the map of the code, the list of decisions.
+`mkdocs build --strict` runs `mkdocs_hooks.py`. Each module writes pages from the
+code: those of templates and models, the language, the REST interface, the client, the map of the code, the
+index of the decisions, the executed notebooks.
 """

@@ -11,8 +11,8 @@ from handbook.rendering import ROOT
 FOLDER = ROOT / "docs" / "decisions"
 HEAD = """# Decisions
 
-One page for each decision that was hard to make: what it was about, what was decided, what follows. A number is never
-used twice; a decision that is overturned stays, and says which one took its place.
+One page for each decision that was hard to make: what it was about, what was decided, what follows. A number
+is never used twice; a decision that is overturned stays, and names the one that replaces it.
 
 | | decision | about |
 |---|---|---|

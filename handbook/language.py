@@ -1,4 +1,4 @@
-"""The reference of the template language: its declarations with their keywords, and the grammar of relations."""
+"""The reference of the template language: its declarations, their keywords, the grammar of relations."""
 
 from __future__ import annotations
 
@@ -12,10 +12,9 @@ from handbook.signatures import functions, prose
 from templates.core.language import declare, meaning
 from templates.core.units import relation
 
-DECLARATIONS = [
-    "given", "choice", "curve", "table", "derived", "formula", "profile", "text", "shared", "require", "units",
-    "limits",
-]  # fmt: skip
+DECLARATIONS = (
+    "given choice curve table derived formula profile text shared require units limits"  # in this order
+).split()
 
 
 def pages() -> Iterator[tuple[str, str]]:

@@ -36,7 +36,7 @@ def execute(path: Path) -> Any:
     CellExecutionError
         If a cell fails.
     """
-    notebook = jupytext.read(path)
+    notebook = jupytext.read(path, fmt="py:percent")
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore::DeprecationWarning"}
     kernel = AsyncKernelManager(kernel_name="python3", transport="ipc")  # no port is opened
     resources = {"metadata": {"path": str(ROOT)}}
@@ -47,7 +47,9 @@ def execute(path: Path) -> Any:
 def _page(path: Path) -> Iterator[tuple[str, str | bytes]]:
     notebook = execute(path)
     place = f"notebooks/{path.stem}"
-    text, resources = MarkdownExporter().from_notebook_node(notebook, {"output_files_dir": f"{path.stem}_files"})
+    text, resources = MarkdownExporter().from_notebook_node(
+        notebook, {"output_files_dir": f"{path.stem}_files"}
+    )
     links = f"\n[The notebook with its results]({path.stem}.ipynb) · [its source]({path.name})\n"
     yield f"{place}.md", text + links
     yield f"{place}.ipynb", nbformat.writes(notebook)

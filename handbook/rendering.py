@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from templates.core.paper.mathml import mathml, unit_symbol
 
@@ -17,6 +18,11 @@ ROOT = Path(__file__).parents[1]
 def math(latex: str) -> Markup:
     """LaTeX as MathML, within a line."""
     return Markup(mathml(latex))
+
+
+def prose(text: str) -> Markup:
+    """A sentence for a cell of an HTML table: what stands in backticks becomes code."""
+    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))
 
 
 def unit(text: str | None) -> str:
@@ -47,7 +53,14 @@ ENVIRONMENT = Environment(
     trim_blocks=True,
     lstrip_blocks=True,
 )
-ENVIRONMENT.filters |= {"math": math, "unit": unit, "number": number, "percent": percent, "as_json": as_json}
+ENVIRONMENT.filters |= {
+    "math": math,
+    "prose": prose,
+    "unit": unit,
+    "number": number,
+    "percent": percent,
+    "as_json": as_json,
+}
 
 
 def render(page: str, **values: Any) -> str:

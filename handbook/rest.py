@@ -89,7 +89,12 @@ def _schema(schema: dict[str, Any]) -> dict[str, Any]:
         "text": schema.get("description", ""),
         "type": kind(schema),
         "properties": [
-            {"name": name, "type": kind(one), "required": name in required, "text": one.get("description", "")}
+            {
+                "name": name,
+                "type": kind(one),
+                "required": name in required,
+                "text": one.get("description", ""),
+            }
             for name, one in schema.get("properties", {}).items()
         ],
     }

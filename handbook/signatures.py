@@ -1,4 +1,4 @@
-"""Public functions and classes of a module as a reference: signature and docstring, in the order of the file."""
+"""Public functions of a module or class as a reference: signature and docstring, in the order of the file."""
 
 from __future__ import annotations
 

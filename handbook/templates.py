@@ -47,7 +47,10 @@ def page(cls: type[Template]) -> str:
     return render(
         "template.md.j2",
         template=description,
-        inputs=[described_input(name, schema, description) for name, schema in description["inputs"]["properties"].items()],
+        inputs=[
+            described_input(name, schema, description)
+            for name, schema in description["inputs"]["properties"].items()
+        ],
         results=[_result(name, cls, answer) for name, answer in example.outputs.items()],
         example_level=example.level,
         warnings=example.warnings,
@@ -114,7 +117,9 @@ def levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
 
 def _costs(measured: dict[str, Any]) -> dict[str, float]:
     """Processor time of a point among many, else of one alone, by level, relative to the smallest."""
-    seconds = {level: told["cost"].get("vectorised", told["cost"].get("single")) for level, told in measured.items()}
+    seconds = {
+        level: told["cost"].get("vectorised", told["cost"].get("single")) for level, told in measured.items()
+    }
     known = {level: cost for level, cost in seconds.items() if cost}
     return {level: cost / min(known.values()) for level, cost in known.items()}
 

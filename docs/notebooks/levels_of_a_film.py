@@ -12,9 +12,10 @@
 # %% [markdown]
 # # One film through all levels
 #
-# `oil_film` 2 computes the same bearing at five levels of fidelity. This notebook computes one case at each of them,
-# measures what each costs, and draws the trade of speed for accuracy. MkDocs executes it whenever it builds this
-# site, so every number below comes from the code as it is; the times are those of the machine that built the page.
+# `oil_film` 2 computes the same bearing at five levels of fidelity. This notebook computes one case at
+# each of them, measures what each costs, and draws the trade of speed for accuracy. MkDocs executes it
+# whenever it builds this site, so every number below comes from the code as it is; the times are those of
+# the machine that built the page.
 
 # %%
 import time
@@ -45,13 +46,13 @@ film = oil_film(**bearing)
 film.minimum_film_thickness, film.level, film.error["minimum_film_thickness"], film.warnings
 
 # %% [markdown]
-# The error is an estimate from measurements: the largest that was seen in the neighbourhood of this point. `None` means
-# that nobody measured it.
+# The error is an estimate from measurements: the largest that was seen in the neighbourhood of this point.
+# `None` means that nobody measured it.
 #
 # ## All levels side by side
 #
-# A level may have no value for an output: the fit of the standard gives no pressure. Python then raises `NoValue`
-# with the reason.
+# A level may have no value for an output: the fit of the standard gives no pressure. Python then raises
+# `NoValue` with the reason.
 
 # %%
 OUTPUTS = ("minimum_film_thickness", "attitude_angle", "maximum_pressure", "friction_coefficient")
@@ -70,8 +71,8 @@ for level, one in films.items():
     print(f"{level:16}", *(f"{shown(one, output):>12}" for output in OUTPUTS))
 
 # %% [markdown]
-# `mass_conserving` counts shear only where there is oil, the other levels over the full circle: its friction is another
-# quantity.
+# `mass_conserving` counts shear only where there is oil, the other levels over the full circle: its
+# friction is another quantity.
 #
 # ## What each level costs
 #
@@ -104,9 +105,9 @@ axes.margins(x=0.3)
 axes.grid(alpha=0.3)
 
 # %% [markdown]
-# `map` is the level to use: it reads the converged solution from a table. One point costs about as much as a closed
-# form, because most of that time is reading and checking the inputs. `reynolds` solves the same equation again, to check
-# the map; `mass_conserving` is for grooves and supply pressure.
+# `map` is the level to use: it reads the converged solution from a table. One point costs about as much as
+# a closed form, because most of that time is reading and checking the inputs. `reynolds` solves the same
+# equation again, to check the map; `mass_conserving` is for grooves and supply pressure.
 #
 # ## Let a tolerance choose
 #
@@ -120,8 +121,8 @@ for tolerance in (1.0, 0.05, 0.001):
 # %% [markdown]
 # ## Many points at once
 #
-# An array as input gives arrays. The same code runs for one point and for many, so a curve of 200 loads costs little
-# more than one point.
+# An array as input gives arrays. The same code runs for one point and for many, so a curve of 200 loads
+# costs little more than one point.
 
 # %%
 loads = np.linspace(2, 60, 200)
@@ -138,7 +139,8 @@ axes.legend()
 axes.grid(alpha=0.3)
 
 # %% [markdown]
-# The short-bearing theory shows a film that is too thick at every load here, so it errs to the unsafe side.
+# The short-bearing theory shows a film that is too thick at every load here, so it errs to the unsafe
+# side.
 
 # %%
 thin, thick = swept["map"].minimum_film_thickness, swept["short_bearing"].minimum_film_thickness

@@ -12,9 +12,9 @@
 # %% [markdown]
 # # From worksheet to STEP
 #
-# A bearing is sized by its oil film, drawn by a CAD model, written as STEP and measured on that file, all in Python
-# and without the service. The [tutorial](../tutorial.md) does the same through the service, which adds revisions,
-# relations and reports.
+# A bearing is sized by its oil film, drawn by a CAD model, written as STEP and measured on that file, all
+# in Python and without the service. The [tutorial](../tutorial.md) does the same through the service,
+# which adds revisions, relations and reports.
 
 # %%
 import tempfile
@@ -34,8 +34,8 @@ oil_film = get("oil_film", 2)
 # %% [markdown]
 # ## The question
 #
-# A load of 25 kN at 5000 rpm. How wide must a shell of 48 mm be so that its film is at least 4 µm? An array of widths
-# answers for all of them at once.
+# A load of 25 kN at 5000 rpm. How wide must a shell of 48 mm be so that its film is at least 4 µm? An
+# array of widths answers for all of them at once.
 
 # %%
 widths = np.linspace(14, 36, 45)
@@ -64,8 +64,9 @@ axes.grid(alpha=0.3)
 # %% [markdown]
 # ## The shell
 #
-# The model `plain_bearing` takes the bore from the calculation: the bearing diameter of the film. Whatever is not given
-# has a default that fits. A parameter out of its range would be refused by name before anything is drawn.
+# The model `plain_bearing` takes the bore from the calculation: the bearing diameter of the film. Whatever
+# is not given has a default that fits. A parameter out of its range would be refused by name before
+# anything is drawn.
 
 # %%
 film = oil_film(**{**bearing, "bearing_width": f"{width} mm"})
@@ -81,9 +82,9 @@ shell = plain_bearing.from_quantities(
 # %% [markdown]
 # ## The file
 #
-# `regenerate` draws the solid, writes it as STEP, reads that file again and checks it: one valid solid, the volume of
-# its closed form, the box, and every parameter read back from its surfaces. It returns the build only if all of them
-# hold.
+# `regenerate` draws the solid, writes it as STEP, reads that file again and checks it: one valid solid,
+# the volume of its closed form, the box, and every parameter read back from its surfaces. It returns the
+# build only if all of them hold.
 
 # %%
 build = regenerate("plain_bearing", 1, shell.inputs_si())
@@ -107,4 +108,5 @@ Image(derive(build.step, "png"))
 # Equal parameters give equal bytes, so the file can be checked by its hash.
 
 # %%
-regenerate("plain_bearing", 1, shell.inputs_si()).step == build.step
+again = regenerate("plain_bearing", 1, shell.inputs_si())
+assert again.step == build.step
