@@ -12,9 +12,9 @@ from typing import Any
 
 import jupytext
 import nbformat
-from jupyter_client import AsyncKernelManager
 from nbclient import NotebookClient
 from nbconvert import MarkdownExporter
+from traitlets.config import Config
 
 from handbook.rendering import ROOT
 
@@ -38,9 +38,9 @@ def execute(path: Path) -> Any:
     """
     notebook = jupytext.read(path, fmt="py:percent")
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore::DeprecationWarning"}
-    kernel = AsyncKernelManager(kernel_name="python3", transport="ipc")  # no port is opened
-    resources = {"metadata": {"path": str(ROOT)}}
-    NotebookClient(notebook, km=kernel, timeout=LONGEST, resources=resources).execute(env=environment)
+    config = Config(KernelManager={"transport": "ipc"})  # no port is opened
+    options = {"timeout": LONGEST, "kernel_name": "python3", "coalesce_streams": True, "resources": {"metadata": {"path": str(ROOT)}}}
+    NotebookClient(notebook, config=config, **options).execute(env=environment)
     return notebook
 
 

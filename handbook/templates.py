@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 from collections.abc import Iterator
 from typing import Any
@@ -10,7 +11,7 @@ import numpy as np
 
 from handbook.rendering import render
 from templates.core.language.evaluate import Answer, evaluate
-from templates.core.language.levels import SINGLE, accuracy
+from templates.core.language.levels import SINGLE, accuracy, accuracy_file
 from templates.core.language.template import Template
 from templates.core.paper.schema import describe
 from templates.door import built_in
@@ -56,7 +57,7 @@ def page(cls: type[Template]) -> str:
         warnings=example.warnings,
         errors={name: error for name, error in example.error.items() if _is_known(error)},
         levels=list(levels(cls)),
-        accuracy=measured.told if (measured := accuracy(cls)) else None,
+        accuracy=_measurement(cls),
         limits=described_limits(description["limits"]),
         command=_command(cls),
     )
@@ -108,18 +109,23 @@ def _is_known(error: Any) -> bool:
 def levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
     """Each level: its cost as a multiple of the cheapest, and its measured errors by output."""
     measured = accuracy(cls)
-    costs = _costs(measured.told["levels"]) if measured else {}
+    costs = _costs(_measurement(cls)["levels"]) if measured else {}
     for level in cls.levels or ((SINGLE,) if measured else ()):
         tables = measured.errors.get(level, {}) if measured else {}
         errors = [_spread(name, table) for name, table in tables.items() if not np.isnan(table).all()]
         yield {"name": level, "cost": costs.get(level), "errors": errors}
 
 
+def _measurement(cls: type[Template]) -> Any:
+    """The accuracy file of a version: how errors and costs were measured; None if there is none."""
+    file = accuracy_file(cls)
+    return json.loads(file.read_text(encoding="utf-8")) if file.exists() else None
+
+
 def _costs(measured: dict[str, Any]) -> dict[str, float]:
     """Processor time of a point among many, else of one alone, by level, relative to the smallest."""
-    seconds = {
-        level: told["cost"].get("vectorised", told["cost"].get("single")) for level, told in measured.items()
-    }
+    costs = {level: one["cost"] for level, one in measured.items()}
+    seconds = {level: cost.get("vectorised", cost.get("single")) for level, cost in costs.items()}
     known = {level: cost for level, cost in seconds.items() if cost}
     return {level: cost / min(known.values()) for level, cost in known.items()}
 

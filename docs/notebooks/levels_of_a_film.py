@@ -102,6 +102,7 @@ for level in films:
     axes.annotate(level, (1e3 * cost[level], 100 * error[level]), xytext=(6, 4), textcoords="offset points")
 axes.set(xlabel="processor time of one point [ms]", ylabel="estimated error of the smallest film [%]")
 axes.margins(x=0.3)
+axes.set_xlim(right=3e3 * max(cost.values()))
 axes.grid(alpha=0.3)
 
 # %% [markdown]

@@ -21,7 +21,7 @@ GENERATED = {
     "*/index.md": "mkdocs.yml",
     "reference/*.md": "mkdocs.yml",
 }
-"""Pages that the build of the site writes, and from what; `mkdocs build --strict` checks all of their links."""
+"""Pages that the build of the site writes, and from what; `mkdocs build --strict` checks their links."""
 LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 
 
