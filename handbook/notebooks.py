@@ -39,8 +39,9 @@ def execute(path: Path) -> Any:
     notebook = jupytext.read(path, fmt="py:percent")
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore::DeprecationWarning"}
     config = Config(KernelManager={"transport": "ipc"})  # no port is opened
-    options = {"timeout": LONGEST, "kernel_name": "python3", "coalesce_streams": True, "resources": {"metadata": {"path": str(ROOT)}}}
-    NotebookClient(notebook, config=config, **options).execute(env=environment)
+    resources = {"metadata": {"path": str(ROOT)}}
+    options = {"timeout": LONGEST, "kernel_name": "python3", "coalesce_streams": True}
+    NotebookClient(notebook, config=config, resources=resources, **options).execute(env=environment)
     return notebook
 
 
