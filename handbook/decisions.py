@@ -33,7 +33,8 @@ def row(path: Path) -> str:
     """One line of the index."""
     heading, _, text = path.read_text(encoding="utf-8").partition("\n")
     title = re.sub(r"^#\s*(\d+[.:]?\s+)?", "", heading)
-    about = " ".join(text.strip().split("\n\n")[0].split()).replace("|", "\\|")
+    paragraphs = (part for part in text.strip().split("\n\n") if not part.startswith("#"))
+    about = " ".join(next(paragraphs).split()).replace("|", "\\|")
     about = re.sub(r"^\*\*\w+\.\*\*\s*", "", about)
     first = re.match(r".*?[.?!](?=\s|$)", about)
-    return f"| {path.name[:3]} | [{title}]({path.name}) | {first[0] if first else about} |\n"
+    return f"| {path.name[:3]} | [{title[:1].upper()}{title[1:]}]({path.name}) | {first[0] if first else about} |\n"

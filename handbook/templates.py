@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from handbook.rendering import render
+from handbook.rendering import unit as unit_of
 from templates.core.language.evaluate import Answer, evaluate
 from templates.core.language.levels import SINGLE, accuracy, accuracy_file
 from templates.core.language.template import Template
@@ -80,7 +81,7 @@ def described_input(name: str, schema: dict[str, Any], description: dict[str, An
 def _default(schema: dict[str, Any]) -> str:
     match schema.get("default"):
         case {"value": value, "unit": unit}:
-            return f"{value:g}" if unit == "1" else f"{value:g} {unit}"
+            return f"{value:g} {unit_of(unit)}".rstrip()
         case str() as word:
             return word
     return ""

@@ -121,7 +121,9 @@ def test_the_index_has_every_decision():
     rows = [decisions.row(path) for path in decisions.files()]
     assert len(rows) == len(list((ROOT / "docs" / "decisions").glob("*.md")))
     for row in rows:
-        assert re.fullmatch(r"\| \d{3} \| \[[^]\d][^]]+\]\(\d{3}-[\w-]+\.md\) \| \S.*[^ ] \|\n", row), row
+        assert re.fullmatch(
+            r"\| \d{3} \| \[[^]\da-z][^]]+\]\(\d{3}-[\w-]+\.md\) \| [^#\s].*[^ ] \|\n", row
+        ), row
 
 
 def test_the_references_have_every_declaration_and_method():
