@@ -37,4 +37,5 @@ def row(path: Path) -> str:
     about = " ".join(next(paragraphs).split()).replace("|", "\\|")
     about = re.sub(r"^\*\*\w+\.\*\*\s*", "", about)
     first = re.match(r".*?[.?!](?=\s|$)", about)
-    return f"| {path.name[:3]} | [{title[:1].upper()}{title[1:]}]({path.name}) | {first[0] if first else about} |\n"
+    link = f"[{title[:1].upper()}{title[1:]}]({path.name})"
+    return f"| {path.name[:3]} | {link} | {first[0] if first else about} |\n"

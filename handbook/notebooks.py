@@ -40,7 +40,7 @@ def execute(path: Path) -> Any:
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore::DeprecationWarning"}
     config = Config(KernelManager={"transport": "ipc"})  # no port is opened
     resources = {"metadata": {"path": str(ROOT)}}
-    options = {"timeout": LONGEST, "kernel_name": "python3", "coalesce_streams": True}
+    options: Any = {"timeout": LONGEST, "kernel_name": "python3", "coalesce_streams": True}
     NotebookClient(notebook, config=config, resources=resources, **options).execute(env=environment)
     return notebook
 
