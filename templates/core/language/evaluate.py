@@ -104,23 +104,6 @@ def evaluate(
     return Evaluation(rungs[0].template, echoes, whole.answers, whole.level, whole.error, notices, seconds)
 
 
-def evaluate_at_level(
-    template: Template, outputs: Iterable[str]
-) -> tuple[dict[str, Answer], dict[str, Any], list[Notice]]:
-    """Answers in declared units, error estimates, and all warnings so far of a template at its level.
-
-    What the template has computed before is not computed again.
-
-    Raises
-    ------
-    InvalidInputs
-        If a result is out of its domain.
-    """
-    with np.errstate(all="ignore"):
-        part = _part(template, list(outputs), {})
-    return part.answers, part.error, [*_standing(type(template)), *_noticed([Rung(template, None)])]
-
-
 def _level_faults(cls: type[Template], level: str | None) -> list[Fault]:
     if level is None or level in cls.levels:
         return []
@@ -297,6 +280,23 @@ def _standing(cls: type[Template]) -> list[Notice]:
         return []
     detail = f"{cls.id} version {cls.version} is withdrawn: {cls.withdrawn}"
     return [Notice("withdrawn", cls.id, detail)]
+
+
+def evaluate_at_level(
+    template: Template, outputs: Iterable[str]
+) -> tuple[dict[str, Answer], dict[str, Any], list[Notice]]:
+    """Answers in declared units, error estimates, and all warnings so far of a template at its level.
+
+    What the template has computed before is not computed again.
+
+    Raises
+    ------
+    InvalidInputs
+        If a result is out of its domain.
+    """
+    with np.errstate(all="ignore"):
+        part = _part(template, list(outputs), {})
+    return part.answers, part.error, [*_standing(type(template)), *_noticed([Rung(template, None)])]
 
 
 def _noticed(rungs: list[Rung]) -> list[Notice]:
