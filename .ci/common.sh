@@ -90,7 +90,7 @@ print(hashlib.sha256(json.dumps(parts).encode() + open("constraints.txt", "rb").
 PY
 }
 
-# Make the environment of the README, or take it from the cache; sets `environment`.
+# Make the environment of the README, and what builds the site, or take it from the cache; sets `environment`.
 install() {
     environment=$scratch/environment
     if [ -n "$CACHE" ]; then
@@ -108,7 +108,7 @@ install() {
         fi
     fi
     [ -e "$environment/complete" ] || "$PYTHON" -m venv "$environment"
-    "$environment/bin/pip" install --quiet -c constraints.txt -e ".[test]" 9>&-
+    "$environment/bin/pip" install --quiet -c constraints.txt -e ".[test,docs]" 9>&-
     touch "$environment/complete"
 }
 
@@ -125,13 +125,20 @@ lint() { "$environment/bin/ruff" check && "$environment/bin/ruff" format --check
 types() { "$environment/bin/mypy"; }
 contracts() { PATH="$environment/bin:$PATH" "$environment/bin/lint-imports"; }
 
+# The documentation, with its notebooks executed: a warning, a dead link or a cell that fails is a failure.
+site() {
+    NO_MKDOCS_2_WARNING=1 nice "$environment/bin/mkdocs" build --strict --quiet --site-dir "$scratch/site"
+}
+
 start_checks() {
+    start site site
     start lint lint
     start types types
     start contracts contracts
 }
 
 finish_checks() {
+    finish site
     finish lint
     finish types
     finish contracts

@@ -13,6 +13,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import Distribution, distribution
@@ -25,9 +26,10 @@ LONGEST = 60  # letters; longer "licences" are the text of one
 
 HEAD = """# Licences
 
-Of everything that is installed with the service and its tests, as each distribution states it itself. Written
-by `python -m benchmarks.supply_chain` from the distributions installed; `docs/sbom.cdx.json` is the same as a
-CycloneDX bill of materials. Distributions marked *tests* are not needed to run the service.
+Of everything that is installed with the service, its tests and its documentation, as each distribution states
+it itself. `python -m benchmarks.supply_chain` writes this page from the installed distributions, and the same
+as a CycloneDX bill of materials, `docs/sbom.cdx.json`. The service runs without the distributions marked
+*development*. No licence has been chosen for Crankwright itself yet; that is its owner's choice.
 
 | name | version | licence | home | |
 |---|---|---|---|---|
@@ -107,19 +109,26 @@ EXTRAS = {
 
 
 def needed(components: dict[str, Component]) -> set[str]:
-    """Return the names, normalised, of what the service needs to run, tests left out."""
-    wanted, seen = {*_needs(distribution("crankwright")), *EXTRAS}, set[str]()
+    """Return the names, normalised, of what the service needs to run, without tests and documentation."""
+    wanted, seen = {*_needed_directly(), *EXTRAS}, set[str]()
     while more := wanted - seen:
         seen |= more
         wanted = {need for name in more if name in components for need in components[name].needs}
     return seen
 
 
+def _needed_directly() -> Iterator[str]:
+    """The names, normalised, of the dependencies in pyproject.toml; an old installation may have others."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    return (normalised(re.split(r"[^\w.-]", need, maxsplit=1)[0]) for need in project["dependencies"])
+
+
 def licences(components: dict[str, Component]) -> str:
     """Return the list of licences as a page."""
     used = needed(components)
+    marks = {key: "" if key in used else "*development*" for key in components}
     rows = [
-        f"| {one.name} | {one.version} | {one.licence} | {one.home} | {'' if key in used else '*tests*'} |"
+        f"| {one.name} | {one.version} | {one.licence} | {one.home} | {marks[key]} |"
         for key, one in sorted(components.items())
     ]
     return HEAD + "\n".join(rows) + "\n"
@@ -161,7 +170,7 @@ def _reference(one: Component) -> str:
 
 def _graph(components: dict[str, Component]) -> Iterator[dict[str, object]]:
     """What each component needs of the others."""
-    yield _edges("crankwright", _needs(distribution("crankwright")), components)
+    yield _edges("crankwright", tuple(sorted(_needed_directly())), components)
     for _, one in sorted(components.items()):
         yield _edges(_reference(one), one.needs, components)
 

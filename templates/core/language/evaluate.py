@@ -254,6 +254,23 @@ def _standing(cls: type[Template]) -> list[Notice]:
     return [Notice("withdrawn", cls.id, detail)]
 
 
+def evaluate_at_level(
+    template: Template, outputs: Iterable[str]
+) -> tuple[dict[str, Answer], dict[str, Any], list[Notice]]:
+    """Answers in declared units, error estimates, and all warnings so far of a template at its level.
+
+    What the template has computed before is not computed again.
+
+    Raises
+    ------
+    InvalidInputs
+        If a result is out of its domain.
+    """
+    with np.errstate(all="ignore"):
+        part = _part(template, list(outputs), {})
+    return part.answers, part.error, [*_standing(type(template)), *_noticed([Rung(template, None)])]
+
+
 def _noticed(rungs: list[Rung]) -> list[Notice]:
     """The warnings of all levels, each once."""
     noticed = (notice for rung in rungs for notice in rung.template.ledger.warnings)

@@ -1,0 +1,162 @@
+"""The documentation says what the code does: README, tutorial, how-to pages, the pages made from the code."""
+
+import ast
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from cad.catalogue import models as cad_models
+from cad.regenerate import regenerate
+from handbook import client, decisions, language, map_of_code, models, rest, templates
+from handbook.signatures import prose, signature
+from templates import get
+from templates.door import built_in
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
+COMMANDS = (
+    "python3 -m venv .venv && .venv/bin/pip install -c constraints.txt -e . && .venv/bin/crankwright demo",
+    'python3 -m venv .venv && .venv/bin/pip install -c constraints.txt -e ".[test]" && .venv/bin/pytest -n 2',
+)
+
+
+def blocks(text, kind):
+    return re.findall(rf"^```{kind}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+
+def test_the_readme_is_short_and_has_the_two_commands():
+    assert len(README.splitlines()) <= 100
+    assert tuple(block.strip() for block in blocks(README, "sh")) == COMMANDS
+    assert "No licence has been chosen" in README
+
+
+@pytest.mark.parametrize("id", [*built_in().ids, *cad_models().ids])
+def test_the_readme_names_every_template_and_model(id):
+    assert f"`{id}`" in README
+
+
+def tutorial_film(scale, **changes):
+    """The film of the tutorial's design at a scale."""
+    document = json.loads(blocks(TUTORIAL, "json")[1])
+    inputs = {**document["steps"]["film"]["inputs"], "bearing_diameter": f"{scale * 48} mm", **changes}
+    return get("oil_film", 2)(**inputs).minimum_film_thickness.to("um").magnitude
+
+
+def test_the_numbers_of_the_tutorial_are_right():
+    answer = json.loads("{" + blocks(TUTORIAL, "json")[0] + "}")
+    assert answer["outputs"]["minimum_film_thickness"]["value"] == pytest.approx(tutorial_film(1), rel=1e-8)
+    assert f"The film is {tutorial_film(1):.2f} µm thick" in TUTORIAL
+    assert f"a film of {tutorial_film(1.05):.2f} µm" in TUTORIAL
+    assert f"revision 3 is {tutorial_film(1.05, bearing_width='24.4 mm'):.2f} µm thick" in TUTORIAL
+    assert "It answers 24.23 mm" in TUTORIAL
+    assert tutorial_film(1, bearing_width="24.225 mm") < 4 < tutorial_film(1, bearing_width="24.235 mm")
+
+
+def test_the_example_of_templates_from_python_is_right():
+    page = (ROOT / "docs" / "howto" / "python.md").read_text(encoding="utf-8")
+    code = blocks(page, "python")[0]
+    names = {}
+    exec(code, names)
+    said = dict(re.findall(r"^(film\.\S+)  # (.*)$", code, re.MULTILINE))
+    film = names["film"]
+    assert said["film.minimum_film_thickness"].startswith(f"{film.minimum_film_thickness:.4g~P},")
+    for text in ("film.level", 'film.error["minimum_film_thickness"]', "film.warnings"):
+        assert eval(text, names) == ast.literal_eval(said[text])
+
+
+@pytest.mark.parametrize("cls", list(built_in()), ids=lambda cls: f"{cls.id}_v{cls.version}")
+def test_the_page_of_a_template_is_complete(cls):
+    page = templates.page(cls)
+    for name in cls.inputs:
+        assert f'id="in-{name}"' in page
+    for name in cls.formulas:
+        assert f'id="out-{name}"' in page
+    assert page.count("<math") >= len(cls.formulas)
+    for level in cls.levels:
+        assert f"<code>{level}</code>" in page
+    example = eval(re.search(r"example = (\{.*?^\})", page, re.MULTILINE | re.DOTALL)[1])
+    assert example == json.loads(json.dumps(dict(cls.example)))
+
+
+def test_the_page_of_a_template_shows_the_results_of_its_example():
+    cls = get("oil_film", 2).template
+    film = get("oil_film", 2)(**cls.example)
+    row = f"<td><code>minimum_film_thickness</code></td><td>{film.minimum_film_thickness.magnitude:.5g}</td>"
+    assert row in templates.page(cls)
+
+
+def test_the_page_of_a_model_shows_the_dimensions_of_its_file():
+    cls = cad_models().get("plain_bearing", 1)
+    build = regenerate("plain_bearing", 1, cls.from_quantities(cls.example).inputs_si())
+    page = models.page(cls, build)
+    for name in cls.inputs:
+        row = re.search(rf'<tr id="in-{name}">.*?</tr>', page, re.DOTALL)[0]
+        if name in build.dimensions:
+            assert f"<td>{build.dimensions[name]:.5g}</td>" in row
+
+
+def test_the_rest_reference_lists_every_call_and_every_schema():
+    document = rest.interface()
+    page = rest.page(document)
+    for path, item in document["paths"].items():
+        for method in item:
+            assert f"### {method.upper()} `{path}`" in page
+    anchors = set(re.findall(r"\{: #(schema-\S+) \}", page))
+    assert anchors == {f"schema-{name.lower()}" for name in document["components"]["schemas"]}
+    assert set(re.findall(r'href="#(schema-[^"]+)"', page)) <= anchors
+
+
+def test_the_map_names_every_module_and_says_what_it_is():
+    listed = list(map_of_code.packages())
+    files = {path for top in map_of_code.PACKAGES for path in (ROOT / top).rglob("*.py")}
+    named = {ROOT / package / f"{name}.py" for package, _, modules in listed for name, _ in modules}
+    assert {file for file in files if file.stem not in ("__init__", "__main__")} == named
+    assert [package for package, text, _ in listed if not text] == []
+
+
+def test_the_index_has_every_decision():
+    rows = [decisions.row(path) for path in decisions.files()]
+    assert len(rows) == len(list((ROOT / "docs" / "decisions").glob("*.md")))
+    for row in rows:
+        assert re.fullmatch(
+            r"\| \d{3} \| \[[^]\da-z][^]]+\]\(\d{3}-[\w-]+\.md\) \| [^#\s].*[^ ] \|\n", row
+        ), row
+
+
+def test_the_references_have_every_declaration_and_method():
+    pages = dict(client.pages()) | dict(language.pages())
+    for name in language.DECLARATIONS:
+        assert f"### {name}\n" in pages["reference/language.md"]
+    assert "### create\n" in pages["reference/client.md"]
+    assert "## get\n" in pages["reference/door.md"]
+
+
+def example(self, one: int, *, two: str = "a, b", three: dict[str, int] | None = None) -> str:
+    """Return something.
+
+    Parameters
+    ----------
+    one
+        The first one,
+        at length.
+    two
+        The second.
+
+    Raises
+    ------
+    ValueError
+        If not.
+    """
+
+
+def test_a_signature_and_its_docstring_become_markdown():
+    assert signature("example", example) == (
+        'example(one: int, *, two: str = "a, b", three: dict[str, int] | None = None) -> str'
+    )
+    assert prose(example) == (
+        "Return something.\n\n**Parameters**\n\n- `one`: The first one, at length.\n- `two`: The second.\n\n"
+        "**Raises**\n\n- `ValueError`: If not.\n"
+    )
