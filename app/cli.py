@@ -137,7 +137,7 @@ def evaluate(
 
     A curve may come from a CSV file, pressure=@diagram.csv, from the column of that name or from another:
     pressure_angle=@diagram.csv:crank_angle.
-    """
+    """  # noqa: D400
     cls = _find(template, version)
     try:
         raw = dict(_pair(text) for text in inputs)

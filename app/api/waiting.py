@@ -67,5 +67,5 @@ def accepted(job: str | None, answer: Answer | None = None) -> Response:
 
 def written(answer: Answer, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
     """An answer as JSON, without the fields that it leaves out."""
-    body = answer.model_dump_json(exclude_unset=True)
+    body = answer.model_dump_json(by_alias=True, exclude_unset=True)
     return Response(body, status, media_type="application/json", headers=dict(headers or {}))

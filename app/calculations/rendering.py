@@ -44,7 +44,7 @@ def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDA
     """The values as objects, None where there is none; a profile, which has one reason, is one object."""
     if value.ndim == reasons.ndim:
         holes = value.astype(object)
-        holes[reasons != None] = None
+        holes[reasons != None] = None  # noqa: E711
         return holes
     rows = np.empty(reasons.shape, dtype=object)
     for point in np.ndindex(reasons.shape):

@@ -15,16 +15,17 @@ from app.designs.graph import Catalogues, build_graph, raise_if
 from app.designs.service import analysed, built, read_document, resolved, starts
 from app.designs.worksheet import previewed
 from app.presentation.units import System, converted
+from app.schemas.designs import Preview
 from app.solids import measures
 from app.storage.database import Database
 from templates.core.errors import Fault
 
 
 @dataclass(frozen=True)
-class Preview:
+class Previewed:
     """What a change would do; without what depends on deferred steps it is not whole."""
 
-    content: dict[str, Any]
+    content: Preview
     is_whole: bool
 
 
@@ -37,7 +38,7 @@ def preview(
     revision: int | None = None,
     worksheet: bool = False,
     system: System = "si",
-) -> Preview:
+) -> Previewed:
     """Old and new values for a patch of a design; nothing is saved or built.
 
     The patch is one of the newest revision, if none is named. With `worksheet`, every step as a revision
@@ -60,7 +61,7 @@ def preview(
     raise_if(new.faults)  # not those of the old one: the change may be to mend it
     old, _ = _calculated(database, catalogues, Document.model_validate(head.document))
     steps = results.steps(new)
-    told = {
+    compared = {
         "revision": head.number,
         "outputs": {
             **_compared(results.outputs(results.steps(old)), results.outputs(steps)),
@@ -70,7 +71,8 @@ def preview(
         "model_parameters": _model_parameters(old, new, mismatched),
     }
     more = {"steps": previewed(new, steps, system), "parameters": _values(new)} if worksheet else {}
-    return Preview({**converted(told, system), **more}, is_whole=not (old.deferred or new.deferred))
+    content = Preview.model_validate({**converted(compared, system), **more})
+    return Previewed(content, is_whole=not (old.deferred or new.deferred))
 
 
 def _calculated(

@@ -16,6 +16,7 @@ from app.designs.graph import Catalogues
 from app.designs.preview import preview
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.presentation.units import System
+from app.schemas.designs import Preview
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.errors import NotFound
@@ -45,11 +46,11 @@ class Previews:
         self.database, self.catalogues, self.store = database, catalogues, store
         self.jobs, self.steps = jobs, steps
 
-    def known(self, change: Change) -> dict[str, Any]:
+    def known(self, change: Change) -> Preview:
         """The preview as far as its caller waits for it."""
         return preview(self.database, self.catalogues, **vars(change)).content
 
-    def answer(self, change: Change, client: str) -> tuple[dict[str, Any], str | None]:
+    def answer(self, change: Change, client: str) -> tuple[Preview, str | None]:
         """The preview as far as its caller waits for it, and the job that calculates the rest, if any.
 
         Raises
@@ -64,7 +65,7 @@ class Previews:
             return found.content, None
         payload = {
             "design": change.design,
-            "revision": found.content["revision"],
+            "revision": found.content.revision,
             "worksheet": change.worksheet,
             "system": change.system,
             "body": self.store.put(to_json(change.patch)),
@@ -86,7 +87,9 @@ class Previews:
                 found = preview(self.database, self.catalogues, **asked)
         except FAILURES as error:
             raise JobFailed(error) from error
-        place = place_of_answer(job.id, self.store.put(to_json(found.content)))
+        place = place_of_answer(
+            job.id, self.store.put(found.content.model_dump_json(by_alias=True, exclude_unset=True).encode())
+        )
         return lambda session: place
 
     def failed(self, session: Session, job: Job, problem: dict[str, Any]) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 from sqlalchemy.orm import Session
 
 from app.designs import repository
+from app.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
 from app.solids import measures, rows
 from app.solids.models import File
 from app.storage.errors import NotFound
@@ -15,60 +16,69 @@ from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow
 STEP = "step"
 
 
-def design(row: DesignRow, revision: RevisionRow) -> dict[str, Any]:
+def design(row: DesignRow, revision: RevisionRow) -> Design:
     """A design as of one revision: what its user wrote, and how its regeneration stands."""
     document = revision.document
-    return {
-        "id": row.id,
-        "name": document["name"],
-        "revision": revision.number,
-        "state": revision.state,
-        "parameters": document["parameters"],
-        "steps": document["steps"],
-        "models": document["models"],
-        "iterations": document["iterations"],
-        "problem": revision.problem,
-        "created": row.created,
-        "changed": revision.created,
-    }
+    return Design.model_validate(
+        {
+            "id": row.id,
+            "name": document["name"],
+            "revision": revision.number,
+            "state": revision.state,
+            "parameters": document["parameters"],
+            "steps": document["steps"],
+            "models": document["models"],
+            "iterations": document["iterations"],
+            "problem": revision.problem,
+            "created": row.created,
+            "changed": revision.created,
+        }
+    )
 
 
-def listed(row: DesignRow, revision: RevisionRow) -> dict[str, Any]:
+def listed(row: DesignRow, revision: RevisionRow) -> DesignSummary:
     """A design in a list."""
-    shown = design(row, revision)
-    return {name: shown[name] for name in ("id", "name", "revision", "state", "created", "changed")}
+    return DesignSummary(
+        id=row.id,
+        name=revision.document["name"],
+        revision=revision.number,
+        state=revision.state,
+        created=row.created,
+        changed=revision.created,
+    )
 
 
-def revision(session: Session, row: RevisionRow) -> dict[str, Any]:
+def revision(session: Session, row: RevisionRow) -> Revision:
     """A revision: its inputs, which never change, and its results."""
-    found = row.results or {"steps": {}, "iterations": []}
-    return {
-        "design": row.design_id,
-        "number": row.number,
-        "note": row.note,
-        "created": row.created,
-        "state": row.state,
-        "problem": row.problem,
-        "name": row.document["name"],
-        "parameters": row.document["parameters"],
-        "steps": {
-            name: _step(step, found["steps"].get(name)) for name, step in row.document["steps"].items()
-        },
-        "models": {
-            model.name: {**_model(session, model), "analyses": _analyses(row, model.name)}
-            for model in row.models
-        },
-        "iterations": found["iterations"],
-    }
+    results = row.results or {"steps": {}, "iterations": []}
+    steps, models = row.document["steps"], row.models
+    return Revision.model_validate(
+        {
+            "design": row.design_id,
+            "number": row.number,
+            "note": row.note,
+            "created": row.created,
+            "state": row.state,
+            "problem": row.problem,
+            "name": row.document["name"],
+            "parameters": row.document["parameters"],
+            "steps": {name: _step(step, results["steps"].get(name)) for name, step in steps.items()},
+            "models": {
+                model.name: {**_model(session, model), "analyses": _analyses(row, model.name)}
+                for model in models
+            },
+            "iterations": results["iterations"],
+        }
+    )
 
 
-def _step(typed: dict[str, Any], found: dict[str, Any] | None) -> dict[str, Any]:
+def _step(typed: dict[str, Any], calculated: dict[str, Any] | None) -> dict[str, Any]:
     """A step with its results, or as typed while it waits for a solid or for its job."""
-    if found is None or "outputs" not in found:
+    if calculated is None or "outputs" not in calculated:
         template = {"id": typed["template"], "version": typed["version"]}
         empty: dict[str, Any] = {"outputs": {}, "level": None, "error": {}, "warnings": []}
         return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
-    return found
+    return calculated
 
 
 def _model(session: Session, row: RevisionModelRow) -> dict[str, Any]:
@@ -82,29 +92,31 @@ def _model(session: Session, row: RevisionModelRow) -> dict[str, Any]:
     }
 
 
-def measurements(session: Session, id: str) -> dict[str, Any]:
+def measurements(session: Session, id: str) -> dict[str, ModelMeasurements]:
     """What the newest good model of every name measures."""
     head = repository.head(session, id)
-    told: dict[str, Any] = {}
+    measured: dict[str, ModelMeasurements] = {}
     for model in head.models:
         good = repository.newest_good(session, id, model.name, head.number)
         if good is None or good.build_key is None:
             continue
         row = rows.build(session, good.build_key)
         assert row is not None
-        told[model.name] = {
-            "revision": good.number,
-            "build": row.key,
-            **measures.measurements(**row.measurements).model_dump(exclude_unset=True),
-            "analyses": _analyses(repository.revision(session, id, good.number), model.name),
-        }
-    return told
+        measured[model.name] = ModelMeasurements.model_validate(
+            {
+                "revision": good.number,
+                "build": row.key,
+                **measures.measurements(**row.measurements).plain(),
+                "analyses": _analyses(repository.revision(session, id, good.number), model.name),
+            }
+        )
+    return measured
 
 
 def _analyses(row: RevisionRow, model: str) -> dict[str, Any]:
-    """What a revision holds of the analyses of a model; those of before there were any hold nothing."""
-    found: dict[str, Any] = (row.results or {}).get("analyses", {}).get(model, {})
-    return found
+    """The analyses of a model in a revision; none in revisions of before there were any."""
+    analyses: dict[str, Any] = (row.results or {}).get("analyses", {}).get(model, {})
+    return analyses
 
 
 def good_model(session: Session, id: str, name: str | None, number: int | None) -> RevisionModelRow:

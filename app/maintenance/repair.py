@@ -8,8 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TypeVar, TypeVarTuple
 
-from app.api.reading import HttpError
-from app.calculations.errors import InvalidBody
+from app.calculations.errors import InvalidBody, TooManyValues
 from app.calculations.jobs import CALCULATION, place_of_answer, question_of
 from app.calculations.operations import answered
 from app.calculations.sources import source_of
@@ -45,7 +44,7 @@ FAILURES = (
     AnalysisError,
     WorkerError,
     InvalidBody,
-    HttpError,
+    TooManyValues,
     ArtifactMissing,
     ArtifactDamaged,
 )

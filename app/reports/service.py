@@ -57,7 +57,7 @@ class Reports:
     def told(self, id: str, number: int, system: System) -> dict[str, Any]:
         """A revision with its formulas written out, as its worksheet tells it."""
         with self.database.read() as session:
-            told = views.revision(session, repository.revision(session, id, number))
+            told = views.revision(session, repository.revision(session, id, number)).plain()
         models = converted(told["models"], system)
         return {
             **told,

@@ -20,6 +20,10 @@ class Answer(BaseModel):
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
+    def plain(self) -> dict[str, Any]:
+        """The answer as plain JSON values, without the fields that it leaves out."""
+        return self.model_dump(mode="json", by_alias=True, exclude_unset=True)
+
     def in_units(self, system: System) -> Self:
         """The answer with every quantity in a system of units; what has no unit stays as it is."""
         if system == "si":
@@ -41,7 +45,7 @@ def _in_units(value: object, system: System) -> object:
 
 
 VALUE: dict[str, Any] = {
-    "description": "a number, or an array of numbers of any shape; a text for choices; null where there is none",
+    "description": "a number, an array of numbers of any shape, or the text of a choice; null for none",
     "anyOf": [
         {"type": "number"},
         {"type": "string"},

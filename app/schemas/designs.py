@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, WithJsonSchema
+from pydantic import ConfigDict, Field, WithJsonSchema
 
 from app.schemas.analyses import ModelAnalysis
 from app.schemas.answers import Answer, Page, Shown, Version, Warning
-from app.schemas.evaluations import CalculatedBy, Level, Output, UsedInput, WorkedFormula
+from app.schemas.evaluations import CalculatedBy, Error, Level, Output, UsedInput, WorkedFormula
 from app.schemas.problems import Problem
 from app.schemas.solids import Measurements
 from app.schemas.values import GIVEN
 
 State = Literal["current", "regenerating", "failed"]
-"""`current`: the results belong to the inputs; `regenerating`: they are on their way; `failed`: see `problem`."""
+"""`current`: the results belong to the inputs; `regenerating`: a job is at work; `failed`: see `problem`."""
 
 Typed = Annotated[Any, WithJsonSchema(GIVEN)]
 """A value as its user typed it; a relation begins with `=`."""
@@ -34,6 +34,7 @@ class Step(Answer):
 class AnalysisOptions(Answer):
     """How an analysis is done of which a relation uses an output."""
 
+    kind: str | None = Field(None, description="absent where the name says it")
     boundary: str = "free_end"
     level: str | None = None
     tolerance: float | None = None
@@ -97,27 +98,34 @@ class Proposal(Answer):
     reason: str
 
 
-class Mapping(Answer):
+class Proposals(Answer):
     """Proposals for model parameters that are not set."""
 
     proposals: list[Proposal]
 
 
-class MappedDesign(Design, Mapping):
+class MappedDesign(Design, Proposals):
     """A design with the proposals that were applied."""
 
 
+InputOrTyped = Annotated[UsedInput | Typed, Field(union_mode="left_to_right")]
+"""An input as it was used, or as typed while its step waits."""
+
+
 class RevisionStep(Answer):
-    """A step with its results, or as typed while it waits for a solid."""
+    """A step with its results, or as typed while it waits for a solid or its job."""
+
+    model_config = ConfigDict(extra="allow")  # older programs stored more
 
     template: CalculatedBy
-    inputs: dict[str, UsedInput | Typed]
-    outputs: dict[str, Output]
+    inputs: dict[str, InputOrTyped] = {}
+    outputs: dict[str, Output] = {}
     level: Level = None
-    error: dict[str, Any]
-    warnings: list[Warning]
+    error: dict[str, Error] = {}
+    warnings: list[Warning] = []
     relations: dict[str, Typed] = Field({}, description="inputs that are relations, as typed")
-    pending: bool = Field(False, description="whether it waits for a solid; absent if it does not")
+    state: str | None = Field(None, description="`pending` in a preview, for a step that waits")
+    pending: bool = Field(False, description="whether it waits; absent if it does not")
 
 
 class RevisionModel(Answer):
@@ -135,16 +143,11 @@ class RevisionModel(Answer):
 class Round(Answer):
     """One round of an iteration."""
 
+    round: int
+    through: str = Field(description="the measure or analysis output through which it runs")
     assumed: float
     measured: float
     unit: str
-
-
-class IterationRun(Answer):
-    """How an iteration settled."""
-
-    through: str
-    rounds: list[Round]
 
 
 class Revision(Answer):
@@ -160,7 +163,7 @@ class Revision(Answer):
     parameters: dict[str, Typed]
     steps: dict[str, RevisionStep]
     models: dict[str, RevisionModel]
-    iterations: list[IterationRun]
+    iterations: list[Round]
 
 
 class RevisionList(Page[Revision]):
@@ -197,6 +200,12 @@ class PreviewedStep(RevisionStep):
     formulas: list[WorkedFormula]
 
 
+class RevisionWorksheet(Revision):
+    """A revision with every formula of its steps written out."""
+
+    steps: dict[str, PreviewedStep]  # type: ignore[assignment]
+
+
 class Preview(Answer):
     """What a change would do; nothing is saved."""
 
@@ -221,7 +230,5 @@ class Explanation(Answer):
     latex: str | None = None
     mathml: str | None = None
     source: str | None = None
-    analysis: dict[str, Any] | None = None
+    analysis: AnalysisOptions | None = None
     because: list[Explanation] | None = None
-
-

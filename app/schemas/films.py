@@ -13,7 +13,7 @@ class Field(Measured):
 
 
 class FilmPressure(Answer):
-    """Pressure over the unrolled surface of the bearing; angles from the narrowest gap, along the rotation."""
+    """Pressure over the unrolled surface of the bearing; angles begin at the narrowest gap."""
 
     bearing_diameter: Quantity
     angle: Values

@@ -34,7 +34,7 @@ class LocalProcesses:
         self,
         function: Callable[[*Ts], T],
         *args: *Ts,
-        limits: Limits = Limits(),
+        limits: Limits = Limits(),  # noqa: B008 - frozen
         on_progress: Reporter | None = None,
         cancelled: threading.Event | None = None,
     ) -> T:

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from app.cache import Cache
+from app.calculations.cache import Cache
 from app.catalogue.finding import find_templates
 from app.designs.graph import Block
 from app.designs.memory import Memory

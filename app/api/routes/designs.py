@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from functools import partial
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Header, Path, Query, Request, Response
-from fastapi.responses import JSONResponse
 from pydantic import WithJsonSchema
 from starlette.concurrency import run_in_threadpool
 
@@ -23,14 +24,26 @@ from app.api.dependencies import (
 from app.api.gate.clients import TheClient
 from app.api.paging import Cursor, Limit, page
 from app.api.reading import StrictRoute
-from app.api.waiting import LATER, LONGEST, accepted, finished, patience
+from app.api.waiting import LONGEST, accepted, finished, later, patience, written
 from app.designs import repository, views
 from app.designs.explain import explain
 from app.designs.previewing import Change
 from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn, RestoreIn
 from app.designs.service import Designs, Saved
 from app.jobs.service import Jobs
-from app.presentation.units import converted
+from app.schemas.designs import (
+    Design,
+    DesignList,
+    Explanation,
+    MappedDesign,
+    ModelMeasurements,
+    Preview,
+    Proposal,
+    Proposals,
+    Revision,
+    RevisionList,
+)
+from app.schemas.problems import refusals
 from templates.core.errors import Fault, InvalidInputs
 
 router = APIRouter(
@@ -50,12 +63,13 @@ Patch = Annotated[
     Body(description="a merge patch of the design, with an optional `note`; null removes"),
     WithJsonSchema(PATCH),
 ]
+CHANGED = {**later(Design), **refusals(404, 429)}
 MERGE_PATCH: dict[str, Any] = {
     "requestBody": {"content": {"application/merge-patch+json": {"schema": PATCH}}}
 }
 
 
-@router.post("", status_code=201, responses=LATER)
+@router.post("", status_code=201, response_model=Design, responses={**later(Design), **refusals(429)})
 async def create_design(
     body: DesignIn,
     designs: TheDesigns,
@@ -74,11 +88,12 @@ async def create_design(
 
 
 @router.get("")
-def list_designs(database: TheDatabase, limit: Limit = 50, cursor: Cursor = None) -> dict[str, Any]:
+def list_designs(database: TheDatabase, limit: Limit = 50, cursor: Cursor = None) -> DesignList:
     """All designs, newest first."""
     with database.read() as session:
         rows = repository.designs(session, limit, cursor)
         return page(
+            DesignList,
             rows,
             limit,
             lambda row: views.listed(row, repository.revision(session, row.id, row.head)),
@@ -86,13 +101,13 @@ def list_designs(database: TheDatabase, limit: Limit = 50, cursor: Cursor = None
         )
 
 
-@router.get("/{id}")
+@router.get("/{id}", response_model=Design, responses=refusals(404))
 def show_design(id: Id, designs: TheDesigns) -> Response:
     """A design as of its newest revision; the ETag is that revision."""
     return _shown(designs, id, None, 200)
 
 
-@router.patch("/{id}", responses=LATER, openapi_extra=MERGE_PATCH)
+@router.patch("/{id}", response_model=Design, responses=CHANGED, openapi_extra=MERGE_PATCH)
 async def change_design(
     id: Id,
     body: Patch,
@@ -112,14 +127,14 @@ async def change_design(
     return await _answer(designs, jobs, saved, prefer)
 
 
-@router.delete("/{id}", status_code=204)
+@router.delete("/{id}", status_code=204, responses=refusals(404))
 def delete_design(id: Id, designs: TheDesigns) -> Response:
     """Take a design from the lists; its revisions are kept."""
     designs.delete(id)
     return Response(status_code=204)
 
 
-@router.post("/{id}/preview", response_model=None, responses=LATER)
+@router.post("/{id}/preview", response_model=Preview, responses={**later(Preview), **refusals(404, 429)})
 async def preview_design(
     id: Id,
     body: Patch,
@@ -131,16 +146,16 @@ async def preview_design(
     units: Units = "si",
     within: Within = None,
     prefer: Prefer = None,
-) -> dict[str, Any] | Response:
+) -> Response:
     """What a change would do to outputs and model parameters; nothing is saved."""
     change = Change(id, _noted(body)[0], worksheet, units)
     if within is not None:
-        return await threads.run_within(within, request, previews.known, change)
-    told, job = await threads.run_within(_seconds(prefer), request, previews.answer, change, client)
-    return accepted(job, told) if job else told
+        return written(await threads.run_within(within, request, previews.known, change))
+    answer, job = await threads.run_within(_seconds(prefer), request, previews.answer, change, client)
+    return accepted(job, answer) if job else written(answer)
 
 
-@router.post("/{id}/auto-map", responses=LATER)
+@router.post("/{id}/auto-map", response_model=MappedDesign | Proposals, responses=CHANGED)
 async def map_design(
     id: Id,
     designs: TheDesigns,
@@ -156,11 +171,13 @@ async def map_design(
     found, saved = await threads.run_within(
         _seconds(prefer), request, designs.auto_map, id, apply, if_match, once
     )
-    told = {"proposals": [vars(proposal) for proposal in found]}
-    return await _answer(designs, jobs, saved, prefer, told) if saved else JSONResponse(told)
+    proposals = [Proposal(**vars(proposal)) for proposal in found]
+    if not saved:
+        return written(Proposals(proposals=proposals))
+    return await _answer(designs, jobs, saved, prefer, proposals)
 
 
-@router.post("/{id}/copy", status_code=201, responses=LATER)
+@router.post("/{id}/copy", status_code=201, response_model=Design, responses=CHANGED)
 async def copy_design(
     id: Id,
     designs: TheDesigns,
@@ -178,7 +195,7 @@ async def copy_design(
     return await _answer(designs, jobs, saved, prefer)
 
 
-@router.post("/{id}/revisions/{number}/restore", responses=LATER)
+@router.post("/{id}/revisions/{number}/restore", response_model=Design, responses=CHANGED)
 async def restore_revision(
     id: Id,
     number: Number,
@@ -199,47 +216,48 @@ async def restore_revision(
     return await _answer(designs, jobs, saved, prefer)
 
 
-@router.get("/{id}/revisions")
+@router.get("/{id}/revisions", responses=refusals(404))
 def list_revisions(
     id: Id,
     database: TheDatabase,
     limit: Limit = 50,
     cursor: Annotated[int | None, Query(ge=1, le=10**9)] = None,
-) -> dict[str, Any]:
+) -> RevisionList:
     """The revisions of a design, newest first."""
     with database.read() as session:
         repository.design(session, id)
         rows = repository.revisions(session, id, limit, cursor)
-        return page(rows, limit, lambda row: views.revision(session, row), lambda row: str(row.number))
+        show = partial(views.revision, session)
+        return page(RevisionList, rows, limit, show, lambda row: str(row.number))
 
 
-@router.get("/{id}/revisions/{number}")
-def show_revision(id: Id, number: Number, database: TheDatabase) -> dict[str, Any]:
+@router.get("/{id}/revisions/{number}", responses=refusals(404))
+def show_revision(id: Id, number: Number, database: TheDatabase) -> Revision:
     """A revision: its inputs never change, its results are attached once."""
     with database.read() as session:
         return views.revision(session, repository.revision(session, id, number))
 
 
-@router.get("/{id}/measurements")
-def show_measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str, Any]:
+@router.get("/{id}/measurements", responses=refusals(404))
+def show_measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str, ModelMeasurements]:
     """What the newest good models measure, their dimensions read back from the STEP files."""
     with database.read() as session:
-        told: dict[str, Any] = converted(views.measurements(session, id), units)
-        return told
+        measured = views.measurements(session, id)
+        return {name: model.in_units(units) for name, model in measured.items()}
 
 
-@router.get("/{id}/explain/{parameter}")
+@router.get("/{id}/explain/{parameter}", responses=refusals(404))
 async def explain_parameter(
     id: Id, parameter: Id, designs: TheDesigns, threads: TheThreads, request: Request
-) -> dict[str, Any]:
+) -> Explanation:
     """Where a model parameter comes from: dimension ← relation ← output ← formula ← inputs."""
 
-    def told() -> dict[str, Any]:
+    def explained() -> Explanation:
         with designs.database.read() as session:
             document = repository.head(session, id).document
-        return explain(designs.prepare(document)[1], parameter)
+        return Explanation.model_validate(explain(designs.prepare(document)[1], parameter))
 
-    return await threads.run_for(request, told)
+    return await threads.run_for(request, explained)
 
 
 def _noted(body: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
@@ -257,22 +275,28 @@ def _seconds(prefer: str | None) -> float:
 
 
 async def _answer(
-    designs: Designs, jobs: Jobs, saved: Saved, prefer: str | None, more: dict[str, Any] | None = None
+    designs: Designs,
+    jobs: Jobs,
+    saved: Saved,
+    prefer: str | None,
+    proposals: Sequence[Proposal] | None = None,
 ) -> Response:
     """The design itself, whether its job ended in time (200, 201) or goes on (202, the job in Location)."""
     done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
     status = (201 if saved.created else 200) if done else 202
     place = f"/api/v1/jobs/{saved.job}" if saved.job and not done else f"/api/v1/designs/{saved.design}"
-    answer = await run_in_threadpool(_shown, designs, saved.design, saved.revision, status, more)
+    answer = await run_in_threadpool(_shown, designs, saved.design, saved.revision, status, proposals)
     answer.headers["Location"] = place
     return answer
 
 
 def _shown(
-    designs: Designs, id: str, number: int | None, status: int, more: dict[str, Any] | None = None
+    designs: Designs, id: str, number: int | None, status: int, proposals: Sequence[Proposal] | None = None
 ) -> Response:
     with designs.database.read() as session:
         row = repository.design(session, id)
         revision = repository.revision(session, id, number or row.head)
-        body = {**views.design(row, revision), **(more or {})}
-    return JSONResponse(body, status, headers={"ETag": f'"{revision.number}"'})
+        design = views.design(row, revision)
+    if proposals is not None:
+        design = MappedDesign(**dict(design), proposals=list(proposals))
+    return written(design, status, {"ETag": f'"{revision.number}"'})

@@ -8,7 +8,6 @@ from dataclasses import asdict
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Request, Response
-from fastapi.responses import JSONResponse
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import ExpensiveSteps, TheJobs, ThePress, TheReports, TheThreads, Units
@@ -16,12 +15,14 @@ from app.api.gate.clients import TheClient
 from app.api.gate.guard import PAGE_POLICY
 from app.api.reading import StrictRoute
 from app.api.routes.designs import Id, Number, Prefer, Within
-from app.api.waiting import accepted_kinds, finished
+from app.api.waiting import accepted_kinds, finished, written
 from app.jobs.service import Jobs
 from app.reports import tables
 from app.reports.content import Report
 from app.reports.screen import page
 from app.reports.service import Reports, tag
+from app.schemas.designs import RevisionWorksheet
+from app.schemas.problems import refusals
 from app.storage.errors import NotFound
 
 router = APIRouter(
@@ -43,7 +44,9 @@ def _described(kinds: Mapping[str, str], *, later: bool = False) -> dict[str, An
     told = "the report without the pictures that are still being made; their job is in the header Location"
     more = {202: {"description": told, "content": content}} if later else {}
     unchanged = {304: {"description": "as it was when the ETag of If-None-Match was sent"}}
-    return {"response_class": Response, "responses": {200: {"content": content}, **unchanged, **more}}
+    answer = {"content": content, **({"model": RevisionWorksheet} if "json" in kinds else {})}
+    responses = {200: answer, **unchanged, **more, **refusals(404, 429)}
+    return {"response_class": Response, "responses": responses}
 
 
 Accept = Annotated[str | None, Header(description="the kind wanted; the first if none is known")]
@@ -113,7 +116,7 @@ async def show_worksheet(
         told = await threads.run_within(within, request, reports.told, id, revision, units)
     headers = {"Vary": "Accept", "Design-Revision": str(revision)}
     if wanted == "json":
-        return JSONResponse(told, headers=headers)
+        return written(RevisionWorksheet.model_validate(told), headers=headers)
     write = tables.write_csv if wanted == "csv" else tables.write_xlsx
     headers["Content-Disposition"] = f'attachment; filename="design_{_plain(id)}_r{revision}.{wanted}"'
     table = await run_in_threadpool(lambda: write(tables.of(told)))
