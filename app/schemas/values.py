@@ -16,7 +16,7 @@ GIVEN: dict[str, Any] = {
     "anyOf": [
         {"type": "string", "minLength": 1},
         {"type": "number"},
-        {"type": "array", "minItems": 1},
+        {"type": "array", "minItems": 1, "items": {}},
         {"type": "object", "properties": {"value": {}, "unit": {"type": "string"}}, "required": ["value"]},
     ],
 }

@@ -44,8 +44,8 @@ def _described(kinds: Mapping[str, str], *, later: bool = False) -> dict[str, An
     told = "the report without the pictures that are still being made; their job is in the header Location"
     more = {202: {"description": told, "content": content}} if later else {}
     unchanged = {304: {"description": "as it was when the ETag of If-None-Match was sent"}}
-    answer = {"content": content, **({"model": RevisionWorksheet} if "json" in kinds else {})}
-    responses = {200: answer, **unchanged, **more, **refusals(404, 429)}
+    answer: dict[str, Any] = {"content": content, **({"model": RevisionWorksheet} if "json" in kinds else {})}
+    responses: dict[int | str, Any] = {200: answer, **unchanged, **more, **refusals(404, 429)}
     return {"response_class": Response, "responses": responses}
 
 
