@@ -100,10 +100,6 @@ def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:
         return _along_a_cycle(declared, typed)
     if isinstance(typed.si, np.ndarray):
         return _masked_points(declared, typed.si, declared.meaning.admits(typed.si))
-    return _one_number(declared, typed)
-
-
-def _one_number(declared: Input, typed: Typed) -> tuple[np.float64, Fault | None]:
     inside = declared.meaning.admits(typed.si)
     return np.float64(typed.si), None if inside else _out_of_bounds(declared, typed, inside)
 
