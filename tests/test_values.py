@@ -9,7 +9,7 @@ import pytest
 import app
 import templates
 
-GROWING = {"Ledger", "Calculation", "Graph", "Findings", "Contents", "Restored"}
+GROWING = {"Ledger", "Calculation", "Caller", "Graph", "Findings", "Contents", "Restored"}
 """Records that one function fills step by step before it returns them."""
 
 

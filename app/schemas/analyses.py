@@ -43,6 +43,7 @@ class AnalysisOutput(Answer):
     point: Triple | None = Field(None, description="where the greatest stress is, in mm")
     searched: Span | None = Field(None, description="the part of the axis in which it was sought, in mm")
     reason: str | None = Field(None, description="why there is no value")
+    seconds: float | None = Field(None, description="time that it took, in s; in previews only")
     url: str | None = Field(None, description="where the surface is")
     sha256: str | None = None
     size: int | None = Field(None, description="of the file, in bytes")

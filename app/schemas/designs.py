@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, WithJsonSchema
 
-from app.schemas.analyses import ModelAnalysis
+from app.schemas.analyses import AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Answer, Page, Shown, Version, Warning
 from app.schemas.evaluations import CalculatedBy, Error, Level, Output, UsedInput, WorkedFormula
 from app.schemas.problems import Problem
@@ -178,11 +178,15 @@ class ModelMeasurements(Measurements):
     analyses: dict[str, ModelAnalysis]
 
 
+Result = Annotated[Output | AnalysisOutput, Field(union_mode="left_to_right")]
+"""An output of a step, or of an analysis."""
+
+
 class Change(Answer):
     """A value before and after a change; null where there is none."""
 
-    old: Output | None
-    new: Output | None
+    old: Result | None
+    new: Result | None
 
 
 class ParameterChange(Answer):

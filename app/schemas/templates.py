@@ -98,7 +98,7 @@ class Axis(Answer):
     model_config = ConfigDict(extra="allow")
 
     attribute: str
-    name: str
+    name: str | None = Field(None, description="the input or output along the axis")
     values: list[float] = Field(description="the ends of the cells")
 
 
@@ -107,9 +107,9 @@ class Accuracy(Answer):
 
     model_config = ConfigDict(extra="allow")
 
-    made_by: str = Field(description="the command that measured it")
-    truth: str = Field(description="with which solution the levels are compared")
-    error: str = Field(description="what the errors are")
-    cost: str = Field(description="what the costs are")
-    axes: list[Axis]
+    made_by: str | None = Field(None, description="the command that measured it")
+    truth: str | None = Field(None, description="with which solution the levels are compared")
+    error: str | None = Field(None, description="what the errors are")
+    cost: str | None = Field(None, description="what the costs are")
+    axes: list[Axis] = Field([], description="none where one cell covers the whole plane")
     levels: dict[str, JsonValue] = Field(description="cost, and error by output and cell")

@@ -30,7 +30,10 @@ Nursery = dict[int, Connection]  # process id of a living job -> where its exit 
 
 def main(channel: int, lifeline: int, modules: Iterable[str]) -> NoReturn:
     """Import the modules, then fork a job process for each pair of connections that the channel brings."""
-    hang_on(lifeline)  # first of all: the imports take seconds, on a busy machine many
+    try:
+        hang_on(lifeline)  # first of all: the imports take seconds, on a busy machine many
+    except ProcessLookupError:  # the server ended before this process began
+        os._exit(1)
     signal.signal(signal.SIGTTOU, signal.SIG_IGN)  # in the background of a terminal, a message may stop it
     share_fairly()
     loaded = [_preload(module) for module in modules]

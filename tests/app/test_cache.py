@@ -4,8 +4,8 @@ import sys
 
 import numpy as np
 import pytest
-from pydantic_core import to_json
 
+from app.calculations import rendering
 from app.calculations.cache import Cache
 from app.calculations.sizes import size_of
 from app.catalogue.finding import find_templates
@@ -128,7 +128,9 @@ class TestMemory:
 def test_formulas_written_out_are_kept_in_the_same_cache(film, monkeypatch):
     cache = Cache(16)
     monkeypatch.setattr("app.designs.worksheet.kept", cache)
-    arguments = (film, to_json(dict(film.example)), tuple(film.formulas)[:1], None, "si")
+    outputs = tuple(film.formulas)[:1]
+    step = rendering.evaluation(evaluate(film, film.example, outputs=outputs))
+    arguments = (film, step, "si")
     first = _written_out(*arguments)
     assert cache.size > 1000
     monkeypatch.setattr("app.designs.worksheet.evaluated_step", None)

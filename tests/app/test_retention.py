@@ -13,6 +13,7 @@ from app.retention import rows, service
 from app.retention.files import Sweep
 from app.retention.service import Retention
 from app.settings import Settings
+from app.solids import rows as build_rows
 from app.solids.ages import FRESH, is_fresh, renew
 from app.storage.artifacts import ArtifactStore
 from app.storage.clock import DAY
@@ -57,8 +58,8 @@ def build(database, key, bytes_, store):
     """A build with a file and an analysis."""
 
     def unit(session):
-        designs.add_build(session, key, "moody", 1, {}, {}, "recipe 1")
-        designs.add_artifact(session, key, "step", store.put(bytes_), len(bytes_))
+        build_rows.add_build(session, key, "moody", 1, {}, {}, "recipe 1")
+        build_rows.add_artifact(session, key, "step", store.put(bytes_), len(bytes_))
         session.add(
             AnalysisRow(key=f"of {key}", output="stress", build_key=key, asked={}, found={}, created="")
         )
@@ -223,7 +224,7 @@ class TestFiles:
         def unit(session):
             id = jobs.add(session, "k", payload, None, None)
             result = f"/api/v1/evaluations/{id}?sha256={sha}" if named == "result" else None
-            jobs.set_result(session, jobs.get(session, id), result)
+            jobs.set_result(session, id, result)
 
         database.write(unit)
         sweep = Sweep(database, store)

@@ -148,7 +148,7 @@ MASS_CONSERVING = {"inputs": {**OIL_FILM, "speed": SPEEDS}, "level": "mass_conse
 
 def calculations(server) -> int:
     """The process from which those of calculations are forked."""
-    leaders = (pid for pid in descendants(server.process.pid) if os.getsid(pid) == pid)
+    leaders = (pid for pid in descendants(server.process.pid) if os.getpgid(pid) == pid)
     return next(
         pid for pid in leaders if b"app.calculations.warm" in Path(f"/proc/{pid}/cmdline").read_bytes()
     )

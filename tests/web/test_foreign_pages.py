@@ -181,7 +181,7 @@ def test_a_name_of_another_site_that_leads_here(browser, served, http, paper):
 def test_the_documentation_works_under_its_policy(watched, http):
     page = watched.page
     watched.open("/docs")
-    call = page.locator("#operations-designs-create_design_api_v1_designs_post")
+    call = page.locator("#operations-designs-create_design")
     call.click()
     call.get_by_text("Try it out").click()
     call.get_by_role("button", name="Execute").click()

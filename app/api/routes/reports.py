@@ -43,7 +43,9 @@ def _described(kinds: Mapping[str, str], *, later: bool = False) -> dict[str, An
     content: dict[str, Any] = {media: {} for media in kinds.values()}
     told = "the report without the pictures that are still being made; their job is in the header Location"
     more: dict[int | str, Any] = {202: {"description": told, "content": content}} if later else {}
-    unchanged: dict[int | str, Any] = {304: {"description": "as it was when the ETag of If-None-Match was sent"}}
+    unchanged: dict[int | str, Any] = {
+        304: {"description": "as it was when the ETag of If-None-Match was sent"}
+    }
     answer: dict[str, Any] = {"content": content, **({"model": RevisionWorksheet} if "json" in kinds else {})}
     responses: dict[int | str, Any] = {200: answer, **unchanged, **more, **refusals(404, 429)}
     return {"response_class": Response, "responses": responses}
