@@ -42,9 +42,17 @@ class DesignFilter:
 
 
 def conditions(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement[bool]]:
-    """The conditions of a filter on a design and its newest revision."""
+    """The conditions of a filter on a design."""
     if wanted.name is not None:
         yield DesignRow.name.icontains(wanted.name, autoescape=True)
+    if of_newest := list(_of_newest(session, wanted)):
+        # No join: SQLite would begin with all revisions, and sort them.
+        is_newest = (RevisionRow.design_id == DesignRow.id) & (RevisionRow.number == DesignRow.head)
+        yield exists(select(1).where(is_newest, *of_newest).correlate(DesignRow))
+
+
+def _of_newest(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement[bool]]:
+    """The conditions of a filter on the newest revision of a design."""
     if wanted.state is not None:
         yield RevisionRow.state == wanted.state
     if wanted.template is not None:

@@ -15,8 +15,6 @@ from app.storage.errors import NotFound
 from app.storage.identity import new_id, now
 from app.storage.tables import BuildRow, DesignRow, RevisionModelRow, RevisionRow
 
-IS_HEAD = (RevisionRow.design_id == DesignRow.id) & (RevisionRow.number == DesignRow.head)
-
 
 @dataclass(frozen=True)
 class Written:
@@ -74,8 +72,8 @@ def designs(
 ) -> list[DesignRow]:
     """One page of the designs that a filter selects, newest first, and one more if there are more."""
     query = select(DesignRow).where(DesignRow.deleted.is_(None)).order_by(DesignRow.id.desc())
-    if wanted is not None and wanted != DesignFilter():
-        query = query.join(RevisionRow, IS_HEAD).where(*conditions(session, wanted))
+    if wanted is not None:
+        query = query.where(*conditions(session, wanted))
     if cursor:
         query = query.where(DesignRow.id < cursor)
     return list(session.scalars(query.limit(limit + 1)))

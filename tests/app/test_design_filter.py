@@ -4,12 +4,13 @@ from uuid import uuid4
 
 import pytest
 from serving import API, created, paper, patched, problem
-from sqlalchemy import event
+from sqlalchemy import event, text
 
 from app.designs import repository
 from app.designs.filtering import DesignFilter
 from app.designs.repository import Written
 from app.designs.results import ModelState
+from app.storage.errors import DatabaseDamaged
 
 DESIGNS = f"{API}/designs"
 
@@ -103,12 +104,23 @@ def test_the_database_filters(database):
     """Rows that do not fit never leave it: one statement returns the page and one row more."""
     for number in range(40):
         save(database, f"design {number}", ("oil_film", 1 + number % 2))
-    statements = []
+    calls = []
     with database.read() as session:
-        event.listen(session.connection(), "before_cursor_execute", lambda *call: statements.append(call[2]))
+        event.listen(session.connection(), "before_cursor_execute", lambda *call: calls.append(call[2:4]))
         rows = repository.designs(session, 5, None, DesignFilter(template="oil_film/2"))
-    assert [row.name for row in rows] == [f"design {number}" for number in (39, 37, 35, 33, 31, 29)]
-    assert len(statements) == 1
+        assert [row.name for row in rows] == [f"design {number}" for number in (39, 37, 35, 33, 31, 29)]
+        (statement,) = calls
+        cursor = session.connection().connection.cursor()
+        plan = [row[3] for row in cursor.execute(f"EXPLAIN QUERY PLAN {statement[0]}", statement[1])]
+    assert plan[0].startswith("SCAN design USING INDEX")  # along the index, newest first: it can stop early
+    assert not any("ORDER BY" in step for step in plan)
+
+
+def test_a_damaged_document_is_reported_as_damage(database):
+    save(database, "good")
+    database.write(lambda session: session.execute(text("UPDATE revision SET document = '{'")))
+    with pytest.raises(DatabaseDamaged):
+        selected(database, template="oil_film")
 
 
 def walk(http, **query):
