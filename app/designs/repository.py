@@ -9,6 +9,7 @@ from typing import Any
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.designs.filtering import DesignFilter, conditions
 from app.designs.results import ModelState
 from app.storage.errors import NotFound
 from app.storage.identity import new_id, now
@@ -66,9 +67,13 @@ def newest_number(session: Session, id: str) -> int:
     return row.head
 
 
-def designs(session: Session, limit: int, cursor: str | None) -> list[DesignRow]:
-    """One page of designs, newest first, and one more if there are more."""
+def designs(
+    session: Session, limit: int, cursor: str | None, wanted: DesignFilter | None = None
+) -> list[DesignRow]:
+    """One page of the designs that a filter selects, newest first, and one more if there are more."""
     query = select(DesignRow).where(DesignRow.deleted.is_(None)).order_by(DesignRow.id.desc())
+    if wanted is not None:
+        query = query.where(*conditions(session, wanted))
     if cursor:
         query = query.where(DesignRow.id < cursor)
     return list(session.scalars(query.limit(limit + 1)))

@@ -50,6 +50,7 @@ def _sqlite_engine(url: str, pragmas: tuple[str, ...], begin: str) -> Engine:
         connection.isolation_level = None  # the driver shall not begin transactions by itself
         for pragma in pragmas:
             connection.execute(f"PRAGMA {pragma}")
+        connection.create_function("lower", 1, _lower, deterministic=True)
 
     @event.listens_for(engine, "begin")
     def start(connection: Connection) -> None:
@@ -58,6 +59,11 @@ def _sqlite_engine(url: str, pragmas: tuple[str, ...], begin: str) -> Engine:
     event.listen(engine, "savepoint", _expect_transaction)
     event.listen(engine, "commit", _expect_transaction)
     return engine
+
+
+def _lower(value: Any) -> Any:
+    """A text in lower case, for SQLite, whose own function knows A to Z only: `Ä` would not match `ä`."""
+    return value.lower() if isinstance(value, str) else value
 
 
 def _expect_transaction(connection: Connection, name: str | None = None) -> None:

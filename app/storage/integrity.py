@@ -80,7 +80,8 @@ def is_damage(error: BaseException) -> bool:
     cause = error.orig if isinstance(error, DBAPIError) else error
     if isinstance(cause, sqlite3.Error):
         code = getattr(cause, "sqlite_errorcode", 0) or 0
-        return code & 0xFF in _CORRUPT or "Could not decode to UTF-8" in str(cause)
+        wrong_text = any(words in str(cause) for words in ("Could not decode to UTF-8", "malformed JSON"))
+        return code & 0xFF in _CORRUPT or wrong_text
     return isinstance(cause, (DatabaseDamaged, NotWritten))
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Annotated, Any
-from urllib.parse import quote
+from typing import Annotated, Any, get_args
+from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
+from app.schemas.designs import State
 from app.web import plotly
 from app.web.api import Api, TheApi
 from app.web.design_page import design_page, revision_page
@@ -20,6 +21,7 @@ router = APIRouter(include_in_schema=False)
 
 Id = Annotated[str, Path(max_length=64, pattern=r"^[A-Za-z0-9_]+$")]
 Number = Annotated[int, Path(ge=1, le=10**9)]
+Text = Annotated[str, Query(max_length=200)]
 ON_HOME = 4  # designs, with pictures: the first page is light
 
 
@@ -44,11 +46,26 @@ async def home(request: Request, api: TheApi) -> Response:
 
 @router.get("/designs")
 async def designs(
-    request: Request, api: TheApi, cursor: Annotated[str | None, Query(max_length=64)] = None
+    request: Request,
+    api: TheApi,
+    cursor: Text = "",
+    name: Text = "",
+    state: Text = "",
+    template: Text = "",
 ) -> Response:
-    """All designs, page by page."""
-    query = {"cursor": cursor} if cursor else {}
-    return show(request, "designs.html", designs=await api.get("/designs", limit=50, **query))
+    """Designs, page by page: all, or those that fit what was typed into the filter."""
+    typed = {"name": name, "state": state, "template": template.strip()}
+    wanted = {key: text for key, text in typed.items() if text}  # a form sends empty fields too
+    place = {"cursor": cursor} if cursor else {}
+    page = await api.get("/designs", limit=50, **wanted, **place)
+    return show(
+        request,
+        "designs.html",
+        designs=page,
+        wanted=wanted,
+        states=get_args(State),
+        older=urlencode({**wanted, "cursor": page["next"]}) if page["next"] else None,
+    )
 
 
 @router.get("/templates/{id}")

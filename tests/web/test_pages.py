@@ -37,6 +37,18 @@ def test_a_page_is_shown_under_the_strict_policy(http, path):
     assert "<script>" not in answer.text
 
 
+def test_the_list_of_designs_is_filtered_by_a_form(http):
+    for name in ("filtered one", "filtered <two>"):
+        http.post("/api/v1/designs", json={"name": name}).raise_for_status()
+    page = http.get("/designs", params={"name": "FILTERED <", "state": "current", "template": ""}).text
+    assert "filtered &lt;two&gt;" in page
+    assert "filtered one" not in page
+    assert 'value="FILTERED &lt;"' in page
+    assert "<option selected>current" in page
+    assert "No design fits the filter." in http.get("/designs?template=oil_film/99").text
+    assert http.get("/designs?state=done").status_code == 422
+
+
 def test_every_template_and_model_has_its_page(http):
     for group in ("templates", "models"):
         for item in http.get(f"/api/v1/{group}", params={"limit": 500}).json()["items"]:

@@ -27,6 +27,7 @@ from app.api.reading import StrictRoute
 from app.api.waiting import LONGEST, accepted, finished, later, patience, written
 from app.designs import repository, views
 from app.designs.explain import explain
+from app.designs.filtering import TEMPLATE, DesignFilter
 from app.designs.previewing import Change
 from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn, RestoreIn
 from app.designs.service import Designs, Saved
@@ -42,9 +43,12 @@ from app.schemas.designs import (
     Proposals,
     Revision,
     RevisionList,
+    State,
 )
 from app.schemas.problems import refusals
 from templates.core.errors import Fault, InvalidInputs
+
+PRINTABLE = r"^[^\x00-\x1f\x7f]*$"  # no control characters, as in names of designs
 
 router = APIRouter(
     prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
@@ -57,6 +61,19 @@ IfMatch = Annotated[str | None, Header(description='the ETag of the design that 
 Within = Annotated[
     float | None,
     Query(ge=0, le=LONGEST, description="leave pending what takes longer [s], instead of queueing a job"),
+]
+NamePart = Annotated[
+    str | None,
+    Query(max_length=200, pattern=PRINTABLE, description="part of the name, in upper or lower case"),
+]
+InState = Annotated[State | None, Query(description="state of the newest revision")]
+UsedTemplate = Annotated[
+    str | None,
+    Query(
+        description="a template or model that the newest revision uses, in any version or in one: "
+        "`oil_film`, `oil_film/2`",
+        json_schema_extra={"pattern": TEMPLATE},
+    ),
 ]
 Patch = Annotated[
     dict[str, Any],
@@ -88,10 +105,18 @@ async def create_design(
 
 
 @router.get("")
-def list_designs(database: TheDatabase, limit: Limit = 50, cursor: Cursor = None) -> DesignList:
-    """All designs, newest first."""
+def list_designs(
+    database: TheDatabase,
+    limit: Limit = 50,
+    cursor: Cursor = None,
+    name: NamePart = None,
+    state: InState = None,
+    template: UsedTemplate = None,
+) -> DesignList:
+    """Designs, newest first: all, or those that fit every filter given."""
+    wanted = DesignFilter(name=name, state=state, template=template)
     with database.read() as session:
-        rows = repository.designs(session, limit, cursor)
+        rows = repository.designs(session, limit, cursor, wanted)
         return page(
             DesignList,
             rows,

@@ -1,0 +1,142 @@
+"""The recipes of docs/contributing.md, carried out literally on a copy of the tree.
+
+Blocks count in their order: a shell block is run, a block with a file's name is written, a difference is
+given to `git apply`, and a block of plain text is what the shell block before it prints.
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from patience import patient
+
+ROOT = Path(__file__).parents[1]
+PAGE = (ROOT / "docs" / "contributing.md").read_text(encoding="utf-8")
+OUTPUT, FORMAT, FILTER = "one more output, as a new version", "a new file format", "one more filter on a list"
+RECIPES = (OUTPUT, FORMAT, FILTER)
+BLOCK = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
+LONGEST = patient(240.0)  # one command [s]
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block of a recipe."""
+
+    language: str
+    file: str
+    text: str
+
+    @property
+    def is_edit(self):
+        """Whether it changes files only, by tools that every machine has."""
+        commands = {line.split(" ")[0] for line in self.text.splitlines()}
+        return self.language in ("diff", "python") or commands <= {"cd", "cp", "sed"}
+
+
+def recipe(title):
+    """The blocks of a recipe, in their order."""
+    section = PAGE.split(f"\n## Recipe: {title}\n")[1].split("\n## ")[0]
+    return [Block(language, file, text) for language, file, text in BLOCK.findall(section)]
+
+
+def run(command, copy, **options):
+    """What a command prints in the copy, whose packages it imports."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    inherited = {name: text for name, text in os.environ.items() if not name.startswith(("PYTEST_", "COV_"))}
+    done = subprocess.run(
+        command,
+        cwd=copy,
+        env={**inherited, "PATH": path, "PYTHONPATH": str(copy)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=LONGEST,
+        **options,
+    )
+    assert done.returncode == 0, f"{command}\n{done.stdout[-4000:]}"
+    return done.stdout
+
+
+def carry_out(blocks, copy):
+    """Do what the blocks say; return what the shell blocks print."""
+    printed = [""]
+    for block in blocks:
+        if block.language == "sh":
+            printed.append(run(["bash", "-e", "-c", block.text], copy))
+        elif block.language == "diff":
+            run(["git", "apply", "-"], copy, input=block.text)
+        elif block.language == "text":
+            assert block.text in printed[-1]
+        else:
+            with (copy / block.file).open("x", encoding="utf-8") as file:
+                file.write(block.text)
+    return printed[1:]
+
+
+def count_passed(printed):
+    """How many tests the last pytest run reports as passed, with none that failed or was skipped."""
+    summary = printed.strip().splitlines()[-1]
+    assert not re.search("failed|error|skipped", summary), summary
+    return int(re.search(r"(\d+) passed", summary)[1])
+
+
+@pytest.fixture
+def copy(tmp_path):
+    """The files that git knows or would add, in a folder of their own."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    for name in filter(None, listed.split("\0")):
+        if (ROOT / name).is_file():
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name).write_bytes((ROOT / name).read_bytes())
+    return tmp_path
+
+
+def test_the_page_has_these_recipes():
+    assert tuple(re.findall(r"^## Recipe: (.*)$", PAGE, re.MULTILINE)) == RECIPES
+    assert all({"sh", "diff", "python"} <= {block.language for block in recipe(title)} for title in RECIPES)
+
+
+def test_the_edits_of_every_recipe_fit_the_tree_and_pass_the_linter(copy):
+    for title in RECIPES:
+        carry_out([block for block in recipe(title) if block.is_edit], copy)
+    run(["ruff", "check", "--no-cache"], copy)
+    run(["ruff", "format", "--check", "--no-cache"], copy)
+
+
+@pytest.mark.slow
+def test_one_more_output_is_a_new_version(copy):
+    def digest(version):
+        page = run(["crankwright", "template", "show", "journal_friction", "--version", str(version)], copy)
+        return re.search(r"digest (\w{12})", page)[1]
+
+    before = digest(1)
+    *_, tests = carry_out(recipe(OUTPUT), copy)
+    assert count_passed(tests) > 40  # of both versions
+    assert "journal_friction-2" in run(
+        ["pytest", "--collect-only", "-q", "tests/templates/test_catalogue_properties.py"], copy
+    )
+    record = json.loads((copy / "tests" / "golden" / "journal_friction_v2.json").read_text())
+    assert digest(1) == before != digest(2) == record["digest"][:12]
+    released = "templates/oil_film/journal_friction_v1.release.json"
+    assert (copy / released).read_bytes() == (ROOT / released).read_bytes()
+
+
+@pytest.mark.slow
+def test_a_new_file_format_is_served(copy):
+    *_, tests = carry_out(recipe(FORMAT), copy)
+    assert count_passed(tests) > 10
+    assert "`.obj`" in (copy / "docs" / "howto" / "designs.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_a_list_has_one_more_filter(copy):
+    *_, tests = carry_out(recipe(FILTER), copy)
+    assert count_passed(tests) > 20
+    script = "from handbook.rest import interface; print(interface()['paths']['/api/v1/designs']['get'])"
+    assert "changed_since" in run([sys.executable, "-c", script], copy)
