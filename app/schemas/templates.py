@@ -107,7 +107,7 @@ class Accuracy(Answer):
 
     model_config = ConfigDict(extra="allow")
 
-    made_by: str = Field(description="the command that measured it")
+    made_by: str = Field("", description="the command that measured it; absent where nobody wrote it down")
     truth: str = Field(description="with which solution the levels are compared")
     error: str = Field(description="what the errors are")
     cost: str = Field(description="what the costs are")
