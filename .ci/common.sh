@@ -122,6 +122,7 @@ install_browser() {
 }
 
 lint() { "$environment/bin/ruff" check && "$environment/bin/ruff" format --check; }
+scripts() { "$environment/bin/oxlint" --deny-warnings app/web/static; }
 types() { "$environment/bin/mypy"; }
 contracts() { PATH="$environment/bin:$PATH" "$environment/bin/lint-imports"; }
 
@@ -133,6 +134,7 @@ site() {
 start_checks() {
     start site site
     start lint lint
+    start scripts scripts
     start types types
     start contracts contracts
 }
@@ -140,6 +142,7 @@ start_checks() {
 finish_checks() {
     finish site
     finish lint
+    finish scripts
     finish types
     finish contracts
 }

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from templates.core.paper.mathml import unit_symbol
 
@@ -60,31 +60,50 @@ def rough(value: float) -> str:
     return plain(float(f"{value:.2g}"))
 
 
-def told(quantity: Any) -> str:
+@runtime_checkable
+class Quantity(Protocol):
+    """A quantity of an answer; some have a unit, a tolerance, or the reason why there is no value."""
+
+    @property
+    def value(self) -> object:
+        """The magnitude, of any shape, or a choice."""
+
+
+PARTS = ("value", "unit", "reason", "plus", "minus")
+
+
+def told(quantity: object) -> str:
     """A quantity, as typed or as answered, in one line: `25 kN`, `= scale * 48 mm`, `[1, 2, 3] mm`."""
     if quantity is None:
         return ""
-    if not isinstance(quantity, Mapping):
-        return _written(quantity)
+    if isinstance(quantity, Mapping):
+        return _line(quantity)
+    if isinstance(quantity, Quantity):
+        return _line({name: getattr(quantity, name, None) for name in PARTS})
+    return _written(quantity)
+
+
+def _line(quantity: Mapping[str, object]) -> str:
     if quantity["value"] is None:
-        return str(quantity.get("reason", "none"))
-    parts = (_written(quantity["value"]), unit(quantity.get("unit")), _tolerance(quantity))
+        return str(quantity.get("reason") or "none")
+    symbol = quantity.get("unit")
+    parts = (_written(quantity["value"]), unit(str(symbol) if symbol else None), _tolerance(quantity))
     return " ".join(filter(None, parts))
 
 
-def _written(value: Any) -> str:
+def _written(value: object) -> str:
     if isinstance(value, list):
         return _list(value)
     return plain(value) if isinstance(value, float) else str(value)
 
 
-def _list(values: list[Any]) -> str:
+def _list(values: list[object]) -> str:
     """A short list whole, of a long one the first, the last and how many there are."""
     few = len(values) <= 6
     inside = ", ".join(map(_written, values)) if few else f"{_written(values[0])} … {_written(values[-1])}"
     return f"[{inside}]" if few else f"[{inside}] ({len(values)} values)"
 
 
-def _tolerance(more: Mapping[str, Any]) -> str:
+def _tolerance(more: Mapping[str, object]) -> str:
     signs = (("plus", "+"), ("minus", "−"))
-    return " ".join(f"{sign}{more[name]}" for name, sign in signs if name in more)
+    return " ".join(f"{sign}{more[name]}" for name, sign in signs if more.get(name) is not None)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any
 
+from pydantic import JsonValue
 from pydantic_core import from_json
 
 
-def value_of(text: str) -> Any:
+def value_of(text: str) -> JsonValue:
     """What a field means: a text as it is; a list `[1, 2] mm`, or an object of JSON, as such."""
     stripped = text.strip()
     if not stripped.startswith(("[", "{")):
@@ -17,14 +17,14 @@ def value_of(text: str) -> Any:
     end = stripped.rfind("]" if stripped[0] == "[" else "}") + 1
     try:
         # Not json.loads, which takes NaN for a number and does not survive deep nesting.
-        inside = from_json(stripped[:end], allow_inf_nan=False)
+        inside: JsonValue = from_json(stripped[:end], allow_inf_nan=False)
         unit = stripped[end:].strip()
     except ValueError:
         return stripped  # the interface says what is wrong with it
     return {"value": inside, "unit": unit} if unit else inside
 
 
-def text_of(value: Any) -> str:
+def text_of(value: object) -> str:
     """How a value as typed stands in a field."""
     if value is None:
         return ""

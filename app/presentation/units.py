@@ -5,11 +5,12 @@ Values are calculated in SI whatever is shown; what was typed is never converted
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal, TypeVar, cast
 
 from templates.core.units.units import unit
 
 System = Literal["si", "us"]
+Plain = TypeVar("Plain")
 US = {
     "m": "ft", "mm": "inch", "um": "thou", "mm**2": "inch**2", "mm**3": "inch**3",
     "N": "lbf", "kN": "lbf", "N*m": "lbf*ft", "N/m": "lbf/inch", "N*s/m": "lbf*s/inch",
@@ -26,27 +27,30 @@ def shown_unit(declared: str, system: System) -> str:
     return US.get(declared, declared) if system == "us" else declared
 
 
-def converted(told: Any, system: System) -> Any:
-    """An answer with every quantity in it converted; what has no unit stays as it is."""
-    if system == "si":
-        return told
-    if isinstance(told, list):
-        return [converted(item, system) for item in told]
-    if not isinstance(told, dict):
-        return told
-    if told.get("unit") in US and "value" in told:
-        return {**told, "value": _value(told["value"], told["unit"]), "unit": US[told["unit"]]}
-    return {name: converted(item, system) for name, item in told.items()}
+def converted(plain: Plain, system: System) -> Plain:
+    """Plain data with every quantity in it converted; what has no unit stays as it is."""
+    return plain if system == "si" else cast(Plain, _converted(plain))
 
 
-def shown_value(value: Any, declared: str, system: System) -> Any:
+def _converted(plain: object) -> object:
+    """Plain data in US units."""
+    if isinstance(plain, list):
+        return [_converted(item) for item in plain]
+    if not isinstance(plain, dict):
+        return plain
+    if plain.get("unit") in US and "value" in plain:
+        return {**plain, "value": _value(plain["value"], plain["unit"]), "unit": US[plain["unit"]]}
+    return {name: _converted(item) for name, item in plain.items()}
+
+
+def shown_value(value: object, declared: str, system: System) -> object:
     """A magnitude of any shape, given in a declared unit, in the unit in which it is shown."""
     return _value(value, declared) if system == "us" and declared in US else value
 
 
-def _value(value: Any, declared: str) -> Any:
+def _value(value: object, declared: str) -> object:
     if isinstance(value, list | tuple):
         return type(value)(_value(item, declared) for item in value)
     if value is None:
         return None
-    return float(unit(US[declared]).from_si(unit(declared).to_si(float(value))))
+    return float(unit(US[declared]).from_si(unit(declared).to_si(float(cast(float, value)))))

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from statistics import median
-from typing import Any, NamedTuple
+from typing import NamedTuple
+
+from pydantic import BaseModel, JsonValue
+
+from app.schemas.templates import Accuracy
 
 SHOWN = 6  # outputs; all are in the answer of the interface
 
@@ -25,27 +29,41 @@ class Table(NamedTuple):
     outputs: list[str]
 
 
-def table(measured: Mapping[str, Any]) -> Table:
+class _Cost(BaseModel):
+    """Seconds of one point, and of a point among many."""
+
+    single: float | None = None
+    vectorised: float | None = None
+
+
+class _Measured(BaseModel):
+    """What was measured of one level: errors by output, of every cell of the plane."""
+
+    cost: _Cost | None = None
+    errors: dict[str, JsonValue]
+
+
+def table(measured: Accuracy) -> Table:
     """The levels of the answer to `GET …/accuracy`, with the outputs that were measured."""
-    levels = [_level(name, told) for name, told in measured["levels"].items()]
+    levels = [_level(name, _Measured.model_validate(level)) for name, level in measured.levels.items()]
     outputs = list(dict.fromkeys(name for level in levels for name in level.errors))
     return Table(levels, outputs[:SHOWN])
 
 
-def _level(name: str, told: Mapping[str, Any]) -> Level:
-    cost = told.get("cost") or {}
-    errors = {output: sorted(_numbers(cells)) for output, cells in told["errors"].items()}
+def _level(name: str, measured: _Measured) -> Level:
+    cost = measured.cost or _Cost()
+    errors = {output: sorted(_numbers(cells)) for output, cells in measured.errors.items()}
     return Level(
         name,
-        cost["single"] * 1e3 if "single" in cost else None,
-        cost["vectorised"] * 1e6 if "vectorised" in cost else None,
-        {output: (median(found), found[-1]) for output, found in errors.items() if found},
+        cost.single if cost.single is None else cost.single * 1e3,
+        cost.vectorised if cost.vectorised is None else cost.vectorised * 1e6,
+        {output: (median(cells), cells[-1]) for output, cells in errors.items() if cells},
     )
 
 
-def _numbers(cells: Any) -> Iterator[float]:
+def _numbers(cells: JsonValue) -> Iterator[float]:
     if isinstance(cells, list):
         for cell in cells:
             yield from _numbers(cell)
-    elif cells is not None:
+    elif isinstance(cells, int | float):
         yield float(cells)

@@ -8,16 +8,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
 from urllib.parse import quote
 
 from fastapi import APIRouter, Depends, Request, Response
+from pydantic import JsonValue
 
 from app.api.reading import FORM_TYPES, NotForm, check_type
 from app.presentation.typed import value_of
-from app.web.api import Api, Refused, TheApi
+from app.schemas.designs import Design
+from app.schemas.templates import Template
+from app.web.api import Api, Refused, TheApi, read
+from app.web.blocks import Refusal
 from app.web.design_page import design_page
-from app.web.forms import fields, kept, patch_of
+from app.web.forms import Patch, fields, kept, patch_of
 from app.web.gallery import GALLERY
 from app.web.rendering import go
 from app.web.routes import Id, Number
@@ -41,23 +44,23 @@ async def create(request: Request, api: TheApi) -> Response:
     """A design from the gallery, or one with a template and a model of one's choice."""
     typed = await fields(request)
     example = GALLERY.get(typed.get("example", ""))
-    document = example["document"] if example else await _blank(api, typed)
-    made = (await api.send("POST", "/designs", json=document, headers=AT_ONCE)).json()
-    if not example and made["models"]:
-        await api.send("POST", f"/designs/{made['id']}/auto-map", params={"apply": True}, headers=AT_ONCE)
-    return go(f"/designs/{made['id']}")
+    document = example.document if example else await _blank(api, typed)
+    design = read(await api.send("POST", "/designs", json=document, headers=AT_ONCE), Design)
+    if not example and design.models:
+        await api.send("POST", f"/designs/{design.id}/auto-map", params={"apply": True}, headers=AT_ONCE)
+    return go(f"/designs/{design.id}")
 
 
 @router.post("/designs/{id}")
 async def save(id: Id, request: Request, api: TheApi) -> Response:
     """A new revision; where it is refused, the form again with what was typed and what is wrong."""
     typed = await fields(request)
-    design = await api.get(f"/designs/{id}")
+    design = await api.get(f"/designs/{id}", Design)
     based = typed.get("revision", "")
     patch = patch_of(design, typed)
     try:
-        if based != str(design["revision"]):
-            raise Refused(STALE, {"detail": f"revision {design['revision']} was saved since"})
+        if based != str(design.revision):
+            raise Refused.because(STALE, f"revision {design.revision} was saved since")
         await _change(api, id, based, patch, typed.get("note", ""))
     except Refused as refused:
         return await _again(request, api, id, typed, refused)
@@ -69,7 +72,7 @@ async def add(id: Id, request: Request, api: TheApi) -> Response:
     """A parameter, a template or a model more, or one less."""
     typed = await fields(request)
     patch = await _block(api, typed)
-    design = await api.get(f"/designs/{id}")
+    design = await api.get(f"/designs/{id}", Design)
     try:
         _refuse_taken(design, patch)
         await _change(api, id, typed.get("revision", ""), patch, "")
@@ -90,8 +93,8 @@ async def auto_map(id: Id, request: Request, api: TheApi) -> Response:
 @router.post("/designs/{id}/copy")
 async def copy(id: Id, api: TheApi) -> Response:
     """A copy, shown at once."""
-    made = (await api.send("POST", f"/designs/{id}/copy", headers=AT_ONCE)).json()
-    return go(f"/designs/{made['id']}")
+    design = read(await api.send("POST", f"/designs/{id}/copy", headers=AT_ONCE), Design)
+    return go(f"/designs/{design.id}")
 
 
 @router.post("/designs/{id}/delete")
@@ -119,7 +122,7 @@ async def cancel(id: Id, job: Id, api: TheApi) -> Response:
     return go(f"/designs/{id}")
 
 
-async def _change(api: Api, id: str, revision: str, patch: Mapping[str, Any], note: str) -> None:
+async def _change(api: Api, id: str, revision: str, patch: Patch, note: str) -> None:
     noted = {**patch, "note": note} if note.strip() else patch
     headers = {**AT_ONCE, "If-Match": _tag(revision)}
     await api.send("PATCH", f"/designs/{id}", json=noted, headers=headers)
@@ -135,19 +138,18 @@ async def _again(request: Request, api: Api, id: str, typed: Mapping[str, str], 
     if refused.status not in (STALE, ILL_NAMED):
         raise refused
     notice = (
-        f"Somebody else saved this design meanwhile: {refused.problem['detail']}. Your changes are kept in "
+        f"Somebody else saved this design meanwhile: {refused.problem.detail}. Your changes are kept in "
         "the fields below; look at them once more, then save."
         if refused.status == STALE
         else None
     )
     if not notice and not refused.faults:
-        notice = f"Nothing was saved: {refused.problem['detail']}"
-    return await design_page(
-        request, api, id, typed=kept(typed), faults=refused.faults, notice=notice, status=refused.status
-    )
+        notice = f"Nothing was saved: {refused.problem.detail}"
+    refusal = Refusal(kept(typed), refused.faults)
+    return await design_page(request, api, id, refusal=refusal, notice=notice, status=refused.status)
 
 
-def _refuse_taken(design: Mapping[str, Any], patch: Mapping[str, Any]) -> None:
+def _refuse_taken(design: Design, patch: Patch) -> None:
     """Let nobody add what would take the place of a parameter, a step or a model.
 
     Raises
@@ -156,35 +158,37 @@ def _refuse_taken(design: Mapping[str, Any], patch: Mapping[str, Any]) -> None:
         If a name that the patch adds is in use.
     """
     for added in patch.values():
-        for name, told in added.items():
-            if told is not None and any(name in design[group] for group in ("parameters", "steps", "models")):
-                raise Refused(ILL_NAMED, {"detail": f"{name} is in use: choose another name"})
+        for name, value in added.items():
+            if value is not None and name in {*design.parameters, *design.steps, *design.models}:
+                raise Refused.because(ILL_NAMED, f"{name} is in use: choose another name")
 
 
-async def _blank(api: Api, typed: Mapping[str, str]) -> dict[str, Any]:
+async def _blank(api: Api, typed: Mapping[str, str]) -> dict[str, JsonValue]:
     """A new design with one template, at its example, and perhaps a model."""
-    document: dict[str, Any] = {"name": typed.get("name", "").strip() or "new design"}
+    document: dict[str, JsonValue] = {"name": typed.get("name", "").strip() or "new design"}
     if typed.get("template"):
         name, step = await _step(api, typed["template"])
         document["steps"] = {name: step}
     if typed.get("model"):
-        document["model"] = _versioned("id", typed["model"])
+        id, version = _versioned(typed["model"])
+        document["model"] = {"id": id, "version": version}
     return document
 
 
-async def _step(api: Api, chosen: str) -> tuple[str, dict[str, Any]]:
-    step = _versioned("template", chosen)
-    told = await api.get(f"/templates/{quote(step['template'], safe='')}/versions/{step['version']}")
-    return step["template"], {**step, "inputs": told["example"]}
+async def _step(api: Api, chosen: str) -> tuple[str, dict[str, JsonValue]]:
+    """The id of a chosen template, and a step with its example."""
+    id, version = _versioned(chosen)
+    template = await api.get(f"/templates/{quote(id, safe='')}/versions/{version}", Template)
+    return id, {"template": id, "version": version, "inputs": template.example}
 
 
-def _versioned(key: str, chosen: str) -> dict[str, Any]:
+def _versioned(chosen: str) -> tuple[str, int | str]:
     """`oil_film/2` as the id and version that the interface takes."""
     id, _, version = chosen.partition("/")
-    return {key: id, "version": int(version) if _NUMBER.fullmatch(version) else "latest"}
+    return id, int(version) if _NUMBER.fullmatch(version) else "latest"
 
 
-async def _block(api: Api, typed: Mapping[str, str]) -> dict[str, Any]:
+async def _block(api: Api, typed: Mapping[str, str]) -> Patch:
     """The merge patch that adds or removes what a form names."""
     name = typed.get("name", "").strip()
     match typed.get("add", ""):
@@ -194,7 +198,7 @@ async def _block(api: Api, typed: Mapping[str, str]) -> dict[str, Any]:
             id, step = await _step(api, typed.get("template", ""))
             return {"steps": {name or id: step}}
         case "model":
-            model = _versioned("id", typed.get("model", ""))
-            return {"models": {name or model["id"]: model}}
+            id, version = _versioned(typed.get("model", ""))
+            return {"models": {name or id: {"id": id, "version": version}}}
     group, _, removed = typed.get("remove", "").partition(".")
     return {group: {removed: None}}

@@ -6,12 +6,18 @@ What a page shows is what a user would be answered; what a form does is a call t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from http import HTTPStatus
+from typing import Annotated, TypeVar
 
 import httpx
 from fastapi import Depends, FastAPI, Request
+from pydantic import TypeAdapter
 
 from app.api.gate.clients import TheClient, from_inside
+from app.schemas.problems import Problem
+
+Kind = TypeVar("Kind")
+Scalar = str | int | float | bool | None
 
 BASE = "/api/v1"
 _CLIENT = "crankwright.client"
@@ -21,14 +27,20 @@ _CLIENT = "crankwright.client"
 class Refused(Exception):
     """The interface answered with a problem; `problem` is it."""
 
-    def __init__(self, status: int, problem: Mapping[str, Any]) -> None:
-        self.status, self.problem = status, problem
-        super().__init__(f"{status} {problem.get('detail', '')}")
+    def __init__(self, problem: Problem) -> None:
+        self.status, self.problem = problem.status, problem
+        super().__init__(f"{problem.status} {problem.detail}")
+
+    @classmethod
+    def because(cls, status: int, detail: str) -> Refused:
+        """A refusal of the pages themselves."""
+        title = HTTPStatus(status).phrase.capitalize()
+        return cls(Problem(type="about:blank", title=title, status=status, detail=detail))
 
     @property
     def faults(self) -> dict[str, str]:
         """What is wrong, by the name of the input."""
-        return {fault["name"]: fault["detail"] for fault in self.problem.get("errors", ())}
+        return {fault.name: fault.detail for fault in self.problem.errors}
 
 
 class Api:
@@ -37,37 +49,45 @@ class Api:
     def __init__(self, http: httpx.AsyncClient, client: str) -> None:
         self._http, self._client = http, client
 
-    async def get(self, path: str, **query: Any) -> dict[str, Any]:
-        """What a GET answers.
+    async def get(self, path: str, kind: type[Kind], **query: Scalar) -> Kind:
+        """What a GET answers, as a model.
 
         Raises
         ------
         Refused
             If the interface refuses.
         """
-        return (await self.send("GET", path, params=query)).json()  # type: ignore[no-any-return]
+        return read(await self.send("GET", path, params=query), kind)
 
-    async def find(self, path: str, **query: Any) -> dict[str, Any] | None:
+    async def find(self, path: str, kind: type[Kind], **query: Scalar) -> Kind | None:
         """What a GET answers, or None where there is nothing."""
         try:
-            return await self.get(path, **query)
+            return await self.get(path, kind, **query)
         except Refused as refused:
             if refused.status != 404:
                 raise
             return None
 
-    async def post(self, path: str, body: Any = None, **query: Any) -> dict[str, Any]:
-        """What a POST answers; it does not wait for geometry.
+    async def post(self, path: str, kind: type[Kind], body: object = None, **query: Scalar) -> Kind:
+        """What a POST answers, as a model; it does not wait for geometry.
 
         Raises
         ------
         Refused
             If the interface refuses.
         """
-        return (await self.send("POST", path, json=body, params=query)).json()  # type: ignore[no-any-return]
+        return read(await self.send("POST", path, json=body, params=query), kind)
 
-    async def send(self, method: str, path: str, **more: Any) -> httpx.Response:
-        """Any call.
+    async def send(
+        self,
+        method: str,
+        path: str,
+        *,
+        json: object = None,
+        params: Mapping[str, Scalar] | None = None,
+        headers: Mapping[str, str] | None = None,
+    ) -> httpx.Response:
+        """Send a request and return the response.
 
         Raises
         ------
@@ -76,12 +96,19 @@ class Api:
         """
         extensions = {_CLIENT: self._client}
         try:
-            answer = await self._http.request(method, BASE + path, extensions=extensions, **more)
-        except httpx.InvalidURL:  # made from what a client typed
-            raise Refused(404, {"title": "Not found", "detail": "there is nothing at this address"}) from None
-        if answer.is_error:
-            raise Refused(answer.status_code, answer.json())
-        return answer
+            response = await self._http.request(
+                method, BASE + path, json=json, params=params, headers=headers, extensions=extensions
+            )
+        except httpx.InvalidURL:  # the path holds what a client typed
+            raise Refused.because(404, "there is nothing at this address") from None
+        if response.is_error:
+            raise Refused(Problem.model_validate_json(response.content))
+        return response
+
+
+def read(response: httpx.Response, kind: type[Kind]) -> Kind:
+    """The body of a response as a model, or as a dictionary of models."""
+    return TypeAdapter(kind).validate_json(response.content)
 
 
 class Inside(httpx.AsyncBaseTransport):
@@ -97,7 +124,7 @@ class Inside(httpx.AsyncBaseTransport):
 
 
 async def get_api(request: Request, client: TheClient) -> Api:
-    """The interface of the app that serves this request; its HTTP client is made once."""
+    """The interface of the app that serves this request; its HTTP client is shared."""
     state = request.app.state
     if not hasattr(state, "web_client"):
         # The host is a placeholder: the guard does not answer to it, and does not see these calls.

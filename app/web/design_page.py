@@ -5,16 +5,35 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Mapping
-from typing import Any
 
 from fastapi import Request, Response
 
+from app.schemas.analyses import Analysis
+from app.schemas.designs import (
+    Design,
+    ModelMeasurements,
+    Preview,
+    Proposals,
+    RevisionList,
+    RevisionWorksheet,
+)
+from app.schemas.jobs import Job, JobList
+from app.schemas.templates import Model, Template, TemplateList, TemplateSummary
 from app.web import sheet
-from app.web.api import Api
+from app.web.api import Api, Scalar
+from app.web.blocks import (
+    ModelBlock,
+    Refusal,
+    StepBlock,
+    models_of,
+    painted,
+    steps_of,
+    with_changes,
+    with_fields,
+)
 from app.web.differences import differences
 from app.web.forms import texts
-from app.web.model_page import known_analyses
-from app.web.pictures import painted, pictures
+from app.web.model_page import finished_analyses
 from app.web.rendering import show, units_of
 from cad.export import MEDIA_TYPES
 
@@ -22,6 +41,7 @@ UNFINISHED = ("queued", "running")
 QUICK = (
     1  # how long a page waits for steps; its script asks for what takes longer, and shows the progress [s]
 )
+NO_REFUSAL = Refusal()
 
 
 async def design_page(
@@ -29,50 +49,49 @@ async def design_page(
     api: Api,
     id: str,
     *,
-    typed: Mapping[str, str] | None = None,
-    faults: Mapping[str, str] | None = None,
+    refusal: Refusal = NO_REFUSAL,
     notice: str | None = None,
     status: int = 200,
 ) -> Response:
     """The newest revision in a form; or a form that was refused, with what was typed and what is wrong."""
-    design = await api.get(f"/designs/{id}")
-    number = design["revision"]
-    within = 0 if design["state"] == "regenerating" else QUICK
-    told = await _revision(request, api, id, number, within=within)
-    steps, models = await _descriptions(api, design)
-    query = {"worksheet": True, "units": units_of(request), "within": within}
-    previewed = await api.post(f"/designs/{id}/preview", {}, **query)
-    before = await _revision(request, api, id, number - 1, within=0) if number > 1 else None
-    wrong, words = faults or {}, typed or {}
-    parameters = sheet.of_parameters(design["parameters"], previewed["parameters"], words, wrong)
-    blocks = _steps(design, told, steps, words, wrong)
-    parts = _models(design, told, models, words, wrong, before, previewed["model_parameters"])
-    measured = await api.get(f"/designs/{id}/measurements", units=units_of(request))
-    fields = [*parameters, *(f for part in parts for f in part["fields"])]
-    fields += [f for block in blocks for f in (*block["fields"], *block["options"])]
+    design = await api.get(f"/designs/{id}", Design)
+    within = 0 if design.state == "regenerating" else QUICK
+    revision = await _revision(request, api, id, design.revision, within=within)
+    templates, models = await _templates(api, _steps_of_design(design)), await _models(api, design)
+    query: dict[str, Scalar] = {"worksheet": True, "units": units_of(request), "within": within}
+    preview = await api.post(f"/designs/{id}/preview", Preview, {}, **query)
+    before = await _revision(request, api, id, design.revision - 1, within=0) if design.revision > 1 else None
+    computed = {name: step.outputs for name, step in design.steps.items()}
+    steps = [with_fields(block, design, refusal) for block in steps_of(revision, templates, computed)]
+    parts = [
+        with_changes(block, design, refusal, before, preview.model_parameters)
+        for block in models_of(revision, models)
+    ]
+    typed, faults = refusal.typed, refusal.faults
+    parameters = sheet.of_parameters(design.parameters, preview.parameters or {}, typed, faults)
+    measured = await api.get(
+        f"/designs/{id}/measurements", dict[str, ModelMeasurements], units=units_of(request)
+    )
     return show(
         request,
         "design.html",
         status=status,
         design=design,
-        revision=told,
+        revision=revision,
         parameters=parameters,
-        steps=blocks,
+        steps=steps,
         models=parts,
         measured=measured,
-        analyses={
-            name: await known_analyses(request, api, part["build"], models[name], part["analyses"])
-            for name, part in measured.items()
-        },
-        revisions=await api.get(f"/designs/{id}/revisions", limit=20),
-        proposals=(await api.post(f"/designs/{id}/auto-map"))["proposals"],
+        analyses=await _analyses(request, api, measured, models),
+        revisions=await api.get(f"/designs/{id}/revisions", RevisionList, limit=20),
+        proposals=(await api.post(f"/designs/{id}/auto-map", Proposals)).proposals,
         job=await _job(api, design),
         kinds=list(MEDIA_TYPES),
-        loose=sheet.loose_faults(fields, wrong),
-        refused=bool(wrong),
+        loose=sheet.loose_faults([*parameters, *_fields(steps, parts)], faults),
+        refused=bool(faults),
         notice=notice,
         base=f"/api/v1/designs/{id}",
-        painted=painted(blocks, parts),
+        painted=painted(steps, parts),
         was=json.dumps(texts(design)),
         choices=await _choices(api),
     )
@@ -80,158 +99,85 @@ async def design_page(
 
 async def revision_page(request: Request, api: Api, id: str, number: int, other: int | None) -> Response:
     """One revision as it is kept, with what differs from another: the one before, if none is named."""
-    design, told = await asyncio.gather(api.get(f"/designs/{id}"), _revision(request, api, id, number))
+    design, revision = await asyncio.gather(
+        api.get(f"/designs/{id}", Design), _revision(request, api, id, number)
+    )
     compared = other or (number - 1 if number > 1 else None)
     against = await _revision(request, api, id, compared) if compared else None
-    steps, models = await _descriptions(api, told)
+    templates = await _templates(api, _steps_of_revision(revision))
     return show(
         request,
         "revision.html",
         design=design,
-        revision=told,
-        steps=_steps(_as_design(told), told, steps, {}, {}),
-        models=_models(_as_design(told), told, models, {}, {}, against, {}),
+        revision=revision,
+        steps=steps_of(revision, templates),
+        models=models_of(revision, await _models(api, revision)),
         against=against,
-        differences=differences(against, told) if against else [],
+        differences=differences(against, revision) if against else [],
         kinds=list(MEDIA_TYPES),
         base=f"/api/v1/designs/{id}/revisions/{number}",
     )
 
 
-async def _revision(request: Request, api: Api, id: str, number: int, **options: Any) -> dict[str, Any]:
+async def _revision(request: Request, api: Api, id: str, number: int, **options: Scalar) -> RevisionWorksheet:
     path = f"/designs/{id}/revisions/{number}/worksheet"
-    return await api.get(path, units=units_of(request), **options)
+    return await api.get(path, RevisionWorksheet, units=units_of(request), **options)
 
 
-async def _descriptions(
-    api: Api, design: Mapping[str, Any]
-) -> tuple[dict[str, dict[str, Any]], dict[str, dict[str, Any]]]:
-    """What the templates of the steps and the models say of themselves."""
-    steps = {
-        name: await api.get(f"/templates/{id}/versions/{version}")
-        for name, (id, version) in ((n, _template(step)) for n, step in design["steps"].items())
+def _steps_of_design(design: Design) -> dict[str, tuple[str, int]]:
+    """Id and version of the template of every step."""
+    return {name: (step.template, step.version) for name, step in design.steps.items()}
+
+
+def _steps_of_revision(revision: RevisionWorksheet) -> dict[str, tuple[str, int]]:
+    """Id and version of the template of every step."""
+    return {name: (step.template.id, step.template.version) for name, step in revision.steps.items()}
+
+
+async def _templates(api: Api, steps: Mapping[str, tuple[str, int]]) -> dict[str, Template]:
+    """The template of every step."""
+    return {
+        name: await api.get(f"/templates/{id}/versions/{version}", Template)
+        for name, (id, version) in steps.items()
     }
-    models = {
-        name: await api.get(f"/models/{model['id']}/versions/{model['version']}")
-        for name, model in design["models"].items()
+
+
+async def _models(api: Api, design: Design | RevisionWorksheet) -> dict[str, Model]:
+    """The description of every model."""
+    return {
+        name: await api.get(f"/models/{model.id}/versions/{model.version}", Model)
+        for name, model in design.models.items()
     }
-    return steps, models
 
 
-def _template(step: Mapping[str, Any]) -> tuple[str, int]:
-    """Id and version, as a design names them or as a revision does."""
-    told = step["template"]
-    return (told["id"], told["version"]) if isinstance(told, Mapping) else (told, step["version"])
-
-
-def _as_design(told: Mapping[str, Any]) -> dict[str, Any]:
-    """A revision in the shape of a design, its inputs as they were used."""
-    steps = {
-        name: {
-            "inputs": {
-                **{n: value for n, value in step["inputs"].items() if not _defaulted(value)},
-                **step.get("relations", {}),
-            },
-            "level": step["level"],
-            "tolerance": None,
-        }
-        for name, step in told["steps"].items()
+async def _analyses(
+    request: Request, api: Api, measured: Mapping[str, ModelMeasurements], models: Mapping[str, Model]
+) -> dict[str, list[Analysis]]:
+    """The finished analyses of every model's solid."""
+    return {
+        name: await finished_analyses(request, api, part.build, models[name], part.analyses)
+        for name, part in measured.items()
     }
-    models = {
-        name: {"parameters": {**model["parameters"], **model["relations"]}}
-        for name, model in told["models"].items()
-    }
-    return {"steps": steps, "models": models}
 
 
-def _defaulted(value: Any) -> bool:
-    return isinstance(value, Mapping) and value.get("from") == "default"
+def _fields(steps: list[StepBlock], models: list[ModelBlock]) -> list[sheet.Field]:
+    """Every field of the blocks."""
+    of_models = [field for block in models for field in block.fields]
+    return of_models + [field for block in steps for field in (*block.fields, *block.options)]
 
 
-def _steps(
-    design: Mapping[str, Any],
-    told: Mapping[str, Any],
-    schemas: Mapping[str, Any],
-    typed: Mapping[str, str],
-    faults: Mapping[str, str],
-) -> list[dict[str, Any]]:
-    """Every step with its fields, results and pictures."""
-    blocks = []
-    for name, template in schemas.items():
-        cells, result = design["steps"][name], _awaited(template, design["steps"][name], told["steps"][name])
-        blocks.append(
-            {
-                "name": name,
-                "template": template,
-                "cells": cells,
-                "fields": sheet.of_block(
-                    template["inputs"], name, cells["inputs"], _used(result), typed, faults
-                ),
-                "options": sheet.of_options(template, name, cells, typed, faults),
-                "result": result,
-                "outputs": [n for n in template["outputs"]["properties"] if n in result["outputs"]],
-                "pictures": pictures(name, template, told["steps"][name]),
-            }
-        )
-    return blocks
-
-
-def _awaited(
-    template: Mapping[str, Any], cells: Mapping[str, Any], result: Mapping[str, Any]
-) -> Mapping[str, Any]:
-    """The results of a step; while they are awaited, places for the page's script to fill in."""
-    if not result.get("pending"):
-        return result
-    names = cells.get("outputs") or list(template["outputs"]["properties"])
-    waiting = {"value": None, "reason": "is not calculated yet"}
-    return {**result, "outputs": dict.fromkeys(names, waiting), "error": dict.fromkeys(names)}
-
-
-def _used(result: Mapping[str, Any]) -> dict[str, Any]:
-    """The inputs that a step used; nothing while it waits for a solid."""
-    return {} if result.get("pending") or not result["outputs"] else result["inputs"]
-
-
-def _models(
-    design: Mapping[str, Any],
-    told: Mapping[str, Any],
-    schemas: Mapping[str, Any],
-    typed: Mapping[str, str],
-    faults: Mapping[str, str],
-    before: Mapping[str, Any] | None,
-    previewed: Mapping[str, Any],
-) -> list[dict[str, Any]]:
-    """Every model with its fields, and what its parameters were before."""
-    blocks = []
-    for name, model in schemas.items():
-        values = told["models"][name]["parameters"]
-        old = before["models"].get(name, {}).get("parameters", {}) if before else {}
-        cells = design["models"][name]["parameters"]
-        blocks.append(
-            {
-                "name": name,
-                "model": model,
-                "fields": sheet.of_block(model["parameters"], name, cells, values, typed, faults),
-                "values": values,
-                "old": {n: value for n, value in old.items() if value != values.get(n)},
-                "status": {n: previewed.get(f"{name}.{n}", {}).get("status") for n in values}
-                or dict.fromkeys(model["parameters"]["required"], "missing"),
-                "build": told["models"][name]["build"],
-            }
-        )
-    return blocks
-
-
-async def _job(api: Api, design: Mapping[str, Any]) -> dict[str, Any] | None:
+async def _job(api: Api, design: Design) -> Job | None:
     """The job that regenerates the design, if one does."""
-    if design["state"] != "regenerating":
+    if design.state != "regenerating":
         return None
-    jobs: list[dict[str, Any]] = (await api.get("/jobs", limit=200))["items"]
-    mine = (job for job in jobs if job["design"] == design["id"] and job["state"] in UNFINISHED)
-    return next(mine, None)
+    jobs = (await api.get("/jobs", JobList, limit=200)).items
+    return next((job for job in jobs if job.design == design.id and job.state in UNFINISHED), None)
 
 
-async def _choices(api: Api) -> dict[str, list[dict[str, Any]]]:
+async def _choices(api: Api) -> dict[str, list[TemplateSummary]]:
     """The templates and models that a design may take in."""
-    groups = {group: (await api.get(f"/{group}", limit=500))["items"] for group in ("templates", "models")}
-    return {group: [item for item in items if item["latest"]] for group, items in groups.items()}
+    groups = {
+        group: (await api.get(f"/{group}", TemplateList, limit=500)).items
+        for group in ("templates", "models")
+    }
+    return {group: [item for item in items if item.latest] for group, items in groups.items()}

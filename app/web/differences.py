@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Iterator
+from typing import NamedTuple
 
 from app.presentation import numbers
+from app.schemas.answers import Answer
+from app.schemas.designs import Revision
 
 
 class Difference(NamedTuple):
@@ -16,7 +18,7 @@ class Difference(NamedTuple):
     new: str
 
 
-def differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Difference]:
+def differences(old: Revision, new: Revision) -> list[Difference]:
     """Every parameter, input, output and model parameter that differs, in the order of the newer revision."""
     before, after = dict(_values(old)), dict(_values(new))
     names = dict.fromkeys([*after, *before])
@@ -27,16 +29,18 @@ def differences(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Differen
     ]
 
 
-def _values(revision: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    yield from revision["parameters"].items()
-    for step, told in revision["steps"].items():
-        for part in ("inputs", "outputs"):
-            yield from ((f"{step}.{name}", _plain(value)) for name, value in told[part].items())
-    for model, told in revision["models"].items():
-        yield from ((f"{model}.{name}", value) for name, value in told["parameters"].items())
-        yield from ((f"{model}.{name} (relation)", value) for name, value in told["relations"].items())
+def _values(revision: Revision) -> Iterator[tuple[str, object]]:
+    yield from revision.parameters.items()
+    for name, step in revision.steps.items():
+        for part in (step.inputs, step.outputs):
+            yield from ((f"{name}.{tail}", _plain(value)) for tail, value in part.items())
+    for name, model in revision.models.items():
+        yield from ((f"{name}.{tail}", _plain(value)) for tail, value in model.parameters.items())
+        yield from ((f"{name}.{tail} (relation)", value) for tail, value in model.relations.items())
 
 
-def _plain(value: Any) -> Any:
-    """A quantity without where it came from."""
-    return {n: v for n, v in value.items() if n != "from"} if isinstance(value, Mapping) else value
+def _plain(value: object) -> object:
+    """A quantity as plain data, without where it came from; a value as typed as it is."""
+    if not isinstance(value, Answer):
+        return value
+    return {name: part for name, part in value.plain().items() if name != "from"}

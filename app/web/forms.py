@@ -9,19 +9,40 @@ the form itself (`note`) or a property of HTML's forms (`length`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
+from collections.abc import Collection, Mapping, Set
 from math import isfinite
-from typing import Any
+from typing import Protocol
 from urllib.parse import parse_qsl
 
 from fastapi import Request
-from pydantic_core import from_json
+from pydantic import JsonValue, TypeAdapter
 
 from app.api.reading import BodyTooLarge
 from app.presentation.typed import text_of, value_of
+from app.schemas.designs import Design
 
 OPTIONS = ("level", "tolerance")  # of a step, beside its inputs
 MOST_FIELDS = 20_000
+
+Patch = dict[str, dict[str, JsonValue]]
+"""A merge patch of a design: of its parameters, steps and models, by name."""
+_WAS = TypeAdapter(dict[str, JsonValue])
+
+
+class Names(Protocol):
+    """The names in a design."""
+
+    @property
+    def parameters(self) -> Collection[str]:
+        """Of its own parameters."""
+
+    @property
+    def steps(self) -> Collection[str]:
+        """Of its steps."""
+
+    @property
+    def models(self) -> Collection[str]:
+        """Of its models."""
 
 
 async def fields(request: Request) -> dict[str, str]:
@@ -39,10 +60,10 @@ async def fields(request: Request) -> dict[str, str]:
         raise BodyTooLarge(f"a form has at most {MOST_FIELDS} fields") from None
 
 
-def patch_of(design: Mapping[str, Any], typed: Mapping[str, str]) -> dict[str, Any]:
+def patch_of(design: Names, typed: Mapping[str, str]) -> Patch:
     """The merge patch with what a form's user changed."""
-    patch: dict[str, Any] = {}
-    blocks = {*design["steps"], *design["models"]}
+    patch: Patch = {}
+    blocks = {*design.steps, *design.models}
     for name, text in kept(typed).items():
         if _is_field(design, blocks, name):
             _put(patch, design, name, value_of(text))
@@ -52,18 +73,17 @@ def patch_of(design: Mapping[str, Any], typed: Mapping[str, str]) -> dict[str, A
 def kept(typed: Mapping[str, str]) -> dict[str, str]:
     """What differs from what the form said at first, which its hidden field `was` holds."""
     try:
-        was = from_json(typed.get("was", "{}"))
+        old = _WAS.validate_json(typed.get("was", "{}"))
     except ValueError:
-        was = {}
-    old = was if isinstance(was, dict) else {}
+        old = {}
     return {name: text for name, text in typed.items() if text.strip() != str(old.get(name, "")).strip()}
 
 
-def _is_field(design: Mapping[str, Any], blocks: Set[str], name: str) -> bool:
+def _is_field(design: Names, blocks: Set[str], name: str) -> bool:
     block, kind, tail = _parts(name)
     if kind == "@":
-        return block in design["steps"] and tail in OPTIONS
-    return tail in design["parameters"] if not block else bool(tail) and block in blocks
+        return block in design.steps and tail in OPTIONS
+    return tail in design.parameters if not block else bool(tail) and block in blocks
 
 
 def _parts(name: str) -> tuple[str, str, str]:
@@ -71,37 +91,40 @@ def _parts(name: str) -> tuple[str, str, str]:
     return name.partition("@" if "@" in name else ".")
 
 
-def texts(design: Mapping[str, Any]) -> dict[str, str]:
+def texts(design: Design) -> dict[str, str]:
     """What a design says, field by field: `.scale`, `film.radial_load`, `film@level`, `model.width`."""
-    found = {f".{name}": text_of(value) for name, value in design["parameters"].items()}
-    for group, inside in (("steps", "inputs"), ("models", "parameters")):
-        for block, told in design[group].items():
-            found |= {f"{block}.{name}": text_of(value) for name, value in told[inside].items()}
-    for step, told in design["steps"].items():
-        found |= {f"{step}@{option}": text_of(told[option]) for option in OPTIONS}
-    return found
+    blocks = {name: step.inputs for name, step in design.steps.items()}
+    blocks |= {name: model.parameters for name, model in design.models.items()}
+    fields = {f".{name}": text_of(value) for name, value in design.parameters.items()}
+    for block, values in blocks.items():
+        fields |= {f"{block}.{name}": text_of(value) for name, value in values.items()}
+    for name, step in design.steps.items():
+        fields |= {f"{name}@level": text_of(step.level), f"{name}@tolerance": text_of(step.tolerance)}
+    return fields
 
 
-def _put(patch: dict[str, Any], design: Mapping[str, Any], name: str, value: Any) -> None:
+def _put(patch: Patch, design: Names, name: str, value: JsonValue) -> None:
     """One value in its place; what was emptied is removed."""
     block, kind, tail = _parts(name)
-    told = None if value == "" else value
+    new = None if value == "" else value
     if kind == "@":
-        patch.setdefault("steps", {}).setdefault(block, {})[tail] = option_of(tail, told)
+        _object(patch.setdefault("steps", {}), block)[tail] = option_of(tail, new)
     elif not block:
-        patch.setdefault("parameters", {})[tail] = told
-    elif block in design["models"]:
-        _inside(patch, "models", block, "parameters")[tail] = told
+        patch.setdefault("parameters", {})[tail] = new
+    elif block in design.models:
+        _object(_object(patch.setdefault("models", {}), block), "parameters")[tail] = new
     else:
-        _inside(patch, "steps", block, "inputs")[tail] = told
+        _object(_object(patch.setdefault("steps", {}), block), "inputs")[tail] = new
 
 
-def _inside(patch: dict[str, Any], group: str, block: str, part: str) -> dict[str, Any]:
-    inside: dict[str, Any] = patch.setdefault(group, {}).setdefault(block, {}).setdefault(part, {})
-    return inside
+def _object(outer: dict[str, JsonValue], name: str) -> dict[str, JsonValue]:
+    """The object of a name; an empty one where there is none yet."""
+    inner = outer.setdefault(name, {})
+    assert isinstance(inner, dict)
+    return inner
 
 
-def option_of(name: str, value: Any) -> Any:
+def option_of(name: str, value: JsonValue) -> JsonValue:
     """A tolerance is a number; the interface says what is wrong with one that is none."""
     if name != "tolerance" or not isinstance(value, str):
         return value

@@ -2,26 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from pydantic import JsonValue
 
 from app.calculations.schemas import OIL_FILM
-from app.designs.schemas import PAPER
+from app.designs.schemas import PAPER, DesignIn
+from app.schemas.templates import TemplateSummary
 
 FILM = {**OIL_FILM, "bearing_diameter": "= scale * 48 mm"}
 
-GALLERY: dict[str, dict[str, Any]] = {
-    "paper": {
-        "title": "The paper's main bearing",
-        "text": "A ball bearing of 50 mm follows the worksheet: change SCALE to 1 and it becomes 48 mm "
+Version = int | str | None
+
+
+class Example(NamedTuple):
+    """A design to start from."""
+
+    title: str
+    text: str
+    document: dict[str, JsonValue]
+
+
+GALLERY = {
+    "paper": Example(
+        title="The paper's main bearing",
+        text="A ball bearing of 50 mm follows the worksheet: change SCALE to 1 and it becomes 48 mm "
         "(Bhadke, Chaudhari, Sharma 2015).",
-        "document": {**PAPER, "parameters": {"scale": "= 50 / 48"}},
-    },
-    "shell": {
-        "title": "A plain bearing at several levels",
-        "text": "The same duty by oil film 2: friction, flow, stiffness, measured errors, and the pressure "
+        document={**PAPER, "parameters": {"scale": "= 50 / 48"}},
+    ),
+    "shell": Example(
+        title="A plain bearing at several levels",
+        text="The same duty by oil film 2: friction, flow, stiffness, measured errors, and the pressure "
         "painted on the shell.",
-        "document": {
+        document={
             "name": "plain main bearing",
             "parameters": {"scale": "1", "ratio": "0.5"},
             "steps": {
@@ -46,17 +60,18 @@ GALLERY: dict[str, dict[str, Any]] = {
                 },
             },
         },
-    },
+    ),
 }
 """By the name that its form sends."""
 
 
-def offered(templates: Sequence[Mapping[str, Any]], models: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def offered(templates: Iterable[TemplateSummary], models: Iterable[TemplateSummary]) -> dict[str, Example]:
     """The examples whose templates and models are there."""
-    known = {(item["id"], item["version"]) for item in (*templates, *models)}
-    return {name: example for name, example in GALLERY.items() if _uses(example["document"]) <= known}
+    present = {(item.id, item.version) for item in (*templates, *models)}
+    return {name: example for name, example in GALLERY.items() if _uses(example) <= present}
 
 
-def _uses(document: Mapping[str, Any]) -> set[tuple[str, int]]:
-    steps = {(step["template"], step["version"]) for step in document["steps"].values()}
-    return steps | {(document["model"]["id"], document["model"]["version"])}
+def _uses(example: Example) -> set[tuple[str, Version]]:
+    design = DesignIn.model_validate(example.document)
+    uses: set[tuple[str, Version]] = {(step.template, step.version) for step in design.steps.values()}
+    return uses | ({(design.model.id, design.model.version)} if design.model else set())

@@ -5,9 +5,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+
+from app.schemas.designs import RevisionStep
+from app.schemas.evaluations import Evaluated, Output, UsedInput
+from app.schemas.templates import Template
+from app.web.declared import Declared, properties
 
 FEWEST = 3  # points of a curve
 AXES = ("crank_angle",)  # of curves that say no other
@@ -20,35 +24,37 @@ class Picture:
 
     kind: str
     title: str
-    names: Mapping[str, Any]
+    names: Mapping[str, object]
 
-    def told(self, scope: str) -> dict[str, Any]:
+    def for_script(self, scope: str) -> dict[str, object]:
         """The picture for the script that draws it."""
         return {"kind": self.kind, "scope": scope, **self.names}
 
 
-Values = Mapping[str, Any]
-Rule = Callable[[Values, Mapping[str, Any]], Iterable[Picture]]
+Values = Mapping[str, UsedInput | Output]
+Members = Mapping[str, Declared]
+Rule = Callable[[Values, Members], Iterable[Picture]]
 
 
-def pictures(scope: str, template: Mapping[str, Any], told: Mapping[str, Any]) -> list[Picture]:
+def pictures(template: Template, answer: Evaluated | RevisionStep) -> list[Picture]:
     """The pictures of one evaluation, in the order of the table below."""
-    values = {**told.get("inputs", {}), **told.get("outputs", {})}
-    if not told.get("outputs"):
+    if not answer.outputs:
         return []
-    declared = {**template["inputs"]["properties"], **template["outputs"]["properties"]}
+    used = {name: value for name, value in answer.inputs.items() if isinstance(value, UsedInput)}
+    values: Values = {**used, **answer.outputs}
+    declared = {**properties(template.inputs), **properties(template.outputs)}
     return [picture for rule in TABLE for picture in rule(values, declared)]
 
 
 def _have(values: Values, *names: str) -> bool:
-    return all(name in values and values[name].get("value") is not None for name in names)
+    return all(name in values and values[name].value is not None for name in names)
 
 
 def _single(values: Values, *names: str) -> bool:
-    return _have(values, *names) and not any(isinstance(values[name]["value"], list) for name in names)
+    return _have(values, *names) and not any(isinstance(values[name].value, list) for name in names)
 
 
-def _clearance(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+def _clearance(values: Values, declared: Members) -> Iterator[Picture]:
     if _single(values, "relative_eccentricity", "minimum_film_thickness"):
         names = {
             "eccentricity": "relative_eccentricity",
@@ -62,7 +68,7 @@ FILM = ("relative_eccentricity", "bearing_diameter", "bearing_width", "diametral
         "dynamic_viscosity")  # fmt: skip
 
 
-def _pressure(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+def _pressure(values: Values, declared: Members) -> Iterator[Picture]:
     speed = "hydrodynamic_speed" if "hydrodynamic_speed" in values else "speed"
     if _single(values, *FILM, speed):
         yield Picture(
@@ -72,7 +78,7 @@ def _pressure(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
         )
 
 
-def _polar(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+def _polar(values: Values, declared: Members) -> Iterator[Picture]:
     for name in values:
         across = f"{name[:-1]}y"
         if name.endswith("load_x") and _is_curve(values, name) and _is_curve(values, across):
@@ -80,7 +86,7 @@ def _polar(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
             yield Picture("polar", f"Polar diagram of the {words}", {"x": name, "y": across})
 
 
-def _orbit(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+def _orbit(values: Values, declared: Members) -> Iterator[Picture]:
     if _is_curve(values, "eccentricity_x") and _is_curve(values, "eccentricity_y"):
         yield Picture(
             "orbit",
@@ -89,62 +95,54 @@ def _orbit(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
         )
 
 
-def _campbell(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+def _campbell(values: Values, declared: Members) -> Iterator[Picture]:
     if _have(values, "natural_frequencies", "engine_orders"):
         names = {"frequencies": "natural_frequencies", "orders": "engine_orders", "range": "speed_range"}
         yield Picture("campbell", "Campbell diagram", names)
 
 
-def _modes(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+def _modes(values: Values, declared: Members) -> Iterator[Picture]:
     if _have(values, "mode_shapes", "natural_frequencies"):
         names = {"shapes": "mode_shapes", "frequencies": "natural_frequencies"}
         yield Picture("modes", "Mode shapes", names)
 
 
-def _curves(values: Values, declared: Mapping[str, Any]) -> Iterator[Picture]:
+def _curves(values: Values, declared: Members) -> Iterator[Picture]:
     """Every curve over its axis: those of one unit and axis together."""
     groups: dict[tuple[str, str], list[str]] = {}
     for name, about in declared.items():
         axis = _axis(values, declared, name)
         if axis and name != axis and name not in ("mode_shapes", "natural_frequencies"):
-            groups.setdefault((axis, about["unit"]), []).append(name)
+            groups.setdefault((axis, about.unit or ""), []).append(name)
     for (axis, _), names in groups.items():
         for first in range(0, len(names), MOST_LINES):
             lines = names[first : first + MOST_LINES]
-            words = ", ".join(declared[name]["title"] for name in lines)
-            yield Picture("curves", f"{words} over {declared[axis]['title']}", {"x": axis, "y": lines})
+            words = ", ".join(declared[name].title for name in lines)
+            yield Picture("curves", f"{words} over {declared[axis].title}", {"x": axis, "y": lines})
 
 
-def _axis(values: Values, declared: Mapping[str, Any], name: str) -> str | None:
+def _axis(values: Values, declared: Members, name: str) -> str | None:
     """What a curve is drawn over: what it goes along, the crank angle, or the input that is an array."""
-    if not _is_curve(values, name) or "unit" not in declared[name]:
+    if not _is_curve(values, name) or declared[name].unit is None:
         return None
-    length = len(values[name]["value"])
-    along: str | None = declared[name].get("along")
+    length = len(values[name].value)
+    along = declared[name].along
     arrays = [other for other in values if other in declared and _is_curve(values, other)]
-    is_output = "from" not in values[name]
-    given = [other for other in arrays if is_output and values[other].get("from") == "given"]
+    is_output = isinstance(values[name], Output)
+    given = [other for other in arrays if is_output and _is_given(values[other])]
     for axis in filter(None, (along, *AXES, *given)):
-        if axis in arrays and len(values[axis]["value"]) == length:
+        if axis in arrays and len(values[axis].value) == length:
             return axis
     return None
 
 
 def _is_curve(values: Values, name: str) -> bool:
-    value = values.get(name, {}).get("value")
+    value = values[name].value if name in values else None
     return isinstance(value, list) and len(value) >= FEWEST and not isinstance(value[0], (list, str))
 
 
+def _is_given(value: UsedInput | Output) -> bool:
+    return isinstance(value, UsedInput) and value.source == "given"
+
+
 TABLE: tuple[Rule, ...] = (_clearance, _pressure, _polar, _orbit, _campbell, _modes, _curves)
-
-
-def painted(steps: Iterable[Mapping[str, Any]], models: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:
-    """The film pressure to paint on a plain bearing: that of the step to whose diameter its bore is tied."""
-    bores = {model["name"]: model["model"]["film_bore"] for model in models if model["model"]["film_bore"]}
-    texts = {field.name: field.text for model in models for field in model["fields"]}
-    for step in steps:
-        pressure = next((picture for picture in step["pictures"] if picture.kind == "pressure"), None)
-        for model, bore in bores.items():
-            if pressure and f"{step['name']}.bearing_diameter" in texts.get(f"{model}.{bore}", ""):
-                return {**pressure.told(step["name"]), "model": model}
-    return None

@@ -45,8 +45,10 @@ async def _refused(request: Request, error: Exception) -> Response:
     """What the interface refused under a page."""
     assert isinstance(error, Refused)
     if not _is_page(request):
-        return JSONResponse(dict(error.problem), error.status, media_type=MEDIA_TYPE)
-    return _page(request, error.status, error.problem.get("detail", ""), error.problem.get("title"))
+        return JSONResponse(
+            error.problem.model_dump(mode="json", exclude_unset=True), error.status, media_type=MEDIA_TYPE
+        )
+    return _page(request, error.status, error.problem.detail, error.problem.title)
 
 
 def _page(request: Request, status: int, detail: str, title: str | None = None) -> Response:

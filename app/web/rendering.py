@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, get_args
+from typing import get_args
 from urllib.parse import urlencode
 
 from fastapi import Request, Response
@@ -34,16 +34,16 @@ def units_of(request: Request) -> System:
     return next((system for system in get_args(System) if system == asked), "si")
 
 
-def show(request: Request, name: str, status: int = 200, **context: Any) -> Response:
+def show(request: Request, name: str, status: int = 200, **context: object) -> Response:
     """A page."""
     units = units_of(request)
     page = jinja.get_template(name)
-    told = page.render(units=units, path=request.url.path, query=_beside_units(request), **context)
-    answer = HTMLResponse(told, status, headers=HEADERS)
+    html = page.render(units=units, path=request.url.path, query=_beside_units(request), **context)
+    response = HTMLResponse(html, status, headers=HEADERS)
     if "units" in request.query_params:
-        answer.set_cookie("units", units, max_age=YEAR, samesite="lax", httponly=True)
-    keep_session(request, answer)
-    return answer
+        response.set_cookie("units", units, max_age=YEAR, samesite="lax", httponly=True)
+    keep_session(request, response)
+    return response
 
 
 def _beside_units(request: Request) -> str:

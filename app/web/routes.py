@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Annotated, Any, get_args
+from typing import Annotated, get_args
 from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
-from app.schemas.designs import State
+from app.schemas.designs import Design, DesignList, Explanation, ModelMeasurements, State
+from app.schemas.templates import TemplateList, TemplateVersions
 from app.web import plotly
 from app.web.api import Api, TheApi
 from app.web.design_page import design_page, revision_page
@@ -29,18 +30,20 @@ ON_HOME = 4  # designs, with pictures: the first page is light
 async def home(request: Request, api: TheApi) -> Response:
     """Designs, templates, models, and where to start."""
     designs, templates, models = await asyncio.gather(
-        api.get("/designs", limit=ON_HOME), api.get("/templates", limit=500), api.get("/models", limit=500)
+        api.get("/designs", DesignList, limit=ON_HOME),
+        api.get("/templates", TemplateList, limit=500),
+        api.get("/models", TemplateList, limit=500),
     )
-    latest = [item for item in templates["items"] if item["latest"]]
+    latest = [item for item in templates.items if item.latest]
     return show(
         request,
         "home.html",
         designs=designs,
-        pictures=dict(await asyncio.gather(*(_picture(api, item["id"]) for item in designs["items"]))),
-        templates=templates["items"],
+        pictures=dict(await asyncio.gather(*(_picture(api, item.id) for item in designs.items))),
+        templates=templates.items,
         latest=latest,
-        models=[item for item in models["items"] if item["latest"]],
-        gallery=offered(templates["items"], models["items"]),
+        models=[item for item in models.items if item.latest],
+        gallery=offered(templates.items, models.items),
     )
 
 
@@ -57,14 +60,14 @@ async def designs(
     typed = {"name": name, "state": state, "template": template.strip()}
     wanted = {key: text for key, text in typed.items() if text}  # a form sends empty fields too
     place = {"cursor": cursor} if cursor else {}
-    page = await api.get("/designs", limit=50, **wanted, **place)
+    page = await api.get("/designs", DesignList, limit=50, **wanted, **place)
     return show(
         request,
         "designs.html",
         designs=page,
         wanted=wanted,
         states=get_args(State),
-        older=urlencode({**wanted, "cursor": page["next"]}) if page["next"] else None,
+        older=urlencode({**wanted, "cursor": page.next}) if page.next else None,
     )
 
 
@@ -116,7 +119,8 @@ async def explanation(
 ) -> Response:
     """Where a model parameter comes from."""
     design, chain = await asyncio.gather(
-        api.get(f"/designs/{id}"), api.get(f"/designs/{id}/explain/{quote(parameter, safe='')}")
+        api.get(f"/designs/{id}", Design),
+        api.get(f"/designs/{id}/explain/{quote(parameter, safe='')}", Explanation),
     )
     return show(request, "explain.html", design=design, chain=chain)
 
@@ -150,10 +154,10 @@ async def plotly_script(request: Request) -> Response:
 
 async def _picture(api: Api, id: str) -> tuple[str, str | None]:
     """A design's id, and the picture of the first of its parts, if it has one by now."""
-    parts = await api.get(f"/designs/{id}/measurements")
+    parts = await api.get(f"/designs/{id}/measurements", dict[str, ModelMeasurements])
     return id, next((f"/api/v1/designs/{id}/models/{name}/model.png" for name in parts), None)
 
 
 async def _newest(api: TheApi, group: str, id: str) -> str:
-    versions: list[dict[str, Any]] = (await api.get(f"/{group}/{id}"))["items"]
-    return f"/{group}/{id}/{next(item['version'] for item in versions if item['latest'])}"
+    versions = await api.get(f"/{group}/{id}", TemplateVersions)
+    return f"/{group}/{id}/{next(item.version for item in versions.items if item.latest)}"

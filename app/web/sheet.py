@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from app.presentation import numbers
 from app.presentation.typed import text_of
+from app.schemas.templates import Schema, Template
+from app.schemas.values import Given
+from app.web.declared import Declared, properties, required
 from app.web.forms import OPTIONS
 from templates.core.units.relation import is_relation
 
@@ -25,7 +27,7 @@ class Field:
     unit: str | None = None
     hint: str = ""
     options: tuple[str, ...] = ()
-    value: Any = None  # what a relation comes to, or a default, as a quantity; None where the text says it
+    value: object = None  # what a relation comes to, or a default, as a quantity; None where the text says it
     needed: bool = True
     own: bool = False  # a design's own parameter: its name is all its words
 
@@ -42,10 +44,10 @@ class Field:
 
 
 def of_block(
-    schema: Mapping[str, Any],
+    schema: Schema,
     block: str,
-    cells: Mapping[str, Any],
-    values: Mapping[str, Any],
+    cells: Mapping[str, Given],
+    values: Mapping[str, object],
     typed: Mapping[str, str],
     faults: Mapping[str, str],
 ) -> list[Field]:
@@ -53,9 +55,9 @@ def of_block(
 
     `values` are the quantities used; `typed` what a form that was refused holds instead of the cells.
     """
-    needed = set(schema["required"])
+    needed = required(schema)
     fields = []
-    for tail, declared in schema["properties"].items():
+    for tail, declared in properties(schema).items():
         name = f"{block}.{tail}" if block else tail
         text = typed.get(name, text_of(cells.get(tail)))
         shown = None if text and not is_relation(text) else values.get(tail)
@@ -64,7 +66,10 @@ def of_block(
 
 
 def of_parameters(
-    cells: Mapping[str, Any], values: Mapping[str, Any], typed: Mapping[str, str], faults: Mapping[str, str]
+    cells: Mapping[str, Given],
+    values: Mapping[str, object],
+    typed: Mapping[str, str],
+    faults: Mapping[str, str],
 ) -> list[Field]:
     """The fields of a design's own parameters."""
     return [
@@ -82,27 +87,27 @@ def of_parameters(
 
 
 def of_options(
-    template: Mapping[str, Any],
+    template: Template,
     block: str,
-    cells: Mapping[str, Any],
+    chosen: Mapping[str, Given],
     typed: Mapping[str, str],
     faults: Mapping[str, str],
 ) -> list[Field]:
     """The fields that choose how exact a step is; none where its template has one level only."""
-    if not template["levels"]:
+    if not template.levels or template.default_level is None:
         return []
     level, tolerance = OPTIONS
     words = {level: "Level", tolerance: "or largest error"}
-    hints = {level: f"{template['default_level'].replace('_', ' ')} (default)", tolerance: "0.01"}
+    hints = {level: f"{template.default_level.replace('_', ' ')} (default)", tolerance: "0.01"}
     return [
         Field(
             name=(name := _name_of_fault(f"{block}.{option}" if block else option, faults)),
             control=(control := f"{block}@{option}"),
             words=words[option],
-            text=typed.get(control, text_of(cells.get(option))),
+            text=typed.get(control, text_of(chosen.get(option))),
             error=faults.get(name),
             hint=hints[option],
-            options=tuple(template["levels"]) if option == level else (),
+            options=tuple(template.levels) if option == level else (),
         )
         for option in OPTIONS
     ]
@@ -110,35 +115,33 @@ def of_options(
 
 def _name_of_fault(option: str, faults: Mapping[str, str]) -> str:
     """What a fault of an option is called: it may tell its place, `steps.film.tolerance`, or its value."""
-    found = (n for n in faults if n in (option, f"steps.{option}") or n.startswith(f"{option}."))
-    return next(found, option)
+    names = (n for n in faults if n in (option, f"steps.{option}") or n.startswith(f"{option}."))
+    return next(names, option)
 
 
-def _field(
-    name: str, declared: Mapping[str, Any], text: str, value: Any, error: str | None, needed: bool
-) -> Field:
+def _field(name: str, declared: Declared, text: str, value: object, error: str | None, needed: bool) -> Field:
     return Field(
         name=name,
         control=name,
-        words=declared["title"],
+        words=declared.title,
         text=text,
         error=error,
-        symbol=declared.get("symbol"),
-        unit=declared.get("unit"),
+        symbol=declared.symbol,
+        unit=declared.unit,
         hint=_hint(declared),
-        options=tuple(declared.get("enum", ())),
+        options=declared.enum,
         value=value,
         needed=needed,
     )
 
 
-def _hint(declared: Mapping[str, Any]) -> str:
+def _hint(declared: Declared) -> str:
     """What an empty field stands for, or how it is written."""
-    if "default" in declared:
-        return numbers.told(declared["default"])
-    if "default_formula" in declared:
+    if declared.has_default:
+        return numbers.told(declared.default)
+    if declared.default_formula is not None:
         return "follows from the rest"
-    example = declared.get("examples", [None])[0]
+    example = next(iter(declared.examples), None)
     return f"such as {text_of(example)}" if example is not None else "not given"
 
 

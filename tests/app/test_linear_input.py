@@ -383,7 +383,7 @@ class TestForms:
         assert_linear(value_of, lambda n: "[" + piece * n + "] mm", 20_000)
 
     def test_fields(self):
-        design = {"parameters": {}, "steps": {f"s{i}": {} for i in range(100)}, "models": {}}
+        design = SimpleNamespace(parameters={}, steps={f"s{i}" for i in range(100)}, models={})
         assert_linear(
             lambda typed: patch_of(design, typed), lambda n: {f"s{i % 100}.a{i}": "1" for i in range(n)}, 2000
         )

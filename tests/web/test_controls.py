@@ -2,6 +2,7 @@
 
 import json
 import re
+from types import SimpleNamespace
 
 import pytest
 from playwright.sync_api import expect
@@ -110,7 +111,7 @@ TYPED = {
 
 
 def test_the_browser_makes_the_same_patch_as_the_server(watched):
-    design = {"parameters": {"scale": "2"}, "steps": {"film": {}}, "models": {"model": {}}}
+    design = SimpleNamespace(parameters={"scale"}, steps={"film"}, models={"model"})
     watched.open("/")
     script = "async ([typed, models]) => (await import('/static/typed.js')).patchOf(typed, new Set(models))"
     for typed in (TYPED, {"film@tolerance": "[1]"}, {"film@tolerance": "inf"}, {"film@level": ""}):

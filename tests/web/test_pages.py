@@ -10,6 +10,7 @@ from sqlalchemy import text
 from app.api.gate.guard import PAGE_POLICY
 from app.presentation.numbers import aligned, percent, told, unit
 from app.presentation.typed import text_of, value_of
+from app.schemas.designs import Design
 from app.web.forms import kept, patch_of
 from templates.physics.films.reynolds import extrapolated_film
 
@@ -264,7 +265,7 @@ def test_a_field_means_what_it_says(typed, value):
 
 
 def test_a_patch_holds_what_was_changed_and_nothing_else(http, paper):
-    design = http.get(f"/api/v1{paper}").json()
+    design = Design.model_validate_json(http.get(f"/api/v1{paper}").content)
     was = json.dumps({".scale": "= 50 / 48", "film.radial_load": "25 kN", "model.inner_diameter": "= x"})
     typed = {"was": was, ".scale": "= 50 / 48", "film.radial_load": "26 kN", "film@tolerance": "0.01"}
     typed |= {"model.inner_diameter": "", "note": "n", "nothing.here": "1", "scale": "3", "film@here": "1"}

@@ -4,7 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from app.web.pictures import Picture, painted, pictures
+from app.schemas.evaluations import Output, UsedInput
+from app.web.blocks import painted
+from app.web.pictures import Picture, pictures
 
 CYCLE = [0.0, 90.0, 180.0, 270.0]
 
@@ -14,15 +16,19 @@ def declared(**units):
 
 
 def template(inputs=None, outputs=None):
-    return {"inputs": {"properties": inputs or {}}, "outputs": {"properties": outputs or {}}}
+    return SimpleNamespace(inputs={"properties": inputs or {}}, outputs={"properties": outputs or {}})
 
 
 def given(value, unit):
-    return {"value": value, "unit": unit, "from": "given"}
+    return UsedInput(value=value, unit=unit, source="given")
 
 
-def found(value, unit):
-    return {"value": value, "unit": unit}
+def computed(value, unit):
+    return Output(value=value, unit=unit)
+
+
+def answer(outputs, inputs=None):
+    return SimpleNamespace(inputs=inputs or {}, outputs=outputs)
 
 
 def kinds(shown):
@@ -32,81 +38,73 @@ def kinds(shown):
 def test_curves_over_the_crank_angle_are_drawn_by_unit():
     curves = declared(crank_angle="deg", torque="N*m", gas_torque="N*m", gas_pressure="bar")
     outputs = {**curves, **declared(mean_torque="N*m")}
-    told = {
-        "inputs": {},
-        "outputs": {
-            "crank_angle": found(CYCLE, "deg"),
-            "torque": found([1.0, 2.0, 3.0, 4.0], "N*m"),
-            "gas_torque": found([1.0, 2.0, 3.0, 4.0], "N*m"),
-            "gas_pressure": found([1.0, 2.0, 3.0, 4.0], "bar"),
-            "mean_torque": found(2.5, "N*m"),
-        },
-    }
-    shown = pictures("engine", template(outputs=outputs), told)
+    evaluated = answer(
+        {
+            "crank_angle": computed(CYCLE, "deg"),
+            "torque": computed([1.0, 2.0, 3.0, 4.0], "N*m"),
+            "gas_torque": computed([1.0, 2.0, 3.0, 4.0], "N*m"),
+            "gas_pressure": computed([1.0, 2.0, 3.0, 4.0], "bar"),
+            "mean_torque": computed(2.5, "N*m"),
+        }
+    )
+    shown = pictures(template(outputs=outputs), evaluated)
     assert kinds(shown) == ["curves", "curves"]
     assert [picture.names["y"] for picture in shown] == [["torque", "gas_torque"], ["gas_pressure"]]
     assert {picture.names["x"] for picture in shown} == {"crank_angle"}
-    assert shown[0].told("engine")["scope"] == "engine"
+    assert shown[0].for_script("engine")["scope"] == "engine"
 
 
 def test_loads_make_a_polar_diagram_and_eccentricities_an_orbit():
     names = declared(pin_load_x="N", pin_load_y="N", eccentricity_x="1", eccentricity_y="1", other_load_x="N")
-    told = {"inputs": {}, "outputs": {name: found(CYCLE, about["unit"]) for name, about in names.items()}}
-    shown = pictures("", template(outputs=names), told)
+    evaluated = answer({name: computed(CYCLE, about["unit"]) for name, about in names.items()})
+    shown = pictures(template(outputs=names), evaluated)
     assert kinds(shown) == ["polar", "orbit"]
     assert shown[0].title == "Polar diagram of the pin load"
 
 
 def test_an_output_over_an_array_that_was_given_is_drawn_over_it():
     inputs, outputs = declared(speed="rpm", load="N"), declared(film="um")
-    told = {
-        "inputs": {"speed": given([1.0, 2.0, 3.0], "rpm"), "load": given(1.0, "N")},
-        "outputs": {"film": found([3.0, 2.0, None], "um")},
-    }
-    (picture,) = pictures("", template(inputs, outputs), told)
+    used = {"speed": given([1.0, 2.0, 3.0], "rpm"), "load": given(1.0, "N")}
+    evaluated = answer({"film": computed([3.0, 2.0, None], "um")}, used)
+    (picture,) = pictures(template(inputs, outputs), evaluated)
     assert (picture.kind, picture.names) == ("curves", {"x": "speed", "y": ["film"]})
 
 
 def test_a_profile_is_drawn_along_what_it_says():
     outputs = declared(place="mm", pressure="MPa")
     outputs["pressure"]["along"] = "place"
-    told = {"inputs": {}, "outputs": {"place": found(CYCLE, "mm"), "pressure": found(CYCLE, "MPa")}}
-    (picture,) = pictures("", template(outputs=outputs), told)
+    evaluated = answer({"place": computed(CYCLE, "mm"), "pressure": computed(CYCLE, "MPa")})
+    (picture,) = pictures(template(outputs=outputs), evaluated)
     assert picture.names == {"x": "place", "y": ["pressure"]}
 
 
 def test_frequencies_make_a_campbell_diagram_and_mode_shapes():
-    told = {
-        "inputs": {"engine_orders": given([1.0, 2.0], "1")},
-        "outputs": {
-            "natural_frequencies": found([0.0, 80.0, 300.0], "Hz"),
-            "mode_shapes": found([[1.0, 1.0], [1.0, -1.0]], "1"),
-        },
-    }
+    frequencies, shapes = computed([0.0, 80.0, 300.0], "Hz"), computed([[1.0, 1.0], [1.0, -1.0]], "1")
+    used = {"engine_orders": given([1.0, 2.0], "1")}
+    evaluated = answer({"natural_frequencies": frequencies, "mode_shapes": shapes}, used)
     outputs = declared(natural_frequencies="Hz", mode_shapes="1")
-    assert kinds(pictures("", template(declared(engine_orders="1"), outputs), told)) == ["campbell", "modes"]
+    assert kinds(pictures(template(declared(engine_orders="1"), outputs), evaluated)) == ["campbell", "modes"]
 
 
 @pytest.mark.parametrize("value", [0.8, [0.8, 0.9, 0.95]])
 def test_the_clearance_circle_is_drawn_for_one_point_only(value):
     outputs = declared(relative_eccentricity="1", minimum_film_thickness="um")
-    told = {
-        "inputs": {},
-        "outputs": {
-            "relative_eccentricity": found(value, "1"),
-            "minimum_film_thickness": found(value, "um"),
-        },
-    }
+    evaluated = answer(
+        {
+            "relative_eccentricity": computed(value, "1"),
+            "minimum_film_thickness": computed(value, "um"),
+        }
+    )
     expected = ["clearance"] if value == 0.8 else []
-    assert kinds(pictures("", template(outputs=outputs), told)) == expected
+    assert kinds(pictures(template(outputs=outputs), evaluated)) == expected
 
 
 def test_nothing_is_drawn_of_what_waits_or_does_not_exist():
     outputs = declared(relative_eccentricity="1", minimum_film_thickness="um")
-    none = {"value": None, "unit": "1", "reason": "no load"}
-    told = {"inputs": {}, "outputs": dict.fromkeys(outputs, none)}
-    assert pictures("", template(outputs=outputs), told) == []
-    assert pictures("", template(outputs=outputs), {"inputs": {}, "outputs": {}}) == []
+    none = Output(value=None, unit="1", reason="no load")
+    evaluated = answer(dict.fromkeys(outputs, none))
+    assert pictures(template(outputs=outputs), evaluated) == []
+    assert pictures(template(outputs=outputs), answer({})) == []
     assert painted([], []) is None
 
 
@@ -119,7 +117,8 @@ def test_nothing_is_drawn_of_what_waits_or_does_not_exist():
     ],
 )
 def test_the_film_pressure_is_painted_on_a_bore_with_a_film_only(bore, relation, expected):
-    film = {"name": "film", "pictures": [Picture("pressure", "Film pressure", {"inputs": {}})]}
+    film = SimpleNamespace(name="film", pictures=[Picture("pressure", "Film pressure", {"inputs": {}})])
     field = SimpleNamespace(name="shell.inner_diameter", text=relation)
-    shown = painted([film], [{"name": "shell", "model": {"film_bore": bore}, "fields": [field]}])
+    part = SimpleNamespace(name="shell", model=SimpleNamespace(film_bore=bore), fields=[field])
+    shown = painted([film], [part])
     assert (shown or {}).get("model") == expected

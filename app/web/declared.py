@@ -1,0 +1,39 @@
+"""What a template or model declares of each input, parameter and output, read from its JSON Schemas."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel, JsonValue, TypeAdapter
+
+from app.schemas.templates import Schema
+
+
+class Declared(BaseModel):
+    """One input, parameter or output; the schema says more, which the pages do not use."""
+
+    title: str
+    symbol: str | None = None
+    unit: str | None = None
+    along: str | None = None  # of a curve: the name of its axis
+    enum: tuple[str, ...] = ()
+    default: JsonValue = None
+    default_formula: str | None = None
+    examples: list[JsonValue] = []
+
+    @property
+    def has_default(self) -> bool:
+        """Whether a value stands for an empty field."""
+        return "default" in self.model_fields_set
+
+
+_PROPERTIES = TypeAdapter(dict[str, Declared])
+_NAMES = TypeAdapter(frozenset[str])
+
+
+def properties(schema: Schema) -> dict[str, Declared]:
+    """What a schema declares, by name, in its order."""
+    return _PROPERTIES.validate_python(schema["properties"])
+
+
+def required(schema: Schema) -> frozenset[str]:
+    """The names without which the schema refuses an object."""
+    return _NAMES.validate_python(schema["required"])
