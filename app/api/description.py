@@ -41,6 +41,8 @@ def describe_interface(app: FastAPI) -> dict[str, Any]:
             _declare_preconditions(method, operation)
             _declare_problems(operation)
         schemas = app.openapi_schema["components"]["schemas"]
+        for _, operation in _operations(app.openapi_schema):
+            _name_bodies(operation, schemas)
         for model in (Problem, Fault):
             schemas[model.__name__] = model.model_json_schema(ref_template=REFERENCE)
             schemas[model.__name__].pop("$defs", None)
@@ -52,6 +54,15 @@ def describe_interface(app: FastAPI) -> dict[str, Any]:
 def _operations(described: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
     for item in described["paths"].values():
         yield from item.items()
+
+
+def _name_bodies(operation: dict[str, Any], schemas: dict[str, Any]) -> None:
+    """Give an object that stands in an operation a name of its own, under which generators make one class."""
+    for content in operation.get("requestBody", {}).get("content", {}).values():
+        schema = content["schema"]
+        if schema.get("type") == "object" and "title" in schema:
+            schemas[schema["title"]] = schema
+            content["schema"] = {"$ref": REFERENCE.format(model=schema["title"])}
 
 
 def _drop_item_schemas(operation: dict[str, Any]) -> None:
@@ -95,12 +106,13 @@ def _refused(operation: dict[str, Any], *statuses: int) -> None:
 
 
 def _close(schema: Any) -> None:
-    """Where names follow a pattern, no others are taken."""
+    """Say of names that follow a pattern that no others are taken, in words that generators understand."""
     if isinstance(schema, list):
         for part in schema:
             _close(part)
     if isinstance(schema, dict):
-        if "patternProperties" in schema:
-            schema["additionalProperties"] = False
+        if len(schema.get("patternProperties", ())) == 1:
+            ((pattern, values),) = schema.pop("patternProperties").items()
+            schema.update(propertyNames={"pattern": pattern}, additionalProperties=values)
         for part in schema.values():
             _close(part)
