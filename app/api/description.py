@@ -2,7 +2,7 @@
 
 FastAPI derives it from the routes. It is wrong in four things, which are corrected here: a parameter of
 a path, query or header has no null; a change needs If-Match; a name that does not fit the pattern of names is
-refused; `itemSchema` is OpenAPI 3.2. Problems that follow from what an operation takes are added here too;
+refused; `itemSchema` is OpenAPI 3.2. Some things are put so that generators of clients understand them. Problems that follow from what an operation takes are added here too;
 a route declares those of its own.
 """
 
@@ -47,7 +47,7 @@ def describe_interface(app: FastAPI) -> dict[str, Any]:
             schemas[model.__name__] = model.model_json_schema(ref_template=REFERENCE)
             schemas[model.__name__].pop("$defs", None)
         for schema in app.openapi_schema["components"]["schemas"].values():
-            _close(schema)
+            _simplify(schema)
     return app.openapi_schema
 
 
@@ -105,14 +105,20 @@ def _refused(operation: dict[str, Any], *statuses: int) -> None:
         operation["responses"].setdefault(str(status), response)
 
 
-def _close(schema: Any) -> None:
-    """Say of names that follow a pattern that no others are taken, in words that generators understand."""
+def _simplify(schema: Any) -> None:
+    """Say the same in words that generators of clients understand, here and in all parts.
+
+    Names that follow a pattern are `propertyNames`, and no others are taken; one allowed text is a choice of
+    one (openapi-python-client compares every value of a union with a `const`).
+    """
     if isinstance(schema, list):
         for part in schema:
-            _close(part)
+            _simplify(part)
     if isinstance(schema, dict):
         if len(schema.get("patternProperties", ())) == 1:
             ((pattern, values),) = schema.pop("patternProperties").items()
             schema.update(propertyNames={"pattern": pattern}, additionalProperties=values)
+        if isinstance(schema.get("const"), str):
+            schema["enum"] = [schema.pop("const")]
         for part in schema.values():
-            _close(part)
+            _simplify(part)
