@@ -19,8 +19,10 @@ from typing import Any
 
 import click
 
-from app.client import Client, Design
+from app.client import Client
 from app.designs.schemas import PAPER
+from app.schemas.answers import Quantity
+from app.schemas.designs import Design
 
 START = 600.0  # for the service to start, which takes minutes on a busy machine with a cold disk [s]
 REMARK = 10.0  # how often to say what the demonstration is waiting for [s]
@@ -123,8 +125,12 @@ def _changed(client: Client, design: Design, what: str, patch: dict[str, Any]) -
 
 def _checked(design: Design) -> Design:
     if design.state != "current":
-        raise click.ClickException(f"revision {design.revision} is {design.state}: {design.problem}")
+        raise click.ClickException(f"revision {design.revision} is {design.state}: {_reason(design)}")
     return design
+
+
+def _reason(design: Design) -> str:
+    return design.problem.detail if design.problem else "the service gives no reason"
 
 
 def _progress(fraction: float, text: str) -> None:
@@ -143,10 +149,24 @@ def _compare(client: Client, before: Design, after: Design) -> None:
 
 def _facts(client: Client, design: Design) -> dict[str, tuple[float, str]]:
     revision = client.revision(design.id, design.revision)
-    outputs = revision["steps"]["film"]["outputs"]
-    dimensions = client.build(revision["models"]["model"]["build"])["measurements"]["dimensions"]
-    shown = {"minimum_film_thickness": outputs["minimum_film_thickness"], **dimensions}
-    return {name: (told["value"], told["unit"].removeprefix("1")) for name, told in shown.items()}
+    thickness = revision.steps["film"].outputs["minimum_film_thickness"]
+    dimensions = _dimensions(client, _build(client, design))
+    measured = {name: (size.value, size.unit.removeprefix("1")) for name, size in dimensions.items()}
+    return {"minimum_film_thickness": (thickness.value, thickness.unit or ""), **measured}
+
+
+def _build(client: Client, design: Design) -> str:
+    """The key of the design's build."""
+    build = client.revision(design.id, design.revision).models["model"].build
+    if build is None:
+        raise click.ClickException(f"revision {design.revision} has no solid")
+    return build
+
+
+def _dimensions(client: Client, build: str) -> dict[str, Quantity]:
+    """The dimensions that the service measured on a build."""
+    measurements = client.build(build).measurements
+    return measurements.dimensions if measurements else {}
 
 
 def _saved(client: Client, design: Design, data: Path) -> Path:
@@ -158,8 +178,8 @@ def _saved(client: Client, design: Design, data: Path) -> Path:
 
 
 def _report_rebuild(client: Client, old: Design, new: Design) -> None:
-    builds = [client.revision(d.id, d.revision)["models"]["model"]["build"] for d in (old, new)]
-    diameter = client.build(builds[1])["measurements"]["dimensions"]["inner_diameter"]
+    builds = [_build(client, design) for design in (old, new)]
+    diameter = _dimensions(client, builds[1])["inner_diameter"]
     same = "the same solid" if builds[0] == builds[1] else "a new solid"
-    measured = f"{diameter['value']:.6g} {diameter['unit']}"
+    measured = f"{diameter.value:.6g} {diameter.unit}"
     click.echo(f"revision {old.revision} → {new.revision}: {same}, inner diameter {measured}")

@@ -23,8 +23,10 @@ import matplotlib as mpl
 import matplotlib.pyplot as plt
 from PIL import Image
 
-from app.client import Client, Design
+from app.client import Client
 from app.demo import service
+from app.schemas.designs import Design
+from app.schemas.evaluations import UsedInput
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE, PICTURE = DOCS / "crank_study.md", DOCS / "pictures" / "crank_study.png"
@@ -142,20 +144,34 @@ def told(change: Mapping[str, str]) -> str:
 def state(client: Client, design: Design) -> State:
     """What the design's newest revision has calculated and measured, and the mode of its solid."""
     revision = client.revision(design.id, design.revision)
-    vibration, throw = revision["steps"]["vibration"], revision["steps"]["throw"]
-    measured, crank = client.measurements(design.id)["crank"], revision["models"]["crank"]
-    stiffness = crank["analyses"]["torsion"]["outputs"]["stiffness"]
-    parameters, outputs = crank["parameters"], ["torsional_frequency"]
-    mode = client.analyse("crankshaft", 1, parameters, "torsion", level=LEVEL, outputs=outputs)
+    vibration, throw = revision.steps["vibration"], revision.steps["throw"]
+    measured, crank = client.measurements(design.id)["crank"], revision.models["crank"]
+    stiffness = crank.analyses["torsion"].outputs["stiffness"]
+    outputs = ["torsional_frequency"]
+    mode = client.analyse("crankshaft", 1, crank.parameters, "torsion", level=LEVEL, outputs=outputs)
     return State(
-        stiffness=stiffness["value"],
-        error=stiffness["error"],
-        frequency=vibration["outputs"]["natural_frequencies"]["value"][0],
-        mode=mode["outputs"]["torsional_frequency"]["value"],
-        recommended=throw["outputs"]["recommended_stiffness"]["value"],
-        mass=measured["mass"]["value"],
-        inertia=vibration["inputs"]["inertias"]["value"][0],
+        stiffness=_number(stiffness.value),
+        error=_number(stiffness.error),
+        frequency=vibration.outputs["natural_frequencies"].value[0],
+        mode=_number(mode.outputs["torsional_frequency"].value),
+        recommended=throw.outputs["recommended_stiffness"].value,
+        mass=measured.mass.value,
+        inertia=_inertia(vibration.inputs["inertias"]),
     )
+
+
+def _number(value: float | None) -> float:
+    """A value that the study needs."""
+    if value is None:
+        raise ValueError("the service has no value for an output of the study")
+    return value
+
+
+def _inertia(used: object) -> float:
+    """The first of the inertias that a step used."""
+    if not isinstance(used, UsedInput):
+        raise ValueError("the step of the vibration waits for its inputs")
+    return float(used.value[0])
 
 
 def main() -> None:
@@ -163,7 +179,7 @@ def main() -> None:
     mpl.use("Agg")
     with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as client:
         slender = states(client, SLENDER, [change.parameters for change in CHANGES])
-        picture = client.model(client.designs()[0]["id"], "png")
+        picture = client.model(client.designs()[0].id, "png")
         stout = states(client, {**SLENDER, **STOUT}, STOUT_CHANGES)
     draw(slender, stout, picture)
     PAGE.write_text(page(slender, stout), encoding="utf-8")

@@ -15,9 +15,11 @@ import matplotlib as mpl
 import matplotlib.pyplot as plt
 from PIL import Image, ImageChops
 
-from app.client import Client, Design
+from app.client import Client
 from app.demo import service
 from app.designs.schemas import PAPER
+from app.schemas.designs import Design
+from app.schemas.evaluations import Output
 
 TARGET = Path(__file__).parents[1] / "docs" / "pictures" / "link.png"
 SHOWN = ("sommerfeld_number", "relative_eccentricity", "minimum_film_thickness")
@@ -30,7 +32,7 @@ def main() -> None:
     """Create the paper's design at two scales and draw both, the parts in true proportion to each other."""
     mpl.use("Agg")
     with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as client:
-        formulas = {f["name"]: f["latex"] for f in client.template("oil_film", 1)["formulas"]}
+        formulas = {f.name: f.latex for f in client.template("oil_film", 1).formulas}
         designs = [client.create(_document(scale)) for scale in SCALES]
         figure, rows = plt.subplots(len(designs), 2, figsize=(9.2, 6.2), width_ratios=[0.8, 1])
         for design, (worksheet, part) in zip(designs, rows, strict=True):
@@ -47,25 +49,25 @@ def _document(scale: str) -> dict[str, Any]:
 
 def _worksheet(axes: Any, client: Client, design: Design, formulas: dict[str, str]) -> None:
     """The relation and three of the formulas with their results, as a worksheet shows them."""
-    step = client.revision(design.id, design.revision)["steps"]["film"]
-    diameter = step["inputs"]["bearing_diameter"]["value"]
+    step = client.revision(design.id, design.revision).steps["film"]
+    diameter = step.inputs["bearing_diameter"].value
     lines = [
         f"SCALE := {design.parameters['scale']}",
         f"D := SCALE · 48 mm = {diameter:g} mm",
-        *(f"${formulas[name]}$  =  {_shown(step['outputs'][name])}" for name in SHOWN),
+        *(f"${formulas[name]}$  =  {_shown(step.outputs[name])}" for name in SHOWN),
     ]
     axes.axis("off")
     for place, line in enumerate(lines):
         axes.text(0.05, 0.92 - 0.2 * place, line, fontsize=15, va="center", transform=axes.transAxes)
 
 
-def _shown(quantity: dict[str, Any]) -> str:
-    return f"{quantity['value']:#.4g} {UNITS[quantity['unit']]}".strip()
+def _shown(output: Output) -> str:
+    return f"{output.value:#.4g} {UNITS[output.unit or '1']}".strip()
 
 
 def _part(axes: Any, client: Client, design: Design) -> None:
-    dimensions = client.measurements(design.id)["model"]["dimensions"]
-    bore, outside = (dimensions[name]["value"] for name in ("inner_diameter", "outer_diameter"))
+    dimensions = client.measurements(design.id)["model"].dimensions
+    bore, outside = (dimensions[name].value for name in ("inner_diameter", "outer_diameter"))
     picture = _trimmed(Image.open(io.BytesIO(client.model(design.id, "png"))).convert("RGB"))
     half, height = outside / 2, outside * picture.height / picture.width / 2
     axes.imshow(picture, extent=(-half, half, -height, height))

@@ -3,18 +3,43 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Iterator
 from types import ModuleType
 
 from app import client
+from app.client import operations
 from handbook.signatures import functions, prose, section
 from templates import door
 
 
 def pages() -> Iterator[tuple[str, str]]:
     """Both references."""
-    yield "reference/client.md", page("Python client", client)
+    yield "reference/client.md", client_page()
     yield "reference/door.md", page("Templates from Python", door)
+
+
+def client_page() -> str:
+    """The reference of both clients: how they are made, and the operations that both have."""
+    classes = (client.Client, client.AsyncClient, client.Problem)
+    own = [name for name, thing in vars(operations).items() if _is_of(thing, operations)]
+    return "\n".join(
+        (
+            f"# Python client\n\n`app.client`: {_introduction(client)}\n",
+            *(f"## {one.__name__}\n\n{prose(one)}\n" for one in classes),
+            "## Methods\n\nThose of `AsyncClient` are awaited.\n",
+            *(_without_exchange(text) for text in functions(operations, own)),
+        )
+    )
+
+
+def _without_exchange(text: str) -> str:
+    """A signature with what the clients return, in place of the exchange that they run for it."""
+    return re.sub(r"-> Exchange\[(.*)\]$", r"-> \1", text, flags=re.MULTILINE)
+
+
+def _is_of(thing: object, module: ModuleType) -> bool:
+    return inspect.isfunction(thing) and thing.__module__ == module.__name__
 
 
 def page(title: str, module: ModuleType) -> str:

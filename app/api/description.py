@@ -2,8 +2,8 @@
 
 FastAPI derives it from the routes. It is wrong in four things, which are corrected here: a parameter of
 a path, query or header has no null; a change needs If-Match; a name that does not fit the pattern of names is
-refused; `itemSchema` is OpenAPI 3.2. Problems that follow from what an operation takes are added here too;
-a route declares those of its own.
+refused; `itemSchema` is OpenAPI 3.2. Some things are put so that generators of clients understand them.
+Problems that follow from what an operation takes are added here too; a route declares those of its own.
 """
 
 from __future__ import annotations
@@ -41,17 +41,28 @@ def describe_interface(app: FastAPI) -> dict[str, Any]:
             _declare_preconditions(method, operation)
             _declare_problems(operation)
         schemas = app.openapi_schema["components"]["schemas"]
+        for _, operation in _operations(app.openapi_schema):
+            _name_bodies(operation, schemas)
         for model in (Problem, Fault):
             schemas[model.__name__] = model.model_json_schema(ref_template=REFERENCE)
             schemas[model.__name__].pop("$defs", None)
         for schema in app.openapi_schema["components"]["schemas"].values():
-            _close(schema)
+            _simplify(schema)
     return app.openapi_schema
 
 
 def _operations(described: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
     for item in described["paths"].values():
         yield from item.items()
+
+
+def _name_bodies(operation: dict[str, Any], schemas: dict[str, Any]) -> None:
+    """Give an object that stands in an operation a name of its own, under which generators make one class."""
+    for content in operation.get("requestBody", {}).get("content", {}).values():
+        schema = content["schema"]
+        if schema.get("type") == "object" and "title" in schema:
+            schemas[schema["title"]] = schema
+            content["schema"] = {"$ref": REFERENCE.format(model=schema["title"])}
 
 
 def _drop_item_schemas(operation: dict[str, Any]) -> None:
@@ -94,13 +105,20 @@ def _refused(operation: dict[str, Any], *statuses: int) -> None:
         operation["responses"].setdefault(str(status), response)
 
 
-def _close(schema: Any) -> None:
-    """Where names follow a pattern, no others are taken."""
+def _simplify(schema: Any) -> None:
+    """Say the same in words that generators of clients understand, here and in all parts.
+
+    Names that follow a pattern are `propertyNames`, and no others are taken; one allowed text is a choice of
+    one (openapi-python-client compares every value of a union with a `const`).
+    """
     if isinstance(schema, list):
         for part in schema:
-            _close(part)
+            _simplify(part)
     if isinstance(schema, dict):
-        if "patternProperties" in schema:
-            schema["additionalProperties"] = False
+        if len(schema.get("patternProperties", ())) == 1:
+            ((pattern, values),) = schema.pop("patternProperties").items()
+            schema.update(propertyNames={"pattern": pattern}, additionalProperties=values)
+        if isinstance(schema.get("const"), str):
+            schema["enum"] = [schema.pop("const")]
         for part in schema.values():
-            _close(part)
+            _simplify(part)

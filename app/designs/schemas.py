@@ -74,12 +74,13 @@ def _part(cls: type[BaseModel]) -> dict[str, Any]:
 
 
 PATCH: dict[str, Any] = {
+    "title": "DesignPatch",
     "type": "object",
     "examples": [{"parameters": {"scale": "1.01"}, "note": "next size"}],
     "additionalProperties": False,
     "properties": {
         "name": {"type": "string", "minLength": 1, "maxLength": 200, "pattern": NAME},
-        "parameters": _named({"anyOf": [{"type": "null"}, GIVEN]}),
+        "parameters": _named({**GIVEN, "anyOf": [*GIVEN["anyOf"], {"type": "null"}]}),
         "steps": _named(_part(Step)),
         "model": {**_part(Model), "description": "short for `models` with one entry named `model`"},
         "models": _named(_part(Model)),

@@ -20,7 +20,7 @@ Typed = Annotated[Any, WithJsonSchema(GIVEN)]
 """A value as its user typed it; a relation begins with `=`."""
 
 
-class Step(Answer):
+class DesignStep(Answer):
     """A template at work in a design."""
 
     template: str
@@ -41,7 +41,7 @@ class AnalysisOptions(Answer):
     load: Typed = None
 
 
-class Model(Answer):
+class DesignModel(Answer):
     """A CAD model in a design."""
 
     id: str
@@ -50,7 +50,7 @@ class Model(Answer):
     analyses: dict[str, AnalysisOptions] = Field({}, description="absent where there are none")
 
 
-class Iteration(Answer):
+class DesignIteration(Answer):
     """A loop that the design allows."""
 
     through: str = Field(description="the measure or analysis output of a solid, such as `model.mass`")
@@ -82,9 +82,9 @@ class Design(Answer):
     revision: int
     state: State
     parameters: dict[str, Typed]
-    steps: dict[str, Step]
-    models: dict[str, Model]
-    iterations: list[Iteration]
+    steps: dict[str, DesignStep]
+    models: dict[str, DesignModel]
+    iterations: list[DesignIteration]
     problem: Problem | None = Field(description="why the regeneration failed")
     created: str
     changed: str

@@ -82,7 +82,7 @@ class Template(Described):
     latest: bool
 
 
-class Model(Described):
+class CadModel(Described):
     """One version of a CAD model."""
 
     parameters: Schema = Field(description="JSON Schema of the object `parameters`")

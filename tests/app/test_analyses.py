@@ -194,8 +194,8 @@ class TestSurface:
         problem(http.get(f"{API}/analyses/nothing/surface"), 404, "not-found")
 
     def test_the_client_has_it(self, client: Client, painted):
-        found = client.surface(painted["id"])
-        assert len(found["triangles"]) == painted["outputs"]["surface"]["triangles"]
+        surface = client.surface(painted["id"])
+        assert len(surface.triangles) == painted["outputs"]["surface"]["triangles"]
         with pytest.raises(Problem, match="no analysis"):
             client.surface("nothing")
 
@@ -254,8 +254,8 @@ class TestFoundAgain:
         problem(http.get(f"{API}/analyses/{answer.json()['id']}"), 404, "not-found")
 
     def test_the_client_waits(self, client: Client):
-        told = client.analyse("bar", 1, bar(23), level="coarse", outputs=["stiffness"])
-        assert told["outputs"]["stiffness"]["value"] > 0
+        analysis = client.analyse("bar", 1, bar(23), level="coarse", outputs=["stiffness"])
+        assert analysis.outputs["stiffness"].value > 0
         with pytest.raises(Problem, match="no shaft"):
             client.analyse("ball_bearing", 1, {"inner_diameter": "40 mm"})
 

@@ -216,7 +216,7 @@ def test_what_takes_long_goes_on_as_a_job(http, log):
 def test_the_client_follows_what_takes_long(server, log):
     with Client(server.url) as client:
         answer = client.evaluate("sleeper", 1, {"duration": "3 s"})
-        assert answer["outputs"]["process"]["value"] == begun(log)[0]
+        assert answer.outputs["process"].value == begun(log)[0]
         with pytest.raises(Problem, match="must be") as caught:
             client.evaluate("sleeper", 1, {"duration": "-1 s"})
         assert caught.value.status == 422

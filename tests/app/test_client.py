@@ -1,5 +1,8 @@
 """The typed client: what it gives back, and the problems that it raises."""
 
+import asyncio
+import inspect
+
 import httpx
 import pytest
 from fastapi import Request
@@ -7,45 +10,150 @@ from serving import free_port, moody, paper
 
 from app.api.gate.clients import HEADER, get_client
 from app.calculations.schemas import OIL_FILM
-from app.client import Client, Problem, user_at_host
+from app.client import AsyncClient, Client, Problem, operations, user_at_host
+from app.client.exchange import read
+from app.schemas.answers import Version
 
 
 def test_templates_evaluate_and_solve(client):
-    assert "oil_film" in {one["id"] for one in client.templates()}
-    assert client.template("oil_film", 1)["formulas"]
+    assert "oil_film" in {one.id for one in client.templates()}
+    assert client.template("oil_film", 1).formulas
     answer = client.evaluate("oil_film", 1, OIL_FILM, outputs=["density"])
-    assert answer["outputs"].keys() == {"density"}
+    assert answer.outputs.keys() == {"density"}
     target = {"minimum_film_thickness": "3.2449 um"}
     inputs = {name: value for name, value in OIL_FILM.items() if name != "bearing_width"}
-    found = client.solve("oil_film", 1, inputs, "bearing_width", ("10 mm", "80 mm"), target)
-    assert found["unknown"]["value"] == pytest.approx(18, abs=0.01)
+    solution = client.solve("oil_film", 1, inputs, "bearing_width", ("10 mm", "80 mm"), target)
+    assert solution.unknown.value == pytest.approx(18, abs=0.01)
+
+
+def test_a_quantity_of_an_answer_is_an_input(client):
+    curve = client.curves("load [kN]\n25\n30\n").curves["load"]
+    loads = client.evaluate("oil_film", 1, {**OIL_FILM, "radial_load": curve}, outputs=["density"])
+    assert loads.inputs["radial_load"].value == [25, 30]
+
+
+def test_a_worksheet(client):
+    written = client.worksheet("oil_film", 1, OIL_FILM, outputs=["minimum_film_thickness"])
+    assert "minimum_film_thickness" in {formula.name for formula in written.formulas}
 
 
 def test_a_design_from_its_creation_to_its_verification(client):
-    told = []
-    design = client.create(moody("33 mm"), on_progress=lambda fraction, text: told.append(fraction))
-    assert (design.state, design.revision, design.job) == ("current", 1, None)
+    fractions = []
+    design = client.create(moody("33 mm"), on_progress=lambda fraction, text: fractions.append(fraction))
+    assert (design.state, design.revision) == ("current", 1)
     assert client.design(design.id) == design
-    assert design.id in {one["id"] for one in client.designs()}
+    assert design.id in {one.id for one in client.designs()}
     patch = {"models": {"model": {"parameters": {"size": "34 mm"}}}}
     shown = client.preview(design.id, patch)
-    assert shown["model_parameters"]["model.size"]["new"] == {"value": 34, "unit": "mm"}
+    assert shown.model_parameters["model.size"].new.plain() == {"value": 34, "unit": "mm"}
     changed = client.change(design, patch)
     assert changed.revision == 2
     step = client.model(design.id)
-    (user,) = client.verify(step)["revisions"]
-    assert user == {"design": design.id, "revision": 2, "current": True}
-    build = client.revision(design.id, 2)["models"]["model"]["build"]
-    assert client.build(build)["measurements"]["dimensions"]["size"]["value"] == pytest.approx(34)
+    (user,) = client.verify(step).revisions
+    assert user.plain() == {"design": design.id, "revision": 2, "current": True}
+    build = client.revision(design.id, 2).models["model"].build
+    assert client.build(build).measurements.dimensions["size"].value == pytest.approx(34)
+    assert client.measurements(design.id)["model"].build == build
     with pytest.raises(Problem) as refused:
         client.change(design, patch)
     assert refused.value.status == 412
 
 
-def test_a_report(client):
+def test_explain_copy_restore_and_delete(client):
+    document = {**moody("= width"), "parameters": {"width": "36 mm"}}
+    design = client.create(document)
+    assert client.explain(design.id, "model.size").relation == "= width"
+    copied = client.copy(design.id, "twin")
+    assert (copied.name, copied.parameters) == ("twin", design.parameters)
+    assert copied.id != design.id
+    changed = client.change(design, {"parameters": {"width": "37 mm"}})
+    restored = client.restore(changed, 1, "as it was")
+    assert (restored.revision, restored.parameters) == (3, design.parameters)
+    assert [one.note for one in client.revisions(design.id)] == ["as it was", None, None]
+    assert client.delete(copied.id) is None
+    with pytest.raises(Problem) as missing:
+        client.design(copied.id)
+    assert missing.value.status == 404
+
+
+def test_a_report_and_the_worksheet_of_a_design(client):
     design = client.create(paper(name="to be signed"))
     assert client.report(design.id).startswith(b"%PDF-")
     assert b"to be signed" in client.report(design.id, "html")
+    formulas = client.design_worksheet(design.id).steps["film"].formulas
+    assert formulas == client.design_worksheet(design.id, 1).steps["film"].formulas
+    assert "minimum_film_thickness" in {formula.name for formula in formulas}
+
+
+def test_a_file_is_never_the_body_of_a_202(served, monkeypatch):
+    monkeypatch.setattr(served.jobs, "wait_seconds", 0.0)
+    statuses = []
+    with Client(served.url) as client:
+        client._http.event_hooks = {"response": [lambda response: statuses.append(response.status_code)]}
+        design = client.create(moody("38.5 mm"))
+        statuses.clear()
+        dxf = client.model(design.id, "dxf")
+        assert statuses[0] == 202
+        step = client.model(design.id)
+        statuses.clear()
+        picture = client.picture("bar", 1)
+        assert statuses[0] == 202
+    assert step.startswith(b"ISO-10303-21")
+    assert b"SECTION" in dxf[:100]
+    assert picture.startswith(b"\x89PNG")
+
+
+def test_a_job_that_fails_is_a_problem(served, monkeypatch):
+    monkeypatch.setattr(served.jobs, "wait_seconds", 0.0)
+    with Client(served.url) as client, pytest.raises(Problem) as failed:
+        client.analyse("bar", 1, {"diameter": "20 mm", "length": "40 mm", "ends": "elsewhere"})
+    assert failed.value.status == 422
+    assert failed.value.described.detail
+
+
+def test_the_async_twin(served, monkeypatch):
+    monkeypatch.setattr(served.jobs, "wait_seconds", 0.0)
+
+    async def work():
+        async with AsyncClient(served.url) as client:
+            assert await client.healthy()
+            one, two = await asyncio.gather(*(client.create(moody(size)) for size in ("41 mm", "42 mm")))
+            step = await client.model(one.id)
+            sizes = [(await client.measurements(design.id))["model"] for design in (one, two)]
+            with pytest.raises(Problem, match="404"):
+                await client.design("nothing")
+            return step, [size.dimensions["size"].value for size in sizes]
+
+    step, sizes = asyncio.run(work())
+    assert step.startswith(b"ISO-10303-21")
+    assert sizes == pytest.approx([41, 42])
+
+
+def test_both_clients_have_every_operation():
+    own = {
+        name
+        for name, thing in vars(operations).items()
+        if inspect.isfunction(thing) and thing.__module__ == operations.__name__ and name[0] != "_"
+    }
+    for client in (Client, AsyncClient):
+        assert own <= vars(client).keys()
+        assert all(getattr(client, name).operation is getattr(operations, name) for name in own)
+
+
+def test_a_field_that_a_newer_service_adds_is_no_error():
+    response = httpx.Response(200, json={"id": "x", "version": 1, "colour": "red"})
+    assert read(Version, response).id == "x"
+
+
+def test_a_page_of_a_proxy_is_a_problem():
+    problem = Problem.of(httpx.Response(502, text="<h1>Bad gateway</h1>"))
+    assert str(problem) == "502 Bad Gateway: <h1>Bad gateway</h1>"
+    assert problem.errors == []
+
+
+def test_a_number_that_is_none_is_not_sent(client):
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        client.evaluate("oil_film", 1, {**OIL_FILM, "radial_load": float("nan")})
 
 
 def test_a_repeat_under_one_key_is_one_design(client):
@@ -56,24 +164,24 @@ def test_a_repeat_under_one_key_is_one_design(client):
 def test_auto_map(client):
     design = client.create({**moody(), "parameters": {"size": "3 mm"}, "model": {"id": "moody"}})
     (proposal,) = client.auto_map(design.id)
-    assert (proposal["target"], proposal["relation"]) == ("model.size", "= size")
+    assert (proposal.target, proposal.relation) == ("model.size", "= size")
 
 
 def test_a_problem_carries_every_fault(client):
     with pytest.raises(Problem, match="422") as refused:
         client.evaluate("oil_film", 1, {"radial_load": "-1 N", "speed": "3 mm"})
-    assert {"radial_load", "speed", "bearing_diameter"} <= {fault["name"] for fault in refused.value.errors}
+    assert {"radial_load", "speed", "bearing_diameter"} <= {fault.name for fault in refused.value.errors}
 
 
 def test_a_change_that_is_followed_to_its_end(served, monkeypatch):
     monkeypatch.setattr(served.jobs, "wait_seconds", 0.0)
-    told = []
+    progress = []
     with Client(served.url) as client:
         design = client.create(
-            moody("35.5 mm"), on_progress=lambda fraction, text: told.append((fraction, text))
+            moody("35.5 mm"), on_progress=lambda fraction, text: progress.append((fraction, text))
         )
     assert design.state == "current"
-    assert all(0 <= fraction <= 1 and text for fraction, text in told)
+    assert all(0 <= fraction <= 1 and text for fraction, text in progress)
 
 
 @pytest.mark.parametrize(
@@ -86,8 +194,8 @@ def test_a_change_that_is_followed_to_its_end(served, monkeypatch):
     ],
 )
 def test_a_client_has_the_name_of_its_user_and_machine(monkeypatch, user, host, name):
-    monkeypatch.setattr("app.client.getpass.getuser", lambda: user)
-    monkeypatch.setattr("app.client.socket.gethostname", lambda: host)
+    monkeypatch.setattr("app.client.names.getpass.getuser", lambda: user)
+    monkeypatch.setattr("app.client.names.socket.gethostname", lambda: host)
     assert user_at_host() == name
     with Client("http://localhost") as client:
         assert client.name == name
@@ -97,7 +205,7 @@ def test_a_user_without_a_name(monkeypatch):
     def nobody():
         raise KeyError("getpwuid(): uid not found: 4711")
 
-    monkeypatch.setattr("app.client.getpass.getuser", nobody)
+    monkeypatch.setattr("app.client.names.getpass.getuser", nobody)
     assert user_at_host().startswith("unknown@")
 
 

@@ -5,7 +5,11 @@ from urllib.parse import urlsplit
 
 import pytest
 import schemathesis
+from patience import until
 from serving import API, created, paper
+
+from app.calculations.schemas import OIL_FILM
+from app.schemas.evaluations import Evaluation, Solution, Worksheet
 
 METHODS = ("get", "post", "patch", "put", "delete")
 
@@ -147,3 +151,59 @@ def test_the_style_sheet_loads_nothing_from_outside(http):
 
 def test_redoc_is_not_served(http):
     assert http.get("/redoc").status_code == 404
+
+
+def test_every_json_answer_and_problem_has_a_schema(document, operations):
+    without = []
+    for name, operation in operations.items():
+        for status, response in operation["responses"].items():
+            for media, content in response.get("content", {}).items():
+                if media.endswith("json") and not named(document, content.get("schema", {})):
+                    without.append((name, status, media))
+            if not status.startswith("2"):
+                assert status == "304" or "application/problem+json" in response["content"], (name, status)
+    assert without == []
+
+
+def named(document, schema):
+    """Whether a schema is that of a model, of one of several, or of models by name."""
+    if "$ref" in schema:
+        return schema["$ref"].rpartition("/")[2] in document["components"]["schemas"]
+    if "anyOf" in schema:
+        return all(named(document, one) for one in schema["anyOf"])
+    inside = schema.get("additionalProperties") or schema.get("items")
+    return isinstance(inside, dict) and named(document, inside)
+
+
+EVALUATE = {"inputs": OIL_FILM}
+SOLVE = {
+    "inputs": {name: value for name, value in OIL_FILM.items() if name != "bearing_width"},
+    "unknown": "bearing_width",
+    "bounds": ["10 mm", "80 mm"],
+    "target": {"minimum_film_thickness": "3.2449 um"},
+}
+LOADS = {"inputs": {**OIL_FILM, "radial_load": {"value": [25, 1e9], "unit": "kN"}}}
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "model"),
+    [
+        ("evaluate", EVALUATE, Evaluation),
+        ("evaluate", {**EVALUATE, "outputs": ["density"], "units": {"density": "g/cm**3"}}, Evaluation),
+        ("evaluate", LOADS, Evaluation),
+        ("solve", SOLVE, Solution),
+        ("worksheet", EVALUATE, Worksheet),
+        ("worksheet?units=us", EVALUATE, Worksheet),
+    ],
+)
+@pytest.mark.parametrize("prefer", ["wait=60", "respond-async"])
+def test_an_answer_written_past_the_models_equals_its_model(http, path, body, model, prefer):
+    """These answers are written as they were calculated, for speed; also when a job has stored them."""
+    place = f"{API}/templates/oil_film/versions/2/{path}"
+    answer = http.post(place, json=body, headers={"Prefer": prefer})
+    if answer.status_code == 202:
+        job = answer.headers["Location"].rpartition("/")[2]
+        show = f"{API}/evaluations/{job}"
+        answer = until(lambda: http.get(show), lambda response: response.status_code != 202)
+    assert answer.status_code == 200, answer.text
+    assert model.model_validate(answer.json()).plain() == answer.json()

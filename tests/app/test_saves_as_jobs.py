@@ -261,7 +261,7 @@ def test_a_preview_for_which_nobody_waits(http, served):
     assert http.get(job["result"]).json()["revision"] == 1
     with Client(served.url) as client:
         shown = client.preview(design["id"], patch_of(2))
-        assert shown["outputs"]["s.process"]["new"]["value"] > 0
+        assert shown.outputs["s.process"].new.value > 0
 
 
 def test_a_preview_within_a_time_leaves_the_rest_and_queues_nothing(http, log):

@@ -77,7 +77,10 @@ UsedTemplate = Annotated[
 ]
 Patch = Annotated[
     dict[str, Any],
-    Body(description="a merge patch of the design, with an optional `note`; null removes"),
+    Body(
+        title="DesignPatch",
+        description="a merge patch of the design, with an optional `note`; null removes",
+    ),
     WithJsonSchema(PATCH),
 ]
 CHANGED = {**later(Design), **refusals(404, 429)}

@@ -17,6 +17,7 @@ from app.calculations.jobs import CALCULATION, PREVIEW, CalculationJobs
 from app.jobs.errors import JobNotFound
 from app.jobs.job import Job
 from app.jobs.service import Jobs
+from app.schemas.designs import Preview
 from app.schemas.evaluations import AnyCalculation
 from app.schemas.problems import refusals
 from app.storage.artifacts import ArtifactStore
@@ -27,7 +28,9 @@ router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
 
 
 @router.get(
-    "/{job}", response_model=AnyCalculation, responses={**LATER, **UNAVAILABLE, **refusals(404, 409, 429)}
+    "/{job}",
+    response_model=AnyCalculation | Preview,
+    responses={**LATER, **UNAVAILABLE, **refusals(404, 409, 429)},
 )
 async def show_evaluation(
     job: Annotated[str, Path(max_length=64)],

@@ -20,7 +20,8 @@ from app.api.waiting import LATER, accepted, finished, later, written
 from app.schemas.bounded import Bounded
 from app.schemas.problems import refusals
 from app.schemas.solids import Build, Verification
-from app.schemas.templates import Model, TemplateList, TemplateVersions
+from app.schemas.templates import CadModel as ModelAnswer
+from app.schemas.templates import TemplateList, TemplateVersions
 from app.schemas.values import Parameters
 from app.solids.questions import what_can_be_asked
 from app.storage.artifacts import ArtifactStore
@@ -71,12 +72,12 @@ def list_model_versions(id: Id, catalogues: TheCatalogues) -> TemplateVersions:
 
 
 @router.get("/models/{id}/versions/{number}", responses=refusals(404))
-def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> Model:
+def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> ModelAnswer:
     """One model: its parameters as JSON Schema, what is measured on its solid, how that can be analysed."""
     cls = catalogues.models.get(id, number)
     described = describe(cls)
     parameters = described.pop("inputs")
-    return Model.model_validate(
+    return ModelAnswer.model_validate(
         {
             **described,
             "parameters": parameters,

@@ -1,0 +1,154 @@
+"""Exchanges with the service, whoever sends them.
+
+An exchange is a generator. It yields requests, receives their responses and returns a model; it knows nothing
+of sockets, so that `Client` and `AsyncClient` run the same exchanges.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+import httpx
+from pydantic import TypeAdapter
+
+from app.client.problem import Problem, checked
+from app.schemas.answers import Answer, Page
+from app.schemas.jobs import Job
+
+BASE = "/api/v1"
+ENDED = ("done", "failed", "cancelled")
+JSON, MERGE_PATCH = "application/json", "application/merge-patch+json"
+_JOB = f"{BASE}/jobs/"
+
+Progress = Callable[[float, str], None]
+"""Receives how much of a job is done, 0 to 1, and what it does."""
+
+Model = TypeVar("Model")
+Result = TypeVar("Result")
+Item = TypeVar("Item")
+
+
+@dataclass(frozen=True)
+class Request:
+    """A request; `listen` receives every line of a stream, which has no time-out."""
+
+    method: str
+    path: str
+    content: bytes | None = None
+    params: Mapping[str, str] = field(default_factory=dict)
+    headers: Mapping[str, str] = field(default_factory=dict)
+    listen: Callable[[str], None] | None = None
+
+
+Exchange = Generator[Request, httpx.Response, Result]
+
+
+def get(path: str, params: Mapping[str, str] | None = None) -> Request:
+    """Ask for what is at a path below `BASE`."""
+    return Request("GET", BASE + path, params=params or {})
+
+
+def post(path: str, body: object, headers: Mapping[str, str] | None = None) -> Request:
+    """Send a body as JSON to a path below `BASE`."""
+    return Request("POST", BASE + path, written(body), headers={"Content-Type": JSON, **(headers or {})})
+
+
+def written(body: object) -> bytes:
+    """A body as JSON; models of answers, such as a quantity, may be part of it.
+
+    Raises
+    ------
+    ValueError
+        If a number is NaN or infinite.
+    """
+    return json.dumps(body, default=_plain, allow_nan=False, ensure_ascii=False).encode()
+
+
+def _plain(value: object) -> dict[str, Any]:
+    if isinstance(value, Answer):
+        return value.plain()
+    raise TypeError(f"a value of type {type(value).__name__} cannot be sent as JSON")
+
+
+def read(model: type[Model], response: httpx.Response) -> Model:
+    """The answer as a model. A field that a newer service adds is no error."""
+    return TypeAdapter(model).validate_json(checked(response).content, extra="allow")
+
+
+def answered(model: type[Model], request: Request) -> Exchange[Model]:
+    """The answer to one request."""
+    return read(model, (yield request))
+
+
+def listed(page: type[Page[Item]], path: str) -> Exchange[list[Item]]:
+    """The items of all pages."""
+    items: list[Item] = []
+    cursor: str | None = ""
+    while cursor is not None:
+        one = yield from answered(page, get(path, {"cursor": cursor} if cursor else {}))
+        items += one.items
+        cursor = one.next
+    return items
+
+
+def awaited(request: Request, on_progress: Progress | None = None) -> Exchange[httpx.Response]:
+    """The answer to a request that is sent again once its job has ended, as for a file that must be made.
+
+    Raises
+    ------
+    Problem
+        If the service refuses the request, or its job fails.
+    """
+    response = yield request
+    while job := job_of(response):
+        yield from done(job, on_progress)
+        response = yield request
+    return checked(response)
+
+
+def calculated(model: type[Model], request: Request, on_progress: Progress | None = None) -> Exchange[Model]:
+    """The answer of a calculation, from where its job leaves it if it became one."""
+    response = yield request
+    if job := job_of(response):
+        yield from done(job, on_progress)
+        response = yield from awaited(get(f"/evaluations/{job}"), on_progress)
+    return read(model, response)
+
+
+def job_of(response: httpx.Response) -> str | None:
+    """The job that an answer waits for: of a 202, or of a 503 while a lost file is made again."""
+    place = response.headers.get("Location", "")
+    waits = response.status_code in (202, 503) and place.startswith(_JOB)
+    return place.removeprefix(_JOB) if waits else None
+
+
+def done(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
+    """A job that has done its work.
+
+    Raises
+    ------
+    Problem
+        If it failed or was cancelled.
+    """
+    ended = yield from followed(job, on_progress)
+    if ended.problem:
+        raise Problem(ended.problem.status, ended.problem.model_dump(exclude_unset=True))
+    return ended
+
+
+def followed(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
+    """A job once it has ended, however it did."""
+
+    def listen(line: str) -> None:
+        event = json.loads(line.removeprefix("data:")) if line.startswith("data:") else {}
+        if on_progress and event.get("event") == "progress":
+            on_progress(event["progress"], event["text"])
+
+    while True:
+        checked((yield Request("GET", f"{_JOB}{job}/events", listen=listen)))
+        row = yield from answered(Job, get(f"/jobs/{job}"))
+        if row.state in ENDED:
+            return row

@@ -1,0 +1,57 @@
+"""The error that the client raises when the service refuses a request."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import httpx
+
+from app.schemas.problems import Fault
+from app.schemas.problems import Problem as Described
+
+
+class Problem(Exception):
+    """The service's answer to what it refuses (RFC 9457), or why a job failed.
+
+    Attributes
+    ----------
+    status
+        The HTTP status.
+    body
+        The answer as plain JSON values.
+    described
+        The answer as a model.
+    """
+
+    def __init__(self, status: int, body: Mapping[str, Any]) -> None:
+        self.status, self.body = status, dict(body)
+        blank = {"type": "about:blank", "title": "", "status": status, "detail": ""}
+        self.described = Described.model_validate({**blank, **self.body})
+        super().__init__(f"{status} {self.described.title}: {self.described.detail}")
+
+    @property
+    def errors(self) -> list[Fault]:
+        """Every wrong input by name, where there are several."""
+        return self.described.errors
+
+    @classmethod
+    def of(cls, response: httpx.Response) -> Problem:
+        """The problem in an answer; a proxy's page counts as one too."""
+        try:
+            return cls(response.status_code, response.json())
+        except ValueError:  # no JSON, or JSON that is no problem
+            return cls(response.status_code, {"title": response.reason_phrase, "detail": response.text[:500]})
+
+
+def checked(response: httpx.Response) -> httpx.Response:
+    """The answer as it is.
+
+    Raises
+    ------
+    Problem
+        If it refuses the request.
+    """
+    if response.is_error:
+        raise Problem.of(response)
+    return response
