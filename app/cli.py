@@ -19,6 +19,7 @@ from app.demo import demonstrate
 from app.hosts import is_loopback
 from app.main import create_app
 from app.maintenance.commands import backup_command, check_command, restore_command
+from app.plain import JsonObject
 from app.settings import Settings
 from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
@@ -73,7 +74,7 @@ def main() -> None:
 @click.option("--insecure", is_flag=True, help="listen beyond this machine although nothing asks for a key")
 def serve(host: str | None, port: int | None, data: Path | None, insecure: bool) -> None:
     """Serve the REST interface; its documentation is at /docs."""
-    given: dict[str, Any] = {"data": data, "host": host, "port": port}
+    given: JsonObject = {"data": data, "host": host, "port": port}
     settings = Settings(**{name: value for name, value in given.items() if value is not None})
     _check_reach(settings.host, insecure)
     try:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
 from app.calculations.curves import read_curves
+from app.plain import Raw
 from templates.core.errors import Fault, InvalidInputs
 
 
-def argument(name: str, text: str) -> Any:
+def argument(name: str, text: str) -> Raw:
     """The value of an input: `25 kN`, `[1, 3, 4, 2]`, `@diagram.csv` or `@diagram.csv:column`.
 
     Of a file, the column named as the input is taken unless another is named.
@@ -30,7 +30,7 @@ def argument(name: str, text: str) -> Any:
         raise _wrong(name, "not_json", f"{text[:60]!r} is no list or object of JSON: {error}") from None
 
 
-def _curve(name: str, text: str) -> Any:
+def _curve(name: str, text: str) -> Raw:
     path, _, column = text.rpartition(":") if not Path(text).exists() else (text, "", "")
     try:
         curves = read_curves(Path(path or text).read_bytes())

@@ -16,7 +16,7 @@ USUAL = 256  # MiB, unless the settings say otherwise
 
 @dataclass(frozen=True)
 class _Sized:
-    value: Any
+    value: object
     size: int  # bytes
 
 
@@ -45,7 +45,7 @@ class Cache:
             kept = self._kept.get(key)
         return None if kept is None else kept.value
 
-    def keep(self, key: Hashable, value: Any) -> None:
+    def keep(self, key: Hashable, value: object) -> None:
         """Keep a value, also in place of one that has grown; one larger than the whole cache is not kept."""
         size = size_of(value)
         with self._lock:

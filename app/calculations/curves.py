@@ -13,8 +13,8 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
+from app.plain import JsonObject
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt
 from templates.core.language.meaning import api_name
 from templates.core.units.units import unit
@@ -40,7 +40,7 @@ class Column:
     unit: str
 
 
-def read_curves(body: bytes) -> dict[str, dict[str, Any]]:
+def read_curves(body: bytes) -> dict[str, JsonObject]:
     """The columns of a table as quantities by name: `{"pressure": {"value": […], "unit": "bar"}}`.
 
     Raises

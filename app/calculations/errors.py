@@ -8,11 +8,12 @@ InvalidBody                a body that was read in a calculation process is not 
 
 from __future__ import annotations
 
-from typing import Any, Self
+from typing import Self
 
 from pydantic import ValidationError
 
 from app.jobs.errors import QueueFull
+from app.plain import JsonObject
 
 
 class TooManyCalculations(QueueFull):
@@ -33,7 +34,7 @@ class StepDeferred(Exception):
 class InvalidBody(Exception):
     """A body that is not what the operation takes; `errors()` are in pydantic's form."""
 
-    def __init__(self, listed: list[dict[str, Any]]) -> None:
+    def __init__(self, listed: list[JsonObject]) -> None:
         super().__init__(listed)
         self._listed = listed
 
@@ -49,6 +50,6 @@ class InvalidBody(Exception):
         found = {"type": "json_invalid", "loc": ("body", 0), "msg": "JSON decode error"}
         return cls([{**found, "ctx": {"error": reason}}])
 
-    def errors(self) -> list[dict[str, Any]]:
+    def errors(self) -> list[JsonObject]:
         """What is wrong, one by one."""
         return self._listed

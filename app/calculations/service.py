@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from app.calculations import rendering
 from app.calculations.errors import TooManyValues
 from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.size import points
+from app.plain import JsonObject
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.request import read_request, require_points
 from templates.core.language.solve import read_question, solve
@@ -18,7 +17,7 @@ from templates.core.language.template import Template
 MOST_VALUES = 2_000_000  # in one answer: some 40 MB of JSON
 
 
-def run_evaluate(cls: type[Template], body: EvaluateIn) -> dict[str, Any]:
+def run_evaluate(cls: type[Template], body: EvaluateIn) -> JsonObject:
     """Evaluate a template, as `evaluated`."""
     return rendering.evaluation(evaluated(cls, body))
 
@@ -88,7 +87,7 @@ def _limit(values: int) -> None:
         raise TooManyValues(told)
 
 
-def run_solve(cls: type[Template], body: SolveIn) -> dict[str, Any]:
+def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
     """Solve for one input.
 
     Raises

@@ -22,7 +22,7 @@ _SHARED = (
 _ATOMS = (float, int, bool, str, bytes, complex, type(None))
 
 
-def size_of(value: Any) -> int:
+def size_of(value: object) -> int:
     """The memory of a value and of all that it refers to [bytes]; what equal parts share may count twice."""
     total, seen, waiting = sys.getsizeof(value), {id(value)}, [value]
     while waiting:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from app.designs.memory import memory
 from app.designs.network import Block, Cell, Graph, Node, Solid, SolidAnalysis
 from app.designs.reference import Reference
 from app.designs.size import limit_operations, limit_values
+from app.plain import Raw
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.language.request import read_request
@@ -146,7 +146,7 @@ def _joined(result: Calculation, cell: Cell) -> Value:
     return _finite(np.array(parts, dtype=float))
 
 
-def _item(item: Any, names: Mapping[str, Value], declared: str | None) -> Value:
+def _item(item: Raw, names: Mapping[str, Value], declared: str | None) -> Value:
     if is_relation(item):
         return parse(item).value(names)
     return read(item, declared).si if declared else read_any(item).si
@@ -182,7 +182,7 @@ def _block(result: Calculation, block: Block) -> None:
         result.broken.add(block)
 
 
-def _attempt(result: Calculation, block: Block, raw: dict[str, Any], waiting: set[str]) -> list[Fault]:
+def _attempt(result: Calculation, block: Block, raw: dict[str, Raw], waiting: set[str]) -> list[Fault]:
     """Evaluate a step or make a model's shape; where inputs are waited for, check what can be checked."""
     try:
         if waiting:
@@ -205,7 +205,7 @@ def _attempt(result: Calculation, block: Block, raw: dict[str, Any], waiting: se
     return []
 
 
-def _evaluate(result: Calculation, block: Block, raw: dict[str, Any], wanted: tuple[str, ...] | None) -> None:
+def _evaluate(result: Calculation, block: Block, raw: dict[str, Raw], wanted: tuple[str, ...] | None) -> None:
     """Evaluate a step; one that is deferred is checked as far as that takes no formula."""
     try:
         evaluation = memory.evaluation(block, raw, wanted)

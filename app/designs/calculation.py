@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from app.designs.analyses import measured_unit
 from app.designs.network import Graph, Node, SolidAnalysis
 from app.designs.reference import Reference
+from app.plain import Json
 from app.solids.questions import Question
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText
@@ -21,7 +21,7 @@ from templates.core.units.units import Value, unit
 
 Measures = Mapping[str, float]  # in the units of MEASURES
 Measured = Callable[[CadModel], Measures | None]
-Found = Mapping[str, Mapping[str, Any]]  # outputs of an analysis
+Found = Mapping[str, Mapping[str, Json]]  # outputs of an analysis
 Analysed = Callable[[CadModel, Question, tuple[str, ...]], Found | None]
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from pydantic_core import from_json, to_json
 from sqlalchemy.orm import Session
@@ -15,6 +14,7 @@ from app.designs.errors import DesignError
 from app.designs.graph import Catalogues
 from app.designs.preview import preview
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.plain import JsonObject
 from app.presentation.units import System
 from app.schemas.designs import Preview
 from app.storage.artifacts import ArtifactStore
@@ -32,7 +32,7 @@ class Change:
     """A change that is to be previewed, and how."""
 
     design: str
-    patch: dict[str, Any]
+    patch: JsonObject
     worksheet: bool
     system: System
 
@@ -92,11 +92,11 @@ class Previews:
         )
         return lambda session: place
 
-    def failed(self, session: Session, job: Job, problem: dict[str, Any]) -> None:
+    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
         """End what was left to a job that was cancelled before it began."""
         self.steps.drop(job.id)
 
-    def _queued(self, payload: dict[str, Any], client: str, begun: Begun | None) -> str:
+    def _queued(self, payload: JsonObject, client: str, begun: Begun | None) -> str:
         def unit(session: Session) -> str:
             id = self.jobs.enqueue(session, PREVIEW, payload, client=client)
             if begun is not None:

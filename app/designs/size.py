@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import chain
-from typing import Any
 
 from app.designs.document import Document
+from app.plain import Raw
 from templates.core.errors import Fault, FaultyText
 from templates.core.units.relation import is_relation
 
@@ -30,7 +30,7 @@ def too_many_relations(document: Document) -> Iterator[Fault]:
         yield Fault("design", "too_long", told)
 
 
-def _items(document: Document) -> Iterator[Any]:
+def _items(document: Document) -> Iterator[Raw]:
     """Every value of a document, and every item of those that are lists."""
     groups = [document.parameters, *(step.inputs for step in document.steps.values())]
     groups += [model.parameters for model in document.models.values()]

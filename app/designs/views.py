@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from sqlalchemy.orm import Session
 
 from app.designs import repository
+from app.plain import JsonObject
 from app.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
 from app.solids import measures, rows
 from app.solids.models import File
@@ -72,16 +71,16 @@ def revision(session: Session, row: RevisionRow) -> Revision:
     )
 
 
-def _step(typed: dict[str, Any], calculated: dict[str, Any] | None) -> dict[str, Any]:
+def _step(typed: JsonObject, calculated: JsonObject | None) -> JsonObject:
     """A step with its results, or as typed while it waits for a solid or for its job."""
     if calculated is None or "outputs" not in calculated:
         template = {"id": typed["template"], "version": typed["version"]}
-        empty: dict[str, Any] = {"outputs": {}, "level": None, "error": {}, "warnings": []}
+        empty: JsonObject = {"outputs": {}, "level": None, "error": {}, "warnings": []}
         return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
     return calculated
 
 
-def _model(session: Session, row: RevisionModelRow) -> dict[str, Any]:
+def _model(session: Session, row: RevisionModelRow) -> JsonObject:
     return {
         "id": row.model,
         "version": row.model_version,
@@ -113,9 +112,9 @@ def measurements(session: Session, id: str) -> dict[str, ModelMeasurements]:
     return measured
 
 
-def _analyses(row: RevisionRow, model: str) -> dict[str, Any]:
+def _analyses(row: RevisionRow, model: str) -> JsonObject:
     """The analyses of a model in a revision; none in revisions of before there were any."""
-    analyses: dict[str, Any] = (row.results or {}).get("analyses", {}).get(model, {})
+    analyses: JsonObject = (row.results or {}).get("analyses", {}).get(model, {})
     return analyses
 
 

@@ -18,6 +18,7 @@ from app.jobs.events import Events
 from app.jobs.job import Job
 from app.jobs.turns import Lane
 from app.observation import logs
+from app.plain import JsonObject
 from app.storage.database import Database
 from app.storage.errors import DatabaseClosed
 from app.workers.base import Limits, Worker
@@ -25,7 +26,7 @@ from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed, Memor
 
 logger = logging.getLogger(__name__)
 
-Problem = dict[str, Any]
+Problem = JsonObject
 Completion = Callable[[Session], str | None]
 Handler = Callable[[Job, JobContext], Completion]
 FailureHook = Callable[[Session, Job, Problem], None]

@@ -8,9 +8,10 @@ import threading
 from collections import defaultdict
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
-from typing import Any
 
-Event = dict[str, Any]
+from app.plain import JsonObject
+
+Event = JsonObject
 
 _ROOM = 100  # events that may wait for a slow reader before the oldest are dropped
 

@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 
 from app.jobs.job import Job
 from app.jobs.turns import ALL_KINDS, UNFINISHED, Lane
+from app.plain import JsonObject
 from app.schemas.jobs import State
 from app.storage.clock import operated
 from app.storage.identity import new_id, now
@@ -20,7 +21,7 @@ from app.storage.tables import JobRow
 def add(
     session: Session,
     kind: str,
-    payload: dict[str, Any],
+    payload: JsonObject,
     design: str | None,
     revision: int | None,
     client: str = "",
@@ -58,7 +59,7 @@ def page(session: Session, limit: int, before: str | None) -> list[Job]:
     return [_job(row) for row in rows]
 
 
-def find_waiting(session: Session, kind: str, payload: dict[str, Any]) -> str | None:
+def find_waiting(session: Session, kind: str, payload: JsonObject) -> str | None:
     """Return the id of the job of this kind and payload that has not ended."""
     same = select(JobRow.id).where(JobRow.kind == kind, JobRow.payload == payload)
     return session.scalar(same.where(JobRow.state.in_(UNFINISHED)).limit(1))
@@ -98,7 +99,7 @@ def give_back_all(session: Session) -> int:
     return _write(session, JobRow.state == "running", state="queued")
 
 
-def cancel(session: Session, job: Job, problem: dict[str, Any]) -> None:
+def cancel(session: Session, job: Job, problem: JsonObject) -> None:
     """Mark a job as cancelled."""
     _write(session, JobRow.id == job.id, state="cancelled", problem=problem, operated=operated(session))
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, WithJsonSchema
 
-from app.schemas.analyses import ModelAnalysis
+from app.schemas.analyses import AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Answer, Page, Shown, Version, Warning
 from app.schemas.evaluations import CalculatedBy, Error, Level, Output, UsedInput, WorkedFormula
 from app.schemas.problems import Problem
@@ -181,8 +181,11 @@ class ModelMeasurements(Measurements):
 class Change(Answer):
     """A value before and after a change; null where there is none."""
 
-    old: Output | None
-    new: Output | None
+    old: Output | AnalysisOutput | None
+    new: Output | AnalysisOutput | None
+
+
+Status = Literal["ok", "unchanged", "missing", "pending", "unit_mismatch"]
 
 
 class ParameterChange(Answer):
@@ -190,7 +193,7 @@ class ParameterChange(Answer):
 
     old: Shown | None
     new: Shown | None
-    status: Literal["ok", "unchanged", "missing", "pending", "unit_mismatch"]
+    status: Status
     detail: str | None = Field(None, description="what is wrong with its unit")
 
 

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from sqlalchemy import Text, select, type_coerce
 from sqlalchemy.orm import Session
 
+from app.plain import JsonObject
 from app.solids.questions import Question, in_order
 from app.storage.errors import NotFound
 from app.storage.identity import now
 from app.storage.tables import AnalysisRow
 from cad.analysis.kinds import STRESSES, SURFACE
 
-Found = dict[str, dict[str, Any]]
+Found = dict[str, JsonObject]
 
 
 def found(session: Session, key: str) -> Found:
@@ -73,7 +73,7 @@ def _together(rows: list[AnalysisRow]) -> tuple[Question, Found]:
     return question, {name: known[name] for name in in_order(question.kind, known)}
 
 
-def add(session: Session, build: str, question: Question, known: Mapping[str, dict[str, Any]]) -> None:
+def add(session: Session, build: str, question: Question, known: Mapping[str, JsonObject]) -> None:
     """Record what was found; the same found twice is one."""
     key = question.key(build)
     for output, told in known.items():

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from typing import Any
 
+from app.plain import JsonObject
 from app.solids import analysis_rows as repository
 from app.solids import rows
 from app.solids.questions import Question
@@ -56,7 +56,7 @@ class Analysing:
             found |= {name: self._stored(output) for name, output in told.items()}
         self.database.write(lambda session: repository.add(session, build, question, found))
 
-    def _stored(self, output: dict[str, Any]) -> dict[str, Any]:
+    def _stored(self, output: JsonObject) -> JsonObject:
         """An output as its row holds it: of one that is a file, what the store calls it."""
         if FILE not in output:
             return output
@@ -85,7 +85,7 @@ def shaft_of(shape: CadModel) -> Shaft:
 
 def analyse_in_worker(
     step: bytes, shaft: Shaft, question: Question, outputs: tuple[str, ...]
-) -> dict[str, dict[str, Any]]:
+) -> dict[str, JsonObject]:
     """`cad.analysis.analyse.analyse` with progress told to the job; runs in the worker's process."""
     # The server imports this module too, and needs no solver.
     from cad.analysis.analyse import AnalysisRequest, analyse
@@ -101,7 +101,7 @@ def analyse_in_worker(
         raise AnalysisError("solver", detail) from error
 
 
-def _packed(told: dict[str, Any]) -> dict[str, Any]:
+def _packed(told: JsonObject) -> JsonObject:
     """A surface as the bytes of its JSON; how many triangles it has is told beside it."""
     surface = told["value"]
     rest = {name: part for name, part in told.items() if name != "value"}

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import ConfigDict, Field, WithJsonSchema
 
+from app.plain import JsonObject
 from app.schemas.values import Parameters
 from app.solids.questions import Options, offered
 from cad.analysis.kinds import KINDS
 
-THROW: dict[str, Any] = {
+THROW: JsonObject = {
     "journal_diameter": "50 mm",
     "journal_length": "20 mm",
     "pin_diameter": "45 mm",

@@ -60,7 +60,7 @@ class Packed:
         return pickle.loads(self.message, buffers=self.pieces)
 
 
-def pack(message: Any) -> Packed:
+def pack(message: object) -> Packed:
     """Pickle a message; raises what pickle raises."""
     pieces: list[PickleBuffer] = []
     packed = pickle.dumps(message, protocol=5, buffer_callback=pieces.append)
