@@ -60,7 +60,7 @@ def remedy(reference: Reference, models: Mapping[str, Mapping[str, Question]]) -
     if kind not in models[model]:
         declared = f'declare "analyses": {{"{kind}": {{}}}} in models.{model}'
         return f"{model} has no analysis {kind}; {declared} to use {reference}"
-    return f"{model}.{kind} has the outputs {', '.join(KINDS[kind])}, not {output[:60]}"
+    return f"{model}.{kind} has the outputs {', '.join(KINDS[kind])}, no {output[:60]}"
 
 
 def used(kind: str, references: Iterable[Reference]) -> tuple[str, ...]:
