@@ -39,8 +39,8 @@ def _curve(name: str, text: str) -> Raw:
     except InvalidInputs as error:
         raise InvalidInputs(fault.within(path or text) for fault in error.faults) from None
     if (column or name) not in curves:
-        told = f"{path} has no column {column or name}; take one of them by {text}:{next(iter(curves))}"
-        raise _wrong(name, "no_such_column", f"{told} (it has {', '.join(curves)})")
+        message = f"{path} has no column {column or name}; take one of them by {text}:{next(iter(curves))}"
+        raise _wrong(name, "no_such_column", f"{message} (it has {', '.join(curves)})")
     return curves[column or name]
 
 

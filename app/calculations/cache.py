@@ -39,7 +39,7 @@ class Cache:
         """The memory of all values [bytes]."""
         return int(self._kept.currsize)
 
-    def get(self, key: Hashable) -> Any:
+    def get(self, key: Hashable) -> Any:  # whoever keeps a value knows its type
         """The value kept under a key, or None."""
         with self._lock:
             kept = self._kept.get(key)

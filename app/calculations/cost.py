@@ -89,10 +89,10 @@ _quick: dict[type[Template], bool] = {}
 
 def _points(cls: type[Template], shapes: Mapping[str, tuple[int, ...]]) -> Iterable[tuple[int, ...]]:
     """The axes that are points: a curve is one thing along its last, a table is one as a whole."""
-    for name, found in shapes.items():
+    for name, shape in shapes.items():
         declared = cls.inputs.get(name)
         if not isinstance(declared, Table):
-            yield found[:-1] if isinstance(declared, Curve) else found
+            yield shape[:-1] if isinstance(declared, Curve) else shape
 
 
 def _profiles(

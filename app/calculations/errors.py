@@ -42,13 +42,13 @@ class InvalidBody(Exception):
     def of(cls, error: ValidationError) -> Self:
         """From pydantic's own error, as FastAPI locates it, without the values that may be large."""
         listed = error.errors(include_url=False, include_input=False, include_context=False)
-        return cls([{**found, "loc": ("body", *found["loc"])} for found in listed])
+        return cls([{**entry, "loc": ("body", *entry["loc"])} for entry in listed])
 
     @classmethod
     def not_json(cls, reason: str) -> Self:
         """For a body that cannot be parsed, in the words of FastAPI."""
-        found = {"type": "json_invalid", "loc": ("body", 0), "msg": "JSON decode error"}
-        return cls([{**found, "ctx": {"error": reason}}])
+        entry = {"type": "json_invalid", "loc": ("body", 0), "msg": "JSON decode error"}
+        return cls([{**entry, "ctx": {"error": reason}}])
 
     def errors(self) -> list[JsonObject]:
         """What is wrong, one by one."""

@@ -33,11 +33,11 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
         If the answer would be too large.
     """
     _limit_answer(cls, body)
-    made = evaluate(
+    result = evaluate(
         cls, body.inputs, outputs=body.outputs, units=body.units, level=body.level, tolerance=body.tolerance
     )
-    _limit(made.count())  # curves are longer than their inputs tell
-    return made
+    _limit(result.count())  # curves are longer than their inputs
+    return result
 
 
 def check_evaluate(cls: type[Template], body: EvaluateIn) -> None:
@@ -83,8 +83,8 @@ def _limit_answer(cls: type[Template], body: EvaluateIn) -> None:
 
 def _limit(values: int) -> None:
     if values > MOST_VALUES:
-        told = f"{values} values in one answer are more than {MOST_VALUES}; name fewer outputs or points"
-        raise TooManyValues(told)
+        message = f"{values} values in one answer are more than {MOST_VALUES}; name fewer outputs or points"
+        raise TooManyValues(message)
 
 
 def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
@@ -97,7 +97,7 @@ def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
     Unreachable
         With the range that can be reached.
     """
-    found = solve(
+    solution = solve(
         cls,
         body.inputs,
         body.unknown,
@@ -108,6 +108,6 @@ def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
         level=body.level,
         tolerance=body.tolerance,
     )
-    warnings = [{"code": w.code, "name": w.name, "detail": w.detail} for w in found.warnings]
-    told = {"unknown": rendering.quantity(found.unknown, found.unit), "warnings": warnings}
-    return {**told, "evaluation": rendering.evaluation(found.evaluation)}
+    warnings = [{"code": w.code, "name": w.name, "detail": w.detail} for w in solution.warnings]
+    answer = {"unknown": rendering.quantity(solution.unknown, solution.unit), "warnings": warnings}
+    return {**answer, "evaluation": rendering.evaluation(solution.evaluation)}

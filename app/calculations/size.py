@@ -40,8 +40,8 @@ def shape(raw: Raw) -> Shape:
     """The shape of a quantity as typed: by its first items, as what is uneven is refused later."""
     if isinstance(raw, Typed):
         return np.shape(raw.si)
-    found: list[int] = []
+    lengths: list[int] = []
     while isinstance(items := raw.get("value") if isinstance(raw, Mapping) else raw, list) and items:
-        found.append(len(items))
+        lengths.append(len(items))
         raw = items[0]
-    return tuple(found)
+    return tuple(lengths)

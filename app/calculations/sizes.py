@@ -37,7 +37,7 @@ def size_of(value: object) -> int:
     return total
 
 
-def _parts(array: NDArray[Any]) -> list[Any]:
+def _parts(array: NDArray[Any]) -> list[object]:  # arrays of any kind of number
     """The objects in an array, and of a view the array that owns the numbers."""
     items = array.ravel().tolist() if array.dtype == object else []
     return items if array.base is None else [*items, array.base]

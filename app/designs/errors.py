@@ -28,7 +28,7 @@ class StaleRevision(DesignError):
 
 
 class NotConverged(DesignError):
-    """A declared iteration did not settle within its limit; `rounds` tells what was assumed and measured."""
+    """A declared iteration did not settle within its limit; `rounds` holds what was assumed and measured."""
 
     def __init__(self, through: str, tolerance: float, rounds: Sequence[Mapping[str, Json]]) -> None:
         self.rounds = [dict(done) for done in rounds]

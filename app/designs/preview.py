@@ -116,7 +116,7 @@ def _analysed(calculation: Calculation) -> dict[str, AnalysisOutput | None]:
     outputs: dict[str, AnalysisOutput | None] = {}
     for block in calculation.graph.blocks.values():
         for kind in block.analyses:
-            computed = calculation.found(block.name, kind)
+            computed = calculation.outputs(block.name, kind)
             for name in calculation.graph.wanted(block.name, kind):
                 stored = computed.get(name)
                 outputs[f"{block.name}.{kind}.{name}"] = analysis_output(stored) if stored else None

@@ -60,17 +60,17 @@ class Previews:
         QueueFull
             Too many calculations, or jobs, are waiting.
         """
-        found = preview(self.database, self.catalogues, **vars(change))
-        if found.is_whole:
-            return found.content, None
+        previewed = preview(self.database, self.catalogues, **vars(change))
+        if previewed.is_whole:
+            return previewed.content, None
         payload = {
             "design": change.design,
-            "revision": found.content.revision,
+            "revision": previewed.content.revision,
             "worksheet": change.worksheet,
             "system": change.system,
             "body": self.store.put(to_json(change.patch)),
         }
-        return found.content, self._queued(payload, client, begun_steps())
+        return previewed.content, self._queued(payload, client, begun_steps())
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Make the whole preview, and keep it.
@@ -84,11 +84,12 @@ class Previews:
         asked["patch"] = from_json(self.store.read(asked.pop("body")))
         try:
             with calling(self.steps, job, context, f"job:{job.id}", "jobs"):
-                found = preview(self.database, self.catalogues, **asked)
+                previewed = preview(self.database, self.catalogues, **asked)
         except FAILURES as error:
             raise JobFailed(error) from error
         place = place_of_answer(
-            job.id, self.store.put(found.content.model_dump_json(by_alias=True, exclude_unset=True).encode())
+            job.id,
+            self.store.put(previewed.content.model_dump_json(by_alias=True, exclude_unset=True).encode()),
         )
         return lambda session: place
 

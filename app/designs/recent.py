@@ -23,10 +23,10 @@ class Prepared(NamedTuple):
 
 
 class Recent:
-    """The latest calculations that wait for a solid, found by their documents.
+    """The latest calculations that wait for a solid, by their documents.
 
     It belongs to one application: it counts on the catalogues and on the database of that. A calculation that
-    is not here any more, or that another process made, is made again from the document.
+    is not here any more, or that another process did, is done again from the document.
     """
 
     def __init__(self, cache: Cache | None = None) -> None:

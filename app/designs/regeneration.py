@@ -52,7 +52,7 @@ class Regeneration:
         self.analysing, self.steps, self.recent = analysing, steps, recent or Recent()
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
-        """Regenerate the revision of a job; the completion attaches what was found.
+        """Regenerate the revision of a job; the completion attaches the results.
 
         Raises
         ------
@@ -87,7 +87,7 @@ class Regeneration:
             repository.fail(session, job.design, job.revision, {**problem, "changed": changed})
 
     def _prepared(self, plain: Mapping[str, Json]) -> Prepared:
-        """A revision's document and its calculation: that of its save, or made again."""
+        """A revision's document and its calculation: that of its save, or calculated again."""
         if prepared := self.recent.find(plain):
             return prepared
         document = Document.model_validate(plain)

@@ -126,7 +126,7 @@ def _model_row(id: str, number: int, state: ModelState) -> RevisionModelRow:
 
 
 def attach(session: Session, id: str, number: int, results: JsonObject, models: Sequence[ModelState]) -> None:
-    """Attach what a regeneration found to its revision, which becomes current."""
+    """Attach the results of a regeneration to its revision, which becomes current."""
     row = revision(session, id, number)
     row.results, row.state, row.problem = results, "current", None
     for state in models:

@@ -39,7 +39,7 @@ def analyses(calculation: Calculation) -> dict[str, JsonObject]:
             kind: in_design(
                 build_key(calculation.shapes[block.name]),
                 question,
-                calculation.found(block.name, kind),
+                calculation.outputs(block.name, kind),
             ).model_dump(exclude_unset=True)
             for kind, question in block.analyses.items()
         }

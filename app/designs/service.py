@@ -13,7 +13,7 @@ from app.calculations.steps import begun_steps
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
 from app.designs.automap import Proposal, proposals
-from app.designs.calculate import Analysed, Calculation, Found, Measured, Measures, calculate
+from app.designs.calculate import Analysed, Calculation, Measured, Measures, Outputs, calculate
 from app.designs.document import Document, merge
 from app.designs.errors import StaleRevision
 from app.designs.graph import Catalogues, Graph, build_graph, raise_if
@@ -49,7 +49,7 @@ class Saved:
     revision: int
     job: str | None
     created: bool
-    fresh: bool = True  # made by this request, not found from an earlier one
+    fresh: bool = True  # saved by this request, not by an earlier one
     is_deferred: bool = False  # the request has waited for steps as long as it does: the job calculates them
 
 
@@ -80,13 +80,13 @@ class Designs:
         InvalidInputs
             With everything that is wrong; nothing is saved then.
         """
-        if found := self._repeated(once):
-            return found
+        if saved_before := self._repeated(once):
+            return saved_before
         draft = self._draft(raw, note)
 
         def unit(session: Session) -> Saved:
-            if found := _found(session, once):
-                return found
+            if saved_before := _saved_before(session, once):
+                return saved_before
             certain = _with_builds(session, draft)
             name = certain.written.document["name"]
             design, revision = repository.create(session, name, certain.written)
@@ -106,8 +106,8 @@ class Designs:
         InvalidInputs
             With everything that is wrong; nothing is saved then.
         """
-        if found := self._repeated(once):
-            return found
+        if saved_before := self._repeated(once):
+            return saved_before
         with self.database.read() as session:
             row = repository.head(session, id)
             base, document = row.number, row.document
@@ -116,8 +116,8 @@ class Designs:
 
     def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> Saved:
         """A new revision equal to an old one."""
-        if found := self._repeated(once):
-            return found
+        if saved_before := self._repeated(once):
+            return saved_before
         with self.database.read() as session:
             base = repository.head(session, id).number
             document = repository.revision(session, id, number).document
@@ -143,15 +143,15 @@ class Designs:
         with self.database.read() as session:
             number = repeated.revision - 1 if repeated else repository.head(session, id).number
             document = repository.revision(session, id, number).document
-        found = proposals(self._graph(resolved(read_document(document), self.catalogues)))
-        if repeated or not (apply and found):
-            return found, repeated
+        proposed = proposals(self._graph(resolved(read_document(document), self.catalogues)))
+        if repeated or not (apply and proposed):
+            return proposed, repeated
         models: JsonObject = {}
-        for proposal in found:
+        for proposal in proposed:
             target = Reference.parse(proposal.target)
             model = models.setdefault(target.block, {"parameters": {}})
             model["parameters"][target.member] = proposal.relation
-        return found, self.change(id, {"models": models}, "auto-map", expected or f'"{number}"', once)
+        return proposed, self.change(id, {"models": models}, "auto-map", expected or f'"{number}"', once)
 
     def state(self, id: str) -> JsonObject:
         """At which revision a design is, and how its regeneration stands."""
@@ -174,8 +174,8 @@ class Designs:
         draft = self._draft(raw, note)
 
         def unit(session: Session) -> Saved:
-            if found := _found(session, once):
-                return found
+            if saved_before := _saved_before(session, once):
+                return saved_before
             row = repository.design(session, id)
             if row.head != base:
                 raise StaleRevision(f'"{base}"', row.head)
@@ -232,7 +232,7 @@ class Designs:
         if not once.key:
             return None
         with self.database.read() as session:
-            return _found(session, once)
+            return _saved_before(session, once)
 
 
 def _with_builds(session: Session, draft: _Draft) -> _Draft:
@@ -249,7 +249,7 @@ def _kind(calculation: Calculation) -> str:
     return CALCULATE if calculation.deferred else REGENERATE
 
 
-def _found(session: Session, once: Once) -> Saved | None:
+def _saved_before(session: Session, once: Once) -> Saved | None:
     location = once.find(session)
     return Saved(**{**location, "fresh": False}) if location else None
 
@@ -312,9 +312,9 @@ def analyses_wanted(graph: Graph) -> bool:
 def analysed(database: Database) -> Analysed:
     """What finite elements computed on models, where all that is wanted is stored; likewise."""
 
-    def stored(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Found | None:
+    def stored(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Outputs | None:
         with database.read() as session:
-            outputs = analyses.found(session, question.key(build_key(shape)))
+            outputs = analyses.outputs_of(session, question.key(build_key(shape)))
         if not set(wanted) <= outputs.keys():
             return None
         return under_load(question, {name: outputs[name] for name in wanted})

@@ -137,13 +137,13 @@ def good_model(session: Session, id: str, name: str | None, number: int | None) 
         )
         raise NotFound(f"design {id}: {hint}")
     if number is None:
-        found = repository.newest_good(session, id, wanted, head.number)
+        model_row = repository.newest_good(session, id, wanted, head.number)
     else:
-        found = next(model for model in head.models if model.name == wanted)
-        found = found if rows.build(session, found.build_key or "") else None
-    if found is None:
+        model_row = next(model for model in head.models if model.name == wanted)
+        model_row = model_row if rows.build(session, model_row.build_key or "") else None
+    if model_row is None:
         raise NotFound(f"design {id}: {wanted} has no finished solid yet; {_why(head)}")
-    return found
+    return model_row
 
 
 def _why(row: RevisionRow) -> str:

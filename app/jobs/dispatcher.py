@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 from sqlalchemy.orm import Session
 
@@ -216,7 +215,7 @@ class Dispatcher:
         context: JobContext,
         problem: Problem,
         completion: Callable[[Session], None] | None = None,
-        **more: Any,
+        **more: object,
     ) -> None:
         def unit(session: Session) -> bool:
             if not repository.end(session, job, "failed", context.log, problem=problem, **more):

@@ -4,7 +4,7 @@ What a claimed job writes is fenced: it takes effect only while the row is runni
 claimed, so a job which was cancelled or claimed again cannot write any more.
 """
 
-from typing import Any, cast
+from typing import cast
 
 from sqlalchemy import ColumnElement, and_, func, select, update
 from sqlalchemy.orm import Session
@@ -79,13 +79,13 @@ def note_progress(session: Session, job: Job, progress: float, log: list[str]) -
     _write(session, _held(job), progress=progress, log=log)
 
 
-def end(session: Session, job: Job, state: State, log: list[str], **more: Any) -> bool:
+def end(session: Session, job: Job, state: State, log: list[str], **more: object) -> bool:
     """Give a claimed job its final state; return False, with nothing written, if it is no longer held."""
     return _write(session, _held(job), state=state, log=log, operated=operated(session), **more) == 1
 
 
 def set_result(session: Session, id: str, link: str | None) -> None:
-    """Store the link to what a job has made."""
+    """Store the link to the result of a job."""
     _write(session, JobRow.id == id, result=link)
 
 
@@ -108,7 +108,7 @@ def _held(job: Job) -> ColumnElement[bool]:
     return and_(JobRow.id == job.id, JobRow.state == "running", JobRow.attempt == job.attempt)
 
 
-def _write(session: Session, which: ColumnElement[bool], **values: Any) -> int:
+def _write(session: Session, which: ColumnElement[bool], **values: object) -> int:
     """Update the jobs that match and return how many did."""
     statement = update(JobRow).where(which).values(**values, updated=now()).returning(JobRow.id)
     return len(session.scalars(statement).all())

@@ -66,7 +66,7 @@ class Jobs:
 
         A kind may have a lane of its own, whose threads `start` is asked for.
 
-        The handler runs in a thread of the queue and returns a completion. That stores what the job has made
+        The handler runs in a thread of the queue and returns a completion. That stores the result of the job
         and returns a link to it, in the transaction that marks the job as done. `on_failure` runs in the one
         that marks it as failed or cancelled.
         """

@@ -73,8 +73,8 @@ def _snapshot(source: Path, snapshot: Path) -> str:
             copy.execute("PRAGMA journal_mode = delete")
     except sqlite3.DatabaseError as error:
         raise CannotRun(f"The database cannot be read: {error}. Run `crankwright check`.") from error
-    if found := faults(snapshot):
-        raise CannotRun(f"The database is damaged, so it is not backed up: {'; '.join(found)}.")
+    if damage := faults(snapshot):
+        raise CannotRun(f"The database is damaged, so it is not backed up: {'; '.join(damage)}.")
     return schema
 
 

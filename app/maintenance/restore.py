@@ -164,8 +164,8 @@ def _verify(folder: Path, restored: Restored) -> None:
     if restored.end["artifacts"] != len(restored.artifacts):
         raise CannotRun("The archive is not complete: artifacts are missing.")
     path = folder / DATABASE
-    if found := faults(path):
-        raise CannotRun(f"The database in the archive is damaged: {'; '.join(found)}.")
+    if damage := faults(path):
+        raise CannotRun(f"The database in the archive is damaged: {'; '.join(damage)}.")
     try:
         with reading(path) as connection:
             refuse_other_schema(connection, older_too=False)

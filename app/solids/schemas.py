@@ -46,5 +46,5 @@ class AnalysisIn(Options):
     outputs: list[Output] | None = Field(
         None,
         max_length=10,
-        description="what to find; without it all but `maximum_stress`, which is dear, and `surface`",
+        description="what to compute; without it all but `maximum_stress`, which is expensive, and `surface`",
     )

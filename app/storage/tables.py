@@ -126,7 +126,7 @@ class RevisionModelRow(Base):
 
 
 class BuildRow(Base):
-    """A solid that was built, found again by the hash of all that determines it."""
+    """A solid that was built, under the hash of all that determines it."""
 
     __tablename__ = "build"
 
@@ -155,7 +155,7 @@ class ArtifactRow(Base):
 
 
 class AnalysisRow(Base):
-    """One output of an analysis of a build, found again by the hash of all that determines it."""
+    """One output of an analysis of a build, under the hash of all that determines it."""
 
     __tablename__ = "analysis"
 
