@@ -9,6 +9,7 @@ from typing import Any
 import click
 import numpy as np
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 from pydantic_settings import SettingsError
 
 from app import server
@@ -19,6 +20,7 @@ from app.demo import demonstrate
 from app.hosts import is_loopback
 from app.main import create_app
 from app.maintenance.commands import backup_command, check_command, restore_command
+from app.plain import Json, JsonObject, Raw
 from app.settings import Settings
 from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
@@ -37,22 +39,22 @@ GOLDEN = Path("tests/golden")
 
 
 class Commands(click.Group):
-    """Commands whose user is told what is wrong with the catalogue, not where the program noticed."""
+    """Commands that say what is wrong with the catalogue, not where the program noticed."""
 
-    def invoke(self, ctx: click.Context) -> Any:
+    def invoke(self, ctx: click.Context) -> object:
         """Run the command."""
         try:
             return super().invoke(ctx)
         except (UnknownTemplate, UnusableFile) as error:
             raise click.ClickException(str(error)) from None
         except SettingsError as error:
-            told = f"{error}; a list is written as JSON, such as '[\"crank.example\"]'"
-            raise click.ClickException(told) from None
+            message = f"{error}; a list is written as JSON, such as '[\"crank.example\"]'"
+            raise click.ClickException(message) from None
         except ValidationError as error:
             raise click.ClickException("\n".join(map(_wrong_setting, error.errors()))) from None
 
 
-def _wrong_setting(error: Any) -> str:
+def _wrong_setting(error: ErrorDetails) -> str:
     return f"CRANKWRIGHT_{str(error['loc'][0]).upper()}: {error['msg'].removeprefix('Value error, ')}"
 
 
@@ -73,7 +75,7 @@ def main() -> None:
 @click.option("--insecure", is_flag=True, help="listen beyond this machine although nothing asks for a key")
 def serve(host: str | None, port: int | None, data: Path | None, insecure: bool) -> None:
     """Serve the REST interface; its documentation is at /docs."""
-    given: dict[str, Any] = {"data": data, "host": host, "port": port}
+    given: JsonObject = {"data": data, "host": host, "port": port}
     settings = Settings(**{name: value for name, value in given.items() if value is not None})
     _check_reach(settings.host, insecure)
     try:
@@ -83,9 +85,9 @@ def serve(host: str | None, port: int | None, data: Path | None, insecure: bool)
     except (DataFolderInUse, DatabaseDamaged) as error:
         raise click.ClickException(str(error)) from None
     except OSError as error:
-        told = f"{settings.data.absolute()} cannot hold the data: {error.strerror}"
-        raise click.ClickException(f"{told}; name another folder by --data") from None
-    _catalogue(), find_models(*settings.template_folders)  # a broken file is told before anything is served
+        message = f"{settings.data.absolute()} cannot hold the data: {error.strerror}"
+        raise click.ClickException(f"{message}; name another folder by --data") from None
+    _catalogue(), find_models(*settings.template_folders)  # reports a broken file before it serves
     place = f"[{settings.host}]" if ":" in settings.host else settings.host
     click.echo(
         f"Crankwright at http://{place}:{settings.port}/docs, data in {settings.data.absolute()}", err=True
@@ -141,16 +143,16 @@ def evaluate(
     cls = _find(template, version)
     try:
         raw = dict(_pair(text) for text in inputs)
-        made = evaluate_template(cls, raw, outputs=outputs or None)
+        evaluation = evaluate_template(cls, raw, outputs=outputs or None)
     except InvalidInputs as error:
         lines = "\n".join(f"  {fault.name}: {fault.detail}" for fault in error.faults)
         raise click.ClickException(f"{cls.id} version {cls.version} refuses:\n{lines}") from None
     if as_json:
-        click.echo(json.dumps(rendering.evaluation(made), indent=2, ensure_ascii=False))
+        click.echo(json.dumps(rendering.evaluation(evaluation), indent=2, ensure_ascii=False))
         return
-    for name, answer in made.outputs.items():
+    for name, answer in evaluation.outputs.items():
         click.echo(f"{name:32} {_result(answer)}")
-    for warning in made.warnings:
+    for warning in evaluation.warnings:
         click.secho(f"warning: {warning.name}: {warning.detail}", fg="yellow", err=True)
 
 
@@ -167,7 +169,7 @@ def _result(answer: Answer) -> str:
     return f"{low:>14.6g} … {high:.6g} {printed} ({answer.value.size} values)"
 
 
-def _pair(text: str) -> tuple[str, Any]:
+def _pair(text: str) -> tuple[str, Raw]:
     name, sign, value = text.partition("=")
     if not sign:
         raise click.BadParameter(f"{text!r} is no NAME=QUANTITY, such as radial_load='25 kN'")
@@ -193,20 +195,21 @@ def list_templates() -> None:
 def show_template(id: str, version: int | None) -> None:
     """Inputs, outputs, limits and errata of one version."""
     cls = _find(id, version)
-    told = describe(cls)
-    click.echo(f"{cls.id} version {cls.version}, digest {told['digest'][:12]}\n{cls.summary()}\n\nInputs")
-    for name, schema in told["inputs"]["properties"].items():
+    description = describe(cls)
+    click.echo(f"{cls.id} version {cls.version}, digest {description['digest'][:12]}")
+    click.echo(f"{cls.summary()}\n\nInputs")
+    for name, schema in description["inputs"]["properties"].items():
         default = f"  [{_shown(schema['default'])}]" if "default" in schema else ""
         click.echo(f"  {name:32} {schema.get('unit', ''):10} {schema['title']}{default}")
     click.echo("\nOutputs")
-    for name, schema in told["outputs"]["properties"].items():
+    for name, schema in description["outputs"]["properties"].items():
         click.echo(f"  {name:32} {schema['unit']:10} {schema['title']}")
     for title in ("limits", "errata", "references"):
-        lines = (entry["text"] if isinstance(entry, dict) else entry for entry in told[title])
+        lines = (entry["text"] if isinstance(entry, dict) else entry for entry in description[title])
         click.echo(f"\n{title.capitalize()}\n" + "\n".join(f"  {line}" for line in lines))
 
 
-def _shown(default: Any) -> str:
+def _shown(default: Json) -> str:
     return f"{default['value']} {default['unit']}" if isinstance(default, dict) else str(default)
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
 from app.calculations.curves import read_curves
+from app.plain import Raw
 from templates.core.errors import Fault, InvalidInputs
 
 
-def argument(name: str, text: str) -> Any:
+def argument(name: str, text: str) -> Raw:
     """The value of an input: `25 kN`, `[1, 3, 4, 2]`, `@diagram.csv` or `@diagram.csv:column`.
 
     Of a file, the column named as the input is taken unless another is named.
@@ -30,7 +30,7 @@ def argument(name: str, text: str) -> Any:
         raise _wrong(name, "not_json", f"{text[:60]!r} is no list or object of JSON: {error}") from None
 
 
-def _curve(name: str, text: str) -> Any:
+def _curve(name: str, text: str) -> Raw:
     path, _, column = text.rpartition(":") if not Path(text).exists() else (text, "", "")
     try:
         curves = read_curves(Path(path or text).read_bytes())
@@ -39,8 +39,8 @@ def _curve(name: str, text: str) -> Any:
     except InvalidInputs as error:
         raise InvalidInputs(fault.within(path or text) for fault in error.faults) from None
     if (column or name) not in curves:
-        told = f"{path} has no column {column or name}; take one of them by {text}:{next(iter(curves))}"
-        raise _wrong(name, "no_such_column", f"{told} (it has {', '.join(curves)})")
+        message = f"{path} has no column {column or name}; take one of them by {text}:{next(iter(curves))}"
+        raise _wrong(name, "no_such_column", f"{message} (it has {', '.join(curves)})")
     return curves[column or name]
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Hashable, Mapping
 from hashlib import sha256
-from typing import Any
 
 from app.calculations.pool import Calculation, CalculationPool
+from app.plain import Raw
 from templates.core.units.quantity import Typed
 
 
@@ -56,7 +56,7 @@ class Begun:
             self._left.pop(self._job, None)
 
 
-def fingerprint(inputs: Mapping[str, Any]) -> bytes:
+def fingerprint(inputs: Mapping[str, Raw]) -> bytes:
     """A digest of inputs as typed, the same in whatever order their parts are written."""
     return sha256(json.dumps(inputs, sort_keys=True, default=_plain).encode()).digest()
 

@@ -16,7 +16,7 @@ USUAL = 256  # MiB, unless the settings say otherwise
 
 @dataclass(frozen=True)
 class _Sized:
-    value: Any
+    value: object
     size: int  # bytes
 
 
@@ -39,13 +39,13 @@ class Cache:
         """The memory of all values [bytes]."""
         return int(self._kept.currsize)
 
-    def get(self, key: Hashable) -> Any:
+    def get(self, key: Hashable) -> Any:  # whoever keeps a value knows its type
         """The value kept under a key, or None."""
         with self._lock:
             kept = self._kept.get(key)
         return None if kept is None else kept.value
 
-    def keep(self, key: Hashable, value: Any) -> None:
+    def keep(self, key: Hashable, value: object) -> None:
         """Keep a value, also in place of one that has grown; one larger than the whole cache is not kept."""
         size = size_of(value)
         with self._lock:

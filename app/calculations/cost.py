@@ -10,11 +10,11 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from app.calculations.size import arrays, spanned
+from app.plain import Raw
 from templates.core.errors import InvalidInputs
 from templates.core.language.levels import SINGLE, accuracy
 from templates.core.language.solve import POLISHES, SAMPLES
@@ -40,7 +40,7 @@ PROBED = 1000  # numbers in a request beyond which only the first of each array 
 
 def estimated_seconds(
     cls: type[Template],
-    inputs: Mapping[str, Any],
+    inputs: Mapping[str, Raw],
     level: str | None = None,
     tolerance: float | None = None,
     outputs: Collection[str] | None = None,
@@ -55,7 +55,7 @@ def estimated_seconds(
 
 def solving_seconds(
     cls: type[Template],
-    inputs: Mapping[str, Any],
+    inputs: Mapping[str, Raw],
     level: str | None = None,
     tolerance: float | None = None,
     outputs: Collection[str] | None = None,
@@ -84,15 +84,15 @@ def is_quick(cls: type[Template]) -> bool:
     return _quick[cls]
 
 
-_quick: dict[Any, bool] = {}
+_quick: dict[type[Template], bool] = {}
 
 
 def _points(cls: type[Template], shapes: Mapping[str, tuple[int, ...]]) -> Iterable[tuple[int, ...]]:
     """The axes that are points: a curve is one thing along its last, a table is one as a whole."""
-    for name, found in shapes.items():
+    for name, shape in shapes.items():
         declared = cls.inputs.get(name)
         if not isinstance(declared, Table):
-            yield found[:-1] if isinstance(declared, Curve) else found
+            yield shape[:-1] if isinstance(declared, Curve) else shape
 
 
 def _profiles(
@@ -105,7 +105,7 @@ def _profiles(
 
 def _levels(
     cls: type[Template],
-    inputs: Mapping[str, Any],
+    inputs: Mapping[str, Raw],
     level: str | None,
     tolerance: float | None,
     numbers: int,
@@ -121,7 +121,7 @@ def _levels(
     return (cls.default_level if cls.default_level in ladder else ladder[-1],)
 
 
-def _ladder(cls: type[Template], inputs: Mapping[str, Any], numbers: int) -> tuple[str, ...]:
+def _ladder(cls: type[Template], inputs: Mapping[str, Raw], numbers: int) -> tuple[str, ...]:
     """The levels that answer the question these inputs ask."""
     if cls.ladder is Template.ladder:
         return cls.levels
@@ -133,7 +133,7 @@ def _ladder(cls: type[Template], inputs: Mapping[str, Any], numbers: int) -> tup
         return (cls.default_level,)
 
 
-def _first(cls: type[Template], name: str, raw: Any) -> Any:
+def _first(cls: type[Template], name: str, raw: Raw) -> Raw:
     """An array's first value, in its unit; anything else as it is."""
     if isinstance(cls.inputs.get(name), (Curve, Table)):
         return raw

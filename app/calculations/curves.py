@@ -13,8 +13,8 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
+from app.plain import JsonObject
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt
 from templates.core.language.meaning import api_name
 from templates.core.units.units import unit
@@ -40,7 +40,7 @@ class Column:
     unit: str
 
 
-def read_curves(body: bytes) -> dict[str, dict[str, Any]]:
+def read_curves(body: bytes) -> dict[str, JsonObject]:
     """The columns of a table as quantities by name: `{"pressure": {"value": […], "unit": "bar"}}`.
 
     Raises
@@ -92,8 +92,8 @@ def _lines(body: bytes) -> Iterator[tuple[int, str]]:
                 f"line {number}", "too_many_rows", f"a table has at most {MOST_ROWS} rows; take fewer"
             )
         if len(line) > LONGEST_LINE:
-            told = f"a line has at most {LONGEST_LINE} characters"
-            raise _wrong(f"line {number}", "too_long", told)
+            message = f"a line has at most {LONGEST_LINE} characters"
+            raise _wrong(f"line {number}", "too_long", message)
         yield number, line
 
 
@@ -136,8 +136,8 @@ def _column(text: str) -> Column:
     else:
         words, _, named = text.rpartition("_")
         if named not in SUFFIXES:
-            told = f"column {excerpt(text)!r} has no unit; write it as in pressure [bar], or [1] for none"
-            raise FaultyText("missing_unit", told)
+            message = f"column {excerpt(text)!r} has no unit; write it as in pressure [bar], or [1] for none"
+            raise FaultyText("missing_unit", message)
     if not (name := api_name(words)) or not name[0].isalpha():
         raise FaultyText("missing_name", f"column {excerpt(text)!r} has no name; write it as pressure [bar]")
     return Column(name[:80], unit("1" if named in ("", "-") else named).text)
@@ -152,9 +152,9 @@ def _row(fields: list[str], columns: list[Column], separator: str) -> list[float
         If one is missing or none.
     """
     if len(fields) != len(columns):
-        told = f"it has {len(fields)} values, the header {len(columns)}"
+        message = f"it has {len(fields)} values, the header {len(columns)}"
         hint = "; with decimal commas, separate the columns by semicolons" if separator == "," else ""
-        raise FaultyText("uneven", told + hint)
+        raise FaultyText("uneven", message + hint)
     return [_number(field, column, separator) for field, column in zip(fields, columns, strict=True)]
 
 

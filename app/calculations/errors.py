@@ -8,11 +8,12 @@ InvalidBody                a body that was read in a calculation process is not 
 
 from __future__ import annotations
 
-from typing import Any, Self
+from typing import Self
 
 from pydantic import ValidationError
 
 from app.jobs.errors import QueueFull
+from app.plain import JsonObject
 
 
 class TooManyCalculations(QueueFull):
@@ -33,7 +34,7 @@ class StepDeferred(Exception):
 class InvalidBody(Exception):
     """A body that is not what the operation takes; `errors()` are in pydantic's form."""
 
-    def __init__(self, listed: list[dict[str, Any]]) -> None:
+    def __init__(self, listed: list[JsonObject]) -> None:
         super().__init__(listed)
         self._listed = listed
 
@@ -41,14 +42,14 @@ class InvalidBody(Exception):
     def of(cls, error: ValidationError) -> Self:
         """From pydantic's own error, as FastAPI locates it, without the values that may be large."""
         listed = error.errors(include_url=False, include_input=False, include_context=False)
-        return cls([{**found, "loc": ("body", *found["loc"])} for found in listed])
+        return cls([{**entry, "loc": ("body", *entry["loc"])} for entry in listed])
 
     @classmethod
     def not_json(cls, reason: str) -> Self:
         """For a body that cannot be parsed, in the words of FastAPI."""
-        found = {"type": "json_invalid", "loc": ("body", 0), "msg": "JSON decode error"}
-        return cls([{**found, "ctx": {"error": reason}}])
+        entry = {"type": "json_invalid", "loc": ("body", 0), "msg": "JSON decode error"}
+        return cls([{**entry, "ctx": {"error": reason}}])
 
-    def errors(self) -> list[dict[str, Any]]:
+    def errors(self) -> list[JsonObject]:
         """What is wrong, one by one."""
         return self._listed

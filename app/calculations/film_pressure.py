@@ -7,10 +7,9 @@ a mesh for the eye, 64 × 16 intervals, which errs by 0.1 % of the largest press
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from app.plain import JsonObject, Raw
 from app.schemas.answers import Quantity, Values
 from app.schemas.films import Field, FilmPressure
 from templates.core.errors import Fault, InvalidInputs
@@ -19,7 +18,7 @@ from templates.physics.films.film_measures import measure
 from templates.physics.films.reynolds import static_field
 
 AROUND, ACROSS = 64, 8  # intervals; across half the width
-TYPICAL: dict[str, Any] = {
+TYPICAL: JsonObject = {
     "relative_eccentricity": 0.88,
     "bearing_diameter": "48 mm",
     "bearing_width": "18 mm",
@@ -42,7 +41,7 @@ class Film(Template):
     eta: Array = given("mPa*s", "dynamic viscosity", gt=0)
 
 
-def solve_film_pressure(raw: dict[str, Any]) -> FilmPressure:
+def solve_film_pressure(raw: dict[str, Raw]) -> FilmPressure:
     """The field for inputs as a user types them.
 
     Raises

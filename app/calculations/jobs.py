@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from concurrent.futures import wait
-from typing import Any
 
 from sqlalchemy.orm import Session
 
@@ -18,6 +17,7 @@ from app.calculations.pool import Calculation, CalculationPool
 from app.calculations.sources import Source
 from app.jobs import repository
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.plain import Json, JsonObject
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild
@@ -34,7 +34,7 @@ FAILURES = (TemplateError, TooManyValues, InvalidBody, CannotRebuild)
 """What the request itself, or the loss of it, brings about."""
 
 
-def question_of(payload: Mapping[str, Any], store: ArtifactStore) -> Question:
+def question_of(payload: Mapping[str, Json], store: ArtifactStore) -> Question:
     """The question that the row of a job names; raises ArtifactMissing, ArtifactDamaged."""
     fields = {name: part for name, part in payload.items() if name != AGAIN}
     return Question(**{**fields, "body": Pieces.of(store.read(payload["body"]))})
@@ -130,7 +130,7 @@ class CalculationJobs:
         self.jobs.wake()
         return again
 
-    def failed(self, session: Session, job: Job, problem: dict[str, Any]) -> None:
+    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
         """End the calculation of a job that was cancelled before anybody followed it."""
         if calculation := self._adopted.pop(job.id, None):
             self.pool.cancel(calculation)

@@ -18,6 +18,7 @@ from app.calculations.schemas import Asked, EvaluateIn, SolveIn
 from app.calculations.service import check_evaluate, check_solve, run_evaluate, run_solve
 from app.calculations.sources import Source, loaded
 from app.calculations.worksheet import run_worksheet
+from app.plain import JsonObject
 from app.presentation.units import System
 from app.workers.pieces import Pieces
 from templates.core.language.template import Template
@@ -29,7 +30,7 @@ class Operation:
 
     body: type[Asked]
     check: Callable[[type[Template], Any], None]
-    run: Callable[[type[Template], Any, System], dict[str, Any]]
+    run: Callable[[type[Template], Any, System], JsonObject]
 
 
 LARGE = 256 * 1024  # bytes of a body that is read in the process that calculates

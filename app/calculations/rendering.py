@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from app.plain import Json, JsonObject
 from templates.core.catalogue.digests import content_digest, digest
 from templates.core.language.evaluate import Answer, Echo, Evaluation
 from templates.core.language.template import Template
 
-_identities: dict[Any, dict[str, Any]] = {}
+_identities: dict[type[Template], JsonObject] = {}
 
 
-def identity(cls: type[Template]) -> dict[str, Any]:
+def identity(cls: type[Template]) -> JsonObject:
     """Which version calculated: id, version and both digests of its code."""
     if cls not in _identities:
         codes = {"digest": digest(cls), "content_digest": content_digest(cls)}
@@ -23,21 +23,21 @@ def identity(cls: type[Template]) -> dict[str, Any]:
     return dict(_identities[cls])
 
 
-def quantity(value: Any, unit: str | None) -> dict[str, Any]:
+def quantity(value: Json, unit: str | None) -> JsonObject:
     """A value with its unit; a text has none."""
     return {"value": value} if unit is None else {"value": value, "unit": unit}
 
 
-def answer(result: Answer) -> dict[str, Any]:
+def answer(output: Answer) -> JsonObject:
     """An output; what does not exist is null with its reason."""
-    if not isinstance(result.value, np.ndarray):
-        unit = {} if result.unit is None else {"unit": result.unit}
-        reason = {} if result.reason is None else {"reason": result.reason}
-        return {"value": None if reason else result.value, **unit, **reason}
-    if result.reasons is None:
-        return quantity(result.value.tolist(), result.unit)
-    holes = _with_holes(result.value, result.reasons)
-    return {**quantity(holes.tolist(), result.unit), "reasons": result.reasons.tolist()}
+    if not isinstance(output.value, np.ndarray):
+        unit = {} if output.unit is None else {"unit": output.unit}
+        reason = {} if output.reason is None else {"reason": output.reason}
+        return {"value": None if reason else output.value, **unit, **reason}
+    if output.reasons is None:
+        return quantity(output.value.tolist(), output.unit)
+    holes = _with_holes(output.value, output.reasons)
+    return {**quantity(holes.tolist(), output.unit), "reasons": output.reasons.tolist()}
 
 
 def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDArray[np.object_]:
@@ -52,7 +52,7 @@ def _with_holes(value: NDArray[np.float64], reasons: NDArray[np.object_]) -> NDA
     return rows
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Json) -> Json:
     """A single value or an array as JSON; what was not measured is null."""
     if not isinstance(value, np.ndarray):
         return None if value != value else value  # NaN
@@ -61,7 +61,7 @@ def _plain(value: Any) -> Any:
     return [_plain(row) for row in value]
 
 
-def _errors(errors: Mapping[str, Any]) -> dict[str, Any]:
+def _errors(errors: Mapping[str, Json]) -> JsonObject:
     """The error of each output as JSON."""
     return {
         name: _plain(error) if isinstance(error, np.ndarray) else None if error != error else error
@@ -69,20 +69,20 @@ def _errors(errors: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def echo(used: Echo) -> dict[str, Any]:
+def echo(used: Echo) -> JsonObject:
     """An input as it was used."""
     unit = {} if used.unit is None else {"unit": used.unit}
     return {"value": used.value, **unit, "from": used.source, **used.extra}
 
 
-def evaluation(made: Evaluation) -> dict[str, Any]:
+def evaluation(result: Evaluation) -> JsonObject:
     """The whole answer to `evaluate`."""
     return {
-        "template": identity(type(made.template)),
-        "inputs": {name: echo(used) for name, used in made.inputs.items()},
-        "outputs": {name: answer(result) for name, result in made.outputs.items()},
-        "level": _plain(made.level),
-        "error": _errors(made.error),
-        "warnings": [{"code": w.code, "name": w.name, "detail": w.detail} for w in made.warnings],
-        "seconds": made.seconds,
+        "template": identity(type(result.template)),
+        "inputs": {name: echo(used) for name, used in result.inputs.items()},
+        "outputs": {name: answer(output) for name, output in result.outputs.items()},
+        "level": _plain(result.level),
+        "error": _errors(result.error),
+        "warnings": [{"code": w.code, "name": w.name, "detail": w.detail} for w in result.warnings],
+        "seconds": result.seconds,
     }

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import ConfigDict, Field, StringConstraints
 
+from app.plain import JsonObject
 from app.schemas.bounded import Bounded, at_most
 from app.schemas.values import Given
 
 Text = Annotated[str, StringConstraints(max_length=100)]
 MOST_NAMES = 2000  # in one request
 
-OIL_FILM: dict[str, Any] = {
+OIL_FILM: JsonObject = {
     "radial_load": "25 kN",
     "diametral_clearance": "0.055 mm",
     "bearing_diameter": "48 mm",

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from app.calculations import rendering
 from app.calculations.errors import TooManyValues
 from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.size import points
+from app.plain import JsonObject
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.request import read_request, require_points
 from templates.core.language.solve import read_question, solve
@@ -18,7 +17,7 @@ from templates.core.language.template import Template
 MOST_VALUES = 2_000_000  # in one answer: some 40 MB of JSON
 
 
-def run_evaluate(cls: type[Template], body: EvaluateIn) -> dict[str, Any]:
+def run_evaluate(cls: type[Template], body: EvaluateIn) -> JsonObject:
     """Evaluate a template, as `evaluated`."""
     return rendering.evaluation(evaluated(cls, body))
 
@@ -34,11 +33,11 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
         If the answer would be too large.
     """
     _limit_answer(cls, body)
-    made = evaluate(
+    result = evaluate(
         cls, body.inputs, outputs=body.outputs, units=body.units, level=body.level, tolerance=body.tolerance
     )
-    _limit(made.count())  # curves are longer than their inputs tell
-    return made
+    _limit(result.count())  # curves are longer than their inputs
+    return result
 
 
 def check_evaluate(cls: type[Template], body: EvaluateIn) -> None:
@@ -84,11 +83,11 @@ def _limit_answer(cls: type[Template], body: EvaluateIn) -> None:
 
 def _limit(values: int) -> None:
     if values > MOST_VALUES:
-        told = f"{values} values in one answer are more than {MOST_VALUES}; name fewer outputs or points"
-        raise TooManyValues(told)
+        message = f"{values} values in one answer are more than {MOST_VALUES}; name fewer outputs or points"
+        raise TooManyValues(message)
 
 
-def run_solve(cls: type[Template], body: SolveIn) -> dict[str, Any]:
+def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
     """Solve for one input.
 
     Raises
@@ -98,7 +97,7 @@ def run_solve(cls: type[Template], body: SolveIn) -> dict[str, Any]:
     Unreachable
         With the range that can be reached.
     """
-    found = solve(
+    solution = solve(
         cls,
         body.inputs,
         body.unknown,
@@ -109,6 +108,6 @@ def run_solve(cls: type[Template], body: SolveIn) -> dict[str, Any]:
         level=body.level,
         tolerance=body.tolerance,
     )
-    warnings = [{"code": w.code, "name": w.name, "detail": w.detail} for w in found.warnings]
-    told = {"unknown": rendering.quantity(found.unknown, found.unit), "warnings": warnings}
-    return {**told, "evaluation": rendering.evaluation(found.evaluation)}
+    warnings = [{"code": w.code, "name": w.name, "detail": w.detail} for w in solution.warnings]
+    answer = {"unknown": rendering.quantity(solution.unknown, solution.unit), "warnings": warnings}
+    return {**answer, "evaluation": rendering.evaluation(solution.evaluation)}

@@ -5,21 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from itertools import zip_longest
-from typing import Any
 
 import numpy as np
 
+from app.plain import Raw
 from templates.core.units.quantity import Typed
 
 Shape = tuple[int, ...]
 
 
-def points(inputs: Mapping[str, Any]) -> int:
+def points(inputs: Mapping[str, Raw]) -> int:
     """How many points the arrays among inputs, as typed, span together."""
     return spanned(arrays(inputs).values())
 
 
-def arrays(inputs: Mapping[str, Any]) -> dict[str, Shape]:
+def arrays(inputs: Mapping[str, Raw]) -> dict[str, Shape]:
     """The shapes of the arrays among inputs, as typed."""
     shapes: dict[str, Shape] = {}
     for name, raw in inputs.items():
@@ -36,12 +36,12 @@ def spanned(shapes: Iterable[Shape]) -> int:
     return math.prod(map(max, axes))
 
 
-def shape(raw: Any) -> Shape:
+def shape(raw: Raw) -> Shape:
     """The shape of a quantity as typed: by its first items, as what is uneven is refused later."""
     if isinstance(raw, Typed):
         return np.shape(raw.si)
-    found: list[int] = []
+    lengths: list[int] = []
     while isinstance(items := raw.get("value") if isinstance(raw, Mapping) else raw, list) and items:
-        found.append(len(items))
+        lengths.append(len(items))
         raw = items[0]
-    return tuple(found)
+    return tuple(lengths)

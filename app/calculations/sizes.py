@@ -22,7 +22,7 @@ _SHARED = (
 _ATOMS = (float, int, bool, str, bytes, complex, type(None))
 
 
-def size_of(value: Any) -> int:
+def size_of(value: object) -> int:
     """The memory of a value and of all that it refers to [bytes]; what equal parts share may count twice."""
     total, seen, waiting = sys.getsizeof(value), {id(value)}, [value]
     while waiting:
@@ -37,7 +37,7 @@ def size_of(value: Any) -> int:
     return total
 
 
-def _parts(array: NDArray[Any]) -> list[Any]:
+def _parts(array: NDArray[Any]) -> list[object]:  # arrays of any kind of number
     """The objects in an array, and of a view the array that owns the numbers."""
     items = array.ravel().tolist() if array.dtype == object else []
     return items if array.base is None else [*items, array.base]

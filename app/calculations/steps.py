@@ -21,6 +21,7 @@ from app.calculations.errors import StepDeferred
 from app.calculations.pool import Calculation, CalculationPool, Lane
 from app.calculations.sources import Source, loaded
 from app.jobs.service import Job, JobContext
+from app.plain import Raw
 from app.workers.errors import JobCancelled
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.template import Template
@@ -63,7 +64,7 @@ class Caller:
     def evaluation(
         self,
         cls: type[Template],
-        raw: dict[str, Any],
+        raw: dict[str, Raw],
         outputs: tuple[str, ...] | None,
         level: str | None,
         tolerance: float | None,
@@ -105,7 +106,7 @@ _caller: ContextVar[Caller | None] = ContextVar("caller", default=None)
 
 def evaluated_step(
     cls: type[Template],
-    raw: Mapping[str, Any],
+    raw: Mapping[str, Raw],
     outputs: tuple[str, ...] | None,
     level: str | None,
     tolerance: float | None,
@@ -135,7 +136,7 @@ def begun_steps() -> Begun | None:
 
 def _evaluated(
     source: Source,
-    raw: Mapping[str, Any],
+    raw: Mapping[str, Raw],
     outputs: tuple[str, ...] | None,
     level: str | None,
     tolerance: float | None,

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Container
 
 from app.calculations import rendering
 from app.calculations.schemas import EvaluateIn
 from app.calculations.service import evaluated
+from app.plain import JsonObject
 from app.presentation.units import System, converted, shown_unit
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.template import Template
@@ -15,7 +15,7 @@ from templates.core.paper import report
 from templates.core.paper.mathml import mathml
 
 
-def run_worksheet(cls: type[Template], body: EvaluateIn, system: System) -> dict[str, Any]:
+def run_worksheet(cls: type[Template], body: EvaluateIn, system: System) -> JsonObject:
     """Evaluate a template and write its formulas out.
 
     Raises
@@ -26,25 +26,25 @@ def run_worksheet(cls: type[Template], body: EvaluateIn, system: System) -> dict
     return worksheet(evaluated(cls, body), system)
 
 
-def worksheet(made: Evaluation, system: System) -> dict[str, Any]:
+def worksheet(evaluation: Evaluation, system: System) -> JsonObject:
     """An evaluation as `evaluate` answers it, in the system's units, with its formulas."""
-    told = rendering.evaluation(made)
+    answer = rendering.evaluation(evaluation)
     return {
-        **told,
-        "outputs": converted(told["outputs"], system),
-        "formulas": formulas(made.template, system, made.outputs),
+        **answer,
+        "outputs": converted(answer["outputs"], system),
+        "formulas": formulas(evaluation.template, system, evaluation.outputs),
     }
 
 
-def formulas(template: Template, system: System, names: Mapping[str, Any]) -> list[dict[str, Any]]:
+def formulas(template: Template, system: System, names: Container[str]) -> list[JsonObject]:
     """The formulas of the outputs named, in the order of the template, each in LaTeX and MathML."""
     cls = type(template)
     declared = {a: d.meaning.unit for a, d in cls.declarations.items() if d.meaning.unit}
     units = {attribute: shown_unit(unit, system) for attribute, unit in declared.items()}
-    return [_told(row) for row in report.rows(template, units) if row.name in names]
+    return [_row(row) for row in report.rows(template, units) if row.name in names]
 
 
-def _told(row: report.Row) -> dict[str, Any]:
+def _row(row: report.Row) -> JsonObject:
     lead = row.symbol if row.expression in ("", row.symbol) else f"{row.symbol}={row.expression}"
     parts = {
         "lead": lead,

@@ -1,19 +1,19 @@
 """Analyses that models of a design declare: what of them relations use, and what is wrong with them.
 
 `"throw": {…, "analyses": {"torsion": {"tolerance": 0.005}}}` lets relations use `throw.torsion.stiffness`.
-Only what a relation, or an iteration, uses is ever found; an analysis that nobody uses costs nothing.
+Only what a relation, or an iteration, uses is ever computed; an analysis that nobody uses costs nothing.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
 
 from app.designs.document import Model
 from app.designs.reference import Reference
 from app.solids.questions import Question, faults, in_order, no_shaft, question
 from cad.analysis.kinds import KINDS
 from cad.inspect import MEASURES
+from cad.model import CadModel
 from templates.core.errors import Fault, unknown_name
 
 
@@ -37,19 +37,19 @@ def measured_names(declared: Iterable[str]) -> Iterator[str]:
     yield from (f"{kind}.{output}" for kind in declared for output in KINDS[kind])
 
 
-def questions(name: str, model: Model, cls: Any) -> tuple[dict[str, Question], list[Fault]]:
+def questions(name: str, model: Model, cls: type[CadModel]) -> tuple[dict[str, Question], list[Fault]]:
     """The analyses that a model declares, as far as they can be made, and what is wrong with them."""
     if not model.analyses:
         return {}, []
-    known = {kind: options for kind, options in model.analyses.items() if kind in KINDS}
+    declared = {kind: options for kind, options in model.analyses.items() if kind in KINDS}
     place = f"models.{name}.analyses"
-    unknown = model.analyses.keys() - known.keys()
+    unknown = model.analyses.keys() - declared.keys()
     wrong = [unknown_name(kind, KINDS, "analysis").within(place) for kind in unknown]
-    for kind, options in known.items():
+    for kind, options in declared.items():
         wrong += [fault.within(f"{place}.{kind}") for fault in faults(options)]
-    if known and (reason := no_shaft(cls)):
+    if declared and (reason := no_shaft(cls)):
         wrong.append(Fault(place, "no_shaft", reason))
-    return {kind: question(kind, options) for kind, options in known.items()}, wrong
+    return {kind: question(kind, options) for kind, options in declared.items()}, wrong
 
 
 def remedy(reference: Reference, models: Mapping[str, Mapping[str, Question]]) -> str | None:
@@ -60,9 +60,12 @@ def remedy(reference: Reference, models: Mapping[str, Mapping[str, Question]]) -
     if kind not in models[model]:
         declared = f'declare "analyses": {{"{kind}": {{}}}} in models.{model}'
         return f"{model} has no analysis {kind}; {declared} to use {reference}"
-    return f"{model}.{kind} tells {', '.join(KINDS[kind])}, no {output[:60]}"
+    return f"{model}.{kind} has the outputs {', '.join(KINDS[kind])}, no {output[:60]}"
 
 
 def used(kind: str, references: Iterable[Reference]) -> tuple[str, ...]:
     """The outputs of an analysis among what relations use of its model."""
-    return in_order(kind, {reference.output for reference in references if reference.analysis == kind})
+    return in_order(
+        kind,
+        {reference.output for reference in references if reference.analysis == kind and reference.output},
+    )

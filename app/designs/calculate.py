@@ -7,17 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from app.calculations.errors import StepDeferred
 from app.calculations.size import points, spanned
-from app.designs.calculation import Analysed, Calculation, Found, Measured, Measures
+from app.designs.calculation import Analysed, Calculation, Measured, Measures, Outputs
 from app.designs.memory import memory
 from app.designs.network import Block, Cell, Graph, Node, Solid, SolidAnalysis
 from app.designs.reference import Reference
 from app.designs.size import limit_operations, limit_values
+from app.plain import Raw
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.language.request import read_request
@@ -26,7 +26,7 @@ from templates.core.units.quantity import Typed, read, read_any
 from templates.core.units.relation import is_relation, parse
 from templates.core.units.units import Value
 
-__all__ = ["Analysed", "Calculation", "Found", "Measured", "Measures", "calculate", "resume"]
+__all__ = ["Analysed", "Calculation", "Measured", "Measures", "Outputs", "calculate", "resume"]
 
 
 def calculate(
@@ -39,8 +39,8 @@ def calculate(
     """Calculate all nodes in order.
 
     `measured` returns what a model measures, or None if it is not built, and `analysed` what finite elements
-    found on it; `assumed` are the SI values of the measures through which iterations run; `broken` are cells
-    that are known to be faulty.
+    computed on it; `assumed` are the SI values of the measures through which iterations run; `broken` are
+    faulty cells.
     """
     result = Calculation(graph, assumed or {}, broken=set(broken))
     _calculate(result, graph.order, measured, analysed)
@@ -129,8 +129,8 @@ def _related(result: Calculation, cell: Cell) -> Typed:
 
 def _joined(result: Calculation, cell: Cell) -> Value:
     """The value of a relation, or of a list that mixes relations and quantities."""
-    known = {} if result.assumed else result.values
-    names = {n: known[n] if n in known else result.value(reference) for n, reference in cell.uses.items()}
+    values = {} if result.assumed else result.values
+    names = {n: values[n] if n in values else result.value(reference) for n, reference in cell.uses.items()}
     if any(map(np.ndim, names.values())):  # single values are few: the text of all relations is limited
         limit_values(count := spanned(map(np.shape, names.values())))
         result.operations += count * sum(relation.parts for relation in cell.relations)
@@ -146,7 +146,7 @@ def _joined(result: Calculation, cell: Cell) -> Value:
     return _finite(np.array(parts, dtype=float))
 
 
-def _item(item: Any, names: Mapping[str, Value], declared: str | None) -> Value:
+def _item(item: Raw, names: Mapping[str, Value], declared: str | None) -> Value:
     if is_relation(item):
         return parse(item).value(names)
     return read(item, declared).si if declared else read_any(item).si
@@ -170,19 +170,19 @@ def _block(result: Calculation, block: Block) -> None:
     faults = _attempt(result, block, raw, waiting)
     if not (faults or waiting or spoilt):
         return
-    told = [fault for fault in faults if fault.name not in waiting | spoilt]
+    remaining = [fault for fault in faults if fault.name not in waiting | spoilt]
     if block.is_model:
-        absent = [f.name for f in told if f.code == "missing"]
+        absent = [f.name for f in remaining if f.code == "missing"]
         result.missing.update({block.name: absent} if absent else {})
-        told = [fault for fault in told if fault.code != "missing"]
-    result.faults += [fault.within(block.name) for fault in told]
-    if waiting and not told and not spoilt:
+        remaining = [fault for fault in remaining if fault.code != "missing"]
+    result.faults += [fault.within(block.name) for fault in remaining]
+    if waiting and not remaining and not spoilt:
         result.pending.add(block)
     elif faults or spoilt:
         result.broken.add(block)
 
 
-def _attempt(result: Calculation, block: Block, raw: dict[str, Any], waiting: set[str]) -> list[Fault]:
+def _attempt(result: Calculation, block: Block, raw: dict[str, Raw], waiting: set[str]) -> list[Fault]:
     """Evaluate a step or make a model's shape; where inputs are waited for, check what can be checked."""
     try:
         if waiting:
@@ -205,7 +205,7 @@ def _attempt(result: Calculation, block: Block, raw: dict[str, Any], waiting: se
     return []
 
 
-def _evaluate(result: Calculation, block: Block, raw: dict[str, Any], wanted: tuple[str, ...] | None) -> None:
+def _evaluate(result: Calculation, block: Block, raw: dict[str, Raw], wanted: tuple[str, ...] | None) -> None:
     """Evaluate a step; one that is deferred is checked as far as that takes no formula."""
     try:
         evaluation = memory.evaluation(block, raw, wanted)
@@ -214,7 +214,7 @@ def _evaluate(result: Calculation, block: Block, raw: dict[str, Any], wanted: tu
         result.deferred.add(block.name)
         result.pending.add(block)
         return
-    limit_values(evaluation.count())  # curves are longer than their inputs tell
+    limit_values(evaluation.count())  # curves are longer than their inputs
     result.evaluations[block.name] = evaluation
 
 
@@ -254,8 +254,8 @@ def _analysis(result: Calculation, node: SolidAnalysis, model: Block, kind: str,
         result.broken.add(node)
         return
     is_waiting = model.solid in result.pending
-    found = None if is_waiting else analysed(result.shapes[model.name], model.analyses[kind], wanted)
-    if found is None:
+    outputs = None if is_waiting else analysed(result.shapes[model.name], model.analyses[kind], wanted)
+    if outputs is None:
         result.pending.add(node)
     else:
-        result.analyses.setdefault(model.name, {})[kind] = found
+        result.analyses.setdefault(model.name, {})[kind] = outputs

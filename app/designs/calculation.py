@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from app.designs.analyses import measured_unit
 from app.designs.network import Graph, Node, SolidAnalysis
 from app.designs.reference import Reference
+from app.plain import Json
 from app.solids.questions import Question
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText
@@ -21,8 +21,8 @@ from templates.core.units.units import Value, unit
 
 Measures = Mapping[str, float]  # in the units of MEASURES
 Measured = Callable[[CadModel], Measures | None]
-Found = Mapping[str, Mapping[str, Any]]  # outputs of an analysis
-Analysed = Callable[[CadModel, Question, tuple[str, ...]], Found | None]
+Outputs = Mapping[str, Mapping[str, Json]]  # outputs of an analysis
+Analysed = Callable[[CadModel, Question, tuple[str, ...]], Outputs | None]
 
 
 @dataclass
@@ -36,7 +36,7 @@ class Calculation:
     evaluations: dict[str, Evaluation] = field(default_factory=dict)  # of steps
     shapes: dict[str, CadModel] = field(default_factory=dict)  # models whose parameters are all known
     measures: dict[str, Measures] = field(default_factory=dict)  # of models that are built
-    analyses: dict[str, dict[str, Found]] = field(default_factory=dict)  # by model and kind: used and known
+    analyses: dict[str, dict[str, Outputs]] = field(default_factory=dict)  # by model and kind: used and known
     missing: dict[str, list[str]] = field(default_factory=dict)  # unset parameters of models
     pending: set[Node] = field(default_factory=set)  # what waits for a solid, or for a deferred step
     deferred: set[str] = field(default_factory=set)  # expensive steps that nobody waited for
@@ -59,7 +59,7 @@ class Calculation:
             return getattr(self.instance(reference.block), declared.attribute)  # type: ignore[no-any-return]
 
     def measure(self, reference: Reference) -> float:
-        """What is measured or found on a solid [SI], by its name in relations: `throw.torsion.stiffness`.
+        """What is measured or computed on a solid [SI], by its name in relations: `throw.torsion.stiffness`.
 
         Raises
         ------
@@ -67,16 +67,16 @@ class Calculation:
             With code `no_value`, where an analysis has a reason instead.
         """
         if reference.analysis is not None:
-            measured = self._found(reference, reference.analysis)
+            measured = self._computed(reference, reference.analysis)
         else:
             measured = self.measures[reference.block][reference.member]
         return float(unit(measured_unit(reference)).to_si(measured))
 
-    def found(self, model: str, kind: str) -> Found:
+    def outputs(self, model: str, kind: str) -> Outputs:
         """What is used and known of an analysis; nothing, while it is pending."""
         return self.analyses.get(model, {}).get(kind, {})
 
-    def _found(self, reference: Reference, kind: str) -> float:
+    def _computed(self, reference: Reference, kind: str) -> float:
         result = self.analyses[reference.block][kind][reference.output or ""]
         if result["value"] is None:
             raise FaultyText("no_value", f"{reference} has no value: {result['reason']}")

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from itertools import chain
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import (
     ConfigDict,
@@ -19,6 +19,7 @@ from pydantic import (
     model_validator,
 )
 
+from app.plain import Json, JsonObject, Raw
 from app.schemas.bounded import Bounded, at_most
 from app.schemas.values import Given
 from app.solids.questions import Options
@@ -62,10 +63,10 @@ class Model(Bounded):
     )
 
     @model_serializer(mode="wrap")
-    def without_nothing(self, plain: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
         """No analyses are not mentioned: a document of before there were any is the same document."""
-        told: dict[str, Any] = plain(self)
-        return {name: value for name, value in told.items() if name != "analyses" or value}
+        document: JsonObject = plain(self)
+        return {name: value for name, value in document.items() if name != "analyses" or value}
 
 
 class Iteration(Bounded):
@@ -94,7 +95,7 @@ class Document(Bounded):
 
     @model_validator(mode="before")
     @classmethod
-    def one_model(cls, raw: Any) -> Any:
+    def one_model(cls, raw: Raw) -> Raw:
         """`model` is short for `models` with one entry of that name."""
         if not isinstance(raw, Mapping):
             return raw
@@ -115,7 +116,7 @@ class Document(Bounded):
         return self
 
 
-def _values_set(raw: Mapping[str, Any]) -> int:
+def _values_set(raw: Mapping[str, Raw]) -> int:
     """How many values the steps and models of a document set, as far as it has the shape of one."""
     places = (("steps", "inputs"), ("models", "parameters"))
     blocks = [
@@ -128,7 +129,7 @@ def _values_set(raw: Mapping[str, Any]) -> int:
     return sum(len(values) for values in inside if isinstance(values, Mapping))
 
 
-def _in_models(raw: Mapping[str, Any]) -> Mapping[str, Any]:
+def _in_models(raw: Mapping[str, Raw]) -> Mapping[str, Json]:
     """With `model` as the entry of that name in `models`; as it is, if it has no `model`, or both."""
     if "model" not in raw or "models" in raw:
         return raw
@@ -136,12 +137,12 @@ def _in_models(raw: Mapping[str, Any]) -> Mapping[str, Any]:
     return {**rest, "models": {"model": raw["model"]}}
 
 
-def merge(document: Mapping[str, Any], patch: Mapping[str, Any]) -> dict[str, Any]:
+def merge(document: Mapping[str, Json], patch: Mapping[str, Raw]) -> JsonObject:
     """The document with a merge patch applied (RFC 7396); a quantity is replaced whole, never merged into."""
     return dict(_merged(document, _in_models(patch), ()))
 
 
-def _merged(old: Any, patch: Any, path: tuple[str, ...]) -> Any:
+def _merged(old: Json, patch: Json, path: tuple[str, ...]) -> Json:
     if not isinstance(patch, Mapping) or not _is_container(path):
         return patch
     result = dict(old) if isinstance(old, Mapping) else {}

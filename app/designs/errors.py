@@ -8,7 +8,8 @@ DesignError
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+
+from app.plain import Json
 
 
 class DesignError(Exception):
@@ -27,9 +28,9 @@ class StaleRevision(DesignError):
 
 
 class NotConverged(DesignError):
-    """A declared iteration did not settle within its limit; `rounds` tells what was assumed and measured."""
+    """A declared iteration did not settle within its limit; `rounds` holds what was assumed and measured."""
 
-    def __init__(self, through: str, tolerance: float, rounds: Sequence[Mapping[str, Any]]) -> None:
+    def __init__(self, through: str, tolerance: float, rounds: Sequence[Mapping[str, Json]]) -> None:
         self.rounds = [dict(done) for done in rounds]
         last = rounds[-1]
         super().__init__(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from app.calculations import rendering
@@ -11,6 +9,7 @@ from app.designs.analyses import measured_unit
 from app.designs.calculate import Calculation
 from app.designs.network import Cell, Solid, SolidAnalysis
 from app.designs.reference import Reference
+from app.plain import JsonObject
 from app.storage.errors import NotFound
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Derived, Formula
@@ -20,8 +19,8 @@ from templates.core.units.units import unit
 DEEPEST = 50  # links; JSON that nests deeper is refused by many readers, and by our own writer
 
 
-def explain(calculation: Calculation, name: str) -> dict[str, Any]:
-    """The chain behind a model parameter, as nested `because`; what was told once is named only.
+def explain(calculation: Calculation, name: str) -> JsonObject:
+    """The chain behind a model parameter, as nested `because`; what was explained once is named only.
 
     A chain is followed over 50 links; what lies `deeper` has its value only.
 
@@ -30,7 +29,7 @@ def explain(calculation: Calculation, name: str) -> dict[str, Any]:
     NotFound
         If no model has this parameter.
     """
-    return _Telling(calculation).of(Reference.parse(_full_name(calculation, name)))
+    return _Explainer(calculation).of(Reference.parse(_full_name(calculation, name)))
 
 
 def _full_name(calculation: Calculation, name: str) -> str:
@@ -41,30 +40,30 @@ def _full_name(calculation: Calculation, name: str) -> str:
             len(models) == 1 and name in block.cls.inputs
         ):
             return name if "." in name else f"{block.name}.{name}"
-    known = [f"{block.name}.{tail}" for block in models for tail in block.cls.inputs]
-    raise NotFound(f"no model has the parameter {name[:80]!r}; there are {', '.join(known)}")
+    names = [f"{block.name}.{tail}" for block in models for tail in block.cls.inputs]
+    raise NotFound(f"no model has the parameter {name[:80]!r}; there are {', '.join(names)}")
 
 
-class _Telling:
+class _Explainer:
     def __init__(self, calculation: Calculation) -> None:
         self.calculation, self.graph = calculation, calculation.graph
-        self.told: set[Reference] = set()
+        self.explained: set[Reference] = set()
         self.depth = 0
 
-    def of(self, reference: Reference) -> dict[str, Any]:
+    def of(self, reference: Reference) -> JsonObject:
         """What a name is, and what it follows from."""
         name = str(reference)
-        if reference in self.told:
+        if reference in self.explained:
             return {"name": name, "kind": "told_above"}
         if self.depth == DEEPEST:
             return {"name": name, "value": self._value(reference), "kind": "deeper"}
-        self.told.add(reference)
+        self.explained.add(reference)
         self.depth += 1
         origin = self._origin(reference)
         self.depth -= 1
         return {"name": name, "value": self._value(reference), **origin}
 
-    def _origin(self, reference: Reference) -> dict[str, Any]:
+    def _origin(self, reference: Reference) -> JsonObject:
         if reference in self.graph.assumed:
             return {"kind": "iterated", "because": []}
         if cell := self.graph.cell(reference):
@@ -72,16 +71,16 @@ class _Telling:
         node = self.graph.node(reference)
         if isinstance(node, (Solid, SolidAnalysis)):
             because = [self.of(cell.reference) for cell in node.model.cells.values()]
-            return {**_looked_at(node), "because": because}
+            return {**_measured_by(node), "because": because}
         return self._declared(reference.block, reference.member)
 
-    def _cell(self, cell: Cell) -> dict[str, Any]:
+    def _cell(self, cell: Cell) -> JsonObject:
         if not cell.relations:
             return {"kind": "given", "typed": cell.raw, "because": []}
         because = [self.of(used) for used in cell.uses.values()]
         return {"kind": "relation", "relation": cell.raw, "because": because}
 
-    def _declared(self, head: str, tail: str) -> dict[str, Any]:
+    def _declared(self, head: str, tail: str) -> JsonObject:
         cls = self.graph.blocks[head].cls
         declared = cls.inputs.get(tail) or cls.formulas[tail]
         if not isinstance(declared, Formula):
@@ -92,7 +91,7 @@ class _Telling:
         del paper["name"]
         return {"kind": kind, "template": rendering.identity(cls), **paper, "because": because}
 
-    def _value(self, reference: Reference) -> Any:
+    def _value(self, reference: Reference) -> JsonObject | None:
         """The value with its unit; null while it waits for a solid or is not set."""
         if reference.output is None:
             kind = f"{self.graph.kinds[reference.block].base:~}" or "1"
@@ -113,8 +112,8 @@ class _Telling:
         return {"value": np.asarray(shown).tolist(), "unit": declared.meaning.unit}
 
 
-def _looked_at(node: Solid | SolidAnalysis) -> dict[str, Any]:
-    """Whether a value is measured on a solid, or found by which analysis."""
+def _measured_by(node: Solid | SolidAnalysis) -> JsonObject:
+    """Whether a value is measured on a solid, or computed by which analysis."""
     if isinstance(node, Solid):
         return {"kind": "measured"}
     return {"kind": "analysis", "analysis": node.model.analyses[node.kind].shown()}

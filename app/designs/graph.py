@@ -7,20 +7,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 from app.designs.analyses import is_measured, questions, remedy
-from app.designs.document import Document, Model, Step
+from app.designs.document import Document, Model, Step, Version
 from app.designs.kinds import checked_kinds
 from app.designs.network import Block, Cell, Graph, Network, Node
 from app.designs.ordering import ordered
 from app.designs.reference import Reference
 from app.designs.size import too_many_relations
+from app.plain import Raw
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_names
+from templates.core.language.intake import Input
 from templates.core.language.template import Template
 from templates.core.units.relation import Relation, is_relation, parse
+
+T = TypeVar("T", bound=Template)
 
 __all__ = ["Block", "Catalogues", "Cell", "Graph", "build_graph", "raise_if"]
 
@@ -71,7 +75,9 @@ def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[
     return Network(parameters, blocks, assumed), faults
 
 
-def _cell(reference: Reference, name: str, raw: Any, declared: Any = None) -> tuple[Cell, list[Fault]]:
+def _cell(
+    reference: Reference, name: str, raw: Raw, declared: Input | None = None
+) -> tuple[Cell, list[Fault]]:
     """A cell with those of its relations that can be read, and the faults of the others."""
     texts = [item for item in raw if is_relation(item)] if isinstance(raw, list) else [raw]
     if not texts or not is_relation(texts[0]):
@@ -114,15 +120,17 @@ def _model(name: str, model: Model, models: Catalogue[CadModel]) -> tuple[Block 
     return Block(name, cls, cells, analyses=analyses), [*faults, *wrong]
 
 
-def _class(catalogue: Catalogue[Any], place: str, id: str, version: Any) -> tuple[Any, list[Fault]]:
+def _class(
+    catalogue: Catalogue[T], place: str, id: str, version: Version
+) -> tuple[type[T] | None, list[Fault]]:
     try:
-        found = catalogue.get(id, version) if isinstance(version, int) else catalogue.latest(id)
+        cls = catalogue.get(id, version) if isinstance(version, int) else catalogue.latest(id)
     except UnknownTemplate as error:
         return None, [Fault(place, "unknown_name", str(error))]
-    return found, []
+    return cls, []
 
 
-def _cells(block: str, values: Mapping[str, Any], cls: type[Template]) -> tuple[dict[str, Cell], list[Fault]]:
+def _cells(block: str, values: Mapping[str, Raw], cls: type[Template]) -> tuple[dict[str, Cell], list[Fault]]:
     """The cells of a block; names that its template does not know are faults."""
     cells: dict[str, Cell] = {}
     unknown = unknown_names((name for name in values if name not in cls.inputs), cls.inputs, "input")
@@ -178,7 +186,7 @@ def _sources(network: Network, links: Links) -> dict[Node, tuple[Node, ...]]:
 
 
 def raise_if(faults: list[Fault]) -> None:
-    """Raise what was found, if anything.
+    """Raise the faults, if there are any.
 
     Raises
     ------

@@ -61,8 +61,8 @@ def _check_target(cell: Cell, relation: Relation, kind: Kind) -> None:
     declared = cell.declared
     assert declared is not None
     if isinstance(declared, Choice):
-        told = f"{cell.name} is one of {', '.join(declared.options)}; no relation fits it"
-        raise FaultyText("unit_mismatch", told)
+        message = f"{cell.name} is one of {', '.join(declared.options)}; no relation fits it"
+        raise FaultyText("unit_mismatch", message)
     want = declared.meaning.scale
     if compatible(kind.base, want.base) and not (kind.absolute and want.difference):
         return

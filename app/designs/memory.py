@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from app.calculations.begun import fingerprint
 from app.calculations.cache import Cache, results
 from app.calculations.steps import evaluated_step
 from app.designs.network import Block
+from app.plain import Raw
 from templates.core.language.evaluate import Evaluation
 
 
@@ -23,7 +24,7 @@ class Memory:
     def __init__(self, cache: Cache = results) -> None:
         self._cache = cache
 
-    def evaluation(self, block: Block, raw: Mapping[str, Any], wanted: tuple[str, ...] | None) -> Evaluation:
+    def evaluation(self, block: Block, raw: Mapping[str, Raw], wanted: tuple[str, ...] | None) -> Evaluation:
         """The evaluation of a step, kept or computed.
 
         Raises

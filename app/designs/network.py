@@ -14,9 +14,11 @@ from typing import Any
 
 from app.designs.analyses import is_measured, measured_names, measured_unit, used
 from app.designs.reference import Reference
+from app.plain import Raw
 from app.solids.questions import Question
 from cad.model import CadModel
-from templates.core.language.spec import Choice, Declaration
+from templates.core.language.intake import Input
+from templates.core.language.spec import Choice, Declaration, Formula
 from templates.core.language.template import Template
 from templates.core.units.operations import Kind
 from templates.core.units.relation import Relation
@@ -31,7 +33,7 @@ class Cell:
 
     reference: Reference
     name: str
-    raw: Any
+    raw: Raw
     relations: tuple[Relation, ...] = ()
     uses: Mapping[str, Reference] = field(default_factory=dict)
     declared: Declaration | None = None
@@ -145,7 +147,7 @@ class Network:
         return declared.meaning.unit if declared else measured_unit(reference)
 
 
-def _declared(block: Block, reference: Reference) -> Any:
+def _declared(block: Block, reference: Reference) -> Input | Formula[Any] | None:
     """The input or formula of a block that a reference names; None of what is measured."""
     if reference.analysis is not None or reference.output is None:
         return None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -14,9 +13,14 @@ from app.designs.document import Document, merge
 from app.designs.graph import Catalogues, build_graph, raise_if
 from app.designs.service import analysed, built, read_document, resolved, starts
 from app.designs.worksheet import previewed
-from app.presentation.units import System, converted
-from app.schemas.designs import Preview
+from app.plain import Raw
+from app.presentation.units import System
+from app.schemas.analyses import AnalysisOutput
+from app.schemas.answers import Shown, Warning
+from app.schemas.designs import Change, ParameterChange, Preview, RevisionStep, Status
+from app.schemas.evaluations import Output
 from app.solids import measures
+from app.solids.analysis_views import output as analysis_output
 from app.storage.database import Database
 from templates.core.errors import Fault
 
@@ -33,7 +37,7 @@ def preview(
     database: Database,
     catalogues: Catalogues,
     design: str,
-    patch: Mapping[str, Any],
+    patch: Mapping[str, Raw],
     *,
     revision: int | None = None,
     worksheet: bool = False,
@@ -47,8 +51,8 @@ def preview(
     Raises
     ------
     InvalidInputs
-        With everything that is wrong, except relations of model parameters with wrong units: these are told
-        by their status.
+        With everything that is wrong, except relations of model parameters with wrong units: their status
+        says so.
     """
     with database.read() as session:
         head = (
@@ -58,20 +62,20 @@ def preview(
         )
     changed = resolved(read_document(merge(head.document, patch)), catalogues)
     new, mismatched = _calculated(database, catalogues, changed)
-    raise_if(new.faults)  # not those of the old one: the change may be to mend it
+    raise_if(new.faults)  # not those of the old one: the change may be to correct it
     old, _ = _calculated(database, catalogues, Document.model_validate(head.document))
-    steps = results.steps(new)
-    compared = {
-        "revision": head.number,
-        "outputs": {
-            **_compared(results.outputs(results.steps(old)), results.outputs(steps)),
-            **_compared(_found(old), _found(new)),
+    steps = _steps(new)
+    content = Preview(
+        revision=head.number,
+        outputs={
+            **_compared(_outputs(_steps(old)), _outputs(steps)),
+            **_compared(_analysed(old), _analysed(new)),
         },
-        "warnings": _warnings(steps),
-        "model_parameters": _model_parameters(old, new, mismatched),
-    }
-    more = {"steps": previewed(new, steps, system), "parameters": _values(new)} if worksheet else {}
-    content = Preview.model_validate({**converted(compared, system), **more})
+        warnings=_warnings(steps),
+        model_parameters=_model_parameters(old, new, mismatched),
+    ).in_units(system)
+    if worksheet:
+        content.steps, content.parameters = previewed(new, steps, system), _values(new)
     return Previewed(content, is_whole=not (old.deferred or new.deferred))
 
 
@@ -83,45 +87,65 @@ def _calculated(
     cells = {cell.name: cell for model in models for cell in model.cells.values()}
     mismatched = {f.name: f for f in faults if f.code == "unit_mismatch" and f.name in cells}
     raise_if([fault for fault in faults if fault.name not in mismatched])
-    known = built(database), analysed(database)
-    return calculate(graph, *known, starts(document), broken=[cells[name] for name in mismatched]), mismatched
+    available = built(database), analysed(database)
+    broken = [cells[name] for name in mismatched]
+    return calculate(graph, *available, starts(document), broken=broken), mismatched
 
 
-def _compared(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
+Outputs = Mapping[str, Output] | Mapping[str, AnalysisOutput | None]
+
+
+def _compared(old: Outputs, new: Outputs) -> dict[str, Change]:
     names = dict.fromkeys([*old, *new])
-    return {name: {"old": old.get(name), "new": new.get(name)} for name in names}
+    return {name: Change(old=old.get(name), new=new.get(name)) for name in names}
 
 
-def _found(calculation: Calculation) -> dict[str, Any]:
+def _steps(calculation: Calculation) -> dict[str, RevisionStep]:
+    return {name: RevisionStep.model_validate(step) for name, step in results.steps(calculation).items()}
+
+
+def _outputs(steps: Mapping[str, RevisionStep]) -> dict[str, Output]:
+    """All outputs of all steps by their names in relations: `film.minimum_film_thickness`."""
+    return {
+        f"{name}.{output}": value for name, step in steps.items() for output, value in step.outputs.items()
+    }
+
+
+def _analysed(calculation: Calculation) -> dict[str, AnalysisOutput | None]:
     """What relations use of analyses, by its name there; null while it is pending."""
-    told: dict[str, Any] = {}
+    outputs: dict[str, AnalysisOutput | None] = {}
     for block in calculation.graph.blocks.values():
         for kind in block.analyses:
-            known = calculation.found(block.name, kind)
-            for output in calculation.graph.wanted(block.name, kind):
-                told[f"{block.name}.{kind}.{output}"] = known.get(output)
-    return told
+            computed = calculation.outputs(block.name, kind)
+            for name in calculation.graph.wanted(block.name, kind):
+                stored = computed.get(name)
+                outputs[f"{block.name}.{kind}.{name}"] = analysis_output(stored) if stored else None
+    return outputs
 
 
-def _warnings(steps: Mapping[str, Any]) -> list[dict[str, Any]]:
-    told = steps.items()
-    return [{**w, "name": f"{step}.{w['name']}"} for step, done in told for w in done.get("warnings", ())]
+def _warnings(steps: Mapping[str, RevisionStep]) -> list[Warning]:
+    return [
+        warning.model_copy(update={"name": f"{name}.{warning.name}"})
+        for name, step in steps.items()
+        for warning in step.warnings
+    ]
 
 
-def _values(new: Calculation) -> dict[str, Any]:
+def _values(new: Calculation) -> dict[str, Shown]:
     """What the parameters of the design come to, in SI; those that wait for a solid are left out."""
     names = (name for name in new.graph.parameters if name in new.values)
     return {
-        name: {
-            "value": np.asarray(new.values[name]).tolist(),
-            "unit": f"{new.graph.kinds[name].base:~}" or "1",
-        }
+        name: Shown(
+            value=np.asarray(new.values[name]).tolist(), unit=f"{new.graph.kinds[name].base:~}" or "1"
+        )
         for name in names
     }
 
 
-def _model_parameters(old: Calculation, new: Calculation, mismatched: Mapping[str, Fault]) -> dict[str, Any]:
-    told: dict[str, Any] = {}
+def _model_parameters(
+    old: Calculation, new: Calculation, mismatched: Mapping[str, Fault]
+) -> dict[str, ParameterChange]:
+    changes: dict[str, ParameterChange] = {}
     for block in new.graph.blocks.values():
         if not block.is_model:
             continue
@@ -130,18 +154,21 @@ def _model_parameters(old: Calculation, new: Calculation, mismatched: Mapping[st
         for name in block.cls.inputs:
             full = f"{block.name}.{name}"
             status = _status(new, block.name, name, before.get(name), after.get(name), full in mismatched)
-            told[full] = {"old": before.get(name), "new": after.get(name), "status": status}
+            changes[full] = ParameterChange(old=before.get(name), new=after.get(name), status=status)
             if full in mismatched:
-                told[full]["detail"] = mismatched[full].detail
-    return told
+                changes[full].detail = mismatched[full].detail
+    return changes
 
 
-def _parameters(calculation: Calculation, model: str) -> dict[str, Any]:
+def _parameters(calculation: Calculation, model: str) -> dict[str, Shown]:
     shape = calculation.shapes.get(model)
-    return measures.parameters(shape) if shape else {}
+    quantities = measures.parameters(shape) if shape else {}
+    return {name: Shown.model_validate(quantity) for name, quantity in quantities.items()}
 
 
-def _status(new: Calculation, model: str, name: str, before: Any, after: Any, mismatch: bool) -> str:
+def _status(
+    new: Calculation, model: str, name: str, before: Shown | None, after: Shown | None, mismatch: bool
+) -> Status:
     if mismatch:
         return "unit_mismatch"
     if name in new.missing.get(model, ()):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from pydantic_core import from_json, to_json
 from sqlalchemy.orm import Session
@@ -15,6 +14,7 @@ from app.designs.errors import DesignError
 from app.designs.graph import Catalogues
 from app.designs.preview import preview
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.plain import JsonObject
 from app.presentation.units import System
 from app.schemas.designs import Preview
 from app.storage.artifacts import ArtifactStore
@@ -32,7 +32,7 @@ class Change:
     """A change that is to be previewed, and how."""
 
     design: str
-    patch: dict[str, Any]
+    patch: JsonObject
     worksheet: bool
     system: System
 
@@ -60,17 +60,17 @@ class Previews:
         QueueFull
             Too many calculations, or jobs, are waiting.
         """
-        found = preview(self.database, self.catalogues, **vars(change))
-        if found.is_whole:
-            return found.content, None
+        previewed = preview(self.database, self.catalogues, **vars(change))
+        if previewed.is_whole:
+            return previewed.content, None
         payload = {
             "design": change.design,
-            "revision": found.content.revision,
+            "revision": previewed.content.revision,
             "worksheet": change.worksheet,
             "system": change.system,
             "body": self.store.put(to_json(change.patch)),
         }
-        return found.content, self._queued(payload, client, begun_steps())
+        return previewed.content, self._queued(payload, client, begun_steps())
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Make the whole preview, and keep it.
@@ -84,19 +84,20 @@ class Previews:
         asked["patch"] = from_json(self.store.read(asked.pop("body")))
         try:
             with calling(self.steps, job, context, f"job:{job.id}", "jobs"):
-                found = preview(self.database, self.catalogues, **asked)
+                previewed = preview(self.database, self.catalogues, **asked)
         except FAILURES as error:
             raise JobFailed(error) from error
         place = place_of_answer(
-            job.id, self.store.put(found.content.model_dump_json(by_alias=True, exclude_unset=True).encode())
+            job.id,
+            self.store.put(previewed.content.model_dump_json(by_alias=True, exclude_unset=True).encode()),
         )
         return lambda session: place
 
-    def failed(self, session: Session, job: Job, problem: dict[str, Any]) -> None:
+    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
         """End what was left to a job that was cancelled before it began."""
         self.steps.drop(job.id)
 
-    def _queued(self, payload: dict[str, Any], client: str, begun: Begun | None) -> str:
+    def _queued(self, payload: JsonObject, client: str, begun: Begun | None) -> str:
         def unit(session: Session) -> str:
             id = self.jobs.enqueue(session, PREVIEW, payload, client=client)
             if begun is not None:

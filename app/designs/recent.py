@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from hashlib import sha256
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from app.calculations.cache import Cache
 from app.designs.calculate import Calculation
 from app.designs.document import Document
+from app.plain import Json
 from app.storage.tables import canonical_json
 
 MEGABYTES = 32
@@ -22,24 +23,24 @@ class Prepared(NamedTuple):
 
 
 class Recent:
-    """The latest calculations that wait for a solid, found by their documents.
+    """The latest calculations that wait for a solid, by their documents.
 
     It belongs to one application: it counts on the catalogues and on the database of that. A calculation that
-    is not here any more, or that another process made, is made again from the document.
+    is not here any more, or that another process did, is done again from the document.
     """
 
     def __init__(self, cache: Cache | None = None) -> None:
         self._cache = cache or Cache(MEGABYTES)
 
-    def keep(self, plain: Mapping[str, Any], prepared: Prepared) -> None:
+    def keep(self, plain: Mapping[str, Json], prepared: Prepared) -> None:
         """Keep the calculation of a document, which is given as JSON too."""
         self._cache.keep(_digest(plain), prepared)
 
-    def find(self, plain: Mapping[str, Any]) -> Prepared | None:
+    def find(self, plain: Mapping[str, Json]) -> Prepared | None:
         """The calculation of a document that was saved lately."""
         prepared: Prepared | None = self._cache.get(_digest(plain))
         return prepared
 
 
-def _digest(plain: Mapping[str, Any]) -> bytes:
+def _digest(plain: Mapping[str, Json]) -> bytes:
     return sha256(canonical_json(plain).encode()).digest()

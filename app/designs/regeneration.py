@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
 
 from sqlalchemy.orm import Session
 
@@ -20,6 +19,7 @@ from app.designs.recent import Prepared, Recent
 from app.designs.reference import Reference
 from app.designs.service import REGENERATE, analysed, built, starts
 from app.jobs.service import Completion, Job, JobContext, JobFailed
+from app.plain import Json, JsonObject
 from app.solids.builds import Builds
 from app.solids.finding import Analysing
 from app.storage.database import Database
@@ -52,7 +52,7 @@ class Regeneration:
         self.analysing, self.steps, self.recent = analysing, steps, recent or Recent()
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
-        """Regenerate the revision of a job; the completion attaches what was found.
+        """Regenerate the revision of a job; the completion attaches the results.
 
         Raises
         ------
@@ -69,16 +69,16 @@ class Regeneration:
                 calculation, rounds = self._settled(self._prepared(plain), context)
         except FAILURES as error:
             raise JobFailed(error) from error
-        told = results.told(calculation, rounds)
+        stored = results.stored(calculation, rounds)
         models = results.models(calculation)
 
         def completion(session: Session) -> str:
-            repository.attach(session, id, number, told, models)
+            repository.attach(session, id, number, stored, models)
             return f"/api/v1/designs/{id}/revisions/{number}"
 
         return completion
 
-    def failed(self, session: Session, job: Job, problem: dict[str, Any]) -> None:
+    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
         """Record in the revision why its regeneration failed; runs in the transaction that ends the job."""
         if self.steps is not None:
             self.steps.drop(job.id)
@@ -86,8 +86,8 @@ class Regeneration:
             changed = repository.changed_since_good(session, job.design, job.revision)
             repository.fail(session, job.design, job.revision, {**problem, "changed": changed})
 
-    def _prepared(self, plain: Mapping[str, Any]) -> Prepared:
-        """A revision's document and its calculation: that of its save, or made again."""
+    def _prepared(self, plain: Mapping[str, Json]) -> Prepared:
+        """A revision's document and its calculation: that of its save, or calculated again."""
         if prepared := self.recent.find(plain):
             return prepared
         document = Document.model_validate(plain)
@@ -98,10 +98,10 @@ class Regeneration:
     def _calculated(self, graph: Graph, assumed: Mapping[Reference, float]) -> Calculation:
         return calculate(graph, built(self.database), analysed(self.database), assumed)
 
-    def _settled(self, prepared: Prepared, context: JobContext) -> tuple[Calculation, list[dict[str, Any]]]:
+    def _settled(self, prepared: Prepared, context: JobContext) -> tuple[Calculation, list[JsonObject]]:
         """The calculation with all solids built and all iterations settled, and the rounds that it took."""
         document, calculation = prepared
-        rounds = list[dict[str, Any]]()
+        rounds = list[JsonObject]()
         while True:
             calculation = self._built(calculation, context)
             if not document.iterations:
@@ -114,9 +114,9 @@ class Regeneration:
             if not unsettled:
                 return calculation, rounds
             for iteration in unsettled:
-                told = [done for done in rounds if done["through"] == iteration.through]
-                if len(told) >= iteration.limit:
-                    raise NotConverged(iteration.through, iteration.tolerance, told)
+                done_before = [done for done in rounds if done["through"] == iteration.through]
+                if len(done_before) >= iteration.limit:
+                    raise NotConverged(iteration.through, iteration.tolerance, done_before)
             calculation = self._calculated(calculation.graph, measured)
 
     def _built(self, calculation: Calculation, context: JobContext) -> Calculation:
@@ -176,7 +176,7 @@ def _measure(calculation: Calculation, iteration: Iteration) -> float:
         raise InvalidInputs([error.fault("iterations")]) from error
 
 
-def _round(number: int, through: Reference, assumed: float, measured: float) -> dict[str, Any]:
+def _round(number: int, through: Reference, assumed: float, measured: float) -> JsonObject:
     scale = unit(measured_unit(through))
     shown = {"assumed": float(scale.from_si(assumed)), "measured": float(scale.from_si(measured))}
     return {"round": number, "through": str(through), **shown, "unit": scale.text}

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.designs.filtering import DesignFilter, conditions
 from app.designs.results import ModelState
+from app.plain import JsonObject
 from app.storage.errors import NotFound
 from app.storage.identity import new_id, now
 from app.storage.tables import BuildRow, DesignRow, RevisionModelRow, RevisionRow
@@ -20,8 +20,8 @@ from app.storage.tables import BuildRow, DesignRow, RevisionModelRow, RevisionRo
 class Written:
     """What a save writes into a new revision."""
 
-    document: dict[str, Any]
-    results: dict[str, Any] | None
+    document: JsonObject
+    results: JsonObject | None
     models: Sequence[ModelState]
     state: str
     note: str | None
@@ -130,17 +130,15 @@ def _model_row(id: str, number: int, state: ModelState) -> RevisionModelRow:
     )
 
 
-def attach(
-    session: Session, id: str, number: int, results: dict[str, Any], models: Sequence[ModelState]
-) -> None:
-    """Attach what a regeneration found to its revision, which becomes current."""
+def attach(session: Session, id: str, number: int, results: JsonObject, models: Sequence[ModelState]) -> None:
+    """Attach the results of a regeneration to its revision, which becomes current."""
     row = revision(session, id, number)
     row.results, row.state, row.problem = results, "current", None
     for state in models:
         session.merge(_model_row(id, number, state))
 
 
-def fail(session: Session, id: str, number: int, problem: dict[str, Any]) -> None:
+def fail(session: Session, id: str, number: int, problem: JsonObject) -> None:
     """Say in a revision why its regeneration failed."""
     row = revision(session, id, number)
     row.state, row.problem = "failed", problem

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from app.calculations import rendering
 from app.designs.calculate import Calculation
 from app.designs.network import Block
 from app.designs.worksheet import remember
+from app.plain import JsonObject, Raw
 from app.solids import measures
 from app.solids.analysis_views import in_design
 from cad.regenerate import build_key
@@ -22,25 +21,25 @@ class ModelState:
     name: str
     id: str
     version: int
-    parameters: dict[str, Any]
-    relations: dict[str, Any]
+    parameters: JsonObject
+    relations: dict[str, Raw]
     missing: tuple[str, ...]
     build: str | None
 
 
-def told(calculation: Calculation, rounds: list[dict[str, Any]]) -> dict[str, Any]:
+def stored(calculation: Calculation, rounds: list[JsonObject]) -> JsonObject:
     """All that a revision keeps of a calculation beside its models."""
     return {"steps": steps(calculation), "iterations": rounds, "analyses": analyses(calculation)}
 
 
-def analyses(calculation: Calculation) -> dict[str, Any]:
+def analyses(calculation: Calculation) -> dict[str, JsonObject]:
     """By model, every analysis that it declares, with those outputs that are used and known."""
     return {
         block.name: {
             kind: in_design(
                 build_key(calculation.shapes[block.name]),
                 question,
-                calculation.found(block.name, kind),
+                calculation.outputs(block.name, kind),
             ).model_dump(exclude_unset=True)
             for kind, question in block.analyses.items()
         }
@@ -49,7 +48,7 @@ def analyses(calculation: Calculation) -> dict[str, Any]:
     }
 
 
-def steps(calculation: Calculation) -> dict[str, Any]:
+def steps(calculation: Calculation) -> dict[str, JsonObject]:
     """Every step: its evaluation, or that it waits for a solid or for its job."""
     return {
         name: _step(calculation, block)
@@ -58,15 +57,15 @@ def steps(calculation: Calculation) -> dict[str, Any]:
     }
 
 
-def _step(calculation: Calculation, block: Block) -> dict[str, Any]:
+def _step(calculation: Calculation, block: Block) -> JsonObject:
     relations = {n: cell.raw for n, cell in block.cells.items() if cell.relations}
     if block.name not in calculation.evaluations:
         return {"template": rendering.identity(block.cls), "relations": relations, "state": "pending"}
     evaluation = calculation.evaluations[block.name]
-    told = rendering.evaluation(evaluation)
-    remember(told, evaluation)
-    del told["seconds"]  # equal revisions are equal
-    return {**told, "relations": relations}
+    answer = rendering.evaluation(evaluation)
+    remember(answer, evaluation)
+    del answer["seconds"]  # equal revisions are equal
+    return {**answer, "relations": relations}
 
 
 def models(calculation: Calculation) -> list[ModelState]:
@@ -86,12 +85,3 @@ def _model(calculation: Calculation, block: Block) -> ModelState:
         missing=tuple(calculation.missing.get(block.name, ())),
         build=build_key(shape) if shape else None,
     )
-
-
-def outputs(told: Mapping[str, Any]) -> dict[str, Any]:
-    """All outputs of all steps by their names in relations: `film.minimum_film_thickness`."""
-    return {
-        f"{step}.{name}": value
-        for step, done in told.items()
-        for name, value in done.get("outputs", {}).items()
-    }

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 from pydantic import ValidationError
 from sqlalchemy.orm import Session
@@ -14,7 +13,7 @@ from app.calculations.steps import begun_steps
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
 from app.designs.automap import Proposal, proposals
-from app.designs.calculate import Analysed, Calculation, Found, Measured, Measures, calculate
+from app.designs.calculate import Analysed, Calculation, Measured, Measures, Outputs, calculate
 from app.designs.document import Document, merge
 from app.designs.errors import StaleRevision
 from app.designs.graph import Catalogues, Graph, build_graph, raise_if
@@ -22,11 +21,12 @@ from app.designs.recent import Prepared, Recent
 from app.designs.reference import Reference
 from app.designs.repository import Written
 from app.jobs.service import Jobs
+from app.plain import Json, JsonObject, Raw
 from app.solids import analysis_rows as analyses
 from app.solids import rows
 from app.solids.ages import renew
 from app.solids.questions import Question, under_load
-from app.storage.database import Database
+from app.storage.database import Database, Unit
 from app.storage.idempotency import Once
 from cad.model import CadModel
 from cad.regenerate import build_key
@@ -49,7 +49,7 @@ class Saved:
     revision: int
     job: str | None
     created: bool
-    fresh: bool = True  # made by this request, not found from an earlier one
+    fresh: bool = True  # saved by this request, not by an earlier one
     is_deferred: bool = False  # the request has waited for steps as long as it does: the job calculates them
 
 
@@ -72,7 +72,7 @@ class Designs:
         self.database, self.jobs, self.catalogues = database, jobs, catalogues
         self.recent = recent or Recent()
 
-    def create(self, raw: Mapping[str, Any], note: str | None, once: Once) -> Saved:
+    def create(self, raw: Mapping[str, Raw], note: str | None, once: Once) -> Saved:
         """A new design.
 
         Raises
@@ -80,13 +80,13 @@ class Designs:
         InvalidInputs
             With everything that is wrong; nothing is saved then.
         """
-        if found := self._repeated(once):
-            return found
+        if saved_before := self._repeated(once):
+            return saved_before
         draft = self._draft(raw, note)
 
         def unit(session: Session) -> Saved:
-            if found := _found(session, once):
-                return found
+            if saved_before := _saved_before(session, once):
+                return saved_before
             certain = _with_builds(session, draft)
             name = certain.written.document["name"]
             design, revision = repository.create(session, name, certain.written)
@@ -95,7 +95,7 @@ class Designs:
         return self._saved(unit, draft)
 
     def change(
-        self, id: str, patch: Mapping[str, Any], note: str | None, expected: str | None, once: Once
+        self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
     ) -> Saved:
         """A new revision with a merge patch applied; a patch that changes nothing makes none.
 
@@ -106,8 +106,8 @@ class Designs:
         InvalidInputs
             With everything that is wrong; nothing is saved then.
         """
-        if found := self._repeated(once):
-            return found
+        if saved_before := self._repeated(once):
+            return saved_before
         with self.database.read() as session:
             row = repository.head(session, id)
             base, document = row.number, row.document
@@ -116,8 +116,8 @@ class Designs:
 
     def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> Saved:
         """A new revision equal to an old one."""
-        if found := self._repeated(once):
-            return found
+        if saved_before := self._repeated(once):
+            return saved_before
         with self.database.read() as session:
             base = repository.head(session, id).number
             document = repository.revision(session, id, number).document
@@ -143,39 +143,39 @@ class Designs:
         with self.database.read() as session:
             number = repeated.revision - 1 if repeated else repository.head(session, id).number
             document = repository.revision(session, id, number).document
-        found = proposals(self._graph(resolved(read_document(document), self.catalogues)))
-        if repeated or not (apply and found):
-            return found, repeated
-        models: dict[str, Any] = {}
-        for proposal in found:
+        proposed = proposals(self._graph(resolved(read_document(document), self.catalogues)))
+        if repeated or not (apply and proposed):
+            return proposed, repeated
+        models: JsonObject = {}
+        for proposal in proposed:
             target = Reference.parse(proposal.target)
             model = models.setdefault(target.block, {"parameters": {}})
             model["parameters"][target.member] = proposal.relation
-        return found, self.change(id, {"models": models}, "auto-map", expected or f'"{number}"', once)
+        return proposed, self.change(id, {"models": models}, "auto-map", expected or f'"{number}"', once)
 
-    def state(self, id: str) -> dict[str, Any]:
+    def state(self, id: str) -> JsonObject:
         """At which revision a design is, and how its regeneration stands."""
         with self.database.read() as session:
             row = repository.head(session, id)
             return {"revision": row.number, "state": row.state, "problem": row.problem}
 
-    def prepare(self, raw: Mapping[str, Any]) -> tuple[Document, Calculation]:
+    def prepare(self, raw: Mapping[str, Raw]) -> tuple[Document, Calculation]:
         """A document read and calculated with what is built already; faults are left in the calculation."""
         document = resolved(read_document(raw), self.catalogues)
-        known = built(self.database), analysed(self.database)
-        return document, calculate(self._graph(document), *known, starts(document))
+        available = built(self.database), analysed(self.database)
+        return document, calculate(self._graph(document), *available, starts(document))
 
     def _graph(self, document: Document) -> Graph:
         graph, faults = build_graph(document, self.catalogues)
         raise_if(faults)
         return graph
 
-    def _append(self, id: str, base: int, raw: Mapping[str, Any], note: str | None, once: Once) -> Saved:
+    def _append(self, id: str, base: int, raw: Mapping[str, Raw], note: str | None, once: Once) -> Saved:
         draft = self._draft(raw, note)
 
         def unit(session: Session) -> Saved:
-            if found := _found(session, once):
-                return found
+            if saved_before := _saved_before(session, once):
+                return saved_before
             row = repository.design(session, id)
             if row.head != base:
                 raise StaleRevision(f'"{base}"', row.head)
@@ -189,17 +189,17 @@ class Designs:
 
         return self._saved(unit, draft)
 
-    def _draft(self, raw: Mapping[str, Any], note: str | None) -> _Draft:
+    def _draft(self, raw: Mapping[str, Raw], note: str | None) -> _Draft:
         """What to write for a document; its results wait for a job if anything in it does."""
         document, calculation = self.prepare(raw)
         raise_if(calculation.faults)
         pending = bool(document.iterations) or bool(calculation.pending)
-        told = None if pending else results.told(calculation, [])
+        stored = None if pending else results.stored(calculation, [])
         state = "regenerating" if pending else "current"
         plain = document.model_dump(mode="json")
         if pending and not calculation.deferred:
             self.recent.keep(plain, Prepared(document, calculation))
-        written = Written(plain, told, results.models(calculation), state, note)
+        written = Written(plain, stored, results.models(calculation), state, note)
         return _Draft(written, _kind(calculation), bool(calculation.deferred), begun_steps())
 
     def _enqueued(
@@ -217,8 +217,8 @@ class Designs:
         once.keep(session, 201 if created else 200, vars(saved))
         return saved
 
-    def _saved(self, unit: Any, draft: _Draft) -> Saved:
-        saved: Saved = self.database.write(unit)
+    def _saved(self, unit: Unit[Saved], draft: _Draft) -> Saved:
+        saved = self.database.write(unit)
         if saved.fresh:
             saved = replace(saved, is_deferred=draft.is_deferred)
             topic, state = f"design:{saved.design}", "regenerating" if saved.job else "current"
@@ -232,7 +232,7 @@ class Designs:
         if not once.key:
             return None
         with self.database.read() as session:
-            return _found(session, once)
+            return _saved_before(session, once)
 
 
 def _with_builds(session: Session, draft: _Draft) -> _Draft:
@@ -249,7 +249,7 @@ def _kind(calculation: Calculation) -> str:
     return CALCULATE if calculation.deferred else REGENERATE
 
 
-def _found(session: Session, once: Once) -> Saved | None:
+def _saved_before(session: Session, once: Once) -> Saved | None:
     location = once.find(session)
     return Saved(**{**location, "fresh": False}) if location else None
 
@@ -259,7 +259,7 @@ def _require_match(expected: str | None, head: int) -> None:
         raise StaleRevision(expected, head)
 
 
-def read_document(raw: Mapping[str, Any]) -> Document:
+def read_document(raw: Mapping[str, Raw]) -> Document:
     """A document from JSON.
 
     Raises
@@ -273,9 +273,9 @@ def read_document(raw: Mapping[str, Any]) -> Document:
         raise InvalidInputs(map(_fault, error.errors(include_url=False, include_input=False))) from None
 
 
-def _fault(found: Mapping[str, Any]) -> Fault:
-    place = ".".join(str(part)[:LONGEST_PLACE] for part in found["loc"])
-    return Fault(plain(place, LONGEST_PLACE) or "design", found["type"], found["msg"])
+def _fault(error: Mapping[str, Json]) -> Fault:
+    place = ".".join(str(part)[:LONGEST_PLACE] for part in error["loc"])
+    return Fault(plain(place, LONGEST_PLACE) or "design", error["type"], error["msg"])
 
 
 def resolved(document: Document, catalogues: Catalogues) -> Document:
@@ -310,16 +310,16 @@ def analyses_wanted(graph: Graph) -> bool:
 
 
 def analysed(database: Database) -> Analysed:
-    """What finite elements found on models, where all that is wanted has been found; likewise."""
+    """What finite elements computed on models, where all that is wanted is stored; likewise."""
 
-    def known(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Found | None:
+    def stored(shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Outputs | None:
         with database.read() as session:
-            found = analyses.found(session, question.key(build_key(shape)))
-        if not set(wanted) <= found.keys():
+            outputs = analyses.outputs_of(session, question.key(build_key(shape)))
+        if not set(wanted) <= outputs.keys():
             return None
-        return under_load(question, {name: found[name] for name in wanted})
+        return under_load(question, {name: outputs[name] for name in wanted})
 
-    return known
+    return stored
 
 
 def starts(document: Document) -> dict[Reference, float]:

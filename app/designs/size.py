@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import chain
-from typing import Any
 
 from app.designs.document import Document
+from app.plain import Raw
 from templates.core.errors import Fault, FaultyText
 from templates.core.units.relation import is_relation
 
@@ -24,13 +24,13 @@ def too_many_relations(document: Document) -> Iterator[Fault]:
         return
     length = sum(len(text) for text in texts if is_relation(text))
     if length > MOST_RELATION_TEXT:
-        told = (
+        message = (
             f"the relations of a design have at most {MOST_RELATION_TEXT} characters together, not {length}"
         )
-        yield Fault("design", "too_long", told)
+        yield Fault("design", "too_long", message)
 
 
-def _items(document: Document) -> Iterator[Any]:
+def _items(document: Document) -> Iterator[Raw]:
     """Every value of a document, and every item of those that are lists."""
     groups = [document.parameters, *(step.inputs for step in document.steps.values())]
     groups += [model.parameters for model in document.models.values()]
@@ -47,8 +47,8 @@ def limit_values(values: int) -> None:
         With code `too_many_values`.
     """
     if values > MOST_VALUES:
-        told = f"this makes {values} values, more than the {MOST_VALUES} that a design takes in one place"
-        raise FaultyText("too_many_values", told)
+        message = f"this makes {values} values, more than the {MOST_VALUES} that a design takes in one place"
+        raise FaultyText("too_many_values", message)
 
 
 def limit_operations(operations: int) -> None:
@@ -60,5 +60,7 @@ def limit_operations(operations: int) -> None:
         With code `too_many_values`.
     """
     if operations > MOST_OPERATIONS:
-        told = f"the relations up to here make {operations} operations on single values"
-        raise FaultyText("too_many_values", f"{told}; use shorter arrays, at most {MOST_OPERATIONS} are made")
+        message = f"the relations up to here make {operations} operations on single values"
+        raise FaultyText(
+            "too_many_values", f"{message}; use shorter arrays, at most {MOST_OPERATIONS} are made"
+        )

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from sqlalchemy.orm import Session
 
 from app.designs import repository
+from app.plain import JsonObject
 from app.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
 from app.solids import measures, rows
 from app.solids.models import File
@@ -72,16 +71,16 @@ def revision(session: Session, row: RevisionRow) -> Revision:
     )
 
 
-def _step(typed: dict[str, Any], calculated: dict[str, Any] | None) -> dict[str, Any]:
+def _step(typed: JsonObject, calculated: JsonObject | None) -> JsonObject:
     """A step with its results, or as typed while it waits for a solid or for its job."""
     if calculated is None or "outputs" not in calculated:
         template = {"id": typed["template"], "version": typed["version"]}
-        empty: dict[str, Any] = {"outputs": {}, "level": None, "error": {}, "warnings": []}
+        empty: JsonObject = {"outputs": {}, "level": None, "error": {}, "warnings": []}
         return {"template": template, "inputs": typed["inputs"], **empty, "pending": True}
     return calculated
 
 
-def _model(session: Session, row: RevisionModelRow) -> dict[str, Any]:
+def _model(session: Session, row: RevisionModelRow) -> JsonObject:
     return {
         "id": row.model,
         "version": row.model_version,
@@ -113,9 +112,9 @@ def measurements(session: Session, id: str) -> dict[str, ModelMeasurements]:
     return measured
 
 
-def _analyses(row: RevisionRow, model: str) -> dict[str, Any]:
+def _analyses(row: RevisionRow, model: str) -> JsonObject:
     """The analyses of a model in a revision; none in revisions of before there were any."""
-    analyses: dict[str, Any] = (row.results or {}).get("analyses", {}).get(model, {})
+    analyses: JsonObject = (row.results or {}).get("analyses", {}).get(model, {})
     return analyses
 
 
@@ -138,13 +137,13 @@ def good_model(session: Session, id: str, name: str | None, number: int | None) 
         )
         raise NotFound(f"design {id}: {hint}")
     if number is None:
-        found = repository.newest_good(session, id, wanted, head.number)
+        model_row = repository.newest_good(session, id, wanted, head.number)
     else:
-        found = next(model for model in head.models if model.name == wanted)
-        found = found if rows.build(session, found.build_key or "") else None
-    if found is None:
+        model_row = next(model for model in head.models if model.name == wanted)
+        model_row = model_row if rows.build(session, model_row.build_key or "") else None
+    if model_row is None:
         raise NotFound(f"design {id}: {wanted} has no finished solid yet; {_why(head)}")
-    return found
+    return model_row
 
 
 def _why(row: RevisionRow) -> str:

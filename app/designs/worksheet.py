@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 from app.calculations.begun import fingerprint
 from app.calculations.cache import results as kept
@@ -12,7 +12,10 @@ from app.calculations.errors import StepDeferred
 from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
 from app.designs.calculate import Calculation
-from app.presentation.units import System, converted
+from app.plain import JsonObject, Raw
+from app.presentation.units import System
+from app.schemas.designs import PreviewedStep, Revision, RevisionStep, RevisionWorksheet
+from app.schemas.evaluations import UsedInput, WorkedFormula
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.language.evaluate import Evaluation
@@ -20,96 +23,101 @@ from templates.core.language.template import Template
 from templates.core.paper.verdicts import Check, checks
 
 
-def worksheets(steps: Mapping[str, Any], catalogue: Catalogue[Template], system: System) -> dict[str, Any]:
-    """The steps of a revision with `formulas`, from the inputs and at the level that its job used."""
-    return {
-        name: {
-            **converted(told, system),
-            "inputs": told["inputs"],
-            "formulas": _formulas(told, catalogue, system),
-        }
-        for name, told in steps.items()
+def worksheet(revision: Revision, catalogue: Catalogue[Template], system: System) -> RevisionWorksheet:
+    """A revision with `formulas`, from the inputs and at the level that its job used."""
+    steps = {
+        name: _with_formulas(step, _worked(step, catalogue, system).formulas, system)
+        for name, step in revision.steps.items()
     }
+    models = {name: model.in_units(system) for name, model in revision.models.items()}
+    fields = {name: getattr(revision, name) for name in revision.model_fields_set}
+    return RevisionWorksheet.model_validate({**fields, "steps": steps, "models": models})
 
 
 def previewed(
-    calculation: Calculation, steps: Mapping[str, Any], system: System
-) -> dict[str, dict[str, Any]]:
+    calculation: Calculation, steps: Mapping[str, RevisionStep], system: System
+) -> dict[str, PreviewedStep]:
     """The steps of a preview with `formulas`; a step that waits for a solid has none yet."""
-    made = calculation.evaluations
-    return {
-        name: {
-            **converted(told, system),
-            "inputs": told.get("inputs", {}),
-            "formulas": formulas(made[name].template, system, made[name].outputs) if name in made else [],
-        }
-        for name, told in steps.items()
-    }
+    evaluations = calculation.evaluations
+    written = {name: _formulas(evaluation, system) for name, evaluation in evaluations.items()}
+    return {name: _with_formulas(step, written.get(name, []), system) for name, step in steps.items()}
 
 
-def checked(told: Mapping[str, Any], catalogue: Catalogue[Template]) -> list[Check]:
+def _with_formulas(step: RevisionStep, rows: list[WorkedFormula], system: System) -> PreviewedStep:
+    """A step in a system of units, its inputs as typed."""
+    shown = step.in_units(system)
+    fields = {name: getattr(shown, name) for name in shown.model_fields_set}
+    return PreviewedStep.model_validate({**fields, "inputs": step.inputs, "formulas": rows})
+
+
+def checked(step: RevisionStep, catalogue: Catalogue[Template]) -> list[Check]:
     """Every bound and rule of a revision's step, held against its values."""
-    return _again(told, catalogue, "si")[1]
+    return _worked(step, catalogue, "si").checks
 
 
-def _formulas(
-    told: Mapping[str, Any], catalogue: Catalogue[Template], system: System
-) -> list[dict[str, Any]]:
-    return _again(told, catalogue, system)[0]
+class _Worked(NamedTuple):
+    """What follows from a step that is calculated again."""
+
+    formulas: list[WorkedFormula]
+    checks: list[Check]
 
 
-def _again(
-    told: Mapping[str, Any], catalogue: Catalogue[Template], system: System
-) -> tuple[list[dict[str, Any]], list[Check]]:
+def _worked(step: RevisionStep, catalogue: Catalogue[Template], system: System) -> _Worked:
     """Formulas and checks of a step that has results, calculated as its job did; none if it is deferred."""
-    if not told["outputs"]:
-        return [], []
+    if not step.outputs:
+        return _Worked([], [])
     try:
-        cls: Any = catalogue.get(told["template"]["id"], told["template"]["version"])
-        return _written_out(cls, told, system)
+        return _written_out(catalogue.get(step.template.id, step.template.version), step, system)
     except TemplateError:  # the file of this version was taken away, or changed: its results stay
-        return [], []
+        return _Worked([], [])
     except StepDeferred:
-        return [], []
+        return _Worked([], [])
 
 
-def _retyped(echo: Mapping[str, Any]) -> Any:
+def _retyped(used: UsedInput) -> Raw:
     """An input as it was used, as one that can be given again."""
-    return {name: part for name, part in echo.items() if name != "from"} if "unit" in echo else echo["value"]
+    if "unit" not in used.model_fields_set:
+        return used.value
+    return {name: getattr(used, name) for name in used.model_fields_set if name != "source"}
 
 
 class _Question(NamedTuple):
     """What a revision's step was asked, as it can be asked again."""
 
-    inputs: dict[str, Any]
+    inputs: dict[str, Raw]
     outputs: tuple[str, ...]
     level: str | None
 
     @classmethod
-    def of(cls, told: Mapping[str, Any]) -> Self:
-        given = {name: _retyped(value) for name, value in told["inputs"].items() if value["from"] == "given"}
-        level = told["level"] if isinstance(told["level"], str) else None
-        return cls(given, tuple(sorted(told["outputs"])), level)  # as the database has them
+    def of(cls, step: RevisionStep) -> Self:
+        used = {name: value for name, value in step.inputs.items() if isinstance(value, UsedInput)}
+        given = {name: _retyped(value) for name, value in used.items() if value.source == "given"}
+        level = step.level if isinstance(step.level, str) else None
+        return cls(given, tuple(sorted(step.outputs)), level)  # as the database has them
 
-    def key(self, *more: Any) -> Hashable:
+    def key(self, *more: type[Template] | System) -> Hashable:
         return (_Question, fingerprint(self.inputs), self.outputs, self.level, *more)
 
 
-def remember(told: Mapping[str, Any], evaluation: Evaluation) -> None:
+def remember(answer: JsonObject, evaluation: Evaluation) -> None:
     """Keep the evaluation of an expensive step, so that its worksheet does not calculate it again."""
     if evaluation.seconds > EXPENSIVE:
-        kept.keep(_Question.of(told).key(type(evaluation.template)), evaluation)
+        question = _Question.of(RevisionStep.model_validate(answer))
+        kept.keep(question.key(type(evaluation.template)), evaluation)
 
 
-def _written_out(
-    cls: Any, told: Mapping[str, Any], system: System
-) -> tuple[list[dict[str, Any]], list[Check]]:
+def _formulas(evaluation: Evaluation, system: System) -> list[WorkedFormula]:
+    rows = formulas(evaluation.template, system, evaluation.outputs)
+    return [WorkedFormula.model_validate(row) for row in rows]
+
+
+def _written_out(cls: type[Template], step: RevisionStep, system: System) -> _Worked:
     """Formulas and checks, kept because a revision never changes."""
-    question = _Question.of(told)
+    question = _Question.of(step)
     key = question.key(cls, system)
-    written: tuple[list[dict[str, Any]], list[Check]] | None = kept.get(key)
+    written: _Worked | None = kept.get(key)
     if written is None:
         evaluation = kept.get(question.key(cls)) or evaluated_step(cls, *question, None)
-        written = formulas(evaluation.template, system, evaluation.outputs), list(checks(evaluation.template))
+        written = _Worked(_formulas(evaluation, system), list(checks(evaluation.template)))
         kept.keep(key, written)
     return written

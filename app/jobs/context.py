@@ -23,7 +23,7 @@ _INTERVAL = 0.5  # between two times that progress is stored [s]
 
 
 class JobContext:
-    """Runs functions in the worker, and tells and stores how far the job is."""
+    """Runs functions in the worker, and reports and stores how far the job is."""
 
     def __init__(
         self,
@@ -54,7 +54,7 @@ class JobContext:
         return self._cancelled
 
     def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
-        """Run a function in the worker, within the limits of jobs or others; it tells progress by `report`.
+        """Run a function in the worker, within the limits of jobs or others; it reports progress by `report`.
 
         Raises
         ------
@@ -72,7 +72,7 @@ class JobContext:
         )
 
     def progress(self, fraction: float, text: str) -> None:
-        """Tell how far the job is (0 to 1) and what it does next; it is stored now and then, told at once."""
+        """Publish how far the job is (0 to 1) and what it does next; store it now and then."""
         self.log = [*self.log, text][-_LINES:]
         publish(self._events, self._job, "progress", progress=fraction, text=text)
         if time.monotonic() - self._stored >= _INTERVAL:
@@ -83,7 +83,7 @@ class JobContext:
 
 
 def publish(events: Events, job: Job, name: str, **more: object) -> None:
-    """Tell an event of a job to those who watch it, and to those who watch its design."""
+    """Publish an event of a job to those who watch it, and to those who watch its design."""
     metrics.job_event(job.id, job.kind, name)
     if name in ("done", "failed", "cancelled"):
         logger.info("job %s (%s) %s", job.id, job.kind, name, extra={"job": job.id})

@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 from sqlalchemy.orm import Session
 
@@ -18,6 +17,7 @@ from app.jobs.events import Events
 from app.jobs.job import Job
 from app.jobs.turns import Lane
 from app.observation import logs
+from app.plain import JsonObject
 from app.storage.database import Database
 from app.storage.errors import DatabaseClosed
 from app.workers.base import Limits, Worker
@@ -25,7 +25,7 @@ from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed, Memor
 
 logger = logging.getLogger(__name__)
 
-Problem = dict[str, Any]
+Problem = JsonObject
 Completion = Callable[[Session], str | None]
 Handler = Callable[[Job, JobContext], Completion]
 FailureHook = Callable[[Session, Job, Problem], None]
@@ -215,7 +215,7 @@ class Dispatcher:
         context: JobContext,
         problem: Problem,
         completion: Callable[[Session], None] | None = None,
-        **more: Any,
+        **more: object,
     ) -> None:
         def unit(session: Session) -> bool:
             if not repository.end(session, job, "failed", context.log, problem=problem, **more):

@@ -8,9 +8,10 @@ import threading
 from collections import defaultdict
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
-from typing import Any
 
-Event = dict[str, Any]
+from app.plain import JsonObject
+
+Event = JsonObject
 
 _ROOM = 100  # events that may wait for a slow reader before the oldest are dropped
 
@@ -24,11 +25,11 @@ class Events:
         self._closed = False
 
     def publish(self, topic: str, event: Event) -> None:
-        """Tell an event to all who listen; never blocks."""
+        """Send an event to all who listen; never blocks."""
         with self._lock:
             listeners = tuple(self._subscribers.get(topic, ()))
         for subscriber in listeners:
-            subscriber.tell(event)
+            subscriber.send(event)
 
     @asynccontextmanager
     async def subscribe(self, topic: str) -> AsyncIterator[AsyncIterator[Event]]:
@@ -46,13 +47,13 @@ class Events:
             self._closed = True
             everyone = [subscriber for group in self._subscribers.values() for subscriber in group]
         for subscriber in everyone:
-            subscriber.tell(None)
+            subscriber.send(None)
 
     def _add(self, topic: str, subscriber: "_Subscriber") -> None:
         with self._lock:
             self._subscribers[topic].add(subscriber)
             if self._closed:
-                subscriber.tell(None)
+                subscriber.send(None)
 
     def _remove(self, topic: str, subscriber: "_Subscriber") -> None:
         with self._lock:
@@ -68,7 +69,7 @@ class _Subscriber:
         self._loop = asyncio.get_running_loop()
         self._queue: asyncio.Queue[Event | None] = asyncio.Queue(_ROOM)
 
-    def tell(self, event: Event | None) -> None:
+    def send(self, event: Event | None) -> None:
         with suppress(RuntimeError):  # the loop has ended, and the reader with it
             self._loop.call_soon_threadsafe(self._put, event)
 

@@ -1,8 +1,8 @@
 """A job as its handler and the API see it."""
 
 from dataclasses import dataclass
-from typing import Any
 
+from app.plain import JsonObject
 from app.schemas.jobs import State
 
 FINAL: frozenset[State] = frozenset({"done", "failed", "cancelled"})
@@ -17,12 +17,12 @@ class Job:
     state: State
     design: str | None
     revision: int | None
-    payload: dict[str, Any]
+    payload: JsonObject
     attempt: int
     crashes: int
     progress: float
     log: list[str]
-    problem: dict[str, Any] | None
+    problem: JsonObject | None
     result: str | None
     created: str
     updated: str

@@ -4,13 +4,14 @@ What a claimed job writes is fenced: it takes effect only while the row is runni
 claimed, so a job which was cancelled or claimed again cannot write any more.
 """
 
-from typing import Any, cast
+from typing import cast
 
 from sqlalchemy import ColumnElement, and_, func, select, update
 from sqlalchemy.orm import Session
 
 from app.jobs.job import Job
 from app.jobs.turns import ALL_KINDS, UNFINISHED, Lane
+from app.plain import JsonObject
 from app.schemas.jobs import State
 from app.storage.clock import operated
 from app.storage.identity import new_id, now
@@ -20,7 +21,7 @@ from app.storage.tables import JobRow
 def add(
     session: Session,
     kind: str,
-    payload: dict[str, Any],
+    payload: JsonObject,
     design: str | None,
     revision: int | None,
     client: str = "",
@@ -58,7 +59,7 @@ def page(session: Session, limit: int, before: str | None) -> list[Job]:
     return [_job(row) for row in rows]
 
 
-def find_waiting(session: Session, kind: str, payload: dict[str, Any]) -> str | None:
+def find_waiting(session: Session, kind: str, payload: JsonObject) -> str | None:
     """Return the id of the job of this kind and payload that has not ended."""
     same = select(JobRow.id).where(JobRow.kind == kind, JobRow.payload == payload)
     return session.scalar(same.where(JobRow.state.in_(UNFINISHED)).limit(1))
@@ -78,13 +79,13 @@ def note_progress(session: Session, job: Job, progress: float, log: list[str]) -
     _write(session, _held(job), progress=progress, log=log)
 
 
-def end(session: Session, job: Job, state: State, log: list[str], **more: Any) -> bool:
+def end(session: Session, job: Job, state: State, log: list[str], **more: object) -> bool:
     """Give a claimed job its final state; return False, with nothing written, if it is no longer held."""
     return _write(session, _held(job), state=state, log=log, operated=operated(session), **more) == 1
 
 
 def set_result(session: Session, id: str, link: str | None) -> None:
-    """Store the link to what a job has made."""
+    """Store the link to the result of a job."""
     _write(session, JobRow.id == id, result=link)
 
 
@@ -98,7 +99,7 @@ def give_back_all(session: Session) -> int:
     return _write(session, JobRow.state == "running", state="queued")
 
 
-def cancel(session: Session, job: Job, problem: dict[str, Any]) -> None:
+def cancel(session: Session, job: Job, problem: JsonObject) -> None:
     """Mark a job as cancelled."""
     _write(session, JobRow.id == job.id, state="cancelled", problem=problem, operated=operated(session))
 
@@ -107,7 +108,7 @@ def _held(job: Job) -> ColumnElement[bool]:
     return and_(JobRow.id == job.id, JobRow.state == "running", JobRow.attempt == job.attempt)
 
 
-def _write(session: Session, which: ColumnElement[bool], **values: Any) -> int:
+def _write(session: Session, which: ColumnElement[bool], **values: object) -> int:
     """Update the jobs that match and return how many did."""
     statement = update(JobRow).where(which).values(**values, updated=now()).returning(JobRow.id)
     return len(session.scalars(statement).all())

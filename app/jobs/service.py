@@ -3,7 +3,7 @@
 import asyncio
 import logging
 from collections.abc import Callable, Mapping
-from typing import Any, cast
+from typing import cast
 
 from sqlalchemy.orm import Session
 
@@ -15,6 +15,7 @@ from app.jobs.errors import JobFailed, JobFinished, JobNotFound
 from app.jobs.events import Events
 from app.jobs.job import FINAL, Job
 from app.observation import logs
+from app.plain import JsonObject
 from app.schemas.jobs import State
 from app.settings import Settings
 from app.storage.clock import operated
@@ -65,7 +66,7 @@ class Jobs:
 
         A kind may have a lane of its own, whose threads `start` is asked for.
 
-        The handler runs in a thread of the queue and returns a completion. That stores what the job has made
+        The handler runs in a thread of the queue and returns a completion. That stores the result of the job
         and returns a link to it, in the transaction that marks the job as done. `on_failure` runs in the one
         that marks it as failed or cancelled.
         """
@@ -97,7 +98,7 @@ class Jobs:
         self,
         session: Session,
         kind: str,
-        payload: dict[str, Any],
+        payload: JsonObject,
         *,
         design: str | None = None,
         revision: int | None = None,
@@ -119,7 +120,7 @@ class Jobs:
         logger.info("job %s (%s) queued", id, kind, extra={"job": id})
         return id
 
-    def request(self, session: Session, kind: str, payload: dict[str, Any], client: str = "") -> str:
+    def request(self, session: Session, kind: str, payload: JsonObject, client: str = "") -> str:
         """Return the id of the job that is to do just this, in the earlier turn of its clients; or queue it.
 
         Raises
@@ -133,7 +134,7 @@ class Jobs:
         turns.join(session, id, client, self._dispatcher.lane(kind), self.settings.client_queue_limit)
         return id
 
-    def waiting(self, session: Session, kind: str, payload: dict[str, Any]) -> str | None:
+    def waiting(self, session: Session, kind: str, payload: JsonObject) -> str | None:
         """Return the id of a job that is to do just this and has not ended."""
         return repository.find_waiting(session, kind, payload)
 

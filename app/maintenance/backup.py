@@ -18,13 +18,13 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 from app.maintenance.archive import DATABASE, END, FORMAT, MANIFEST, artifact_entry, is_compressed
 from app.maintenance.check import Say, fault_of, is_still_named
 from app.maintenance.errors import CannotRun
 from app.maintenance.folder import database_file, reading, refuse_other_schema
 from app.maintenance.rows import Named, named_files
+from app.plain import Json, JsonObject
 from app.storage.identity import now
 from app.storage.integrity import faults
 
@@ -73,8 +73,8 @@ def _snapshot(source: Path, snapshot: Path) -> str:
             copy.execute("PRAGMA journal_mode = delete")
     except sqlite3.DatabaseError as error:
         raise CannotRun(f"The database cannot be read: {error}. Run `crankwright check`.") from error
-    if found := faults(snapshot):
-        raise CannotRun(f"The database is damaged, so it is not backed up: {'; '.join(found)}.")
+    if damage := faults(snapshot):
+        raise CannotRun(f"The database is damaged, so it is not backed up: {'; '.join(damage)}.")
     return schema
 
 
@@ -115,7 +115,7 @@ def _add_artifact(tar: tarfile.TarFile, row: Named, source: Path, data: Path, co
         contents.deleted.append(row.sha)
 
 
-def _manifest(snapshot: Path, schema: str, artifacts: int) -> dict[str, Any]:
+def _manifest(snapshot: Path, schema: str, artifacts: int) -> JsonObject:
     with snapshot.open("rb") as file:
         sha = hashlib.file_digest(file, "sha256").hexdigest()
     size = snapshot.stat().st_size
@@ -133,7 +133,7 @@ def _missing(contents: Contents) -> list[str]:
     return sorted([*contents.damaged, *contents.deleted])
 
 
-def _json(value: Any) -> bytes:
+def _json(value: Json) -> bytes:
     return json.dumps(value, indent=1).encode()
 
 

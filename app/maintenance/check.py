@@ -65,7 +65,7 @@ def check(data: Path, url: str | None, *, in_use: bool) -> Findings:
     path, findings = database_file(data, url), Findings()
     artifacts = data / "artifacts"
     findings.quarantined = sum(1 for _ in artifacts.glob(f"{QUARANTINE}/*"))
-    # Files before rows: a row that comes meanwhile has its file already, and is found among the rows.
+    # Files before rows: a row that comes meanwhile has its file already, and is among the rows.
     files = [file for file in artifacts.glob("[0-9a-f][0-9a-f]/*") if SHA256.fullmatch(file.name)]
     if (marker := marker_of(path)).exists():
         findings.database.append(f"damage showed while a service used it, see {marker.name}")
@@ -129,7 +129,7 @@ def named_files_of(connection: sqlite3.Connection, row: Named) -> Iterable[Named
     if row.kind in ("surface", "body", "answer"):
         return (other for other in named_files(connection) if other.kind == row.kind)
     query = "SELECT sha256, size, build_key, kind FROM artifact WHERE build_key = ? AND kind = ?"
-    return (Named(*found) for found in connection.execute(query, (row.owner, row.kind)))
+    return (Named(*fields) for fields in connection.execute(query, (row.owner, row.kind)))
 
 
 def _is_young(path: Path) -> bool:

@@ -76,12 +76,12 @@ def refuse_other_schema(connection: sqlite3.Connection, *, older_too: bool) -> s
             raise
         raise CannotRun("The file is not a database of Crankwright.") from None
     schema = str(rows[0][0]) if rows else "none"
-    known = known_schemas()
-    if schema not in known:
-        raise CannotRun(f"The database has schema {schema}, newer than this program's {known[0]}: upgrade.")
-    if older_too and schema != known[0]:
+    schemas = known_schemas()
+    if schema not in schemas:
+        raise CannotRun(f"The database has schema {schema}, newer than this program's {schemas[0]}: upgrade.")
+    if older_too and schema != schemas[0]:
         raise CannotRun(
-            f"The database has schema {schema}, older than this program's {known[0]}: start the service "
+            f"The database has schema {schema}, older than this program's {schemas[0]}: start the service "
             "once, which brings it up to date."
         )
     return schema

@@ -113,7 +113,7 @@ class Repair:
             build, question, _ = analyses.asked(session, key)
             shape = shape_of(session, self.catalogue, build)
         if question.key(build_key(shape)) != key:
-            raise CannotRebuild("other_recipe", "another version of kernel, solver or recipe found it")
+            raise CannotRebuild("other_recipe", "another version of kernel, solver or recipe computed it")
         self.builds.make(shape, self.runner)
         self.analysing.find(shape, question, (SURFACE,), self.runner)
 

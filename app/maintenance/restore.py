@@ -18,13 +18,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 from app.maintenance.archive import ARTIFACT, DATABASE, END, FORMAT, MANIFEST
 from app.maintenance.check import Say
 from app.maintenance.errors import CannotRun
 from app.maintenance.folder import reading, refuse_other_schema
 from app.maintenance.rows import broken_references, named_files
+from app.plain import JsonObject
 from app.storage.integrity import faults
 
 LARGEST_NOTE = 64 * 2**20  # of the manifest and the end [bytes]; the end names every missing file
@@ -36,8 +37,8 @@ _BROKEN = (tarfile.TarError, gzip.BadGzipFile, EOFError, zlib.error, ValueError,
 class Restored:
     """What came out of a backup."""
 
-    manifest: dict[str, Any] = field(default_factory=dict)
-    end: dict[str, Any] | None = None
+    manifest: JsonObject = field(default_factory=dict)
+    end: JsonObject | None = None
     database: str = ""  # SHA-256
     artifacts: set[str] = field(default_factory=set)
 
@@ -125,7 +126,7 @@ def _take_artifact(sha: str, file: IO[bytes], place: Path, restored: Restored) -
     restored.artifacts.add(sha)
 
 
-def _manifest(entry: tarfile.TarInfo, file: IO[bytes]) -> dict[str, Any]:
+def _manifest(entry: tarfile.TarInfo, file: IO[bytes]) -> JsonObject:
     if entry.name != MANIFEST:
         raise CannotRun(f"This is no backup of Crankwright: it begins with {entry.name[:100]!r}.")
     manifest = _note(entry, file)
@@ -134,7 +135,7 @@ def _manifest(entry: tarfile.TarInfo, file: IO[bytes]) -> dict[str, Any]:
     return manifest
 
 
-def _note(entry: tarfile.TarInfo, file: IO[bytes]) -> dict[str, Any]:
+def _note(entry: tarfile.TarInfo, file: IO[bytes]) -> JsonObject:
     if entry.size > LARGEST_NOTE:
         raise CannotRun(f"{entry.name} in the archive has {entry.size} bytes, more than any backup's.")
     note = json.loads(file.read())
@@ -163,8 +164,8 @@ def _verify(folder: Path, restored: Restored) -> None:
     if restored.end["artifacts"] != len(restored.artifacts):
         raise CannotRun("The archive is not complete: artifacts are missing.")
     path = folder / DATABASE
-    if found := faults(path):
-        raise CannotRun(f"The database in the archive is damaged: {'; '.join(found)}.")
+    if damage := faults(path):
+        raise CannotRun(f"The database in the archive is damaged: {'; '.join(damage)}.")
     try:
         with reading(path) as connection:
             refuse_other_schema(connection, older_too=False)

@@ -24,9 +24,9 @@ def named_files(connection: sqlite3.Connection) -> Iterator[Named]:
         yield Named(sha, size, key, kind)
     if _has_table(connection, "analysis"):
         surfaces = "SELECT key, found FROM analysis WHERE output = 'surface'"
-        for key, found in connection.execute(surfaces):
-            told = json.loads(found)
-            yield Named(told["sha256"], told["size"], key, "surface")
+        for key, output in connection.execute(surfaces):
+            surface = json.loads(output)
+            yield Named(surface["sha256"], surface["size"], key, "surface")
     for id, payload, result in connection.execute(CALCULATIONS):
         yield from _files_of_calculation(id, json.loads(payload), result)
 

@@ -77,7 +77,7 @@ def caused(job: str) -> Iterator[None]:
 
 def escaped(text: str) -> str:
     """Return a text in which nothing moves the cursor, begins a line, or turns the direction of writing."""
-    return _CONTROLS.sub(lambda found: ascii(found[0])[1:-1], text)
+    return _CONTROLS.sub(lambda control: ascii(control[0])[1:-1], text)
 
 
 class TextFormatter(logging.Formatter):
@@ -96,7 +96,7 @@ class JsonFormatter(logging.Formatter):
 
     def format(self, record: logging.LogRecord) -> str:
         """Return the line."""
-        about: dict[str, Any] = {
+        about: dict[str, object] = {
             "time": _time(record),
             "level": record.levelname.lower(),
             "logger": record.name,

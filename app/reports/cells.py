@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
+from app.plain import Json, Raw
 from app.presentation import numbers
+from app.presentation.numbers import told as in_line
 from app.presentation.typed import text_of
-from app.presentation.units import System, converted
+from app.schemas.analyses import AnalysisOutput
+from app.schemas.answers import Quantity, Shown
+from app.schemas.evaluations import Output, UsedInput
 from templates.core.units.units import compatible, unit
 
 DIGITS_TYPED = 12  # of a number that a user typed: as many as are kept
@@ -18,6 +20,7 @@ _DERIVED = ("1", "m", "kg", "s", "N", "Pa", "J", "W", "K", "rad", "rad/s")
 _COMPOSED = (*_DERIVED, "m**2", "m**3", "m**2/s", "m**3/s", "Pa*s", "N/m", "N*s/m", "kg*m**2", "N*m")
 _UNSEEN = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 _WORD = re.compile(r"[A-Za-zµμ°Ω%_]+")
+WRITTEN = ("value", "unit", "reason", "plus", "minus")  # the parts of a quantity that a line shows
 
 
 @dataclass(frozen=True)
@@ -32,33 +35,38 @@ class Cell:
 
 NOTHING = Cell()
 
+Valued = Quantity | Shown | Output | UsedInput | AnalysisOutput
+"""What has a value and a unit."""
 
-def cell(quantity: Any, *, whole: bool = False) -> Cell:
-    """A quantity as the interface tells it; five digits, or the `whole` number as typed."""
-    value = quantity.get("value") if isinstance(quantity, Mapping) else quantity
+
+def cell(quantity: Valued, *, whole: bool = False) -> Cell:
+    """A quantity as the interface shows it; five digits, or the `whole` number as typed."""
+    value = quantity.value
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         parts = _all_digits(value) if whole else numbers.aligned(value)
-        return Cell(*parts, numbers.unit(_unit_of(quantity)) + _tolerance(quantity))
+        return Cell(*parts, numbers.unit(quantity.unit) + _tolerance(quantity))
     return Cell(text=clean(_in_words(quantity)))
 
 
-def _in_words(quantity: Any) -> str:
+def _in_words(quantity: Valued) -> str:
     """A text, an array, or why there is no value; points without one are dashes, with their reasons."""
-    if not isinstance(quantity, Mapping) or not quantity.get("reasons"):
-        return numbers.told(quantity)
-    reasons = dict.fromkeys(reason for reason in _flat(quantity["reasons"]) if reason)
-    return f"{numbers.told({**quantity, 'value': _dashed(quantity['value'])})} (–: {'; '.join(reasons)})"
+    fields = {name: getattr(quantity, name) for name in WRITTEN if name in quantity.model_fields_set}
+    if not isinstance(quantity, Output) or not quantity.reasons:
+        return in_line(fields)
+    reasons = dict.fromkeys(reason for reason in flat(quantity.reasons) if reason)
+    return f"{in_line({**fields, 'value': _dashed(quantity.value)})} (–: {'; '.join(reasons)})"
 
 
-def _flat(value: Any) -> list[Any]:
-    return [item for part in value for item in _flat(part)] if isinstance(value, list) else [value]
+def flat(value: Json) -> list[Json]:
+    """All items of a list of any depth; of a single value, the value."""
+    return [item for part in value for item in flat(part)] if isinstance(value, list) else [value]
 
 
-def _dashed(value: Any) -> Any:
+def _dashed(value: Json) -> Json:
     return [_dashed(item) for item in value] if isinstance(value, list) else "–" if value is None else value
 
 
-def typed(raw: Any) -> str:
+def typed(raw: Raw) -> str:
     """A value as its user typed it."""
     return clean(text_of(raw))
 
@@ -68,19 +76,12 @@ def clean(text: str) -> str:
     return _UNSEEN.sub(" ", text)
 
 
-def in_si(quantity: Any) -> Cell:
+def in_si(quantity: Valued) -> Cell:
     """The same value in SI units; empty for texts and arrays."""
-    value, name = (quantity.get("value"), _unit_of(quantity)) if isinstance(quantity, Mapping) else (None, "")
+    value, name = quantity.value, quantity.unit
     if not isinstance(value, (int, float)) or isinstance(value, bool) or not name:
-        return Cell()
-    si = si_unit(name)
-    scale = unit(name)
-    return cell({"value": float(scale.to_si(float(value))), "unit": si})
-
-
-def shown(quantity: Any, system: System) -> Cell:
-    """A quantity in the system's units."""
-    return cell(converted(quantity, system))
+        return NOTHING
+    return cell(Quantity(value=float(unit(name).to_si(float(value))), unit=si_unit(name)))
 
 
 @lru_cache(maxsize=512)
@@ -96,15 +97,11 @@ def si_unit(text: str) -> str:
 
 
 def _coherent(text: str, candidates: tuple[str, ...]) -> str | None:
-    """The candidate that measures the same: an angle is told in rad, though it counts as a pure number."""
+    """The candidate that measures the same: an angle is given in rad, though it counts as a pure number."""
     base = unit(text).base
     alike = [si for si in candidates if compatible(unit(si).base, base)]
     exact = (si for si in alike if str(unit(si).base) == str(base))
     return next(exact, alike[0] if alike else None)
-
-
-def _unit_of(quantity: Any) -> str:
-    return str(quantity.get("unit") or "") if isinstance(quantity, Mapping) else ""
 
 
 def _all_digits(value: float) -> tuple[str, str]:
@@ -116,7 +113,7 @@ def _all_digits(value: float) -> tuple[str, str]:
     return whole.replace("-", "−"), point + fraction
 
 
-def _tolerance(quantity: Any) -> str:
+def _tolerance(quantity: Valued) -> str:
     signs = (("plus", "+"), ("minus", "−"))
-    parts = [f" {sign}{quantity[name]}" for name, sign in signs if name in quantity]
-    return "".join(parts) if isinstance(quantity, Mapping) else ""
+    written = quantity.model_fields_set
+    return "".join(f" {sign}{getattr(quantity, name)}" for name, sign in signs if name in written)

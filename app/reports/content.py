@@ -114,7 +114,7 @@ class Model:
     compared: str  # with which revision
     parameters: list[Mapped]
     measures: list[Line]
-    analyses: list[Line]  # what finite elements found; origin is how
+    analyses: list[Line]  # what finite elements computed; origin is how
     warnings: list[Warned]
     checks: list[Verdict]
     files: list[File]

@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 import numpy as np
 from sqlalchemy.orm import Session
 
 from app.designs import repository
+from app.plain import JsonObject
 from app.presentation import numbers
+from app.presentation.numbers import told as in_line
 from app.presentation.units import System
-from app.reports.cells import Cell, shown, typed
+from app.reports.cells import NOTHING, cell, typed
 from app.reports.content import File, Line, Mapped, Model, Verdict, Warned
-from app.reports.steps import known, symbol_of, verdicts, version_of, words_of
+from app.reports.steps import class_of, symbol_of, verdicts, version_of, words_of
 from app.reports.typesetting import DRAWING, PICTURE
+from app.schemas.analyses import AnalysisOutput, ModelAnalysis
+from app.schemas.answers import Quantity, Shown
+from app.schemas.designs import RevisionModel
+from app.schemas.evaluations import CalculatedBy
+from app.schemas.solids import Measurements
 from app.solids import measures, rows
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.paper.verdicts import checks
 
-KEPT = ("step", DRAWING, PICTURE)  # files that are told of, whichever others were asked for
+KEPT = ("step", DRAWING, PICTURE)  # files that a report lists, whichever others were asked for
 NO_VALUES = "its parameters wait for a solid, or are not set"
 MEASURES = ("mass", "volume", "polar_inertia")
 
@@ -31,89 +37,108 @@ def model_of(
     design: str,
     number: int,
     name: str,
-    told: Mapping[str, Any],
+    model: RevisionModel,
     catalogue: Catalogue[CadModel],
     system: System,
     remark: str,
 ) -> Model:
     """One model of a revision, compared with the newest good one before it."""
-    cls = known(catalogue, told)
-    row = rows.build(session, told["build"] or "")
-    measured = measures.measurements(**row.measurements).model_dump(exclude_unset=True) if row else {}
+    cls = class_of(catalogue, model.id, model.version)
+    row = rows.build(session, model.build or "")
+    measured = measures.measurements(**row.measurements) if row else None
     before = repository.newest_good(session, design, name, number - 1)
-    files = told["artifacts"]
     return Model(
         name=name,
-        model=version_of(told, cls),
-        state="built and checked" if row else (NO_VALUES if not told["parameters"] else "not built"),
-        build=told["build"] or "",
+        model=version_of(CalculatedBy(id=model.id, version=model.version), cls),
+        state="built and checked" if row else (NO_VALUES if not model.parameters else "not built"),
+        build=model.build or "",
         compared=f"revision {before.number}" if before else "",
-        parameters=[*_parameters(told, before.parameters if before else {}, measured, cls, system)],
-        measures=[*_measures(measured, system)],
-        analyses=[*_analyses(told["analyses"], system)],
-        warnings=[
-            Warned(f"{kind}: {warning['name'].replace('_', ' ')}", warning["detail"])
-            for kind, analysis in told["analyses"].items()
-            for warning in analysis["warnings"]
-        ],
-        checks=_checks(told, cls),
-        files=[File(kind, files[kind]) for kind in KEPT if kind in files],
+        parameters=[*_parameters(model, before.parameters if before else {}, measured, cls, system)],
+        measures=[*_measures(measured, system)] if measured else [],
+        analyses=[*_analyses(model.analyses, system)],
+        warnings=_warnings(model.analyses),
+        checks=_checks(model, cls),
+        files=[File(kind, model.artifacts[kind]) for kind in KEPT if kind in model.artifacts],
         remark=remark,
     )
 
 
+def _warnings(analyses: Mapping[str, ModelAnalysis]) -> list[Warned]:
+    return [
+        Warned(f"{kind}: {warning.name.replace('_', ' ')}", warning.detail)
+        for kind, analysis in analyses.items()
+        for warning in analysis.warnings
+    ]
+
+
 def _parameters(
-    told: Mapping[str, Any], before: Mapping[str, Any], measured: Mapping[str, Any], cls: Any, system: System
+    model: RevisionModel,
+    before: JsonObject,
+    measured: Measurements | None,
+    cls: type[CadModel] | None,
+    system: System,
 ) -> Iterator[Mapped]:
-    values, dimensions = told["parameters"], measured.get("dimensions", {})
-    for name in [n for n in (cls.inputs if cls else values) if n in values]:
-        old = before.get(name)
+    """The mapping; `before` are the parameters of the model that it is compared with, as stored."""
+    dimensions = measured.dimensions if measured else {}
+    for name in [n for n in (cls.inputs if cls else model.parameters) if n in model.parameters]:
+        old = Shown.model_validate(before[name]) if name in before else None
+        new = model.parameters[name]
         yield Mapped(
             words=words_of(name, cls),
             symbol=symbol_of(name, cls),
-            relation=typed(told["relations"].get(name)),
-            old=shown(old, system) if old else Cell(),
-            new=shown(values[name], system),
-            measured=shown(dimensions[name], system) if name in dimensions else Cell(),
-            changed=old is not None and old != values[name],
+            relation=typed(model.relations.get(name)),
+            old=cell(old.in_units(system)) if old else NOTHING,
+            new=cell(new.in_units(system)),
+            measured=cell(dimensions[name].in_units(system)) if name in dimensions else NOTHING,
+            changed=old is not None and old != new,
         )
 
 
-def _measures(measured: Mapping[str, Any], system: System) -> Iterator[Line]:
+def _measures(measured: Measurements, system: System) -> Iterator[Line]:
+    for words, quantity in _measured(measured):
+        yield Line(words, "", cell(quantity.in_units(system)))
+
+
+def _measured(measured: Measurements) -> Iterator[tuple[str, Quantity]]:
+    """What a report shows of the measurements, in their own units, with its words."""
     for name in MEASURES:
-        if name in measured:
-            yield Line(name.replace("_", " "), "", shown(measured[name], system))
-    if measured:
-        box = measured["bounding_box"]
-        for axis, low, high in zip("xyz", box["low"]["value"], box["high"]["value"], strict=True):
-            size = {"value": high - low, "unit": box["low"]["unit"]}
-            yield Line(f"size along {axis}", "", shown(size, system))
-        for axis, value in zip("xyz", measured["centre"]["value"], strict=True):
-            centre = {"value": round(value, 9) + 0.0, "unit": measured["centre"]["unit"]}
-            yield Line(f"centre of mass, {axis}", "", shown(centre, system))
+        quantity: Quantity | None = getattr(measured, name)
+        if quantity is not None:
+            yield name.replace("_", " "), quantity
+    low, high = measured.bounding_box.low, measured.bounding_box.high
+    for axis, start, end in zip("xyz", low.value, high.value, strict=True):
+        yield f"size along {axis}", Quantity(value=end - start, unit=low.unit)
+    for axis, value in zip("xyz", measured.centre.value, strict=True):
+        yield f"centre of mass, {axis}", Quantity(value=round(value, 9) + 0.0, unit=measured.centre.unit)
 
 
-def _analyses(analyses: Mapping[str, Any], system: System) -> Iterator[Line]:
-    for kind, told in analyses.items():
-        for name, found in told["outputs"].items():
-            mesh, level = found["mesh"], f"level {found['level']}" if found["level"] else "refined"
-            held = told["boundary"].replace("_", " ")
-            within = f", within {numbers.percent(told['tolerance'])} asked" if told["tolerance"] else ""
-            load = f" under {numbers.told(told['load'])}" if name == "maximum_stress" else ""
-            yield Line(
-                words=f"{kind}: {name.replace('_', ' ')}{load}",
-                symbol="",
-                value=shown(found, system),
-                error=f"± {numbers.percent(found['error'])}",
-                origin=f"{held}, {level}{within}: {mesh['elements']} elements of order {mesh['order']}",
-            )
+def _analyses(analyses: Mapping[str, ModelAnalysis], system: System) -> Iterator[Line]:
+    for kind, analysis in analyses.items():
+        for name, output in analysis.outputs.items():
+            yield _analysed(kind, analysis, name, output, system)
 
 
-def _checks(told: Mapping[str, Any], cls: Any) -> list[Verdict]:
+def _analysed(kind: str, analysis: ModelAnalysis, name: str, output: AnalysisOutput, system: System) -> Line:
+    """An output of an analysis, and how it was computed."""
+    mesh, level = output.mesh, f"level {output.level}" if output.level else "refined"
+    held = analysis.boundary.replace("_", " ")
+    within = f", within {numbers.percent(analysis.tolerance)} asked" if analysis.tolerance else ""
+    load = analysis.load.in_units(system).plain()
+    under = f" under {in_line(load)}" if name == "maximum_stress" else ""
+    return Line(
+        words=f"{kind}: {name.replace('_', ' ')}{under}",
+        symbol="",
+        value=cell(output.in_units(system)),
+        error=f"± {numbers.percent(output.error)}" if output.error is not None else "",
+        origin=f"{held}, {level}{within}: {mesh.elements} elements of order {mesh.order}",
+    )
+
+
+def _checks(model: RevisionModel, cls: type[CadModel] | None) -> list[Verdict]:
     """The rules between the parameters; ranges are those of a whole family of sizes and say little."""
-    if cls is None or not told["parameters"]:
+    if cls is None or not model.parameters:
         return []
-    given = {n: p if "unit" in p else p["value"] for n, p in told["parameters"].items()}
+    given = {n: p.value if p.unit is None else p.plain() for n, p in model.parameters.items()}
     try:
         shape = cls.from_quantities(given)
     except TemplateError:  # the file of this version was changed

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from threading import BoundedSemaphore
-from typing import Any
 
+from app.plain import Json
 from app.reports.errors import Unprintable
 from app.reports.typesetting import Pictures, typeset
 from app.workers.base import Limits, Worker
@@ -19,7 +19,7 @@ class Press:
         self._worker, self._limits = worker, limits
         self._free = BoundedSemaphore(at_once)
 
-    def print(self, report: Mapping[str, Any], pictures: Pictures) -> bytes:
+    def print(self, report: Mapping[str, Json], pictures: Pictures) -> bytes:
         """A report as PDF; equal reports give equal bytes. It waits, so call it in a thread.
 
         Raises
@@ -32,5 +32,5 @@ class Press:
                 return self._worker.run(typeset, report, pictures, limits=self._limits)
             except (DeadlineExceeded, MemoryExceeded, JobCrashed) as error:
                 formulas = sum(len(step["formulas"]) for step in report["steps"])
-                told = f"with {formulas} formulas it takes more time or memory than a job may have"
-                raise Unprintable(f"this report is too long for paper: {told} ({error})") from error
+                reason = f"with {formulas} formulas it takes more time or memory than a job may have"
+                raise Unprintable(f"this report is too long for paper: {reason} ({error})") from error

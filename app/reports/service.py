@@ -1,6 +1,6 @@
-"""Reports: a revision gathered into one report, its pictures made, the paper typeset.
+"""Reports: a revision gathered into one report, and the jobs that draw its pictures.
 
-A revision's report is the same each time; only files that are made when first asked for (pictures, the
+A revision's report is the same each time; only files that jobs write when first asked for (pictures, the
 drawing) may come later, and the report says so.
 """
 
@@ -10,21 +10,22 @@ import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
-from typing import Any
 
 from pydantic_core import to_json
 from sqlalchemy.orm import Session
 
 from app.designs import repository, views
 from app.designs.graph import Catalogues
-from app.designs.worksheet import worksheets
+from app.designs.worksheet import worksheet
 from app.presentation import numbers
-from app.presentation.units import System, converted
+from app.presentation.units import System
 from app.reports.cells import Cell, cell, clean, typed
 from app.reports.content import Line, Model, Report, Round, Step, Verdict
 from app.reports.models import model_of
 from app.reports.steps import step_of
 from app.reports.typesetting import DRAWING, PICTURE
+from app.schemas import designs as schemas
+from app.schemas.answers import Quantity
 from app.solids import rows
 from app.solids.models import Models
 from app.storage.artifacts import ArtifactStore
@@ -54,16 +55,11 @@ class Reports:
             row = repository.head(session, id) if number is None else repository.revision(session, id, number)
             return row.number
 
-    def told(self, id: str, number: int, system: System) -> dict[str, Any]:
-        """A revision with its formulas written out, as its worksheet tells it."""
+    def worksheet(self, id: str, number: int, system: System) -> schemas.RevisionWorksheet:
+        """A revision with its formulas written out."""
         with self.database.read() as session:
-            told = views.revision(session, repository.revision(session, id, number)).plain()
-        models = converted(told["models"], system)
-        return {
-            **told,
-            "models": models,
-            "steps": worksheets(told["steps"], self.catalogues.templates, system),
-        }
+            revision = views.revision(session, repository.revision(session, id, number))
+        return worksheet(revision, self.catalogues.templates, system)
 
     def request_pictures(self, id: str, number: int, client: str = "") -> list[str]:
         """The jobs that make what a report shows of every built model; none if all is there."""
@@ -75,36 +71,36 @@ class Reports:
         return [self.models.request_files(key, kinds, client) for key, kinds in missing.items() if kinds]
 
     def gather(self, id: str, number: int, system: System, *, pending: bool) -> Report:
-        """All that the report says; `pending` if its pictures are still being made."""
-        told = self.told(id, number, system)
+        """All that the report says; `pending` if a job still draws its pictures."""
+        worked = self.worksheet(id, number, system)
         with self.database.read() as session:
             row = repository.revision(session, id, number)
             models = [
                 self._model(session, id, number, name, model, system, pending)
-                for name, model in told["models"].items()
+                for name, model in views.revision(session, row).models.items()
             ]
             document, head = row.document, repository.newest_number(session, id)
         steps = [
-            step_of(name, step, document["steps"][name], self.catalogues.templates, system)
-            for name, step in told["steps"].items()
+            step_of(name, step, document["steps"][name], self.catalogues.templates)
+            for name, step in worked.steps.items()
         ]
-        problem = told["problem"]
+        problem = worked.problem
         return Report(
-            title=clean(told["name"]),
+            title=clean(worked.name),
             design=id,
             revision=number,
             newest=head,
-            note=clean(told["note"] or ""),
-            date=told["created"],
-            state=told["state"],
-            problem=f"{problem['title']}: {problem['detail']}" if problem else "",
+            note=clean(worked.note or ""),
+            date=worked.created,
+            state=worked.state,
+            problem=f"{problem.title}: {problem.detail}" if problem else "",
             program=f"Crankwright {version('crankwright')}",
             units=system,
             summary=_summary(steps, models),
-            parameters=[Line(n, "", Cell(text=typed(value))) for n, value in told["parameters"].items()],
+            parameters=[Line(n, "", Cell(text=typed(value))) for n, value in worked.parameters.items()],
             steps=steps,
             models=models,
-            rounds=[_round(one) for one in told["iterations"]],
+            rounds=[_round(one) for one in worked.iterations],
         )
 
     def pictures(self, report: Report) -> dict[str, dict[str, bytes]]:
@@ -116,18 +112,26 @@ class Reports:
         }
 
     def _missing(self, there: Mapping[str, str]) -> tuple[str, ...]:
-        """The pictures of a build that are not made yet, or lost."""
+        """The pictures of a build that no job has drawn yet, or that are lost."""
         shown = (PICTURE, DRAWING)
         return tuple(kind for kind in shown if kind not in there or not self.store.exists(there[kind]))
 
     def _model(
-        self, session: Session, id: str, number: int, name: str, told: Any, system: System, pending: bool
+        self,
+        session: Session,
+        id: str,
+        number: int,
+        name: str,
+        model: schemas.RevisionModel,
+        system: System,
+        pending: bool,
     ) -> Model:
-        missing = self._missing(told["artifacts"])
-        has_all = not told["build"] or not rows.build(session, told["build"]) or not missing
-        told = {**told, "artifacts": {k: sha for k, sha in told["artifacts"].items() if k not in missing}}
+        missing = self._missing(model.artifacts)
+        has_all = not model.build or not rows.build(session, model.build) or not missing
+        files = {kind: sha for kind, sha in model.artifacts.items() if kind not in missing}
+        present = model.model_copy(update={"artifacts": files})
         remark = "" if has_all else (PENDING if pending else NO_PICTURE)
-        return model_of(session, id, number, name, told, self.catalogues.models, system, remark)
+        return model_of(session, id, number, name, present, self.catalogues.models, system, remark)
 
 
 def tag(report: Report, kind: str) -> str:
@@ -135,10 +139,9 @@ def tag(report: Report, kind: str) -> str:
     return f'"{hashlib.sha256(to_json([asdict(report), kind])).hexdigest()[:32]}"'
 
 
-def _round(told: Mapping[str, Any]) -> Round:
-    unit = told["unit"]
-    assumed, measured = ({"value": told[name], "unit": unit} for name in ("assumed", "measured"))
-    return Round(told["round"], told["through"], cell(assumed), cell(measured))
+def _round(one: schemas.Round) -> Round:
+    assumed, measured = (Quantity(value=value, unit=one.unit) for value in (one.assumed, one.measured))
+    return Round(one.round, one.through, cell(assumed), cell(measured))
 
 
 def _summary(steps: Sequence[Step], models: Sequence[Model]) -> list[str]:
@@ -147,12 +150,12 @@ def _summary(steps: Sequence[Step], models: Sequence[Model]) -> list[str]:
     checks += [(model.name, check) for model in models for check in model.checks]
     warnings = sum(len(step.warnings) for step in steps) + sum(len(model.warnings) for model in models)
     broken = [f"{name}: {check.words}" for name, check in checks if not check.holds]
-    said = [
+    counts = [
         f"{len(checks)} checks, {len(broken) or 'none'} not met" if checks else "no checks",
         f"{warnings or 'no'} warning{'' if warnings == 1 else 's'}",
     ]
     worst = _worst(checks)
-    return [", ".join(said), *([worst] if worst else []), *(f"not met: {told}" for told in broken)]
+    return [", ".join(counts), *([worst] if worst else []), *(f"not met: {words}" for words in broken)]
 
 
 def _worst(checks: Iterable[tuple[str, Verdict]]) -> str:

@@ -9,18 +9,22 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import chain, count, zip_longest
-from typing import Any
 
 from openpyxl import Workbook  # type: ignore[import-untyped]
 from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE, Cell  # type: ignore[import-untyped]
 from openpyxl.styles import Font  # type: ignore[import-untyped]
 from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untyped]
 
+from app.plain import Json, Raw
 from app.presentation.typed import text_of
+from app.schemas.analyses import AnalysisOutput
+from app.schemas.answers import Shown
+from app.schemas.designs import RevisionModel, RevisionStep, RevisionWorksheet
+from app.schemas.evaluations import Output, UsedInput
 from templates.core.errors import FaultyText
 from templates.core.units.quantity import read_any
 from templates.core.units.relation import is_relation
@@ -42,10 +46,10 @@ class Row:
     block: str
     kind: str  # parameter, input, output, dimension, analysis
     name: str
-    value: Any
+    value: Json
     unit: str
     origin: str
-    remark: Any  # a reason, or reasons alongside an array
+    remark: Json  # a reason, or reasons alongside an array
 
 
 @dataclass(frozen=True)
@@ -58,35 +62,40 @@ class Table:
     rows: Sequence[Row]
 
 
-def of(told: Mapping[str, Any]) -> Table:
-    """The quantities of a revision, as its worksheet tells it."""
-    return Table(told["name"], told["number"], told["created"], [*_rows(told)])
+def of(worksheet: RevisionWorksheet) -> Table:
+    """The quantities of a revision."""
+    return Table(worksheet.name, worksheet.number, worksheet.created, [*_rows(worksheet)])
 
 
-def _rows(told: Mapping[str, Any]) -> Iterator[Row]:
-    for name, raw in told["parameters"].items():
-        value, unit = _read(raw)
-        yield Row("design", "parameter", name, value, unit, "given", "")
-    for step, done in told["steps"].items():
-        relations = done.get("relations", {})
-        for name, used in done["inputs"].items():
-            origin = text_of(relations[name]) if name in relations else _origin(used)
-            yield _quantity(step, "input", name, used, origin)
-        for name, result in done["outputs"].items():
-            yield _quantity(step, "output", name, result, "")
-    for model, built in told["models"].items():
-        for name, value in built["parameters"].items():
-            yield _quantity(model, "dimension", name, value, text_of(built["relations"].get(name)))
-        for kind, asked in built["analyses"].items():
-            for name, found in asked["outputs"].items():
-                yield _quantity(model, "analysis", f"{kind}.{name}", found, "finite elements")
+def _rows(worksheet: RevisionWorksheet) -> Iterator[Row]:
+    for name, raw in worksheet.parameters.items():
+        yield Row("design", "parameter", name, *_read(raw), "given", "")
+    for block, step in worksheet.steps.items():
+        yield from _of_step(block, step)
+    for block, model in worksheet.models.items():
+        yield from _of_model(block, model)
 
 
-def _origin(used: Any) -> str:
-    return str(used.get("from", "given")) if isinstance(used, Mapping) else "given"
+def _of_step(block: str, step: RevisionStep) -> Iterator[Row]:
+    for name, used in step.inputs.items():
+        if isinstance(used, UsedInput):
+            origin = text_of(step.relations[name]) if name in step.relations else used.source
+            yield _quantity(block, "input", name, used, origin)
+        else:  # as typed, of a step that waits for a solid
+            yield Row(block, "input", name, *_read(used), "given", "")
+    for name, output in step.outputs.items():
+        yield _quantity(block, "output", name, output, "")
 
 
-def _read(raw: Any) -> tuple[Any, str]:
+def _of_model(block: str, model: RevisionModel) -> Iterator[Row]:
+    for name, parameter in model.parameters.items():
+        yield _quantity(block, "dimension", name, parameter, text_of(model.relations.get(name)))
+    for kind, analysis in model.analyses.items():
+        for name, output in analysis.outputs.items():
+            yield _quantity(block, "analysis", f"{kind}.{name}", output, "finite elements")
+
+
+def _read(raw: Raw) -> tuple[Json, str]:
     """A parameter as typed: its number and unit, or its text if it is a relation or a list with one."""
     try:
         typed = read_any(raw) if not is_relation(raw) else None
@@ -95,11 +104,11 @@ def _read(raw: Any) -> tuple[Any, str]:
     return (typed.value, typed.unit) if typed else (text_of(raw), "")
 
 
-def _quantity(block: str, kind: str, name: str, told: Any, origin: str) -> Row:
-    if not isinstance(told, Mapping):  # an input as typed, of a step that waits for a solid
-        return Row(block, kind, name, *_read(told), origin, "")
-    remark = told.get("reasons") or told.get("reason") or ""
-    return Row(block, kind, name, told["value"], told.get("unit") or "", origin, remark)
+def _quantity(
+    block: str, kind: str, name: str, quantity: UsedInput | Output | Shown | AnalysisOutput, origin: str
+) -> Row:
+    reasons = getattr(quantity, "reasons", None) or getattr(quantity, "reason", None) or ""
+    return Row(block, kind, name, quantity.value, quantity.unit or "", origin, reasons)
 
 
 def write_csv(table: Table) -> bytes:
@@ -114,7 +123,7 @@ def write_csv(table: Table) -> bytes:
     return stream.getvalue().encode()
 
 
-def _each(value: Any, remark: Any, index: str = "") -> Iterator[tuple[str, Value, str]]:
+def _each(value: Json, remark: Json, index: str = "") -> Iterator[tuple[str, Value, str]]:
     """Every single value of an array, with its index: `3` or `3 1`, counted from 1."""
     if not isinstance(value, list):
         yield index, value, "" if remark is None else str(remark)
@@ -151,10 +160,10 @@ def write_xlsx(table: Table) -> bytes:
 
 
 def _single(row: Row) -> tuple[Value, ...]:
-    """A line of the sheet of values; an array is told in short, and stands in the sheet of its block."""
+    """A line of the sheet of values; an array is in the sheet of its block, and only counted here."""
     if isinstance(row.value, list):
-        told = f"{len(row.value)} values, in the sheet of {row.block}"
-        return row.block, row.kind, row.name, None, None, row.unit, row.origin, told
+        remark = f"{len(row.value)} values, in the sheet of {row.block}"
+        return row.block, row.kind, row.name, None, None, row.unit, row.origin, remark
     return row.block, row.kind, row.name, None, row.value, row.unit, row.origin, str(row.remark or "")
 
 
@@ -169,7 +178,7 @@ def _curves(sheet: Worksheet, arrays: Sequence[Row]) -> None:
     sheet.freeze_panes = "B3"
 
 
-def _columns(name: str, unit: str, value: list[Any]) -> Iterator[Column]:
+def _columns(name: str, unit: str, value: list[Json]) -> Iterator[Column]:
     if not any(isinstance(item, list) for item in value):
         yield name, unit, value
         return
@@ -188,7 +197,7 @@ def _fill(sheet: Worksheet, lines: Sequence[Sequence[Value]]) -> None:
         cell.font = Font(bold=True)
 
 
-def _put(cell: Any, value: Value) -> None:
+def _put(cell: object, value: Value) -> None:
     assert isinstance(cell, Cell), "no cells are merged"
     if not isinstance(value, str):
         cell.value = value
@@ -204,7 +213,7 @@ def _clean(text: str) -> str:
 
 
 def _sheet_name(block: str, taken: Sequence[str]) -> str:
-    """A name that spreadsheets allow, and that no other sheet has; they do not tell capitals apart."""
+    """A name that spreadsheets allow, and that no other sheet has, whatever its capitals."""
     there = {name.lower() for name in taken}
     plain = _NO_SHEET_NAME.sub("", block)[: _LONGEST_SHEET_NAME - 4]
     numbered = chain([plain], (f"{plain} {i}" for i in count(2)))

@@ -16,6 +16,7 @@ from typing import Any
 
 import typst
 
+from app.plain import Json
 from app.presentation.bidi import bare_everywhere
 
 PICTURE, DRAWING = "png", "drawing.svg"  # kinds of files that a report shows
@@ -25,24 +26,24 @@ Pictures = Mapping[str, Mapping[str, bytes]]  # by model and kind
 DOCUMENT = Path(__file__).with_name("report.typ")
 
 
-def typeset(report: Mapping[str, Any], pictures: Pictures) -> bytes:
+def typeset(report: Mapping[str, Json], pictures: Pictures) -> bytes:
     """A report as PDF; equal reports give equal bytes."""
     models = [{**model, "pictures": _as_svg(pictures.get(model["name"], {}))} for model in report["models"]]
     data = json.dumps(bare_everywhere({**report, "models": models}), ensure_ascii=True).encode()
-    files: Any = {"main": DOCUMENT.read_bytes(), "data.json": data}
+    files: Any = {"main": DOCUMENT.read_bytes(), "data.json": data}  # missing in the types of typst
     date = datetime.fromisoformat(report["date"]).replace(microsecond=0)
-    made = typst.compile(files, format="pdf", timestamp=date)
-    assert isinstance(made, bytes), "one document makes one file"
-    return made
+    pdf = typst.compile(files, format="pdf", timestamp=date)
+    assert isinstance(pdf, bytes), "one document makes one file"
+    return pdf
 
 
 def _as_svg(files: Mapping[str, bytes]) -> dict[str, str]:
     """Pictures as SVG texts, for the typesetter's data is text: a PNG is put into one."""
-    told = {"drawing": files[DRAWING].decode()} if DRAWING in files else {}
+    pictures = {"drawing": files[DRAWING].decode()} if DRAWING in files else {}
     if PICTURE in files:
         coded = base64.b64encode(files[PICTURE]).decode()
-        told["picture"] = (
+        pictures["picture"] = (
             '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 480" width="640" height="480">'
             f'<image width="640" height="480" href="data:image/png;base64,{coded}"/></svg>'
         )
-    return told
+    return pictures

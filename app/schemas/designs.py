@@ -189,12 +189,15 @@ class Change(Answer):
     new: Result | None
 
 
+Status = Literal["ok", "unchanged", "missing", "pending", "unit_mismatch"]
+
+
 class ParameterChange(Answer):
     """A model parameter before and after a change."""
 
     old: Shown | None
     new: Shown | None
-    status: Literal["ok", "unchanged", "missing", "pending", "unit_mismatch"]
+    status: Status
     detail: str | None = Field(None, description="what is wrong with its unit")
 
 

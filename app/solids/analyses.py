@@ -14,7 +14,7 @@ from app.solids import rows
 from app.solids.ages import is_fresh, renew
 from app.solids.analysis_views import shown
 from app.solids.builds import Builds
-from app.solids.finding import Analysing, is_known, shaft_of
+from app.solids.finding import Analysing, is_stored, shaft_of
 from app.solids.models import FAILURES, File
 from app.solids.questions import Question, under_load
 from app.solids.shapes import shape_of
@@ -31,7 +31,7 @@ ANALYSIS = "analysis"
 
 
 class Analyses:
-    """Questions about models, and what was found."""
+    """Questions about models, and their answers."""
 
     def __init__(self, database: Database, store: ArtifactStore, jobs: Jobs) -> None:
         self.database, self.store, self.jobs = database, store, jobs
@@ -39,7 +39,7 @@ class Analyses:
     def request(
         self, shape: CadModel, question: Question, outputs: tuple[str, ...], client: str = ""
     ) -> str | None:
-        """The job that builds and analyses a model, or None if all outputs are known.
+        """The job that builds and analyses a model, or None if all outputs are stored.
 
         Raises
         ------
@@ -49,9 +49,9 @@ class Analyses:
         shaft_of(shape)
         build = build_key(shape)
         with self.database.read() as session:
-            found = repository.found(session, question.key(build))
+            stored = repository.outputs_of(session, question.key(build))
             fresh = is_fresh(session, [build])
-        there = all(is_known(found, name, self.store) for name in outputs)
+        there = all(is_stored(stored, name, self.store) for name in outputs)
         return None if there and fresh else self._enqueued(shape, question, outputs, client, there=there)
 
     def request_surface(self, key: str, catalogue: Catalogue[CadModel]) -> str:
@@ -104,15 +104,15 @@ class Analyses:
         return job
 
     def show(self, shape: CadModel, question: Question, outputs: tuple[str, ...]) -> Analysis:
-        """The outputs that were asked for, as far as they are known."""
+        """The outputs that were asked for, as far as they are stored."""
         build = build_key(shape)
         with self.database.read() as session:
-            known = repository.found(session, question.key(build))
-        known_outputs = under_load(question, {name: known[name] for name in outputs if name in known})
-        return shown(Version(id=shape.id, version=shape.version), build, question, known_outputs)
+            stored = repository.outputs_of(session, question.key(build))
+        computed = under_load(question, {name: stored[name] for name in outputs if name in stored})
+        return shown(Version(id=shape.id, version=shape.version), build, question, computed)
 
     def show_all(self, key: str, load: float) -> Analysis:
-        """All that is known to a question about a build, under a load [N·m].
+        """All that is stored for a question about a build, under a load [N·m].
 
         Raises
         ------
@@ -120,24 +120,24 @@ class Analyses:
             If there is none of this key.
         """
         with self.database.read() as session:
-            build, question, known = repository.asked(session, key)
+            build, question, outputs = repository.asked(session, key)
             question = replace(question, load=load)
-            return shown(_model_of(session, build), build, question, under_load(question, known))
+            return shown(_model_of(session, build), build, question, under_load(question, outputs))
 
     def of_build(self, build: str) -> list[Analysis]:
-        """All that is known of a build, under 1 N·m.
+        """All that is stored of a build, under 1 N·m.
 
         Raises
         ------
         NotFound
-            If it was not made.
+            If there is no such build.
         """
         with self.database.read() as session:
             model = _model_of(session, build)
-            return [shown(model, build, *told) for told in repository.of_build(session, build)]
+            return [shown(model, build, *answered) for answered in repository.of_build(session, build)]
 
     def surface(self, key: str) -> File:
-        """The surface that an analysis found.
+        """The surface that an analysis computed.
 
         Raises
         ------
@@ -145,11 +145,11 @@ class Analyses:
             If it was not asked for.
         """
         with self.database.read() as session:
-            _, question, known = repository.asked(session, key)
-        if SURFACE not in known:
+            _, question, outputs = repository.asked(session, key)
+        if SURFACE not in outputs:
             detail = f"this analysis has no {SURFACE} yet: ask for it by name in `outputs` of {question.kind}"
             raise NotFound(detail)
-        return File("json", known[SURFACE]["sha256"])
+        return File("json", outputs[SURFACE]["sha256"])
 
 
 def _model_of(session: Session, build: str) -> Version:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
-from app.schemas.analyses import Analysis, ModelAnalysis
+from app.plain import Json, JsonObject
+from app.schemas.analyses import Analysis, AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Version
 from app.solids.questions import Question, warnings
 from cad.analysis.kinds import SURFACE
 
 
 def shown(
-    model: Version, build: str, question: Question, outputs: Mapping[str, Mapping[str, Any]]
+    model: Version, build: str, question: Question, outputs: Mapping[str, Mapping[str, Json]]
 ) -> Analysis:
     """An analysis on its own. Outputs that were computed together have one mesh and one time."""
     meshes = [output["mesh"] for output in outputs.values()]
@@ -28,12 +28,17 @@ def shown(
     return Analysis.model_validate(fields)
 
 
-def in_design(build: str, question: Question, outputs: Mapping[str, Mapping[str, Any]]) -> ModelAnalysis:
+def in_design(build: str, question: Question, outputs: Mapping[str, Mapping[str, Json]]) -> ModelAnalysis:
     """An analysis in a revision, without times: equal revisions are equal."""
     return ModelAnalysis.model_validate(_fields(build, question, outputs))
 
 
-def _fields(build: str, question: Question, outputs: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+def output(stored: Mapping[str, Json]) -> AnalysisOutput:
+    """One output of an analysis, without its time."""
+    return AnalysisOutput.model_validate(_timeless(stored))
+
+
+def _fields(build: str, question: Question, outputs: Mapping[str, Mapping[str, Json]]) -> JsonObject:
     key = question.key(build)
     return {
         "id": key,
@@ -43,10 +48,10 @@ def _fields(build: str, question: Question, outputs: Mapping[str, Mapping[str, A
     }
 
 
-def _timeless(output: Mapping[str, Any]) -> dict[str, Any]:
+def _timeless(output: Mapping[str, Json]) -> JsonObject:
     return {name: part for name, part in output.items() if name != "seconds"}
 
 
-def _linked(key: str, name: str, output: Mapping[str, Any]) -> dict[str, Any]:
+def _linked(key: str, name: str, output: Mapping[str, Json]) -> JsonObject:
     """An output; one that is a file says where it is."""
     return {"url": f"/api/v1/analyses/{key}/{name}", **output} if name == SURFACE else {**output}

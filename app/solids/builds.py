@@ -60,12 +60,12 @@ class Builds:
         row = self._row(build_key(shape), STEP)
         if row and self.store.exists(row.sha256) and self.keep([shape]):
             return
-        made = context.run(build_in_worker, shape.id, shape.version, as_text(shape), self.folders)
-        if row and hashlib.sha256(made.step).hexdigest() != row.sha256:
+        build = context.run(build_in_worker, shape.id, shape.version, as_text(shape), self.folders)
+        if row and hashlib.sha256(build.step).hexdigest() != row.sha256:
             raise _changed(shape, row)
-        sha = self.store.put(made.step)
+        sha = self.store.put(build.step)
         if row is None:
-            self.database.write(lambda session: self._record(session, shape, made, sha))
+            self.database.write(lambda session: self._record(session, shape, build, sha))
 
     def keep(self, shapes: Iterable[CadModel]) -> bool:
         """Keep builds for as long as the job that counts on them runs; return whether all are there."""
@@ -98,24 +98,24 @@ class Builds:
         if row and self.store.exists(row.sha256):
             return
         assert step is not None, "a build has its STEP file from its first moment"
-        made = context.run(derive, self.store.read(step.sha256), kind)
-        sha = self.store.put(made)
+        file = context.run(derive, self.store.read(step.sha256), kind)
+        sha = self.store.put(file)
         if row and row.sha256 != sha:
             logger.warning("%s of build %s: artifact %s is lost, now it is %s", kind, key, row.sha256, sha)
         if row is None or row.sha256 != sha:
-            self.database.write(lambda session: rows.add_artifact(session, key, kind, sha, len(made)))
+            self.database.write(lambda session: rows.add_artifact(session, key, kind, sha, len(file)))
 
     def _row(self, key: str, kind: str) -> ArtifactRow | None:
         with self.database.read() as session:
             return rows.artifact(session, key, kind)
 
-    def _record(self, session: Session, shape: CadModel, made: Build, sha: str) -> None:
+    def _record(self, session: Session, shape: CadModel, build: Build, sha: str) -> None:
         parameters = measures.parameters(shape)
         units = {name: declared.meaning.unit for name, declared in shape.inputs.items()}
-        dimensions = {n: {"value": value, "unit": units[n]} for n, value in made.dimensions.items()}
-        measured = {"measures": made.measures, "dimensions": dimensions}
-        rows.add_build(session, made.key, made.model, made.version, parameters, measured, MADE_BY)
-        rows.add_artifact(session, made.key, STEP, sha, len(made.step))
+        dimensions = {n: {"value": value, "unit": units[n]} for n, value in build.dimensions.items()}
+        measured = {"measures": build.measures, "dimensions": dimensions}
+        rows.add_build(session, build.key, build.model, build.version, parameters, measured, MADE_BY)
+        rows.add_artifact(session, build.key, STEP, sha, len(build.step))
 
 
 def _changed(shape: CadModel, row: ArtifactRow) -> CannotRebuild:

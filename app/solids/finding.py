@@ -1,10 +1,10 @@
-"""Analyses made in a worker process, and recorded: one output is found once for one solid and question."""
+"""Analyses in a worker process, and their records: one output is computed once for one solid and question."""
 
 from __future__ import annotations
 
 import json
-from typing import Any
 
+from app.plain import JsonObject
 from app.solids import analysis_rows as repository
 from app.solids import rows
 from app.solids.questions import Question
@@ -23,13 +23,13 @@ FILE = "file"
 
 
 class Analysing:
-    """Analyses built solids in a worker process and records what was found."""
+    """Analyses built solids in a worker process and records the outputs."""
 
     def __init__(self, database: Database, store: ArtifactStore, limits: Limits) -> None:
         self.database, self.store, self.limits = database, store, limits
 
     def find(self, shape: CadModel, question: Question, outputs: tuple[str, ...], context: Runner) -> None:
-        """Find those outputs of a built model that are not known yet.
+        """Find those outputs of a built model that are not stored yet.
 
         Raises
         ------
@@ -40,23 +40,23 @@ class Analysing:
         """
         build = build_key(shape)
         with self.database.read() as session:
-            known = repository.found(session, question.key(build))
+            stored = repository.outputs_of(session, question.key(build))
             elsewhere = repository.stresses(session, build, question)
             step = rows.artifact(session, build, "step")
-        missing = [name for name in outputs if not is_known(known, name, self.store)]
+        missing = [name for name in outputs if not is_stored(stored, name, self.store)]
         if not missing:
             return
-        found = {name: elsewhere[name] for name in missing if name in elsewhere}
-        if unknown := tuple(name for name in missing if name not in found):
+        new = {name: elsewhere[name] for name in missing if name in elsewhere}
+        if unknown := tuple(name for name in missing if name not in new):
             assert step is not None, "a build has its STEP file from its first moment"
             bytes_ = self.store.read(step.sha256)
-            told = context.run(
+            computed = context.run(
                 analyse_in_worker, bytes_, shaft_of(shape), question, unknown, limits=self.limits
             )
-            found |= {name: self._stored(output) for name, output in told.items()}
-        self.database.write(lambda session: repository.add(session, build, question, found))
+            new |= {name: self._stored(output) for name, output in computed.items()}
+        self.database.write(lambda session: repository.add(session, build, question, new))
 
-    def _stored(self, output: dict[str, Any]) -> dict[str, Any]:
+    def _stored(self, output: JsonObject) -> JsonObject:
         """An output as its row holds it: of one that is a file, what the store calls it."""
         if FILE not in output:
             return output
@@ -64,9 +64,9 @@ class Analysing:
         return {"sha256": self.store.put(output[FILE]), "size": len(output[FILE]), **rest}
 
 
-def is_known(found: repository.Found, output: str, store: ArtifactStore) -> bool:
-    """Whether an output has been found, and its file, if it is one, is good."""
-    return output in found and (output != SURFACE or store.exists(found[output]["sha256"]))
+def is_stored(outputs: repository.Outputs, output: str, store: ArtifactStore) -> bool:
+    """Whether an output is stored, and its file, if it is one, is good."""
+    return output in outputs and (output != SURFACE or store.exists(outputs[output]["sha256"]))
 
 
 def shaft_of(shape: CadModel) -> Shaft:
@@ -85,15 +85,15 @@ def shaft_of(shape: CadModel) -> Shaft:
 
 def analyse_in_worker(
     step: bytes, shaft: Shaft, question: Question, outputs: tuple[str, ...]
-) -> dict[str, dict[str, Any]]:
-    """`cad.analysis.analyse.analyse` with progress told to the job; runs in the worker's process."""
+) -> dict[str, JsonObject]:
+    """`cad.analysis.analyse.analyse` with progress reported to the job; runs in the worker's process."""
     # The server imports this module too, and needs no solver.
     from cad.analysis.analyse import AnalysisRequest, analyse
 
     request = AnalysisRequest(question.kind, question.boundary, question.level, question.tolerance)  # type: ignore[arg-type]
     try:
-        found = analyse(step, shaft, request, outputs, report).outputs
-        return {name: _packed(told) if name == SURFACE else told for name, told in found.items()}
+        computed = analyse(step, shaft, request, outputs, report).outputs
+        return {name: _packed(output) if name == SURFACE else output for name, output in computed.items()}
     except (AnalysisError, MemoryError):
         raise
     except Exception as error:
@@ -101,9 +101,9 @@ def analyse_in_worker(
         raise AnalysisError("solver", detail) from error
 
 
-def _packed(told: dict[str, Any]) -> dict[str, Any]:
-    """A surface as the bytes of its JSON; how many triangles it has is told beside it."""
-    surface = told["value"]
-    rest = {name: part for name, part in told.items() if name != "value"}
+def _packed(output: JsonObject) -> JsonObject:
+    """A surface as the bytes of its JSON; how many triangles it has stands beside it."""
+    surface = output["value"]
+    rest = {name: part for name, part in output.items() if name != "value"}
     written = json.dumps(surface.as_json(), separators=(",", ":"), allow_nan=False)
     return {FILE: written.encode(), "triangles": len(surface.triangles), **rest}

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from typing import Any
 
 from sqlalchemy.orm import Session
 
+from app.plain import JsonObject
 from app.solids import analysis_rows as analyses
 from app.solids import rows
 from app.solids.analyses import Analyses
@@ -26,7 +26,7 @@ class Healing:
 
     def __init__(self, database: Database, store: ArtifactStore, models: Models, analyses: Analyses) -> None:
         self.database, self.store, self.models, self.analyses = database, store, models, analyses
-        self._refused: OrderedDict[str, dict[str, Any]] = OrderedDict()
+        self._refused: OrderedDict[str, JsonObject] = OrderedDict()
         self._lock = threading.Lock()
 
     def is_good(self, sha: str) -> bool:
@@ -52,12 +52,12 @@ class Healing:
             return self.analyses.request_surface(surface, self.models.catalogue)
         raise ArtifactMissing(sha)
 
-    def refused(self, sha: str) -> dict[str, Any] | None:
+    def refused(self, sha: str) -> JsonObject | None:
         """The problem for which an artifact could not be made again since the service started."""
         with self._lock:
             return self._refused.get(sha)
 
-    def refuse(self, sha: str, problem: dict[str, Any]) -> None:
+    def refuse(self, sha: str, problem: JsonObject) -> None:
         """Remember why an artifact cannot be made again: nothing but a new start with other files helps."""
         with self._lock:
             self._refused[sha] = problem

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
+from app.plain import Json, JsonObject
 from app.schemas.answers import Quantity, Triple
 from app.schemas.solids import BoundingBox, Inertia, Measurements
 from cad.inspect import MEASURES
@@ -12,12 +12,12 @@ from cad.model import CadModel
 from cad.regenerate import as_quantities
 
 
-def parameters(shape: CadModel) -> dict[str, Any]:
+def parameters(shape: CadModel) -> JsonObject:
     """Every parameter of a model in its declared unit, defaults included, as rows keep it."""
     return as_quantities(shape)
 
 
-def measurements(measures: Mapping[str, float], dimensions: Mapping[str, Any]) -> Measurements:
+def measurements(measures: Mapping[str, float], dimensions: Mapping[str, Json]) -> Measurements:
     """What a solid measures; builds of an older recipe measured less."""
 
     def one(name: str) -> Quantity:

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
-from typing import Any
 
 from pydantic import ConfigDict, Field
 
+from app.plain import Json, JsonObject, Raw
 from app.schemas.bounded import Bounded
 from cad.analysis.kinds import (
     BOUNDARIES,
@@ -32,8 +32,8 @@ from templates.core.units.quantity import read
 
 LARGEST_LOAD = 1e12  # [N m]
 
-DEAR = STRESSES | {SURFACE}
-"""What is found only where it is asked for by name."""
+ON_REQUEST = STRESSES | {SURFACE}
+"""What is computed only where it is asked for by name."""
 
 RECIPE = 3
 """Raised whenever the same question to the same solid gets another answer."""
@@ -53,9 +53,9 @@ class Options(Bounded):
     tolerance: float | None = Field(
         None, gt=0, le=1, description="the largest relative error wanted, instead of a level"
     )
-    load: str | dict[str, Any] | None = Field(
+    load: str | JsonObject | None = Field(
         None,
-        description="the torque or bending moment under which stress is told; 1 N*m, if nothing is said",
+        description="the torque or bending moment under which stress is given; 1 N*m, if nothing is said",
         examples=["500 N*m"],
     )
 
@@ -71,9 +71,9 @@ class Question:
     load: float = 1.0  # [N m]
 
     def key(self, build: str) -> str:
-        """By what the answers for a build are found: SHA-256 of build, question, solver and recipe.
+        """The key of the answers for a build: SHA-256 of build, question, solver and recipe.
 
-        Not by the load: everything is linear in it, so what is kept is found under 1 N·m.
+        Not by the load: everything is linear in it, so what is kept is computed under 1 N·m.
         """
         identity = [build, self.kept(), _MADE_BY]
         return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()
@@ -82,11 +82,11 @@ class Question:
         """The same of stress, whose mesh is refined until it settles; under 1 N·m."""
         return replace(self, level=None, tolerance=None, load=1.0)
 
-    def kept(self) -> dict[str, Any]:
+    def kept(self) -> JsonObject:
         """The question as it is kept with its answers, without the load."""
         return {name: value for name, value in asdict(self).items() if name != "load"}
 
-    def shown(self) -> dict[str, Any]:
+    def shown(self) -> JsonObject:
         """The question as it is shown."""
         return {**asdict(self), "load": {"value": self.load, "unit": "N*m"}}
 
@@ -98,7 +98,7 @@ def question(kind: str, options: Options) -> Question:
     return Question(kind, options.boundary, level, options.tolerance, load)
 
 
-def load_of(raw: Any) -> float:
+def load_of(raw: Raw) -> float:
     """A load [N·m] without faults."""
     return float(read(raw, "N*m").si)
 
@@ -107,11 +107,11 @@ def faults(options: Options) -> list[Fault]:
     """What is wrong with options beside their types."""
     both = options.level is not None and options.tolerance is not None
     detail = "give either a level or a tolerance, which chooses the level"
-    found = [Fault("tolerance", "conflict", detail)] if both else []
-    return found + ([] if options.load is None else load_faults(options.load))
+    conflicts = [Fault("tolerance", "conflict", detail)] if both else []
+    return conflicts + ([] if options.load is None else load_faults(options.load))
 
 
-def load_faults(raw: Any) -> list[Fault]:
+def load_faults(raw: Raw) -> list[Fault]:
     """What is wrong with a load."""
     try:
         load = read(raw, "N*m").si
@@ -119,19 +119,22 @@ def load_faults(raw: Any) -> list[Fault]:
         return [error.fault("load")]
     if isinstance(load, float) and 0 < load <= LARGEST_LOAD:
         return []
-    told = f'load is one torque or moment > 0 N*m and ≤ {LARGEST_LOAD:g} N*m, such as "500 N*m"'
-    return [Fault("load", "out_of_range", told)]
+    detail = f'load is one torque or moment > 0 N*m and ≤ {LARGEST_LOAD:g} N*m, such as "500 N*m"'
+    return [Fault("load", "out_of_range", detail)]
 
 
-def under_load(asked: Question, found: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
-    """What was found under 1 N·m as it is under the load of the question: stress is proportional to it."""
-    return {name: _times(asked.load, told) if name in STRESSES else {**told} for name, told in found.items()}
+def under_load(asked: Question, outputs: Mapping[str, Mapping[str, Json]]) -> dict[str, JsonObject]:
+    """Outputs computed under 1 N·m, under the load of the question: stress is proportional to it."""
+    return {
+        name: _times(asked.load, output) if name in STRESSES else {**output}
+        for name, output in outputs.items()
+    }
 
 
-def _times(load: float, told: Mapping[str, Any]) -> dict[str, Any]:
-    value = None if told["value"] is None else told["value"] * load
-    steps = [{**step, "value": step["value"] * load} for step in told["convergence"]]
-    return {**told, "value": value, "convergence": steps}
+def _times(load: float, output: Mapping[str, Json]) -> JsonObject:
+    value = None if output["value"] is None else output["value"] * load
+    steps = [{**step, "value": step["value"] * load} for step in output["convergence"]]
+    return {**output, "value": value, "convergence": steps}
 
 
 def offered(kind: str) -> tuple[str, ...]:
@@ -139,7 +142,7 @@ def offered(kind: str) -> tuple[str, ...]:
     return (*KINDS[kind], SURFACE)
 
 
-def in_order(kind: str, outputs: Any) -> tuple[str, ...]:
+def in_order(kind: str, outputs: Container[str]) -> tuple[str, ...]:
     """Outputs of a kind, each once and always in the same order."""
     return tuple(name for name in offered(kind) if name in outputs)
 
@@ -151,7 +154,7 @@ def no_shaft(cls: type[CadModel]) -> str | None:
     return f"{cls.id} is no shaft: it does not say by which ends it is held and loaded"
 
 
-def what_can_be_asked(cls: type[CadModel]) -> dict[str, Any]:
+def what_can_be_asked(cls: type[CadModel]) -> JsonObject:
     """The kinds of analyses of a model, each with its outputs and their units; none of what is no shaft."""
     if no_shaft(cls):
         return {}
@@ -162,12 +165,12 @@ def what_can_be_asked(cls: type[CadModel]) -> dict[str, Any]:
     }
 
 
-def warnings(asked: Question, found: Mapping[str, Mapping[str, Any]]) -> list[dict[str, str]]:
+def warnings(asked: Question, outputs: Mapping[str, Mapping[str, Json]]) -> list[dict[str, str]]:
     """The outputs whose error may be larger than was wanted."""
     return [
-        {"code": "tolerance_unmet", "name": name, "detail": _unmet(told["error"], asked.tolerance)}
-        for name, told in found.items()
-        if asked.tolerance and told["error"] is not None and told["error"] > asked.tolerance
+        {"code": "tolerance_unmet", "name": name, "detail": _unmet(output["error"], asked.tolerance)}
+        for name, output in outputs.items()
+        if asked.tolerance and output["error"] is not None and output["error"] > asked.tolerance
     ]
 
 

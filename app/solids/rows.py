@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.plain import Json, JsonObject
 from app.storage.clock import operated
 from app.storage.identity import now
 from app.storage.tables import ArtifactRow, BuildRow, DesignRow, RevisionModelRow
@@ -39,8 +39,8 @@ def add_build(
     key: str,
     model: str,
     version: int,
-    parameters: dict[str, Any],
-    measured: dict[str, Any],
+    parameters: JsonObject,
+    measured: JsonObject,
     made_by: str,
 ) -> None:
     """Record a build; the same build made twice is one."""
@@ -63,7 +63,7 @@ def add_artifact(session: Session, key: str, kind: str, sha256: str, size: int) 
     session.merge(ArtifactRow(build_key=key, kind=kind, sha256=sha256, size=size, created=now()))
 
 
-def users_of(session: Session, key: str) -> list[Mapping[str, Any]]:
+def users_of(session: Session, key: str) -> list[Mapping[str, Json]]:
     """The revisions that use a build, oldest first, and whether each is its design's newest."""
     query = (
         select(RevisionModelRow.design_id, RevisionModelRow.number, DesignRow.head)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import ConfigDict, Field, WithJsonSchema
 
+from app.plain import JsonObject
 from app.schemas.values import Parameters
 from app.solids.questions import Options, offered
 from cad.analysis.kinds import KINDS
 
-THROW: dict[str, Any] = {
+THROW: JsonObject = {
     "journal_diameter": "50 mm",
     "journal_length": "20 mm",
     "pin_diameter": "45 mm",
@@ -45,5 +46,5 @@ class AnalysisIn(Options):
     outputs: list[Output] | None = Field(
         None,
         max_length=10,
-        description="what to find; without it all but `maximum_stress`, which is dear, and `surface`",
+        description="what to compute; without it all but `maximum_stress`, which is expensive, and `surface`",
     )

@@ -62,7 +62,7 @@ class Artifacts(Protocol):
 class ArtifactStore:
     """Artifacts in a local folder, spread over 256 folders by the first two digits of their names.
 
-    One process writes at a time (see `DataFolder`), so temporary files found at the start are left-overs.
+    One process writes at a time (see `DataFolder`), so temporary files present at the start are left-overs.
     A file whose bytes no longer have its hash goes into the folder `quarantine` and is never served.
     """
 
@@ -86,7 +86,7 @@ class ArtifactStore:
                 target.parent.mkdir(exist_ok=True)
                 self._clear(target)
                 _write_whole(target, parts)
-        # Even for a file found: the writer that renamed it may not have synced its folder yet.
+        # Even for a file that exists: the writer that renamed it may not have synced its folder yet.
         _sync_folder(target.parent)
         _sync_folder(self.folder)
         return sha
@@ -165,10 +165,10 @@ class ArtifactStore:
         if self._verified.has(sha, stamp):
             return stamp
         try:
-            found = hashlib.file_digest(file, "sha256").hexdigest()
+            digest = hashlib.file_digest(file, "sha256").hexdigest()
         except OSError as error:
             raise self._unreadable(sha, file, error) from error
-        if found != sha:
+        if digest != sha:
             raise self._set_aside(sha, stamp, f"its {stamp.size} bytes have another hash")
         file.seek(0)
         self._verified.add(sha, stamp)

@@ -67,10 +67,10 @@ class Watch:
         """Read the whole file once more, because the error names no page."""
         path = self._path
         try:
-            found = faults(path) if path else []
+            damage = faults(path) if path else []
         except (sqlite3.Error, OSError) as failure:
-            found = [f"it cannot be examined ({failure})"]
-        return DatabaseDamaged(str(path or "database"), found or [str(getattr(error, "orig", error))])
+            damage = [f"it cannot be examined ({failure})"]
+        return DatabaseDamaged(str(path or "database"), damage or [str(getattr(error, "orig", error))])
 
     def _note(self, damage: DatabaseDamaged) -> None:
         if self._path is not None:

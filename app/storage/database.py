@@ -115,7 +115,7 @@ class Database:
             self._commit([])
 
     def _next_group(self) -> "tuple[list[_Pending], bool]":
-        """Wait for a unit, then take those that came meanwhile; also tell whether more may come."""
+        """Wait for a unit, then take those that came meanwhile; also return whether more may come."""
         group: list[_Pending] = []
         while not group or (len(group) < GROUP and not self._waiting.empty()):
             pending = self._waiting.get()

@@ -2,7 +2,6 @@
 
 import sqlite3
 from pathlib import Path
-from typing import Any
 
 from sqlalchemy import Connection, Engine, create_engine, event, make_url
 from sqlalchemy.exc import OperationalError
@@ -46,7 +45,7 @@ def _sqlite_engine(url: str, pragmas: tuple[str, ...], begin: str) -> Engine:
     engine = create_engine(url)
 
     @event.listens_for(engine, "connect")
-    def configure(connection: sqlite3.Connection, record: Any) -> None:
+    def configure(connection: sqlite3.Connection, record: object) -> None:
         connection.isolation_level = None  # the driver shall not begin transactions by itself
         for pragma in pragmas:
             connection.execute(f"PRAGMA {pragma}")

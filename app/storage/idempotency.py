@@ -7,10 +7,10 @@ either the change or nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from sqlalchemy.orm import Session
 
+from app.plain import JsonObject
 from app.storage.clock import operated
 from app.storage.errors import KeyReused
 from app.storage.identity import now
@@ -28,7 +28,7 @@ class Once:
     fingerprint: str  # SHA-256 of the body
     client: str = ""  # two clients may choose the same key
 
-    def find(self, session: Session) -> dict[str, Any] | None:
+    def find(self, session: Session) -> JsonObject | None:
         """What this request led to before, if it did.
 
         Raises
@@ -45,7 +45,7 @@ class Once:
             raise KeyReused(row.key)
         return row.location
 
-    def keep(self, session: Session, status: int, location: dict[str, Any]) -> None:
+    def keep(self, session: Session, status: int, location: JsonObject) -> None:
         """Remember what this request led to."""
         if self.key:
             session.add(

@@ -22,7 +22,7 @@ from app.storage.tables import Base, Json, NotWritten
 MOST = 5  # faults that a message names
 _CORRUPT = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
 
-_sound: dict[Path, tuple[tuple[int, int, int], ...]] = {}  # what this process has found without faults
+_sound: dict[Path, tuple[tuple[int, int, int], ...]] = {}  # what this process has examined without faults
 _one_at_a_time = threading.Lock()
 
 
@@ -45,8 +45,8 @@ def refuse_damage(url: str) -> None:
         seen = _seen(path)
         if _sound.get(path) == seen:
             return
-        if found := faults(path):
-            raise DatabaseDamaged(str(path), found)
+        if damage := faults(path):
+            raise DatabaseDamaged(str(path), damage)
         _sound[path] = seen
 
 

@@ -1,7 +1,6 @@
 """The tables. Times are ISO 8601 texts in UTC; JSON is stored canonically: equal values are equal texts."""
 
 import json
-from typing import Any
 
 from sqlalchemy import (
     BigInteger,
@@ -15,6 +14,9 @@ from sqlalchemy import (
 )
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship
 
+from app import plain
+from app.plain import JsonObject
+
 NAMING = {
     "ix": "ix_%(table_name)s_%(column_0_N_name)s",
     "uq": "uq_%(table_name)s_%(column_0_N_name)s",
@@ -24,7 +26,7 @@ NAMING = {
 }
 
 
-def canonical_json(value: Any) -> str:
+def canonical_json(value: plain.Json) -> str:
     """Write a JSON value in its one canonical form.
 
     Raises
@@ -39,17 +41,17 @@ class NotWritten(ValueError):
     """A column holds what this program has never written there."""
 
 
-class Json(TypeDecorator[Any]):
+class Json(TypeDecorator[plain.Json]):
     """A JSON value in a text column; None is NULL. Replace a value whole: a change inside it is not seen."""
 
     impl = Text
     cache_ok = True
 
-    def process_bind_param(self, value: Any, dialect: Dialect) -> str | None:
+    def process_bind_param(self, value: plain.Json, dialect: Dialect) -> str | None:
         """From Python to the column."""
         return None if value is None else canonical_json(value)
 
-    def process_result_value(self, value: str | None, dialect: Dialect) -> Any:
+    def process_result_value(self, value: str | None, dialect: Dialect) -> plain.Json:
         """From the column to Python; text that is no JSON was not written by this program."""
         try:
             return None if value is None else json.loads(value)
@@ -61,7 +63,7 @@ class Base(DeclarativeBase):
     """All tables share one metadata and one way to name constraints, which migrations rely on."""
 
     metadata = MetaData(naming_convention=NAMING)
-    type_annotation_map = {str: Text, dict[str, Any]: Json, list[str]: Json}
+    type_annotation_map = {str: Text, JsonObject: Json, list[str]: Json}
 
 
 class CounterRow(Base):
@@ -96,10 +98,10 @@ class RevisionRow(Base):
     number: Mapped[int] = mapped_column(primary_key=True)
     note: Mapped[str | None]
     created: Mapped[str]
-    document: Mapped[dict[str, Any]] = mapped_column(Json)  # as typed by the user
-    results: Mapped[dict[str, Any] | None] = mapped_column(Json)  # the evaluated steps
+    document: Mapped[JsonObject] = mapped_column(Json)  # as typed by the user
+    results: Mapped[JsonObject | None] = mapped_column(Json)  # the evaluated steps
     state: Mapped[str]  # current, regenerating, failed
-    problem: Mapped[dict[str, Any] | None] = mapped_column(Json)
+    problem: Mapped[JsonObject | None] = mapped_column(Json)
 
     models: Mapped[list["RevisionModelRow"]] = relationship(order_by="RevisionModelRow.name")
 
@@ -117,22 +119,22 @@ class RevisionModelRow(Base):
     name: Mapped[str] = mapped_column(primary_key=True)
     model: Mapped[str]
     model_version: Mapped[int]
-    parameters: Mapped[dict[str, Any]] = mapped_column(Json)
-    relations: Mapped[dict[str, Any]] = mapped_column(Json)
+    parameters: Mapped[JsonObject] = mapped_column(Json)
+    relations: Mapped[JsonObject] = mapped_column(Json)
     # No foreign key: the key follows from the parameters and is known before the build is made.
     build_key: Mapped[str | None] = mapped_column(index=True)
 
 
 class BuildRow(Base):
-    """A solid that was built, found again by the hash of all that determines it."""
+    """A solid that was built, under the hash of all that determines it."""
 
     __tablename__ = "build"
 
     key: Mapped[str] = mapped_column(primary_key=True)
     model: Mapped[str]
     version: Mapped[int]
-    parameters: Mapped[dict[str, Any]] = mapped_column(Json)
-    measurements: Mapped[dict[str, Any]] = mapped_column(Json)
+    parameters: Mapped[JsonObject] = mapped_column(Json)
+    measurements: Mapped[JsonObject] = mapped_column(Json)
     created: Mapped[str]
     operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when last wanted [s of operation]
     made_by: Mapped[str] = mapped_column(default="")  # kernel and recipe; empty in builds of version 0.1
@@ -153,15 +155,15 @@ class ArtifactRow(Base):
 
 
 class AnalysisRow(Base):
-    """One output of an analysis of a build, found again by the hash of all that determines it."""
+    """One output of an analysis of a build, under the hash of all that determines it."""
 
     __tablename__ = "analysis"
 
     key: Mapped[str] = mapped_column(primary_key=True)
     output: Mapped[str] = mapped_column(primary_key=True)  # stiffness, …
     build_key: Mapped[str] = mapped_column(ForeignKey("build.key"), index=True)
-    asked: Mapped[dict[str, Any]] = mapped_column(Json)
-    found: Mapped[dict[str, Any]] = mapped_column(Json)
+    asked: Mapped[JsonObject] = mapped_column(Json)
+    found: Mapped[JsonObject] = mapped_column(Json)
     created: Mapped[str]
 
 
@@ -182,12 +184,12 @@ class JobRow(Base):
     state: Mapped[str]  # queued, running, done, failed, cancelled
     design_id: Mapped[str | None]
     revision: Mapped[int | None]
-    payload: Mapped[dict[str, Any]] = mapped_column(Json)
+    payload: Mapped[JsonObject] = mapped_column(Json)
     attempt: Mapped[int]  # how often it was claimed: only the newest claim may write
     crashes: Mapped[int]  # how often it took its process down
     progress: Mapped[float]
     log: Mapped[list[str]] = mapped_column(Json)
-    problem: Mapped[dict[str, Any] | None] = mapped_column(Json)
+    problem: Mapped[JsonObject | None] = mapped_column(Json)
     result: Mapped[str | None]  # a link
     created: Mapped[str]
     updated: Mapped[str]
@@ -208,6 +210,6 @@ class IdempotencyRow(Base):
     client: Mapped[str] = mapped_column(primary_key=True, default="")  # see `app.api.gate.clients`
     fingerprint: Mapped[str]  # SHA-256 of the body
     status: Mapped[int]
-    location: Mapped[dict[str, Any]] = mapped_column(Json)  # what to render again
+    location: Mapped[JsonObject] = mapped_column(Json)  # what to render again
     created: Mapped[str]
     operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when it was kept [s of operation]

@@ -15,7 +15,8 @@ from app.schemas.designs import (
     RevisionWorksheet,
 )
 from app.schemas.evaluations import Output
-from app.schemas.templates import Model, Template
+from app.schemas.templates import CadModel as Model
+from app.schemas.templates import Template
 from app.web import sheet
 from app.web.declared import properties, required
 from app.web.pictures import Picture, pictures

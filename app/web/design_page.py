@@ -18,7 +18,8 @@ from app.schemas.designs import (
     RevisionWorksheet,
 )
 from app.schemas.jobs import Job, JobList
-from app.schemas.templates import Model, Template, TemplateList, TemplateSummary
+from app.schemas.templates import CadModel as Model
+from app.schemas.templates import Template, TemplateList, TemplateSummary
 from app.web import sheet
 from app.web.api import Api, Scalar
 from app.web.blocks import (

@@ -9,7 +9,7 @@ from fastapi import Request, Response
 from app.presentation.typed import text_of, value_of
 from app.schemas.analyses import Analysis, AnalysisList, ModelAnalysis
 from app.schemas.solids import Build
-from app.schemas.templates import Model
+from app.schemas.templates import CadModel as Model
 from app.schemas.values import Given
 from app.web import sheet
 from app.web.api import Api, Refused

@@ -4,7 +4,7 @@ WorkerError
  ├── JobCrashed         its process died
  ├── DeadlineExceeded   it took too long
  ├── MemoryExceeded     it wanted too much memory
- ├── JobCancelled       it was told to stop
+ ├── JobCancelled       it was asked to stop
  └── RemoteError        it raised or returned what cannot be sent between processes
 
 All of them can be pickled.
@@ -56,14 +56,14 @@ class MemoryExceeded(WorkerError):
 
 
 class JobCancelled(WorkerError):
-    """The function was told to stop, and its process killed."""
+    """The function was asked to stop, and its process killed."""
 
     def __str__(self) -> str:
         return "The work was cancelled."
 
 
 class RemoteError(WorkerError):
-    """An exception or a result that cannot be pickled, told by the name of its class and its text."""
+    """An exception or a result that cannot be pickled, given by the name of its class and its text."""
 
     def __init__(self, kind: str, text: str) -> None:
         super().__init__(kind, text)

@@ -58,12 +58,12 @@ def _descendants(table: dict[int, list[str]], ancestor: int) -> dict[int, list[s
     children: dict[int, list[int]] = {}
     for pid, row in table.items():
         children.setdefault(int(row[3]), []).append(pid)
-    found: dict[int, list[str]] = {}
+    members: dict[int, list[str]] = {}
     next_ones = children.get(ancestor, [])
     while next_ones:
-        found |= {pid: table[pid] for pid in next_ones}
+        members |= {pid: table[pid] for pid in next_ones}
         next_ones = [child for pid in next_ones for child in children.get(pid, ())]
-    return found
+    return members
 
 
 def _table() -> dict[int, list[str]]:

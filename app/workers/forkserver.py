@@ -25,7 +25,7 @@ from app.workers.job_process import Rehearsal, serve_jobs
 from app.workers.lifeline import hang_on
 from app.workers.scheduling import share_fairly
 
-Nursery = dict[int, Connection]  # process id of a living job -> where its exit code is told
+Nursery = dict[int, Connection]  # process id of a living job -> where its exit code is sent
 
 
 def main(channel: int, lifeline: int, modules: Iterable[str]) -> NoReturn:
@@ -55,13 +55,13 @@ def _preload(name: str) -> ModuleType | None:
     except ImportError as error:
         logging.getLogger(__name__).warning("%s is not preloaded: %s", name, error)
         return None
-    for found in pkgutil.iter_modules(getattr(module, "__path__", ()), f"{name}."):
-        _preload(found.name)
+    for submodule in pkgutil.iter_modules(getattr(module, "__path__", ()), f"{name}."):
+        _preload(submodule.name)
     return module
 
 
 def _serve(server: socket.socket, lifeline: int, rehearsals: Sequence[Rehearsal]) -> None:
-    """Fork and bury by turns: no death is handled in the middle of anything else."""
+    """Fork and collect by turns: no death is handled in the middle of anything else."""
     nursery: Nursery = {}
     deaths, knell = socket.socketpair()
     with deaths, knell, selectors.DefaultSelector() as selector:
@@ -75,7 +75,7 @@ def _serve(server: socket.socket, lifeline: int, rehearsals: Sequence[Rehearsal]
             ready = {key.fileobj for key, _ in selector.select()}
             if deaths in ready:
                 deaths.recv(4096)
-                _bury(nursery)
+                _collect(nursery)
             if server in ready:
                 descriptors = socket.recv_fds(server, 1, 2)[1]
                 if not descriptors:
@@ -95,7 +95,7 @@ def _fork(
     nursery: Nursery,
     rehearsals: Sequence[Rehearsal],
 ) -> None:
-    """Fork a job process in a process group of its own and tell its id."""
+    """Fork a job process in a process group of its own and send its id."""
     parent = os.getpid()
     pid = os.fork()
     if pid == 0:
@@ -123,8 +123,8 @@ def _become_job(
     serve_jobs(job, parent, lifeline, rehearsals)
 
 
-def _bury(nursery: Nursery) -> None:
-    """Collect the exit codes of the jobs that have died and tell them to the server."""
+def _collect(nursery: Nursery) -> None:
+    """Collect the exit codes of the jobs that have died and send them to the server."""
     for pid in list(nursery):
         ended, status = os.waitpid(pid, os.WNOHANG)
         if ended:

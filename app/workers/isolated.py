@@ -77,7 +77,7 @@ class JobProcess:
         _ = self._pid
 
     def is_born(self) -> bool:
-        """Whether the forkserver has made the process; reads nothing, so its owner may use it meanwhile."""
+        """Whether the forkserver has forked the process; reads nothing, so its owner may use it meanwhile."""
         try:
             return "_pid" in self.__dict__ or self._status.poll()
         except OSError:  # it has got a job and is gone
@@ -129,7 +129,7 @@ class JobProcess:
 
 
 class ForkServer:
-    """Starts the forkserver, starts it anew if it has died, and asks it for processes.
+    """Starts the forkserver, starts it again if it has died, and asks it for processes.
 
     Its `environment` holds defaults: what the operator has set in the server's own environment prevails.
     """
@@ -150,9 +150,9 @@ class ForkServer:
             The forkserver has been closed.
         """
         connection, theirs = Pipe()
-        status, told = Pipe(duplex=False)
-        with theirs, told:
-            self._send([theirs.fileno(), told.fileno()])
+        status, exits = Pipe(duplex=False)
+        with theirs, exits:
+            self._send([theirs.fileno(), exits.fileno()])
         return JobProcess(connection, status)
 
     def is_alive(self) -> bool:

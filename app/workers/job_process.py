@@ -23,7 +23,7 @@ from app.workers.messages import Packed, Progress, Raised, Request, Returned, pa
 from templates.core.progress import reporting
 
 Rehearsal = Callable[[Callable[[], bool]], object]
-"""Does some work like a job's; it is given what tells whether the job has come, and then ends soon."""
+"""Does some work like a job's; its argument says whether the job has come, and then ends soon."""
 
 _PR_SET_PDEATHSIG = 1
 _GROWTH = 4  # a process that keeps more than this part of its allowance takes no other request
@@ -34,7 +34,7 @@ def serve_jobs(
 ) -> NoReturn:
     """Wait for a request, answer it, and end the process, unless another request may follow.
 
-    Meanwhile it rehearses, so that the job finds ready what is made at first use. It ends without cleaning
+    Meanwhile it rehearses, so that the job finds ready what is loaded at first use. It ends without cleaning
     up: destructors of geometry kernels may crash when the work is long done.
     """
     exit_code = 1
@@ -63,7 +63,7 @@ def _die_with(parent: int) -> None:
     """Have the kernel kill this process when its parent dies; Linux only, elsewhere the parent must do it."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # it died before the kernel was told
+    if os.getppid() != parent:  # it died before the kernel knew
         raise ProcessLookupError(parent)
 
 
@@ -99,7 +99,7 @@ def _packed_result(message: Returned) -> Packed:
 
 
 def _portable(error: BaseException) -> BaseException:
-    """Return the exception, or a RemoteError if it would be lost on the way; a note tells where it arose."""
+    """Return the exception, or a RemoteError if it would be lost on the way; a note says where it arose."""
     where = "".join(traceback.format_exception(error))
     try:
         pickle.loads(pickle.dumps(error))

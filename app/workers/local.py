@@ -43,7 +43,7 @@ class LocalProcesses:
         return cast(T, process.finish(limits, on_progress, cancelled))
 
     def answers(self) -> bool:
-        """Whether the forkserver is alive, and has made the process that waits for the next job."""
+        """Whether the forkserver is alive, and has forked the process that waits for the next job."""
         if not self._forkserver.is_alive():
             if not self._forkserver.is_stopped() and self._lock.acquire(blocking=False):
                 try:
@@ -60,7 +60,7 @@ class LocalProcesses:
             self._spare.kill()
 
     def _start(self, request: Request) -> JobProcess:
-        """Give the job to the process that waits for it, and have the next one made meanwhile."""
+        """Give the job to the process that waits for it, and have the next one forked meanwhile."""
         with self._lock:
             process, self._spare = self._spare, self._forkserver.fork()
         try:

@@ -18,8 +18,8 @@ _COUNT = Struct("!I")
 class Request:
     """To the process: what to run, within what limits, and whether another request may follow."""
 
-    function: Callable[..., Any]
-    args: tuple[Any, ...]
+    function: Callable[..., object]
+    args: tuple[object, ...]
     limits: Limits
     reusable: bool = False
 
@@ -36,7 +36,7 @@ class Progress:
 class Returned:
     """From the process: the result, and whether it waits for another request."""
 
-    value: Any
+    value: object
     reusable: bool = False
 
 
@@ -55,12 +55,12 @@ class Packed:
     message: bytes
     pieces: tuple[PickleBuffer | bytes, ...] = ()
 
-    def unpacked(self) -> Any:
+    def unpacked(self) -> Any:  # pickle types nothing; the receiver matches on the class
         """The message."""
         return pickle.loads(self.message, buffers=self.pieces)
 
 
-def pack(message: Any) -> Packed:
+def pack(message: object) -> Packed:
     """Pickle a message; raises what pickle raises."""
     pieces: list[PickleBuffer] = []
     packed = pickle.dumps(message, protocol=5, buffer_callback=pieces.append)

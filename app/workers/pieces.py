@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pickle import PickleBuffer
-from typing import Any, Self
+from typing import Self, SupportsIndex
 
 PIECE = 2**18  # bytes; a copy takes some 0.1 ms
 
@@ -39,5 +39,5 @@ class Pieces:
             return self.parts[0]
         return b"".join(self.parts)
 
-    def __reduce_ex__(self, protocol: Any) -> tuple[Any, ...]:
+    def __reduce_ex__(self, protocol: SupportsIndex) -> tuple[object, ...]:
         return Pieces, (tuple(map(PickleBuffer, self.parts)),)

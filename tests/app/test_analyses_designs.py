@@ -92,6 +92,13 @@ class TestRelation:
         assert float(told["value"]) == pytest.approx(found["value"], rel=1e-12)
         assert told["unit"] == "N*m/rad"
 
+    def test_a_preview_has_it_old_and_new(self, http, design):
+        answer = http.post(f"{DESIGNS}/{design['id']}/preview", json={}, params={"worksheet": True})
+        assert answer.status_code == 200, answer.text
+        change = answer.json()["outputs"]["bar.torsion.stiffness"]
+        stored = revision(http, design)["models"]["bar"]["analyses"]["torsion"]["outputs"]["stiffness"]
+        assert change == {"old": stored, "new": stored}
+
     def test_it_is_found_beside_other_jobs(self, http):
         design = created(http, train("17 mm"))
         items = http.get(f"{API}/jobs?limit=200").json()["items"]

@@ -105,6 +105,14 @@ class TestContents:
         assert "→" not in first
         assert "= film.bearing_diameter 48 mm 48 mm" in first
 
+    @pytest.mark.parametrize("units", ["si", "us"])
+    def test_only_parameters_that_changed_are_marked(self, http, units):
+        design = created(http, paper(name="marks"))
+        loaded = patched(http, design, {"steps": {"film": {"inputs": {"radial_load": "30 kN"}}}})
+        assert "changed-value" not in read(http, loaded, units=units).text
+        larger = patched(http, loaded, {"parameters": {"scale": "1.02"}})
+        assert "changed-value" in read(http, larger, units=units).text
+
     def test_pages_are_numbered(self, printed):
         text, pages = printed
         assert pages > 2

@@ -19,7 +19,16 @@ from app.api.waiting import accepted, finished, later, written
 from app.presentation.units import System
 from app.schemas.analyses import Analysis, AnalysisList, Surface
 from app.schemas.problems import refusals
-from app.solids.questions import DEAR, faults, in_order, load_faults, load_of, no_shaft, offered, question
+from app.solids.questions import (
+    ON_REQUEST,
+    faults,
+    in_order,
+    load_faults,
+    load_of,
+    no_shaft,
+    offered,
+    question,
+)
 from app.solids.schemas import AnalysisIn
 from app.storage.errors import NotFound
 from cad.analysis.kinds import KINDS
@@ -135,7 +144,7 @@ def _converted(read: Callable[[str], bytes], sha256: str, units: System, headers
 
 def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...]:
     """The outputs to find, if nothing in the body is wrong beside its parameters."""
-    asked = [name for name in KINDS[kind] if name not in DEAR] if body.outputs is None else body.outputs
+    asked = [name for name in KINDS[kind] if name not in ON_REQUEST] if body.outputs is None else body.outputs
     known = ", ".join(offered(kind))
     wrong = faults(body)
     wrong += [

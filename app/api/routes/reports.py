@@ -113,12 +113,12 @@ async def show_worksheet(
     wanted = _wanted("worksheet", kind, accept, TABLES)
     revision = await run_in_threadpool(reports.number, id, number)
     if within is None:
-        told = await threads.run_for(request, reports.told, id, revision, units)
+        told = await threads.run_for(request, reports.worksheet, id, revision, units)
     else:
-        told = await threads.run_within(within, request, reports.told, id, revision, units)
+        told = await threads.run_within(within, request, reports.worksheet, id, revision, units)
     headers = {"Vary": "Accept", "Design-Revision": str(revision)}
     if wanted == "json":
-        return written(RevisionWorksheet.model_validate(told), headers=headers)
+        return written(told, headers=headers)
     write = tables.write_csv if wanted == "csv" else tables.write_xlsx
     headers["Content-Disposition"] = f'attachment; filename="design_{_plain(id)}_r{revision}.{wanted}"'
     table = await run_in_threadpool(lambda: write(tables.of(told)))

@@ -1,0 +1,18 @@
+"""Types of plain values, whose shape only their readers know; used by every layer.
+
+`Any` has its reasons here, once: `JsonValue` of Pydantic would ask for a check at each index into a value
+that a model, a migration or the language checks as a whole.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+Json = Any
+"""A JSON value of any shape: a number, a text, a list of any depth, an object."""
+
+JsonObject = dict[str, Json]
+"""A JSON object, such as a column of the database holds."""
+
+Raw = Any
+"""A value as its user typed it: untrusted; the language of templates reads it and says what is wrong."""
