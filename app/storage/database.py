@@ -87,8 +87,8 @@ class Database:
     def close(self) -> None:
         """Commit what waits, then close all connections. A second call does nothing.
 
-        Once damage has shown, the connections stay open until the process ends: SQLite copies its log into the
-        file when the last one is closed, and a damaged log would overwrite pages that are whole.
+        Once damage has shown, the connections stay open until the process ends: SQLite copies its log into
+        the file when the last one is closed, and a damaged log would overwrite pages that are whole.
         """
         with self._closing:
             if not self._closed:
