@@ -34,8 +34,8 @@ def database_file(data: Path, url: str | None) -> Path:
     if not path.is_file():
         if marker_of(path).exists():
             raise CannotRun(
-                f"The database {path.absolute()} is missing, and {marker_of(path).name} notes that it was lost "
-                "while a service used it: restore the last backup into a new folder."
+                f"The database {path.absolute()} is missing, and {marker_of(path).name} notes that it was "
+                "lost while a service used it: restore the last backup into a new folder."
             )
         raise CannotRun(f"There is no database {path.absolute()}: name the data folder by --data.")
     return path
