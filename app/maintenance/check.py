@@ -70,7 +70,7 @@ def check(data: Path, url: str | None, *, in_use: bool) -> Findings:
     if (marker := marker_of(path)).exists():
         findings.database.append(f"damage showed while a service used it, see {marker.name}")
     try:
-        findings.database += faults(path, MOST)
+        findings.database += faults(path, MOST, mode="ro" if marker.exists() else "rw")
         with reading(path) as connection:
             refuse_other_schema(connection, older_too=True)
             findings.references += broken_references(connection)

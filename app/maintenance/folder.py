@@ -11,7 +11,7 @@ from pathlib import Path
 from app.maintenance.errors import CannotRun
 from app.storage.engines import sqlite_file
 from app.storage.folder import LOCK
-from app.storage.integrity import is_damage
+from app.storage.integrity import is_damage, marker_of
 from app.storage.migrations import known_schemas
 
 PG_DUMP = (
@@ -32,6 +32,11 @@ def database_file(data: Path, url: str | None) -> Path:
     if path is None:
         raise CannotRun(PG_DUMP)
     if not path.is_file():
+        if marker_of(path).exists():
+            raise CannotRun(
+                f"The database {path.absolute()} is missing, and {marker_of(path).name} notes that it was "
+                "lost while a service used it: restore the last backup into a new folder."
+            )
         raise CannotRun(f"There is no database {path.absolute()}: name the data folder by --data.")
     return path
 

@@ -85,14 +85,19 @@ class Database:
         return await asyncio.wrap_future(self.submit(unit))
 
     def close(self) -> None:
-        """Commit what waits, then close all connections. A second call does nothing."""
+        """Commit what waits, then close all connections. A second call does nothing.
+
+        Once damage has shown, the connections stay open until the process ends: SQLite copies its log into
+        the file when the last one is closed, and a damaged log would overwrite pages that are whole.
+        """
         with self._closing:
             if not self._closed:
                 self._waiting.put(None)
             self._closed = True
         self._thread.join()
-        self._reader.dispose()
-        self._writer.dispose()
+        if self.watch.damage is None:
+            self._reader.dispose()
+            self._writer.dispose()
 
     def submit(self, unit: Unit[T]) -> "Future[T]":
         """Queue a unit of work; its future raises as `write` does."""

@@ -60,7 +60,7 @@ def _sqlite_engine(url: str, pragmas: tuple[str, ...], begin: str) -> Engine:
     return engine
 
 
-def _lower(value: object) -> object:
+def _lower(value: str | float | None) -> str | float | None:
     """A text in lower case, for SQLite, whose own function knows A to Z only: `Ä` would not match `ä`."""
     return value.lower() if isinstance(value, str) else value
 

@@ -38,7 +38,7 @@ def refuse_damage(url: str) -> None:
     """
     path = sqlite_file(url)
     if path is not None and (marker := marker_of(path)).exists():
-        raise DatabaseDamaged(str(path), [_noted(marker)])
+        raise DatabaseDamaged(str(path), [*_faults_now(path), _noted(marker)])
     if path is None or not path.is_file() or not path.stat().st_size:
         return
     with _one_at_a_time:
@@ -55,6 +55,16 @@ def marker_of(path: Path) -> Path:
     return path.with_name(f"{path.name}.damaged")
 
 
+def _faults_now(path: Path) -> list[str]:
+    """What is wrong with a file of which damage is noted already; its own state names the pages."""
+    if not path.is_file():
+        return [f"{path.name} is missing"]
+    try:
+        return faults(path, mode="ro")  # the folder stays as it is, for whoever saves what can be saved
+    except sqlite3.Error as error:
+        return [f"{path.name} cannot be examined ({error})"]
+
+
 def _noted(marker: Path) -> str:
     text = marker.read_text(encoding="utf-8", errors="replace")[:1000]
     return (
@@ -63,9 +73,9 @@ def _noted(marker: Path) -> str:
     )
 
 
-def faults(path: Path, most: int = MOST) -> list[str]:
-    """What is wrong with a SQLite file, at most this many lines."""
-    with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True)) as connection:
+def faults(path: Path, most: int = MOST, mode: str = "rw") -> list[str]:
+    """What is wrong with a SQLite file, at most this many lines; `ro` leaves its log as it is."""
+    with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode={mode}", uri=True)) as connection:
         connection.execute("PRAGMA busy_timeout = 10000")
         # A page on which SQLite stops takes the lines before it along, unless only one was wanted.
         one = _collected(_of_pages(connection, 1), path)
@@ -121,7 +131,7 @@ def _unreadable_schema(path: Path) -> str:
             file.seek((page - 1) * size)
             if file.read(1) not in (b"\x05", b"\x0d"):
                 return f"page {page}, of the schema"
-    return "some page"
+    return f"some page, perhaps one in its log {path.name}-wal"
 
 
 def _of_pages(connection: sqlite3.Connection, most: int) -> Iterator[str]:

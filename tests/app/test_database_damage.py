@@ -9,10 +9,11 @@ from sqlalchemy import select, update
 
 from app.cli import main
 from app.maintenance.check import check
+from app.maintenance.errors import CannotRun
 from app.storage.database import Database
 from app.storage.errors import CommitFailed, DatabaseDamaged
 from app.storage.identity import now
-from app.storage.integrity import faults, refuse_damage
+from app.storage.integrity import faults, marker_of, refuse_damage
 from app.storage.migrations import migrate
 from app.storage.tables import BuildRow, DesignRow
 
@@ -133,6 +134,27 @@ class TestDatabase:
         with pytest.raises(DatabaseDamaged, match=r"deleted or replaced.* showed while the service ran"):
             refuse_damage(f"sqlite:///{file}")
 
+    def test_check_reports_a_file_that_was_taken_away(self, file):
+        database = Database(f"sqlite:///{file}")
+        file.unlink()
+        with pytest.raises(DatabaseDamaged), database.read():
+            pass
+        database.close()
+        with pytest.raises(CannotRun, match=r"is missing.*lost while a service used it.*restore"):
+            check(file.parent, None, in_use=False)
+        with pytest.raises(DatabaseDamaged, match=r"crankwright.sqlite is missing.*deleted or replaced"):
+            refuse_damage(f"sqlite:///{file}")
+
+    def test_the_next_start_names_the_pages(self, file):
+        """The error that a service met may name none."""
+        marker_of(file).write_text("database disk image is malformed")
+        page = next(page for page, name in self.pages(file).items() if name == "build")
+        with file.open("r+b") as out:
+            out.seek((page - 1) * PAGE)
+            out.write(b"\xff" * PAGE)
+        with pytest.raises(DatabaseDamaged, match=rf"[Pp]age {page}\b.*malformed.*restore"):
+            refuse_damage(f"sqlite:///{file}")
+
     def test_a_file_that_is_taken_away_during_a_commit(self, file):
         database = Database(f"sqlite:///{file}")
         with pytest.raises(DatabaseDamaged, match="deleted or replaced"):
@@ -147,9 +169,11 @@ class TestDatabase:
             database.write(lambda session, row=row: session.add(row))
         log = file.with_name(f"{file.name}-wal")
         log.write_bytes(log.read_bytes()[:32] + os.urandom(log.stat().st_size - 32))
-        with pytest.raises(DatabaseDamaged), database.read() as session:
+        with pytest.raises(DatabaseDamaged, match="-wal"), database.read() as session:
             session.scalars(select(DesignRow)).all()
+        whole = file.read_bytes()
         database.close()
+        assert file.read_bytes() == whole, "the damaged log was copied into the file"
         with pytest.raises(DatabaseDamaged, match="showed while the service ran"):
             refuse_damage(f"sqlite:///{file}")
         assert any("damage showed" in text for text in check(file.parent, None, in_use=False).database)

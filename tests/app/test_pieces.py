@@ -235,6 +235,6 @@ def test_a_client_that_leaves_while_it_sends_is_no_fault_of_the_service(server, 
     with socket.create_connection((host, int(port))) as leaving:
         head = f"POST {PLACE} HTTP/1.1\r\nHost: {host}:{port}\r\nContent-Type: application/json\r\n"
         leaving.sendall(f"{head}Content-Length: 500000\r\n\r\n{{".encode())
-    gone = 'status="409"'
+    gone = 'status="499"'
     assert eventually(lambda: gone in http.get("/metrics").text)
     assert http.get("/metrics").text.count('status="500"') == before

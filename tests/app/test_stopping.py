@@ -148,9 +148,10 @@ MASS_CONSERVING = {"inputs": {**OIL_FILM, "speed": SPEEDS}, "level": "mass_conse
 
 def calculations(server) -> int:
     """The process from which those of calculations are forked."""
-    leaders = (pid for pid in descendants(server.process.pid) if os.getpgid(pid) == pid)
+    own = server.process.pid
+    children = (pid for pid in descendants(own) if parent_of(Path(f"/proc/{pid}")) == own)
     return next(
-        pid for pid in leaders if b"app.calculations.warm" in Path(f"/proc/{pid}/cmdline").read_bytes()
+        pid for pid in children if b"app.calculations.warm" in Path(f"/proc/{pid}/cmdline").read_bytes()
     )
 
 
