@@ -8,10 +8,12 @@ from contextlib import suppress
 
 import httpx
 import pytest
+from patience import GLANCE
 from serving import API, HANG, PATIENCE, problem, serving
 
 from app.api.gate.heads import LONGEST_HEAD
 from app.api.gate.streams import Streams, TooManyStreams
+from app.calculations.schemas import OIL_FILM as FILM
 from app.settings import Settings
 
 EVALUATE = f"{API}/templates/oil_film/versions/1/evaluate"
@@ -57,7 +59,8 @@ def dripped(slow, start: bytes, piece: bytes) -> bytes:
                     return answer
                 answer += more
             except TimeoutError:
-                connection.sendall(piece)
+                with suppress(ConnectionResetError, BrokenPipeError):  # the next recv says so
+                    connection.sendall(piece)
             except ConnectionResetError:
                 return answer
     raise AssertionError(f"the connection is held; answered was {answer!r}")
@@ -148,6 +151,28 @@ def asked_for_ever(connection: socket.socket) -> None:
         waiting = waiting or head("GET /openapi.json")
         with suppress(TimeoutError):
             waiting = waiting[connection.send(waiting) :]
+
+
+def cut_readers(slow) -> float:
+    """How many connections the server has cut because nobody read from them."""
+    text = httpx.get(f"{slow.url}/metrics", trust_env=False).text
+    counts = [line.split()[-1] for line in text.splitlines() if 'cut_total{why="unread"}' in line]
+    return float(counts[0]) if counts else 0.0
+
+
+def test_the_kernel_keeps_nothing_for_who_does_not_read(slow):
+    """A connection that is cut is reset: its buffers, up to some megabytes, are not delivered for hours."""
+    speeds = ", ".join(str(1000 + number % 4000) for number in range(50_000))
+    body = json.dumps({"inputs": FILM | {"speed": {"value": [], "unit": "rpm"}}}).replace("[]", f"[{speeds}]")
+    before, end = cut_readers(slow), time.monotonic() + PATIENCE
+    with connected(slow, head(f"POST {EVALUATE}", JSON, f"Content-Length: {len(body)}")) as connection:
+        connection.sendall(body.encode())
+        while cut_readers(slow) == before:
+            assert time.monotonic() < end, "nobody was cut"
+            time.sleep(GLANCE)
+        with pytest.raises(ConnectionResetError):
+            while connection.recv(2**20):
+                pass
 
 
 def test_a_head_without_end(slow):

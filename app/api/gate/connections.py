@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import json
 import socket
+import struct
 from asyncio import Transport
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -177,6 +178,7 @@ class TimedProtocol(WholeTarget):
         """Cut the connection unless its client has read enough meanwhile."""
         read = before - self.transport.get_write_buffer_size()
         if read < self.limits.rate * self.limits.write_seconds:
+            self._reset_on_close()
             self._cut("unread")
         else:
             self._watch_reader()
@@ -186,6 +188,12 @@ class TimedProtocol(WholeTarget):
         if self.cycle is not None:  # else it might write before it learns of the loss
             self.cycle.disconnected = True
         self.transport.abort()
+
+    def _reset_on_close(self) -> None:
+        """Have the kernel drop what it holds for the client, instead of delivering megabytes for hours."""
+        sock = self.transport.get_extra_info("socket")
+        if sock is not None and sock.family in (socket.AF_INET, socket.AF_INET6):
+            sock.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
 
 
 def protocol(limits: ConnectionLimits, busy: ASGIApp) -> type[TimedProtocol]:
