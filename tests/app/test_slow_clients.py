@@ -153,6 +153,12 @@ def asked_for_ever(connection: socket.socket) -> None:
             waiting = waiting[connection.send(waiting) :]
 
 
+def read_to_the_end(connection: socket.socket) -> None:
+    """Read until the server closes."""
+    while connection.recv(2**20):
+        pass
+
+
 def cut_readers(slow) -> float:
     """How many connections the server has cut because nobody read from them."""
     text = httpx.get(f"{slow.url}/metrics", trust_env=False).text
@@ -171,8 +177,7 @@ def test_the_kernel_keeps_nothing_for_who_does_not_read(slow):
             assert time.monotonic() < end, "nobody was cut"
             time.sleep(GLANCE)
         with pytest.raises(ConnectionResetError):
-            while connection.recv(2**20):
-                pass
+            read_to_the_end(connection)
 
 
 def test_a_head_without_end(slow):
