@@ -13,6 +13,7 @@ from app.designs import memory as designs
 from app.designs.graph import Block
 from app.designs.memory import Memory
 from app.designs.worksheet import _written_out
+from app.schemas.designs import RevisionStep
 from templates.core.language.evaluate import evaluate
 
 MIB = 2**20
@@ -129,7 +130,8 @@ def test_formulas_written_out_are_kept_in_the_same_cache(film, monkeypatch):
     cache = Cache(16)
     monkeypatch.setattr("app.designs.worksheet.kept", cache)
     outputs = tuple(film.formulas)[:1]
-    step = rendering.evaluation(evaluate(film, film.example, outputs=outputs))
+    answer = rendering.evaluation(evaluate(film, film.example, outputs=outputs))
+    step = RevisionStep.model_validate(answer)
     arguments = (film, step, "si")
     first = _written_out(*arguments)
     assert cache.size > 1000

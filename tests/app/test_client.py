@@ -2,6 +2,7 @@
 
 import asyncio
 import inspect
+import json
 
 import httpx
 import pytest
@@ -85,22 +86,37 @@ def test_a_report_and_the_worksheet_of_a_design(client):
     assert "minimum_film_thickness" in {formula.name for formula in formulas}
 
 
-def test_a_file_is_never_the_body_of_a_202(served, monkeypatch):
+def test_a_file_is_never_the_body_of_a_202():
+    """While a job makes the file, the client follows the job; then it asks again."""
+    job = {
+        "id": "j1", "kind": "build", "state": "done", "design": None, "revision": None, "progress": 1.0,
+        "log": [], "problem": None, "result": None, "created": "", "updated": "",
+    }  # fmt: skip
+    answers = [httpx.Response(202, json={"job": "/api/v1/jobs/j1"}, headers={"Location": "/api/v1/jobs/j1"})]
+    asked = []
+
+    def serve(request):
+        asked.append(request.url.path)
+        if request.url.path.endswith("/events"):
+            return httpx.Response(200, text=f"event: done\ndata: {json.dumps(job)}\n\n")
+        if "/jobs/" in request.url.path:
+            return httpx.Response(200, json=job)
+        return answers.pop() if answers else httpx.Response(200, content=b"SECTION")
+
+    with Client("http://test") as client:
+        client._http = httpx.Client(base_url="http://test", transport=httpx.MockTransport(serve))
+        assert client.model("d1", "dxf") == b"SECTION"
+    assert asked[0] == asked[-1] == "/api/v1/designs/d1/model.dxf"
+    assert any("/jobs/j1" in path for path in asked[1:-1])
+
+
+def test_files_of_a_service_that_waits_for_nobody(served, monkeypatch):
     monkeypatch.setattr(served.jobs, "wait_seconds", 0.0)
-    statuses = []
     with Client(served.url) as client:
-        client._http.event_hooks = {"response": [lambda response: statuses.append(response.status_code)]}
         design = client.create(moody("38.5 mm"))
-        statuses.clear()
-        dxf = client.model(design.id, "dxf")
-        assert statuses[0] == 202
-        step = client.model(design.id)
-        statuses.clear()
-        picture = client.picture("bar", 1)
-        assert statuses[0] == 202
-    assert step.startswith(b"ISO-10303-21")
-    assert b"SECTION" in dxf[:100]
-    assert picture.startswith(b"\x89PNG")
+        assert b"SECTION" in client.model(design.id, "dxf")[:100]
+        assert client.model(design.id).startswith(b"ISO-10303-21")
+        assert client.picture("bar", 1).startswith(b"\x89PNG")
 
 
 def test_a_job_that_fails_is_a_problem(served, monkeypatch):

@@ -6,7 +6,7 @@ import re
 import httpx
 import pytest
 from fastapi import FastAPI, Request
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from app.api import problems
 from app.api.gate import guard
@@ -256,6 +256,10 @@ class TestSession:
             assert len(self.page(headers={"Cookie": f"{COOKIE}={bad}"})) == 1
 
 
+class Who(BaseModel):
+    client: str
+
+
 class TestCaller:
     @pytest.fixture
     def app(self):
@@ -269,7 +273,7 @@ class TestCaller:
 
         @app.get("/page")
         async def page(api: TheApi) -> dict[str, str]:
-            return await api.get("/who")
+            return (await api.get("/who", Who)).model_dump()
 
         return app
 
