@@ -121,13 +121,13 @@ def spared_by_collections() -> Iterator[None]:
         gc.unfreeze()
 
 
-def _too_large(told: str) -> Response:
-    return _refused(BodyTooLarge(told))
+def _too_large(reason: str) -> Response:
+    return _refused(BodyTooLarge(reason))
 
 
 def _refused(error: HttpError) -> Response:
     return problems.answer(problems.describe(error))
 
 
-def _head_too_large(told: str) -> Response:
-    return _refused(HeadTooLarge(told))
+def _head_too_large(reason: str) -> Response:
+    return _refused(HeadTooLarge(reason))

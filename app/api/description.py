@@ -46,7 +46,7 @@ def describe_interface(app: FastAPI) -> dict[str, Any]:
         for model in (Problem, Fault):
             schemas[model.__name__] = model.model_json_schema(ref_template=REFERENCE)
             schemas[model.__name__].pop("$defs", None)
-        for schema in app.openapi_schema["components"]["schemas"].values():
+        for schema in schemas.values():
             _simplify(schema)
     return app.openapi_schema
 

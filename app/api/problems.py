@@ -57,7 +57,7 @@ class Kind:
     remedy: str
 
 
-INVALID = Kind("invalid-inputs", 422, "Some inputs are wrong", "mend each of `errors`; nothing was saved")
+INVALID = Kind("invalid-inputs", 422, "Some inputs are wrong", "correct each of `errors`; nothing was saved")
 INTERNAL = Kind("internal", 500, "The service failed", "this is a fault of the program; please report it")
 CANCELLED = Kind("cancelled", 409, "The work was cancelled", "send the change again")
 

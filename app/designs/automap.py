@@ -3,21 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from app.designs.network import Block, Graph
 from app.designs.reference import Reference
+from app.schemas.designs import Proposal
 from templates.core.language.spec import Choice
 from templates.core.units.units import compatible, unit
-
-
-@dataclass(frozen=True)
-class Proposal:
-    """A relation for a model parameter, and why."""
-
-    target: str
-    relation: str
-    reason: str
 
 
 def proposals(graph: Graph) -> list[Proposal]:
@@ -42,7 +33,7 @@ def _proposal(graph: Graph, model: Block, name: str) -> Proposal | None:
             )
             others = f"; {', '.join(map(str, fitting[1:]))} would fit too" if fitting[1:] else ""
             reason = f"{same}, and both are given in {declared.meaning.unit} or its like{others}"
-            return Proposal(target, f"= {fitting[0]}", reason)
+            return Proposal(target=target, relation=f"= {fitting[0]}", reason=reason)
     return None
 
 

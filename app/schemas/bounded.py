@@ -38,6 +38,6 @@ def at_most(count: int) -> BeforeValidator:
 
 def _few(raw: Any, most: int) -> Any:
     if isinstance(raw, Mapping) and len(raw) > most:
-        told = "an object here has at most {most} names, not {count}"
-        raise PydanticCustomError("too_long", told, {"most": most, "count": len(raw)})
+        message = "an object here has at most {most} names, not {count}"
+        raise PydanticCustomError("too_long", message, {"most": most, "count": len(raw)})
     return raw

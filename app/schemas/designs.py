@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field, WithJsonSchema
+from pydantic import ConfigDict, Field
 
 from app.schemas.analyses import AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Answer, Page, Shown, Version, Warning
 from app.schemas.evaluations import CalculatedBy, Error, Level, Output, UsedInput, WorkedFormula
 from app.schemas.problems import Problem
 from app.schemas.solids import Measurements
-from app.schemas.values import GIVEN
+from app.schemas.values import Given
 
 State = Literal["current", "regenerating", "failed"]
 """`current`: the results belong to the inputs; `regenerating`: a job is at work; `failed`: see `problem`."""
-
-Typed = Annotated[Any, WithJsonSchema(GIVEN)]
-"""A value as its user typed it; a relation begins with `=`."""
 
 
 class DesignStep(Answer):
@@ -27,7 +24,7 @@ class DesignStep(Answer):
     version: int
     level: str | None = None
     tolerance: float | None = None
-    inputs: dict[str, Typed]
+    inputs: dict[str, Given]
     outputs: list[str] | None = Field(None, description="only these are computed; null for all")
 
 
@@ -38,7 +35,7 @@ class AnalysisOptions(Answer):
     boundary: str = "free_end"
     level: str | None = None
     tolerance: float | None = None
-    load: Typed = None
+    load: Given = None
 
 
 class DesignModel(Answer):
@@ -46,7 +43,7 @@ class DesignModel(Answer):
 
     id: str
     version: int
-    parameters: dict[str, Typed]
+    parameters: dict[str, Given]
     analyses: dict[str, AnalysisOptions] = Field({}, description="absent where there are none")
 
 
@@ -54,7 +51,7 @@ class DesignIteration(Answer):
     """A loop that the design allows."""
 
     through: str = Field(description="the measure or analysis output of a solid, such as `model.mass`")
-    start: Typed
+    start: Given
     tolerance: float = Field(description="relative")
     limit: int = Field(description="rounds")
 
@@ -81,7 +78,7 @@ class Design(Answer):
     name: str
     revision: int
     state: State
-    parameters: dict[str, Typed]
+    parameters: dict[str, Given]
     steps: dict[str, DesignStep]
     models: dict[str, DesignModel]
     iterations: list[DesignIteration]
@@ -108,7 +105,7 @@ class MappedDesign(Design, Proposals):
     """A design with the proposals that were applied."""
 
 
-InputOrTyped = Annotated[UsedInput | Typed, Field(union_mode="left_to_right")]
+InputOrGiven = Annotated[UsedInput | Given, Field(union_mode="left_to_right")]
 """An input as it was used, or as typed while its step waits."""
 
 
@@ -118,12 +115,12 @@ class RevisionStep(Answer):
     model_config = ConfigDict(extra="allow")  # older programs stored more
 
     template: CalculatedBy
-    inputs: dict[str, InputOrTyped] = {}
+    inputs: dict[str, InputOrGiven] = {}
     outputs: dict[str, Output] = {}
     level: Level = None
     error: dict[str, Error] = {}
     warnings: list[Warning] = []
-    relations: dict[str, Typed] = Field({}, description="inputs that are relations, as typed")
+    relations: dict[str, Given] = Field({}, description="inputs that are relations, as typed")
     state: str | None = Field(None, description="`pending` in a preview, for a step that waits")
     pending: bool = Field(False, description="whether it waits; absent if it does not")
 
@@ -134,7 +131,7 @@ class RevisionModel(Answer):
     id: str
     version: int
     parameters: dict[str, Shown]
-    relations: dict[str, Typed]
+    relations: dict[str, Given]
     build: str | None = Field(description="key of its build; null while parameters are missing")
     artifacts: dict[str, str] = Field(description="SHA-256 of every file, by kind")
     analyses: dict[str, ModelAnalysis]
@@ -160,7 +157,7 @@ class Revision(Answer):
     state: State
     problem: Problem | None
     name: str
-    parameters: dict[str, Typed]
+    parameters: dict[str, Given]
     steps: dict[str, RevisionStep]
     models: dict[str, RevisionModel]
     iterations: list[Round]
@@ -230,8 +227,8 @@ class Explanation(Answer):
     name: str
     kind: str
     value: Shown | None = None
-    relation: Typed = None
-    typed: Typed = None
+    relation: Given = None
+    typed: Given = None
     template: CalculatedBy | Version | None = None
     text: str | None = None
     latex: str | None = None

@@ -55,8 +55,8 @@ async def get_client(request: Request) -> str:
         return str(request.scope[_CALLER])
     if (named := request.headers.get(HEADER)) is not None:
         if not _NAME.fullmatch(named):
-            told = "a client's name has 1 to 100 printable ASCII characters, such as design-office-7"
-            raise InvalidInputs([Fault(HEADER, "client_name", told)])
+            detail = "a client's name has 1 to 100 printable ASCII characters, such as design-office-7"
+            raise InvalidInputs([Fault(HEADER, "client_name", detail)])
         return f"name:{named}"
     session = request.cookies.get(COOKIE, "")
     if is_session(session):

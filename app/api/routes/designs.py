@@ -196,10 +196,9 @@ async def map_design(
     prefer: Prefer = None,
 ) -> Response:
     """Proposals for model parameters that are not set, by name and unit."""
-    found, saved = await threads.run_within(
+    proposals, saved = await threads.run_within(
         _seconds(prefer), request, designs.auto_map, id, apply, if_match, once
     )
-    proposals = [Proposal(**vars(proposal)) for proposal in found]
     if not saved:
         return written(Proposals(proposals=proposals))
     return await _answer(designs, jobs, saved, prefer, proposals)

@@ -142,7 +142,7 @@ async def build_model(
     job = await run_in_threadpool(models.request, shape, kinds, client)
     if not await finished(jobs, job, prefer):
         return accepted(job, Build(build=build_key(shape), artifacts={}, measurements=None))
-    if job and (failed := await run_in_threadpool(lambda: jobs.get(job).problem)):
+    if job and (failed := await run_in_threadpool(jobs.problem, job)):
         return problems.answer(failed)
     return written(await run_in_threadpool(models.show, build_key(shape)))
 
