@@ -26,7 +26,7 @@ async def show_health() -> Health:
 
 @router.get("/readyz", response_model=Ready, responses=refusals(503))
 async def show_readiness(readiness: TheReadiness) -> Response:
-    """The service can write, has space, and its job processes answer; looked at again at most once a second."""
+    """The service can write, has space, and its job processes answer. Checked at most once a second."""
     said = await readiness.failures()
     listed = [{"name": n, "code": "not_ready", "detail": text} for n, text in said.items() if text]
     if not listed:
