@@ -12,7 +12,7 @@ from app.calculations.begun import Begun
 from app.calculations.steps import begun_steps
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
-from app.designs.automap import Proposal, proposals
+from app.designs.automap import proposals
 from app.designs.calculate import Analysed, Calculation, Measured, Measures, Outputs, calculate
 from app.designs.document import Document, merge
 from app.designs.errors import StaleRevision
@@ -22,6 +22,7 @@ from app.designs.reference import Reference
 from app.designs.repository import Written
 from app.jobs.service import Jobs
 from app.plain import Json, JsonObject, Raw
+from app.schemas.designs import Proposal
 from app.solids import analysis_rows as analyses
 from app.solids import rows
 from app.solids.ages import renew
