@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import dataclass
+from operator import attrgetter
 from threading import Lock
 from typing import Any
 
@@ -21,7 +22,7 @@ class _Sized:
 
 
 def _kept(megabytes: int) -> LRUCache[Hashable, _Sized]:
-    return LRUCache(megabytes * 2**20, getsizeof=lambda kept: kept.size)
+    return LRUCache(megabytes * 2**20, getsizeof=attrgetter("size"))
 
 
 class Cache:

@@ -105,17 +105,17 @@ def _cell(result: Calculation, cell: Cell) -> None:
         result.pending.add(cell)
     elif not (isinstance(cell.declared, Choice) and not cell.relations):
         try:
-            typed = _related(result, cell) if cell.relations else _literal(cell)
+            if cell.relations:
+                typed = _related(result, cell)
+            else:
+                declared = cell.declared
+                typed = read(cell.raw, declared.meaning.unit) if declared else read_any(cell.raw)
         except FaultyText as error:
             result.broken.add(cell)
             if cell.relations or cell.declared is None:
                 result.faults.append(error.fault(cell.name))
         else:
             result.typed[cell.name], result.values[cell.name] = typed, typed.si
-
-
-def _literal(cell: Cell) -> Typed:
-    return read_any(cell.raw) if cell.declared is None else read(cell.raw, cell.declared.meaning.unit)
 
 
 def _related(result: Calculation, cell: Cell) -> Typed:

@@ -63,7 +63,7 @@ class Regeneration:
         assert job.revision is not None
         id, number = job.design, job.revision
         with self.database.read() as session:
-            plain = repository.revision(session, id, number).document
+            plain = repository.document(session, id, number)
         try:
             with calling(self.steps, job, context, f"design:{id}", _lane(job)):
                 calculation, rounds = self._settled(self._prepared(plain), context)

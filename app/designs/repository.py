@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sqlalchemy import select
+from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from app.designs.filtering import DesignFilter, conditions
@@ -51,13 +51,37 @@ def revision(session: Session, id: str, number: int) -> RevisionRow:
     """
     row = session.get(RevisionRow, (id, number))
     if row is None:
-        raise NotFound(f"design {id[:80]!r} has no revision {number}")
+        raise _no_revision(id, number)
     return row
 
 
 def head(session: Session, id: str) -> RevisionRow:
     """The newest revision of a design."""
     return revision(session, id, design(session, id).head)
+
+
+def newest_document(session: Session, id: str) -> tuple[int, JsonObject]:
+    """The number and the document of a design's newest revision, without its results."""
+    number = design(session, id).head
+    return number, document(session, id, number)
+
+
+def document(session: Session, id: str, number: int) -> JsonObject:
+    """The document of a revision, without its results.
+
+    Raises
+    ------
+    NotFound
+        If there is none.
+    """
+    query = select(RevisionRow.document).where(RevisionRow.design_id == id, RevisionRow.number == number)
+    for stored in session.scalars(query):
+        return stored
+    raise _no_revision(id, number)
+
+
+def _no_revision(id: str, number: int) -> NotFound:
+    return NotFound(f"design {id[:80]!r} has no revision {number}")
 
 
 def newest_number(session: Session, id: str) -> int:
@@ -132,8 +156,8 @@ def _model_row(id: str, number: int, state: ModelState) -> RevisionModelRow:
 
 def attach(session: Session, id: str, number: int, results: JsonObject, models: Sequence[ModelState]) -> None:
     """Attach the results of a regeneration to its revision, which becomes current."""
-    row = revision(session, id, number)
-    row.results, row.state, row.problem = results, "current", None
+    this = RevisionRow.design_id == id, RevisionRow.number == number
+    session.execute(update(RevisionRow).where(*this).values(results=results, state="current", problem=None))
     for state in models:
         session.merge(_model_row(id, number, state))
 

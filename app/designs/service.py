@@ -110,8 +110,7 @@ class Designs:
         if saved_before := self._repeated(once):
             return saved_before
         with self.database.read() as session:
-            row = repository.head(session, id)
-            base, document = row.number, row.document
+            base, document = repository.newest_document(session, id)
         _require_match(expected, base)
         return self._append(id, base, merge(document, patch), note, once)
 
@@ -120,17 +119,17 @@ class Designs:
         if saved_before := self._repeated(once):
             return saved_before
         with self.database.read() as session:
-            base = repository.head(session, id).number
-            document = repository.revision(session, id, number).document
+            base = repository.design(session, id).head
+            document = repository.document(session, id, number)
         _require_match(expected, base)
         return self._append(id, base, document, note or f"as revision {number}", once)
 
     def copy(self, id: str, name: str | None, once: Once) -> Saved:
         """A new design with the newest document of another."""
         with self.database.read() as session:
-            row = repository.head(session, id)
-        document = {**row.document, "name": name or f"{row.document['name'][:190]} (copy)"}
-        return self.create(document, f"copy of {id}, revision {row.number}", once)
+            number, document = repository.newest_document(session, id)
+        named = {**document, "name": name or f"{document['name'][:190]} (copy)"}
+        return self.create(named, f"copy of {id}, revision {number}", once)
 
     def delete(self, id: str) -> None:
         """Take a design from the lists; its revisions are kept."""
@@ -180,7 +179,7 @@ class Designs:
             row = repository.design(session, id)
             if row.head != base:
                 raise StaleRevision(f'"{base}"', row.head)
-            if repository.revision(session, id, base).document == draft.written.document:
+            if repository.document(session, id, base) == draft.written.document:
                 unchanged = Saved(id, base, None, created=False, fresh=False)
                 once.keep(session, 200, vars(unchanged))
                 return unchanged

@@ -84,7 +84,8 @@ class JobContext:
 
 def publish(events: Events, job: Job, name: str, **more: object) -> None:
     """Publish an event of a job to those who watch it, and to those who watch its design."""
-    metrics.job_event(job.id, job.kind, name)
+    if name != "progress":
+        metrics.job_event(job.id, job.kind, name)
     if name in ("done", "failed", "cancelled"):
         logger.info("job %s (%s) %s", job.id, job.kind, name, extra={"job": job.id})
     event = {"event": name, "job": job.id, "revision": job.revision, **more}

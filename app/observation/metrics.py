@@ -68,10 +68,10 @@ def committed(units: int, seconds: float, failed: bool) -> None:
 
 
 def job_event(job: str, kind: str, name: str) -> None:
-    """Count what happens to a job."""
+    """Count a job that is queued, begins or ends."""
     if name == "running":
         _started[job] = time.monotonic()
-    elif name != "progress":
+    else:
         begun = _started.pop(job, None)
         if name != "queued":
             ENDED.labels(kind, name).inc()

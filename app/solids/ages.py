@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from sqlalchemy import update
+from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 
 from app.storage.clock import operated
@@ -21,8 +21,8 @@ FRESH = (
 def is_fresh(session: Session, keys: Collection[str]) -> bool:
     """Whether all of these builds are there, and sure to stay for as long as any request or job takes."""
     present = operated(session)
-    rows = (session.get(BuildRow, key) for key in keys)
-    return all(row is not None and present - row.operated <= FRESH for row in rows)
+    wanted = select(func.count()).where(BuildRow.key.in_(set(keys)), BuildRow.operated >= present - FRESH)
+    return session.scalar(wanted) == len(set(keys))
 
 
 def renew(session: Session, keys: Collection[str]) -> bool:

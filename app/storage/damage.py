@@ -7,7 +7,6 @@ import sqlite3
 import threading
 from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
 
 from app.storage.engines import sqlite_file
 from app.storage.errors import DatabaseDamaged
@@ -17,7 +16,7 @@ logger = logging.getLogger(__name__)
 
 
 class Watch:
-    """A context that turns SQLite's errors about damage into DatabaseDamaged, and remembers the first.
+    """Turns SQLite's errors about damage into DatabaseDamaged, and remembers the first.
 
     It leaves a note of it beside the file: what is lost with SQLite's log shows at no later start.
     """
@@ -45,15 +44,13 @@ class Watch:
         if error is not None and is_damage(error):
             raise self._named(error) from error
 
-    def __enter__(self) -> None:
-        """Watch from here."""
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Look at what was raised."""
-        if error is not None:
+    def translated(self, error: Exception) -> Exception:
+        """DatabaseDamaged in place of an error that says so; any other error as it is."""
+        try:
             self.raise_if_damage(error)
+        except DatabaseDamaged as damage:
+            return damage
+        return error
 
     def _named(self, error: BaseException) -> DatabaseDamaged:
         with self._lock:

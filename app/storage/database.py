@@ -59,8 +59,12 @@ class Database:
             What was to be read cannot be read.
         """
         self.watch.require_file()
-        with self.watch, Session(self._reader, expire_on_commit=False) as session:
-            yield session
+        try:
+            with Session(self._reader, expire_on_commit=False) as session:
+                yield session
+        except BaseException as error:
+            self.watch.raise_if_damage(error)
+            raise
 
     def write(self, unit: Unit[T]) -> T:
         """Run a unit of work in the writer thread and return its result once that is durable.
@@ -101,7 +105,8 @@ class Database:
 
     def submit(self, unit: Unit[T]) -> "Future[T]":
         """Queue a unit of work; its future raises as `write` does."""
-        self.watch.refuse()
+        if self.watch.damage is not None:  # whether the file is still there shows when the group begins
+            self.watch.refuse()
         pending = _Pending(unit)
         with self._closing:  # nothing may enter the queue behind its end
             if self._closed:
@@ -132,7 +137,7 @@ class Database:
     def _commit(self, group: "list[_Pending]") -> None:
         start = time.perf_counter()
         try:
-            with self.watch, self._writer.begin() as connection:
+            with self._writer.begin() as connection:
                 self.watch.refuse()  # damage may have shown while the group was waiting
                 seconds = self.clock.advance(connection)
                 for pending in group:
@@ -142,8 +147,9 @@ class Database:
             self.watch.refuse()  # a file that was deleted meanwhile has taken the commit along
         except Exception as error:
             self._on_commit(len(group), time.perf_counter() - start, True)
+            cause = self.watch.translated(error)
             for pending in group:
-                pending.refuse(error)
+                pending.refuse(cause)
         else:
             self._on_commit(len(group), time.perf_counter() - start, False)
             self.clock.commit(seconds)

@@ -26,15 +26,10 @@ NAMING = {
 }
 
 
-def canonical_json(value: plain.Json) -> str:
-    """Write a JSON value in its one canonical form.
-
-    Raises
-    ------
-    ValueError
-        The value holds NaN or an infinity, which JSON does not know.
-    """
-    return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+canonical_json = json.JSONEncoder(
+    sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False
+).encode
+"""Write a JSON value in its one canonical form; raises ValueError for NaN and infinity, which are no JSON."""
 
 
 class NotWritten(ValueError):

@@ -59,9 +59,8 @@ class Accuracy:
         """Row and column of the cell in which each point lies, and whether it lies in any."""
         first, second = (getattr(template, axis) for axis in self.axes)
         if isinstance(first, float) and isinstance(second, float):  # NumPy would take ten times as long
-            (row, in_rows), (column, in_columns) = (
-                _place(edges, value) for edges, value in zip(self._edges, (first, second), strict=True)
-            )
+            row, in_rows = _place(self._edges[0], first)
+            column, in_columns = _place(self._edges[1], second)
             return row, column, in_rows and in_columns
         first, second = np.broadcast_arrays(np.asarray(first, float), np.asarray(second, float))
         rows, inside_rows = _places(self.grids[0], first)

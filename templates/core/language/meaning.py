@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -42,6 +43,15 @@ class Bounds:
         if self.le is not None:
             inside = inside & (value <= self.le)
         return inside
+
+    def interval(self) -> tuple[float, float]:
+        """The least and the greatest finite number within the limits."""
+        low, high = -sys.float_info.max, sys.float_info.max
+        low = low if self.gt is None else max(low, math.nextafter(self.gt, math.inf))
+        low = low if self.ge is None else max(low, self.ge)
+        high = high if self.lt is None else min(high, math.nextafter(self.lt, -math.inf))
+        high = high if self.le is None else min(high, self.le)
+        return low, high
 
     def text(self, name: str) -> str:
         """In words: `> 0 mm and ≤ 5 mm`."""
@@ -100,7 +110,10 @@ class Meaning:
 
     def admits(self, value: Any) -> Any:
         """Where an SI value (scalar or array) is finite, within the domain and whole if it must be."""
-        inside = math.isfinite(value) if isinstance(value, float) else np.isfinite(value)
+        if isinstance(value, float):
+            low, high = self.interval
+            return low <= value <= high and not (self.integer and value != round(value))
+        inside = np.isfinite(value)
         if self.domain_si is not None:
             inside = inside & self.domain_si.admits(value)
         return inside & (np.round(value) == value) if self.integer else inside
@@ -114,6 +127,11 @@ class Meaning:
     def domain_si(self) -> Bounds | None:
         """The domain in SI, or None where every finite value means something."""
         return None if self.domain.open else self.domain.in_si(self.scale)
+
+    @cached_property
+    def interval(self) -> tuple[float, float]:
+        """The finite numbers [SI] within the domain, as the least and the greatest of them."""
+        return (self.domain_si or Bounds()).interval()
 
     @cached_property
     def published_si(self) -> Bounds | None:

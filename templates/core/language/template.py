@@ -275,7 +275,8 @@ class Template:
             meaning = meaning.at(self.level)
         if isinstance(value, float) or (np.ndim(value) == 0 and not isinstance(value, str)):
             value = np.float64(value)
-            if not (math.isfinite(value) and (meaning.domain_si is None or meaning.domain_si.admits(value))):
+            low, high = meaning.interval
+            if not low <= value <= high:
                 why = absence(self, declaration) if math.isnan(value) else None
                 if why is None:
                     raise InvalidInputs([refusal(self, declaration, value)])
@@ -284,8 +285,9 @@ class Template:
             value = whole(self, declaration, value)
         elif isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
             value = masked(self, declaration, value)
-        if warning := outside_published(declaration, value, self.level):
-            self.ledger.warnings.append(warning)
+        if meaning.published_si is not None:
+            outside = outside_published(declaration, value, self.level)
+            self.ledger.warnings += [outside] if outside else []
         for assumed in meaning.assumes:
             getattr(self, assumed)
         return value
