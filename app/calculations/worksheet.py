@@ -8,7 +8,8 @@ from app.calculations import rendering
 from app.calculations.schemas import EvaluateIn
 from app.calculations.service import evaluated
 from app.plain import JsonObject
-from app.presentation.units import System, converted, shown_unit
+from app.presentation.units import System, shown_unit
+from app.schemas.evaluations import Worksheet
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.template import Template
 from templates.core.paper import report
@@ -28,12 +29,9 @@ def run_worksheet(cls: type[Template], body: EvaluateIn, system: System) -> Json
 
 def worksheet(evaluation: Evaluation, system: System) -> JsonObject:
     """An evaluation as `evaluate` answers it, in the system's units, with its formulas."""
-    answer = rendering.evaluation(evaluation)
-    return {
-        **answer,
-        "outputs": converted(answer["outputs"], system),
-        "formulas": formulas(evaluation.template, system, evaluation.outputs),
-    }
+    written = formulas(evaluation.template, system, evaluation.outputs)
+    answer = {**rendering.evaluation(evaluation), "formulas": written}
+    return answer if system == "si" else Worksheet.model_validate(answer).in_units(system).plain()
 
 
 def formulas(template: Template, system: System, names: Container[str]) -> list[JsonObject]:

@@ -12,6 +12,7 @@ from app.plain import JsonObject, Raw
 from app.solids import measures
 from app.solids.analysis_views import in_design
 from cad.regenerate import build_key
+from templates.core.language.record import record
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ def _step(calculation: Calculation, block: Block) -> JsonObject:
     answer = rendering.evaluation(evaluation)
     remember(answer, evaluation)
     del answer["seconds"]  # equal revisions are equal
-    return {**answer, "relations": relations}
+    return {**answer, "relations": relations, "record": vars(record(evaluation.template))}
 
 
 def models(calculation: Calculation) -> list[ModelState]:

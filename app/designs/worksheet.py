@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Container, Hashable, Mapping
 from typing import NamedTuple, Self
 
 from app.calculations.begun import fingerprint
-from app.calculations.cache import results as kept
+from app.calculations.cache import results as cache
 from app.calculations.cost import EXPENSIVE
 from app.calculations.errors import StepDeferred
+from app.calculations.rendering import identity
 from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
 from app.designs.calculate import Calculation
@@ -19,6 +20,7 @@ from app.schemas.evaluations import UsedInput, WorkedFormula
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.language.evaluate import Evaluation
+from templates.core.language.record import restored
 from templates.core.language.template import Template
 from templates.core.paper.verdicts import Check, checks
 
@@ -26,7 +28,7 @@ from templates.core.paper.verdicts import Check, checks
 def worksheet(revision: Revision, catalogue: Catalogue[Template], system: System) -> RevisionWorksheet:
     """A revision with `formulas`, from the inputs and at the level that its job used."""
     steps = {
-        name: _with_formulas(step, _worked(step, catalogue, system).formulas, system)
+        name: _with_formulas(step, _written_out(step, catalogue, system), system)
         for name, step in revision.steps.items()
     }
     models = {name: model.in_units(system) for name, model in revision.models.items()}
@@ -39,7 +41,7 @@ def previewed(
 ) -> dict[str, PreviewedStep]:
     """The steps of a preview with `formulas`; a step that waits for a solid has none yet."""
     evaluations = calculation.evaluations
-    written = {name: _formulas(evaluation, system) for name, evaluation in evaluations.items()}
+    written = {name: _formulas(e.template, system, e.outputs) for name, e in evaluations.items()}
     return {name: _with_formulas(step, written.get(name, []), system) for name, step in steps.items()}
 
 
@@ -51,27 +53,36 @@ def _with_formulas(step: RevisionStep, rows: list[WorkedFormula], system: System
 
 
 def checked(step: RevisionStep, catalogue: Catalogue[Template]) -> list[Check]:
-    """Every bound and rule of a revision's step, held against its values."""
-    return _worked(step, catalogue, "si").checks
+    """Every bound and rule of a revision's step, compared with its values; none if these are not known."""
+    template = _calculated(step, catalogue, with_arrays=True)
+    return [] if template is None else list(checks(template))
 
 
-class _Worked(NamedTuple):
-    """What follows from a step that is calculated again."""
+def _written_out(step: RevisionStep, catalogue: Catalogue[Template], system: System) -> list[WorkedFormula]:
+    """The formulas of a revision's step; none if their values are not known."""
+    template = _calculated(step, catalogue)
+    return [] if template is None else _formulas(template, system, step.outputs)
 
-    formulas: list[WorkedFormula]
-    checks: list[Check]
 
+def _calculated(
+    step: RevisionStep, catalogue: Catalogue[Template], *, with_arrays: bool = False
+) -> Template | None:
+    """The template of a step that has results, from its record, or calculated again as its job did.
 
-def _worked(step: RevisionStep, catalogue: Catalogue[Template], system: System) -> _Worked:
-    """Formulas and checks of a step that has results, calculated as its job did; none if it is deferred."""
+    It is calculated again if the revision was written before there were records, if the version has changed
+    since, and if arrays are wanted that the record leaves out. None if it has no results, if calculating is
+    deferred, or if the file of the version was taken away or refuses the inputs now.
+    """
     if not step.outputs:
-        return _Worked([], [])
+        return None
     try:
-        return _written_out(catalogue.get(step.template.id, step.template.version), step, system)
-    except TemplateError:  # the file of this version was taken away, or changed: its results stay
-        return _Worked([], [])
-    except StepDeferred:
-        return _Worked([], [])
+        cls = catalogue.get(step.template.id, step.template.version)
+        if step.record and identity(cls)["content_digest"] == step.template.content_digest:
+            if not (with_arrays and step.record.has_arrays):
+                return restored(cls, step.record, step.level if isinstance(step.level, str) else None)
+        return _evaluated(cls, step).template
+    except (TemplateError, StepDeferred):
+        return None
 
 
 def _retyped(used: UsedInput) -> Raw:
@@ -95,29 +106,26 @@ class _Question(NamedTuple):
         level = step.level if isinstance(step.level, str) else None
         return cls(given, tuple(sorted(step.outputs)), level)  # as the database has them
 
-    def key(self, *more: type[Template] | System) -> Hashable:
-        return (_Question, fingerprint(self.inputs), self.outputs, self.level, *more)
+    def key(self, cls: type[Template]) -> Hashable:
+        return (_Question, fingerprint(self.inputs), self.outputs, self.level, cls)
 
 
 def remember(answer: JsonObject, evaluation: Evaluation) -> None:
     """Keep the evaluation of an expensive step, so that its worksheet does not calculate it again."""
     if evaluation.seconds > EXPENSIVE:
         question = _Question.of(RevisionStep.model_validate(answer))
-        kept.keep(question.key(type(evaluation.template)), evaluation)
+        cache.keep(question.key(type(evaluation.template)), evaluation)
 
 
-def _formulas(evaluation: Evaluation, system: System) -> list[WorkedFormula]:
-    rows = formulas(evaluation.template, system, evaluation.outputs)
-    return [WorkedFormula.model_validate(row) for row in rows]
+def _formulas(template: Template, system: System, names: Container[str]) -> list[WorkedFormula]:
+    return [WorkedFormula.model_validate(row) for row in formulas(template, system, names)]
 
 
-def _written_out(cls: type[Template], step: RevisionStep, system: System) -> _Worked:
-    """Formulas and checks, kept because a revision never changes."""
+def _evaluated(cls: type[Template], step: RevisionStep) -> Evaluation:
+    """The evaluation of a step as its job did it, kept because a revision never changes."""
     question = _Question.of(step)
-    key = question.key(cls, system)
-    written: _Worked | None = kept.get(key)
-    if written is None:
-        evaluation = kept.get(question.key(cls)) or evaluated_step(cls, *question, None)
-        written = _Worked(_formulas(evaluation, system), list(checks(evaluation.template)))
-        kept.keep(key, written)
-    return written
+    kept: Evaluation | None = cache.get(question.key(cls))
+    if kept is None:
+        kept = evaluated_step(cls, *question, None)
+        cache.keep(question.key(cls), kept)
+    return kept

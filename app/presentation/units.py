@@ -5,12 +5,11 @@ Values are calculated in SI whatever is shown; what was typed is never converted
 
 from __future__ import annotations
 
-from typing import Literal, TypeVar, cast
+from typing import Literal, cast
 
 from templates.core.units.units import unit
 
 System = Literal["si", "us"]
-Plain = TypeVar("Plain")
 US = {
     "m": "ft", "mm": "inch", "um": "thou", "mm**2": "inch**2", "mm**3": "inch**3",
     "N": "lbf", "kN": "lbf", "N*m": "lbf*ft", "N/m": "lbf/inch", "N*s/m": "lbf*s/inch",
@@ -25,22 +24,6 @@ US = {
 def shown_unit(declared: str, system: System) -> str:
     """The unit in which a value declared in another is shown."""
     return US.get(declared, declared) if system == "us" else declared
-
-
-def converted(plain: Plain, system: System) -> Plain:
-    """Plain data with every quantity in it converted; what has no unit stays as it is."""
-    return plain if system == "si" else cast(Plain, _converted(plain))
-
-
-def _converted(plain: object) -> object:
-    """Plain data in US units."""
-    if isinstance(plain, list):
-        return [_converted(item) for item in plain]
-    if not isinstance(plain, dict):
-        return plain
-    if plain.get("unit") in US and "value" in plain:
-        return {**plain, "value": _value(plain["value"], plain["unit"]), "unit": US[plain["unit"]]}
-    return {name: _converted(item) for name, item in plain.items()}
 
 
 def shown_value(value: object, declared: str, system: System) -> object:

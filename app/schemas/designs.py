@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
+from pydantic.json_schema import SkipJsonSchema
 
 from app.schemas.analyses import AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Answer, Page, Shown, Version, Warning
@@ -12,6 +13,7 @@ from app.schemas.evaluations import CalculatedBy, Error, Level, Output, UsedInpu
 from app.schemas.problems import Problem
 from app.schemas.solids import Measurements
 from app.schemas.values import Given
+from templates.core.language.record import Record
 
 State = Literal["current", "regenerating", "failed"]
 """`current`: the results belong to the inputs; `regenerating`: a job is at work; `failed`: see `problem`."""
@@ -123,6 +125,8 @@ class RevisionStep(Answer):
     relations: dict[str, Given] = Field({}, description="inputs that are relations, as typed")
     state: str | None = Field(None, description="`pending` in a preview, for a step that waits")
     pending: bool = Field(False, description="whether it waits; absent if it does not")
+    record: Annotated[Record | None, SkipJsonSchema()] = Field(None, exclude=True)
+    """What its formulas are written from; not served, and None in revisions of before there were any."""
 
 
 class RevisionModel(Answer):

@@ -12,7 +12,7 @@ from app.catalogue.finding import find_templates
 from app.designs import memory as designs
 from app.designs.graph import Block
 from app.designs.memory import Memory
-from app.designs.worksheet import _written_out
+from app.designs.worksheet import _evaluated
 from app.schemas.designs import RevisionStep
 from templates.core.language.evaluate import evaluate
 
@@ -126,14 +126,12 @@ class TestMemory:
         assert cache.size - before >= MIB
 
 
-def test_formulas_written_out_are_kept_in_the_same_cache(film, monkeypatch):
-    cache = Cache(16)
-    monkeypatch.setattr("app.designs.worksheet.kept", cache)
+def test_a_step_without_a_record_is_calculated_once(film, monkeypatch):
+    kept = Cache(16)
+    monkeypatch.setattr("app.designs.worksheet.cache", kept)
     outputs = tuple(film.formulas)[:1]
-    answer = rendering.evaluation(evaluate(film, film.example, outputs=outputs))
-    step = RevisionStep.model_validate(answer)
-    arguments = (film, step, "si")
-    first = _written_out(*arguments)
-    assert cache.size > 1000
+    step = RevisionStep.model_validate(rendering.evaluation(evaluate(film, film.example, outputs=outputs)))
+    first = _evaluated(film, step)
+    assert kept.size > 1000
     monkeypatch.setattr("app.designs.worksheet.evaluated_step", None)
-    assert _written_out(*arguments) is first
+    assert _evaluated(film, step) is first

@@ -50,11 +50,16 @@ def checks(template: Template) -> Iterator[Check]:
     """Every bound that says more than a sign, and every rule, as far as their values were calculated."""
     for declared in template.declarations.values():
         value = vars(template).get(declared.attribute)
-        if isinstance(value, (float, np.ndarray)) and np.any(np.isfinite(value)):
+        if _is_number(value) and np.any(np.isfinite(value)):
             yield from _of_bounds(template, declared, declared.meaning.at(template.level), value)
     for rule in template.requirements:
         if template.ledger.missing.isdisjoint(rule.uses) or rule.missing:
             yield _of_rule(template, rule)
+
+
+def _is_number(value: object) -> bool:
+    """Whether a value is a number or an array of numbers; a text for each point has no bounds."""
+    return isinstance(value, float) or (isinstance(value, np.ndarray) and value.dtype.kind in "fiu")
 
 
 def _of_bounds(template: Template, declared: Declaration, meaning: Meaning, value: Any) -> Iterator[Check]:
