@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
 import click
 import numpy as np
@@ -26,6 +25,7 @@ from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from cad.catalogue import models as find_models
+from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.catalogue.golden import freeze as freeze_template
 from templates.core.errors import InvalidInputs, UnknownTemplate, UnusableFile
@@ -219,7 +219,7 @@ def _shown(default: Json) -> str:
 @click.option("--folder", type=click.Path(path_type=Path), default=GOLDEN, show_default=True)
 def freeze(id: str, version: int, folder: Path) -> None:
     """Write the golden record of a template or model about to be released; never over an existing one."""
-    catalogue: Catalogue[Any] = find_models(*Settings().template_folders)
+    catalogue: Catalogue[CadModel] = find_models(*Settings().template_folders)
     try:
         cls = catalogue.get(id, version) if id in catalogue.ids else _find(id, version)
         click.echo(f"written: {freeze_template(cls, folder)}")

@@ -15,12 +15,12 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import click
 
 from app.client import Client
 from app.designs.schemas import PAPER
+from app.plain import JsonObject
 from app.schemas.answers import Quantity
 from app.schemas.designs import Design
 
@@ -112,13 +112,13 @@ def _end_of(log: Path) -> str:
 
 
 def _created(client: Client) -> Design:
-    document: dict[str, Any] = json.loads(json.dumps(PAPER))
+    document: JsonObject = json.loads(json.dumps(PAPER))
     document["model"]["parameters"] = {"inner_diameter": "50 mm"}
     click.echo("creating the design: ball bearing of 50 mm, SCALE = 1, D = SCALE * 48 mm")
     return _checked(client.create(document, on_progress=_progress))
 
 
-def _changed(client: Client, design: Design, what: str, patch: dict[str, Any]) -> Design:
+def _changed(client: Client, design: Design, what: str, patch: JsonObject) -> Design:
     click.echo(f"changing: {what}")
     return _checked(client.change(design, patch, on_progress=_progress))
 
@@ -152,6 +152,7 @@ def _facts(client: Client, design: Design) -> dict[str, tuple[float, str]]:
     thickness = revision.steps["film"].outputs["minimum_film_thickness"]
     dimensions = _dimensions(client, _build(client, design))
     measured = {name: (size.value, size.unit.removeprefix("1")) for name, size in dimensions.items()}
+    assert isinstance(thickness.value, float), "the paper's film has one thickness"
     return {"minimum_film_thickness": (thickness.value, thickness.unit or ""), **measured}
 
 

@@ -1,7 +1,7 @@
 """Types of plain values, whose shape only their readers know; used by every layer.
 
-`Any` has its reasons here, once: `JsonValue` of Pydantic would ask for a check at each index into a value
-that a model, a migration or the language checks as a whole.
+`Json` is `Any` for a reason: `JsonValue` of Pydantic would ask for a check at each index into a value that a
+model, a migration or the language checks as a whole.
 """
 
 from __future__ import annotations
@@ -14,5 +14,5 @@ Json = Any
 JsonObject = dict[str, Json]
 """A JSON object, such as a column of the database holds."""
 
-Raw = Any
+Raw = object
 """A value as its user typed it: untrusted; the language of templates reads it and says what is wrong."""

@@ -12,13 +12,14 @@ from __future__ import annotations
 import faulthandler
 import logging
 import os
+import socket
 import sys
 import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import uvicorn
 from fastapi import FastAPI
@@ -38,25 +39,25 @@ STARTUP_FAILURE = 3  # uvicorn's exit code
 _IDLE = ("threading.py", "queue.py", "selectors.py", "thread.py", "connection.py", "_threads.py", "socket.py")
 
 
-def configuration(app: FastAPI, settings: Settings, **more: Any) -> uvicorn.Config:
-    """Uvicorn's configuration with the service's limits."""
+def configuration(app: FastAPI, settings: Settings, port: int | None = None) -> uvicorn.Config:
+    """Uvicorn's configuration with the service's limits, on the port of the settings or on another."""
     limits = ConnectionLimits(
         settings.connections,
         settings.header_seconds,
         settings.write_seconds,
         settings.slowest_rate,
     )
-    given: dict[str, Any] = {
-        "host": settings.host,
-        "port": settings.port,
-        "http": protocol(limits, Observed(_busy)),
-        "ws": "none",
-        "timeout_keep_alive": settings.keep_alive_seconds,
-        "timeout_graceful_shutdown": settings.drain_seconds - settings.stop_seconds,
-        "log_config": None,
-        "access_log": False,
-    }
-    return uvicorn.Config(app, **{**given, **more})
+    return uvicorn.Config(
+        app,
+        host=settings.host,
+        port=settings.port if port is None else port,
+        http=protocol(limits, Observed(_busy)),
+        ws="none",
+        timeout_keep_alive=settings.keep_alive_seconds,
+        timeout_graceful_shutdown=settings.drain_seconds - settings.stop_seconds,  # type: ignore[arg-type]  # waits parts of seconds too
+        log_config=None,
+        access_log=False,
+    )
 
 
 async def _busy(scope: Scope, receive: Receive, send: Send) -> None:
@@ -95,7 +96,7 @@ class Server(uvicorn.Server):
         self.should_exit = True
         faulthandler.dump_traceback_later(self.drain_seconds + 1, exit=True)
 
-    async def shutdown(self, sockets: Any = None) -> None:
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Answer what is in flight, run the end of the lifespan, and leave if a signal was the cause."""
         await super().shutdown(sockets)
         if self._first.is_set():

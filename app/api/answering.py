@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 from concurrent.futures import Future
 from contextlib import suppress
-from typing import Any
 
 from fastapi import Request, Response
 from starlette.concurrency import run_in_threadpool
@@ -112,11 +111,11 @@ class Answering:
             leaving.cancel()
 
 
-async def _done(future: Future[Any]) -> None:
+async def _done(future: Future[object]) -> None:
     """Wait for a future of threads, without any hold on it."""
     loop, done = asyncio.get_running_loop(), asyncio.Event()
 
-    def wake(_: Future[Any]) -> None:
+    def wake(_: Future[object]) -> None:
         with suppress(RuntimeError):  # the loop has ended
             loop.call_soon_threadsafe(done.set)
 

@@ -6,7 +6,7 @@ The functions are async although they wait for nothing: FastAPI runs sync ones i
 from __future__ import annotations
 
 from collections.abc import AsyncIterator, Awaitable, Callable
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import Depends, Header, Query, Request
 
@@ -38,10 +38,10 @@ def services_of(request: Request) -> Services:
     return services
 
 
-def _part(name: str) -> Callable[[Request], Awaitable[Any]]:
+def _part(name: str) -> Callable[[Request], Awaitable[object]]:
     """The dependency that gives a part of the services by its name."""
 
-    async def part(request: Request) -> Any:
+    async def part(request: Request) -> object:
         return getattr(services_of(request), name)
 
     return part

@@ -4,6 +4,8 @@ FastAPI derives it from the routes. It is wrong in four things, which are correc
 a path, query or header has no null; a change needs If-Match; a name that does not fit the pattern of names is
 refused; `itemSchema` is OpenAPI 3.2. Some things are put so that generators of clients understand them.
 Problems that follow from what an operation takes are added here too; a route declares those of its own.
+
+`Any` is what FastAPI's dictionaries hold: parts of a description, of any depth.
 """
 
 from __future__ import annotations

@@ -7,17 +7,17 @@ from typing import Annotated, Any, TypeVar
 
 from fastapi import Query
 
-from app.schemas.answers import Page
+from app.schemas.answers import Answer, Page
 
 T = TypeVar("T")
-Pages = TypeVar("Pages", bound=Page[Any])
+Pages = TypeVar("Pages", bound=Page[Any])  # of whatever items: a page is invariant in them
 
 Limit = Annotated[int, Query(ge=1, le=500, description="items in one page")]
 Cursor = Annotated[str | None, Query(max_length=200, description="`next` of the page before")]
 
 
 def page(
-    kind: type[Pages], rows: Sequence[T], limit: int, show: Callable[[T], Any], cursor: Callable[[T], str]
+    kind: type[Pages], rows: Sequence[T], limit: int, show: Callable[[T], Answer], cursor: Callable[[T], str]
 ) -> Pages:
     """One page from rows of which one more than `limit` was asked for, to see whether there are more."""
     items = rows[:limit]
@@ -26,7 +26,7 @@ def page(
 
 
 def page_of(
-    kind: type[Pages], everything: Sequence[T], limit: int, after: str | None, show: Callable[[T], Any]
+    kind: type[Pages], everything: Sequence[T], limit: int, after: str | None, show: Callable[[T], Answer]
 ) -> Pages:
     """One page of a short list that is known whole; the cursor is the place in it."""
     start = int(after) if after and after.isdecimal() and len(after) < 9 else 0

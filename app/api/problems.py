@@ -8,11 +8,11 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from fastapi import APIRouter, FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
+from pydantic_core import ErrorDetails
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
@@ -34,6 +34,7 @@ from app.calculations.errors import InvalidBody, TooManyValues
 from app.designs import errors as designs
 from app.jobs import errors as jobs
 from app.observation import logs, metrics
+from app.plain import Json, JsonObject
 from app.reports.errors import Unprintable
 from app.schemas.problems import MEDIA_TYPE, ProblemKind, refusals
 from app.storage import errors as storage
@@ -145,7 +146,7 @@ def kind_of(error: Exception) -> Kind:
     return next((TABLE[cls] for cls in type(error).__mro__ if cls in TABLE), INTERNAL)
 
 
-def describe(error: Exception) -> dict[str, Any]:
+def describe(error: Exception) -> JsonObject:
     """An error as a problem (RFC 9457), with all that it carries."""
     kind = kind_of(error)
     detail = kind.remedy if kind is INTERNAL else _detail(error)
@@ -158,23 +159,23 @@ def _detail(error: Exception) -> str:
     return "" if isinstance(error, RequestValidationError) else str(error)
 
 
-def problem(kind: Kind, detail: str) -> dict[str, Any]:
+def problem(kind: Kind, detail: str) -> JsonObject:
     """A problem object."""
     return {"type": f"/problems/{kind.slug}", "title": kind.title, "status": kind.status, "detail": detail}
 
 
-def _faults(error: templates.InvalidInputs) -> dict[str, Any]:
+def _faults(error: templates.InvalidInputs) -> JsonObject:
     listed = [{"name": fault.name, "code": fault.code, "detail": fault.detail} for fault in error.faults]
     count = len(listed)
     return {"errors": listed, "detail": f"{count} {'fault' if count == 1 else 'faults'}: {_short(listed)}"}
 
 
-def _validation(error: RequestValidationError | InvalidBody) -> dict[str, Any]:
+def _validation(error: RequestValidationError | InvalidBody) -> JsonObject:
     listed = [_located(found) for found in error.errors()]
     return {"errors": listed, "detail": _short(listed)}
 
 
-def _located(found: Mapping[str, Any]) -> dict[str, Any]:
+def _located(found: ErrorDetails) -> JsonObject:
     place = [str(part)[:LONGEST_PLACE] for part in found["loc"]]
     if found["type"] == "json_invalid":
         place = ["body"]
@@ -188,22 +189,22 @@ def _located(found: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _short(listed: Iterable[Mapping[str, Any]]) -> str:
+def _short(listed: Iterable[Mapping[str, object]]) -> str:
     return "; ".join(f"{fault['name']}: {fault['detail']}" for fault in listed)[:500]
 
 
-def _unreachable(error: templates.Unreachable) -> dict[str, Any]:
+def _unreachable(error: templates.Unreachable) -> JsonObject:
     ends = [None if end != end else end for end in error.reachable]
     listed = [{"name": f"target.{error.name}", "code": "unreachable", "detail": str(error)}]
     return {"reachable": [{"value": end, "unit": error.unit} for end in ends], "errors": listed}
 
 
-def _geometry(error: GeometryError) -> dict[str, Any]:
+def _geometry(error: GeometryError) -> JsonObject:
     names = error.parameters or ("model",)
     return {"errors": [{"name": name, "code": error.code, "detail": error.detail} for name in names]}
 
 
-_CARRIED: dict[type[Exception], Callable[[Any], dict[str, Any]]] = {
+_CARRIED: dict[type[Exception], Callable[..., JsonObject]] = {
     templates.InvalidInputs: _faults,
     RequestValidationError: _validation,
     InvalidBody: _validation,
@@ -238,7 +239,7 @@ def explain_problem(slug: str) -> ProblemKind:
     return ProblemKind(**vars(kinds[slug]))
 
 
-def answer(about: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
+def answer(about: Mapping[str, Json], headers: Mapping[str, str] | None = None) -> Response:
     """A problem as a response; it carries the id of the request."""
     about = {**about, "request_id": id_} if (id_ := logs.REQUEST_ID.get()) else about
     return JSONResponse(dict(about), about["status"], headers=dict(headers or {}), media_type=MEDIA_TYPE)

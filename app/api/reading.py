@@ -17,6 +17,7 @@ from pydantic_core import from_json
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.gate.pacing import Pace
+from app.plain import Json
 from app.workers.pieces import PIECE, Pieces
 
 JSON_TYPES = {"application/json"}
@@ -98,7 +99,7 @@ class StrictRequest(Request):
             if size > PIECE:
                 await self.pace.step()
 
-    async def json(self) -> Any:
+    async def json(self) -> Json:
         """The body as JSON.
 
         Raises
@@ -120,10 +121,10 @@ class StrictRoute(APIRoute):
     Its answers leave out the fields that nobody has set.
     """
 
-    def __init__(self, path: str, endpoint: Callable[..., Any], **options: Any) -> None:
+    def __init__(self, path: str, endpoint: Callable[..., object], **options: Any) -> None:  # as FastAPI
         super().__init__(path, endpoint, **{**options, "response_model_exclude_unset": True})
 
-    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+    def get_route_handler(self) -> Callable[[Request], Coroutine[object, None, Response]]:
         """FastAPI's handler behind the checks."""
         handler = super().get_route_handler()
         takes_json = self.body_field is not None

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
 
 from fastapi import Request
 from fastapi.responses import Response
 
 from app.jobs.service import Jobs
 from app.schemas.answers import Accepted, Answer
+from app.schemas.problems import Responses
 
 LONGEST = 60.0  # s
-LATER: dict[int | str, dict[str, Any]] = {
+LATER: Responses = {
     202: {"description": "the work goes on; its job is in the header Location", "model": Accepted}
 }
 """What a route says of its answers that may become a job."""
 
 
-def later(answer: type[Answer]) -> dict[int | str, dict[str, Any]]:
+def later(answer: type[Answer]) -> Responses:
     """What a route says of its answers whose 202 holds as much of the answer as there is."""
     described = "the answer as far as it goes: the work goes on, and its job is in the header Location"
     return {202: {"description": described, "model": answer}}

@@ -11,9 +11,9 @@ from __future__ import annotations
 from typing import Self
 
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
 from app.jobs.errors import QueueFull
-from app.plain import JsonObject
 
 
 class TooManyCalculations(QueueFull):
@@ -34,7 +34,7 @@ class StepDeferred(Exception):
 class InvalidBody(Exception):
     """A body that is not what the operation takes; `errors()` are in pydantic's form."""
 
-    def __init__(self, listed: list[JsonObject]) -> None:
+    def __init__(self, listed: list[ErrorDetails]) -> None:
         super().__init__(listed)
         self._listed = listed
 
@@ -47,9 +47,9 @@ class InvalidBody(Exception):
     @classmethod
     def not_json(cls, reason: str) -> Self:
         """For a body that cannot be parsed, in the words of FastAPI."""
-        entry = {"type": "json_invalid", "loc": ("body", 0), "msg": "JSON decode error"}
+        entry = ErrorDetails(type="json_invalid", loc=("body", 0), msg="JSON decode error", input=None)
         return cls([{**entry, "ctx": {"error": reason}}])
 
-    def errors(self) -> list[JsonObject]:
+    def errors(self) -> list[ErrorDetails]:
         """What is wrong, one by one."""
         return self._listed

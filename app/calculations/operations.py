@@ -29,7 +29,7 @@ class Operation:
     """What is asked, the model of the body that asks it, and what refuses it without calculating."""
 
     body: type[Asked]
-    check: Callable[[type[Template], Any], None]
+    check: Callable[[type[Template], Any], None]  # takes an object of `body`
     run: Callable[[type[Template], Any, System], JsonObject]
 
 

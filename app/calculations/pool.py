@@ -28,11 +28,11 @@ class Calculation:
     """A calculation that waits or runs; its `future` holds what comes out."""
 
     def __init__(
-        self, function: Callable[..., Any], args: tuple[Any, ...], client: str, turn: int, lane: Lane
+        self, function: Callable[..., object], args: tuple[object, ...], client: str, turn: int, lane: Lane
     ) -> None:
         self.function, self.args = function, args
         self.client, self.turn, self.lane = client, turn, lane
-        self.future: Future[Any] = Future()
+        self.future: Future[Any] = Future()  # whoever submits a function knows what it returns
         self.cancelled = threading.Event()
         self._listener: Reporter | None = None
         self._latest: tuple[float, str] | None = None
@@ -100,7 +100,7 @@ class CalculationPool:
         return self._worker.answers()
 
     def submit(
-        self, client: str, function: Callable[[*Ts], Any], *args: *Ts, lane: Lane = "answers"
+        self, client: str, function: Callable[[*Ts], object], *args: *Ts, lane: Lane = "answers"
     ) -> Calculation:
         """Have a function calculated when it is the client's turn.
 

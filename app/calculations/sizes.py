@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from gc import get_referents
 from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
-from typing import Any
 
 import numpy as np
 import pint
@@ -37,7 +36,7 @@ def size_of(value: object) -> int:
     return total
 
 
-def _parts(array: NDArray[Any]) -> list[object]:  # arrays of any kind of number
+def _parts(array: NDArray[np.generic]) -> list[object]:  # arrays of any kind of number
     """The objects in an array, and of a view the array that owns the numbers."""
     items = array.ravel().tolist() if array.dtype == object else []
     return items if array.base is None else [*items, array.base]

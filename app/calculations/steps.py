@@ -13,7 +13,6 @@ from concurrent.futures import wait
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
-from typing import Any
 
 from app.calculations.begun import Begun, fingerprint
 from app.calculations.cost import EXPENSIVE, estimated_seconds
@@ -49,6 +48,10 @@ class Steps:
             begun.close(failed=True)
 
 
+_Question = tuple[Source, Mapping[str, Raw], tuple[str, ...] | None, str | None, float | None]
+"""A step as `_evaluated` takes it."""
+
+
 @dataclass
 class Caller:
     """Who asks for steps, where they are evaluated, and how long that is waited for."""
@@ -77,8 +80,8 @@ class Caller:
             It has not ended in time; it goes on if it may.
         """
         key = (cls, outputs, level, tolerance, fingerprint(raw))
-        question = self.steps.sources[cls], raw, outputs, level, tolerance
-        calculation = self.begun.take(key) or self._submitted(*question)
+        question: _Question = self.steps.sources[cls], raw, outputs, level, tolerance
+        calculation = self.begun.take(key) or self._submitted(question)
         if self.report is not None:
             calculation.listen(self.report)
         while not wait([calculation.future], self._glance()).done:
@@ -90,7 +93,7 @@ class Caller:
         evaluation: Evaluation = calculation.future.result()
         return evaluation
 
-    def _submitted(self, *question: Any) -> Calculation:
+    def _submitted(self, question: _Question) -> Calculation:
         if self.left.is_set():
             raise JobCancelled
         if time.monotonic() >= self.until:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Awaitable, Callable
-from typing import Any, Generic, ParamSpec, Self, TypeVar, overload
+from collections.abc import Awaitable, Callable, Mapping
+from typing import Generic, ParamSpec, Self, TypedDict, TypeVar, overload
 
 import httpx
 
@@ -60,12 +60,31 @@ class _AsyncMethod(Generic[Asked, Result]):
         return call
 
 
+class _Options(TypedDict):
+    """What every connection of httpx is made with."""
+
+    base_url: str
+    timeout: float
+    headers: dict[str, str]
+    trust_env: bool
+
+
+class _Message(TypedDict):
+    """A request as httpx takes it."""
+
+    method: str
+    url: str
+    content: bytes | None
+    params: Mapping[str, str] | None
+    headers: Mapping[str, str]
+
+
 class _Connection:
     """Where a client connects to, and under which name."""
 
     def __init__(self, url: str, *, timeout: float = 60.0, name: str | None = None) -> None:
         self.url, self.name = url, checked_name(name)
-        self._options: dict[str, Any] = {
+        self._options: _Options = {
             "base_url": url,
             "timeout": timeout,
             "headers": {CLIENT_HEADER: self.name},
@@ -73,7 +92,7 @@ class _Connection:
         }
 
 
-def message(request: Request) -> dict[str, Any]:
+def message(request: Request) -> _Message:
     """A request as httpx takes it."""
     return {
         "method": request.method,

@@ -9,12 +9,13 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import httpx
 from pydantic import TypeAdapter
 
 from app.client.problem import Problem, checked
+from app.plain import JsonObject
 from app.schemas.answers import Answer, Page
 from app.schemas.jobs import Job
 
@@ -67,7 +68,7 @@ def written(body: object) -> bytes:
     return json.dumps(body, default=_plain, allow_nan=False, ensure_ascii=False).encode()
 
 
-def _plain(value: object) -> dict[str, Any]:
+def _plain(value: object) -> JsonObject:
     if isinstance(value, Answer):
         return value.plain()
     raise TypeError(f"a value of type {type(value).__name__} cannot be sent as JSON")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Mapping
-from typing import Any, TypedDict, Unpack
+from typing import TypedDict, Unpack
 
 from app.client.exchange import (
     BASE,
@@ -44,7 +44,7 @@ from app.schemas.jobs import Job
 from app.schemas.solids import Build, Verification
 from app.schemas.templates import Template, TemplateList, TemplateSummary
 
-Values = Mapping[str, Any]
+Values = Mapping[str, object]
 """Quantities by name: `"25 kN"`, `{"value": 25, "unit": "kN"}`, or a quantity of another answer."""
 
 
@@ -90,7 +90,7 @@ def worksheet(id: str, version: int, inputs: Values, **options: Unpack[Options])
 
 
 def solve(
-    id: str, version: int, inputs: Values, unknown: str, bounds: tuple[Any, Any], target: Values
+    id: str, version: int, inputs: Values, unknown: str, bounds: tuple[object, object], target: Values
 ) -> Exchange[Solution]:
     """Find the input that gives a wanted output, between bounds."""
     body = {"inputs": inputs, "unknown": unknown, "bounds": bounds, "target": target}
@@ -135,7 +135,7 @@ def design(id: str) -> Exchange[Design]:
 
 
 def create(
-    document: Mapping[str, Any], *, on_progress: Progress | None = None, key: str | None = None
+    document: Mapping[str, object], *, on_progress: Progress | None = None, key: str | None = None
 ) -> Exchange[Design]:
     """Create a design and wait until its models are built; see `state` for whether they are.
 
@@ -145,7 +145,11 @@ def create(
 
 
 def change(
-    design: Design, patch: Mapping[str, Any], *, on_progress: Progress | None = None, key: str | None = None
+    design: Design,
+    patch: Mapping[str, object],
+    *,
+    on_progress: Progress | None = None,
+    key: str | None = None,
 ) -> Exchange[Design]:
     """Make a new revision of a design that was read, and wait until its models are built."""
     headers = {"Content-Type": MERGE_PATCH, **_match(design), **_once(key)}
@@ -178,7 +182,7 @@ def delete(id: str) -> Exchange[None]:
     checked((yield Request("DELETE", f"{BASE}/designs/{id}")))
 
 
-def preview(id: str, patch: Mapping[str, Any], *, worksheet: bool = False) -> Exchange[Preview]:
+def preview(id: str, patch: Mapping[str, object], *, worksheet: bool = False) -> Exchange[Preview]:
     """What a change would do; nothing is saved. `worksheet` adds every step, its formulas written out."""
     asked = "?worksheet=true" if worksheet else ""
     return calculated(Preview, post(f"/designs/{id}/preview{asked}", patch))

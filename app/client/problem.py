@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import httpx
+from pydantic import JsonValue
 
 from app.schemas.problems import Fault
 from app.schemas.problems import Problem as Described
@@ -24,7 +24,7 @@ class Problem(Exception):
         The answer as a model.
     """
 
-    def __init__(self, status: int, body: Mapping[str, Any]) -> None:
+    def __init__(self, status: int, body: Mapping[str, JsonValue]) -> None:
         self.status, self.body = status, dict(body)
         blank = {"type": "about:blank", "title": "", "status": status, "detail": ""}
         self.described = Described.model_validate({**blank, **self.body})

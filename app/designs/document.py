@@ -119,12 +119,8 @@ class Document(Bounded):
 def _values_set(raw: Mapping[str, Raw]) -> int:
     """How many values the steps and models of a document set, as far as it has the shape of one."""
     places = (("steps", "inputs"), ("models", "parameters"))
-    blocks = [
-        (block, part)
-        for group, part in places
-        if isinstance(raw.get(group), Mapping)
-        for block in raw[group].values()
-    ]
+    groups = [(group, part) for name, part in places if isinstance(group := raw.get(name), Mapping)]
+    blocks = [(block, part) for group, part in groups for block in group.values()]
     inside = [block.get(part) for block, part in blocks if isinstance(block, Mapping)]
     return sum(len(values) for values in inside if isinstance(values, Mapping))
 

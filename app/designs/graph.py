@@ -5,9 +5,9 @@ Every check returns what it finds; nothing is changed on the way.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from app.designs.analyses import is_measured, questions, remedy
 from app.designs.document import Document, Model, Step, Version
@@ -22,7 +22,7 @@ from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_names
 from templates.core.language.intake import Input
 from templates.core.language.template import Template
-from templates.core.units.relation import Relation, is_relation, parse
+from templates.core.units.relation import Kind, Relation, is_relation, parse
 
 T = TypeVar("T", bound=Template)
 
@@ -56,8 +56,13 @@ def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list
     return _graph(network, sources, order, kinds), faults
 
 
-def _graph(network: Network, *checked: Any) -> Graph:
-    return Graph(network.parameters, network.blocks, network.assumed, *checked)
+def _graph(
+    network: Network,
+    sources: Mapping[Node, tuple[Node, ...]] | None = None,
+    order: Sequence[Node] = (),
+    kinds: Mapping[str, Kind] | None = None,
+) -> Graph:
+    return Graph(network.parameters, network.blocks, network.assumed, sources or {}, order, kinds or {})
 
 
 def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[Fault]]:

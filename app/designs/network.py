@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 from app.designs.analyses import is_measured, measured_names, measured_unit, used
 from app.designs.reference import Reference
@@ -147,7 +146,7 @@ class Network:
         return declared.meaning.unit if declared else measured_unit(reference)
 
 
-def _declared(block: Block, reference: Reference) -> Input | Formula[Any] | None:
+def _declared(block: Block, reference: Reference) -> Input | Formula[Template] | None:
     """The input or formula of a block that a reference names; None of what is measured."""
     if reference.analysis is not None or reference.output is None:
         return None

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import BaseModel, ConfigDict, Field
+from pydantic.config import JsonDict
 from pydantic.json_schema import SkipJsonSchema
 
 from app.calculations.schemas import OIL_FILM
 from app.designs.document import NAME, WORD, Document, Iteration, Model, Name, Step
 from app.schemas.bounded import Bounded
-from app.schemas.values import GIVEN
+from app.schemas.values import FORMS, GIVEN
 
-PAPER: dict[str, Any] = {
+PAPER: JsonDict = {
     "name": "435 cc main bearing",
     "parameters": {"scale": "1"},
     "steps": {
@@ -64,23 +63,23 @@ class CopyIn(Bounded):
     name: Name | None = None
 
 
-def _named(values: dict[str, Any]) -> dict[str, Any]:
+def _named(values: JsonDict) -> JsonDict:
     return {"type": ["object", "null"], "propertyNames": {"pattern": WORD}, "additionalProperties": values}
 
 
-def _part(cls: type[BaseModel]) -> dict[str, Any]:
-    names: dict[str, Any] = {name: {} for name in cls.model_fields}
+def _part(cls: type[BaseModel]) -> JsonDict:
+    names: JsonDict = {name: {} for name in cls.model_fields}
     return {"type": ["object", "null"], "properties": names, "additionalProperties": False}
 
 
-PATCH: dict[str, Any] = {
+PATCH: JsonDict = {
     "title": "DesignPatch",
     "type": "object",
     "examples": [{"parameters": {"scale": "1.01"}, "note": "next size"}],
     "additionalProperties": False,
     "properties": {
         "name": {"type": "string", "minLength": 1, "maxLength": 200, "pattern": NAME},
-        "parameters": _named({**GIVEN, "anyOf": [*GIVEN["anyOf"], {"type": "null"}]}),
+        "parameters": _named({**GIVEN, "anyOf": [*FORMS, {"type": "null"}]}),
         "steps": _named(_part(Step)),
         "model": {**_part(Model), "description": "short for `models` with one entry named `model`"},
         "models": _named(_part(Model)),

@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 
 
 class JobError(Exception):
-    """Any error of jobs."""
+    """An error of jobs."""
 
 
 class JobNotFound(JobError):

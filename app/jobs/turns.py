@@ -9,10 +9,10 @@ caller.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from sqlalchemy import ColumnElement, and_, func, select
 from sqlalchemy.orm import Session
+from sqlalchemy.sql.functions import Function
 
 from app.jobs.errors import JobShared
 from app.storage.tables import JobRow
@@ -103,6 +103,6 @@ def leave(session: Session, id: str, client: str) -> bool:
 def oldest_queued(session: Session) -> int | None:
     """When the job that waits longest was queued [s of operation], or None if none waits."""
     # The sum keeps SQLite from walking the index of ages through all jobs that ended earlier.
-    since: Any = func.min(JobRow.operated + 0)
+    since: Function[int | None] = func.min(JobRow.operated + 0)
     age: int | None = session.scalar(select(since).where(JobRow.state == "queued"))
     return age

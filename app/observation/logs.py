@@ -20,7 +20,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from datetime import UTC, datetime
 from logging.handlers import QueueListener
-from typing import Any, Literal, TextIO
+from typing import Literal, TextIO
 
 Format = Literal["json", "text"]
 Level = Literal["debug", "info", "warning", "error"]
@@ -113,7 +113,7 @@ class QueueHandler(logging.Handler):
 
     def __init__(self) -> None:
         super().__init__()
-        self.queue: queue.Queue[Any] = queue.Queue(_ROOM)
+        self.queue: queue.Queue[logging.LogRecord | None] = queue.Queue(_ROOM)
         self.dropped = 0
 
     def emit(self, record: logging.LogRecord) -> None:

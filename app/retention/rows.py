@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection
-from typing import Any
 
-from sqlalchemy import ColumnElement, CursorResult, Text, and_, cast, delete, exists, select
+from sqlalchemy import ColumnElement, CursorResult, Result, Text, and_, cast, delete, exists, select
 from sqlalchemy.orm import Session
 
 from app.jobs.turns import UNFINISHED
@@ -86,6 +85,6 @@ def _awaited(session: Session) -> set[str]:
     return {payload["build"] for payload in payloads if "build" in payload}
 
 
-def _count(result: Any) -> int:
+def _count(result: Result[tuple[()]]) -> int:
     assert isinstance(result, CursorResult)
     return result.rowcount

@@ -6,10 +6,12 @@ answer leaves out is not written; a field that may be null says so.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Generic, Self, TypeVar
+from typing import Annotated, Generic, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
+from pydantic.config import JsonDict
 
+from app.plain import JsonObject
 from app.presentation.units import System, shown_unit, shown_value
 
 Item = TypeVar("Item")
@@ -20,7 +22,7 @@ class Answer(BaseModel):
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
-    def plain(self) -> dict[str, Any]:
+    def plain(self) -> JsonObject:
         """The answer as plain JSON values, without the fields that it leaves out."""
         return self.model_dump(mode="json", by_alias=True, exclude_unset=True)
 
@@ -44,7 +46,7 @@ def _in_units(value: object, system: System) -> object:
     return value
 
 
-VALUE: dict[str, Any] = {
+VALUE: JsonDict = {
     "description": "a number, an array of numbers of any shape, or the text of a choice; null for none",
     "anyOf": [
         {"type": "number"},
@@ -54,7 +56,7 @@ VALUE: dict[str, Any] = {
         {"type": "null"},
     ],
 }
-Value = Annotated[Any, WithJsonSchema(VALUE)]  # any shape: Pydantic would look at each of a million numbers
+Value = Annotated[object, WithJsonSchema(VALUE)]  # Pydantic would look at each of a million numbers
 """A magnitude of any shape, or a choice. JSON Schema has no finite form for arrays of any depth."""
 
 

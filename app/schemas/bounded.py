@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import Any
 
 from pydantic import BaseModel, BeforeValidator, model_validator
 from pydantic_core import PydanticCustomError
@@ -20,7 +19,7 @@ class Bounded(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def few_fields(cls, raw: Any) -> Any:
+    def few_fields(cls, raw: object) -> object:
         """The object as it is.
 
         Raises
@@ -36,7 +35,7 @@ def at_most(count: int) -> BeforeValidator:
     return BeforeValidator(partial(_few, most=count))
 
 
-def _few(raw: Any, most: int) -> Any:
+def _few(raw: object, most: int) -> object:
     if isinstance(raw, Mapping) and len(raw) > most:
         message = "an object here has at most {most} names, not {count}"
         raise PydanticCustomError("too_long", message, {"most": most, "count": len(raw)})

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field, JsonValue, WithJsonSchema
+from pydantic.config import JsonDict
 
 from app.schemas.answers import Answer, Measured, Shown, Value, Version, Warning
 
@@ -34,19 +35,21 @@ class Output(Measured):
     value: Value
     unit: str | None = Field(None, description="absent for a text")
     reason: str | None = Field(None, description="why there is no value")
-    reasons: list[Any] | None = Field(None, description="of an array: the reason at each point, or null")
+    reasons: list[JsonValue] | None = Field(
+        None, description="of an array: the reason at each point, or null"
+    )
 
 
-ERROR: dict[str, Any] = {
+ERROR: JsonDict = {
     "description": "estimated relative error, of the shape of the output; null where none was measured",
     "anyOf": [{"type": "number"}, {"type": "array", "items": {}}, {"type": "null"}],
 }
-Error = Annotated[Any, WithJsonSchema(ERROR)]
-LEVEL: dict[str, Any] = {
+Error = Annotated[object, WithJsonSchema(ERROR)]
+LEVEL: JsonDict = {
     "description": "the level of fidelity; an array where it changes from point to point",
     "anyOf": [{"type": "string"}, {"type": "array", "items": {}}, {"type": "null"}],
 }
-Level = Annotated[Any, WithJsonSchema(LEVEL)]
+Level = Annotated[object, WithJsonSchema(LEVEL)]
 
 
 class Evaluated(Answer):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TypedDict
 
 from pydantic import BaseModel, ConfigDict, Field
+from pydantic.config import JsonDict
+from starlette.responses import Response
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -39,7 +41,7 @@ class ProblemKind(BaseModel):
     remedy: str
 
 
-PROBLEM_CONTENT: dict[str, Any] = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
+PROBLEM_CONTENT: JsonDict = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
 
 MEANINGS = {
     400: "the host or the path cannot be read",
@@ -59,6 +61,17 @@ MEANINGS = {
 }
 
 
-def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
+Responses = dict[int | str, dict[str, object]]
+"""What a route says of its answers, by status, as FastAPI takes it."""
+
+
+class RouteOptions(TypedDict):
+    """What the routes of several paths say of themselves alike."""
+
+    response_class: type[Response]
+    responses: Responses
+
+
+def refusals(*statuses: int) -> Responses:
     """Declare problems of a route, for its `responses`."""
     return {status: {"description": MEANINGS[status], "content": PROBLEM_CONTENT} for status in statuses}

@@ -5,22 +5,24 @@ Only its form: which units fit, and which names a choice has, is in the schema o
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import Field, WithJsonSchema
+from pydantic import Field, JsonValue, WithJsonSchema
+from pydantic.config import JsonDict
 
 from app.schemas.bounded import at_most
 
-GIVEN: dict[str, Any] = {
+FORMS: list[JsonValue] = [
+    {"type": "string", "minLength": 1},
+    {"type": "number"},
+    {"type": "array", "minItems": 1, "items": {}},
+    {"type": "object", "properties": {"value": {}, "unit": {"type": "string"}}, "required": ["value"]},
+]
+GIVEN: JsonDict = {
     "description": 'a quantity, `"25 kN"` or `{"value": 25, "unit": "kN"}`; a number of unit 1; a choice',
-    "anyOf": [
-        {"type": "string", "minLength": 1},
-        {"type": "number"},
-        {"type": "array", "minItems": 1, "items": {}},
-        {"type": "object", "properties": {"value": {}, "unit": {"type": "string"}}, "required": ["value"]},
-    ],
+    "anyOf": FORMS,
 }
-Given = Annotated[Any, WithJsonSchema(GIVEN)]
+Given = Annotated[object, WithJsonSchema(GIVEN)]
 """A value as typed: the domain reads it and says what is wrong."""
 
 Parameters = Annotated[dict[str, Given], Field(max_length=500), at_most(500)]

@@ -160,6 +160,7 @@ class Database:
 class _Pending:
     """A unit of work on its way through the writer thread."""
 
+    # `Any`: one queue holds units of every type; `submit` returns the future under the type of its unit.
     def __init__(self, unit: Unit[Any]) -> None:
         self.future: Future[Any] = Future()
         self._unit = unit

@@ -15,7 +15,7 @@ from pathlib import Path
 
 
 class StorageError(Exception):
-    """Any error of storage."""
+    """An error of storage."""
 
 
 class DataFolderInUse(StorageError):

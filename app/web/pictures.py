@@ -125,13 +125,13 @@ def _axis(values: Values, declared: Members, name: str) -> str | None:
     """What a curve is drawn over: what it goes along, the crank angle, or the input that is an array."""
     if not _is_curve(values, name) or declared[name].unit is None:
         return None
-    length = len(values[name].value)
+    length = _length(values[name])
     along = declared[name].along
     arrays = [other for other in values if other in declared and _is_curve(values, other)]
     is_output = isinstance(values[name], Output)
     given = [other for other in arrays if is_output and _is_given(values[other])]
     for axis in filter(None, (along, *AXES, *given)):
-        if axis in arrays and len(values[axis].value) == length:
+        if axis in arrays and _length(values[axis]) == length:
             return axis
     return None
 
@@ -139,6 +139,11 @@ def _axis(values: Values, declared: Members, name: str) -> str | None:
 def _is_curve(values: Values, name: str) -> bool:
     value = values[name].value if name in values else None
     return isinstance(value, list) and len(value) >= FEWEST and not isinstance(value[0], (list, str))
+
+
+def _length(value: UsedInput | Output) -> int:
+    """How many points a value has along its first axis."""
+    return len(value.value) if isinstance(value.value, list) else 1
 
 
 def _is_given(value: UsedInput | Output) -> bool:

@@ -14,7 +14,6 @@ from functools import cached_property
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any
 
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed
@@ -49,7 +48,9 @@ class JobProcess:
         self.reusable = False
         send(self._connection, pack(request))
 
-    def finish(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event | None) -> Any:
+    def finish(
+        self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event | None
+    ) -> object:
         """Wait for the end of the job and return its result; see `Worker.run` for what it raises."""
         cancelled = cancelled or threading.Event()
         try:
@@ -90,7 +91,7 @@ class JobProcess:
         except EOFError:
             raise JobCrashed(None) from None
 
-    def _converse(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event) -> Any:
+    def _converse(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event) -> object:
         end = time.monotonic() + limits.deadline
         while True:
             self._await_message(end, limits, cancelled)
@@ -115,7 +116,7 @@ class JobProcess:
                 raise DeadlineExceeded(limits.deadline)
             waiting = not self._connection.poll(min(left, _GLANCE))
 
-    def _receive(self) -> Any:
+    def _receive(self) -> object:
         try:
             return receive(self._connection).unpacked()
         except (EOFError, ConnectionResetError):

@@ -71,7 +71,8 @@ def _answer(packed: Packed, connection: Connection) -> tuple[Packed, bool]:
     """Run a pickled request; the pickled message that says how it ended, and whether another may follow."""
     reusable = False
     try:
-        request: Request = packed.unpacked()
+        request = packed.unpacked()
+        assert isinstance(request, Request), "the server sends nothing else"
         _limit(request.limits)
         reusable = request.reusable
         return _run(request, connection)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pickle import PickleBuffer
 from struct import Struct
-from typing import Any
 
 from app.workers.base import Limits
 
@@ -55,7 +54,7 @@ class Packed:
     message: bytes
     pieces: tuple[PickleBuffer | bytes, ...] = ()
 
-    def unpacked(self) -> Any:  # pickle types nothing; the receiver matches on the class
+    def unpacked(self) -> object:
         """The message."""
         return pickle.loads(self.message, buffers=self.pieces)
 

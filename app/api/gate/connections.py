@@ -10,9 +10,7 @@ import json
 import socket
 import struct
 from asyncio import Transport
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE
@@ -21,6 +19,7 @@ from app.api.gate.heads import LONGEST_HEAD
 from app.api.gate.targets import WholeTarget
 from app.api.gate.timeouts import WHOLE
 from app.observation import logs, metrics
+from app.plain import JsonObject
 
 _RESERVE = 64  # connections beyond the limit that are still answered, with 503
 
@@ -139,16 +138,16 @@ class TimedProtocol(WholeTarget):
     def _refuse(self, status: int, slug: str, title: str, detail: str) -> None:
         metrics.CUT.labels(slug).inc()
         about = {"type": f"/problems/{slug}", "title": title, "status": status, "detail": detail}
-        self._write_problem(about)
+        self._write_problem(status, about)
 
-    def _write_problem(self, about: Mapping[str, Any]) -> None:
+    def _write_problem(self, status: int, about: JsonObject) -> None:
         """Answer without the application, and close."""
         if self.transport.is_closing():
             return
         id_ = logs.new_id()
         body = json.dumps({**about, "request_id": id_}).encode()
         lines = [
-            STATUS_LINE[about["status"]].rstrip(),
+            STATUS_LINE[status].rstrip(),
             *(name + b": " + value for name, value in self.server_state.default_headers),
             b"content-type: application/problem+json",
             b"x-request-id: " + id_.encode(),

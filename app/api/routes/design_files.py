@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Header, Response
 from fastapi.responses import FileResponse
@@ -18,12 +18,15 @@ from app.api.routes.models import send_file
 from app.api.stored import UNAVAILABLE, lost
 from app.api.waiting import LATER, accepted, accepted_kinds, finished
 from app.designs import views
+from app.schemas.problems import RouteOptions
+from app.solids.models import File
 from app.storage.errors import NotFound
+from app.storage.tables import RevisionModelRow
 from cad.export import MEDIA_TYPES
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
-FILES: dict[str, Any] = {
+FILES: RouteOptions = {
     "response_class": FileResponse,
     "responses": {200: {"content": {media: {} for media in MEDIA_TYPES.values()}}, **LATER, **UNAVAILABLE},
 }
@@ -58,7 +61,7 @@ async def read_model_file(
     if wanted not in MEDIA_TYPES:
         raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
 
-    def find() -> tuple[Any, str, Any]:
+    def find() -> tuple[RevisionModelRow, str, File | None]:
         with database.read() as session:
             model = views.good_model(session, id, name, number)
             return model, model.build_key or "", views.file(session, model, wanted)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Body, Header, Path, Query, Request, Response
 from pydantic import WithJsonSchema
+from pydantic.config import JsonDict
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import (
@@ -32,6 +33,7 @@ from app.designs.previewing import Change
 from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn, RestoreIn
 from app.designs.service import Designs, Saved
 from app.jobs.service import Jobs
+from app.plain import JsonObject
 from app.schemas.designs import (
     Design,
     DesignList,
@@ -76,7 +78,7 @@ UsedTemplate = Annotated[
     ),
 ]
 Patch = Annotated[
-    dict[str, Any],
+    JsonObject,
     Body(
         title="DesignPatch",
         description="a merge patch of the design, with an optional `note`; null removes",
@@ -84,9 +86,7 @@ Patch = Annotated[
     WithJsonSchema(PATCH),
 ]
 CHANGED = {**later(Design), **refusals(404, 429)}
-MERGE_PATCH: dict[str, Any] = {
-    "requestBody": {"content": {"application/merge-patch+json": {"schema": PATCH}}}
-}
+MERGE_PATCH: JsonDict = {"requestBody": {"content": {"application/merge-patch+json": {"schema": PATCH}}}}
 
 
 @router.post("", status_code=201, response_model=Design, responses={**later(Design), **refusals(429)})
@@ -287,7 +287,7 @@ async def explain_parameter(
     return await threads.run_for(request, explained)
 
 
-def _noted(body: dict[str, Any]) -> tuple[dict[str, Any], str | None]:
+def _noted(body: JsonObject) -> tuple[JsonObject, str | None]:
     """A patch and its note."""
     patch = {key: value for key, value in body.items() if key != "note"}
     note = body.get("note")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from fastapi import APIRouter
 from pydantic import ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
@@ -13,7 +11,7 @@ from app.api.reading import StrictRoute
 from app.calculations.film_pressure import TYPICAL, solve_film_pressure
 from app.schemas.bounded import Bounded
 from app.schemas.films import FilmPressure
-from app.schemas.values import GIVEN
+from app.schemas.values import GIVEN, Given
 
 router = APIRouter(prefix="/api/v1", tags=["templates"], route_class=StrictRoute)
 
@@ -25,7 +23,7 @@ class FilmPressureIn(Bounded):
         strict=True, extra="forbid", json_schema_extra={"examples": [{"inputs": TYPICAL}]}
     )
 
-    inputs: dict[str, Any] = Field(
+    inputs: dict[str, Given] = Field(
         max_length=20,
         description="one value each, as in `evaluate`",
         json_schema_extra={

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from fastapi import APIRouter, Response
 from fastapi.responses import PlainTextResponse
 from prometheus_client import CONTENT_TYPE_LATEST
@@ -32,7 +30,7 @@ async def show_readiness(readiness: TheReadiness) -> Response:
     if not listed:
         return written(Ready(status="ready", checks=dict.fromkeys(said, "ok")))
     detail = "; ".join(f"{fault['name']}: {fault['detail']}" for fault in listed)
-    about: dict[str, Any] = {**problems.problem(problems.NOT_READY, detail[:2000]), "errors": listed}
+    about: dict[str, object] = {**problems.problem(problems.NOT_READY, detail[:2000]), "errors": listed}
     return problems.answer(about, {"Retry-After": "2"})
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Header, Path, Request, Response
 from fastapi.responses import FileResponse
 from pydantic import ConfigDict, Field, WithJsonSchema
+from pydantic.config import JsonDict
 from starlette.concurrency import run_in_threadpool
 
 from app.api import problems
@@ -23,8 +24,10 @@ from app.schemas.solids import Build, Verification
 from app.schemas.templates import CadModel as ModelAnswer
 from app.schemas.templates import TemplateList, TemplateVersions
 from app.schemas.values import Parameters
+from app.solids.models import File
 from app.solids.questions import what_can_be_asked
 from app.storage.artifacts import ArtifactStore
+from app.storage.errors import NotFound
 from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
@@ -172,8 +175,8 @@ async def read_artifact(
     return StoredFile(store, sha256, "application/octet-stream", headers)
 
 
-STEP_FILE: dict[str, Any] = {"type": "string", "format": "binary"}
-STEP_BODY: dict[str, Any] = {"content": {"model/step": {"schema": STEP_FILE}}, "required": True}
+STEP_FILE: JsonDict = {"type": "string", "format": "binary"}
+STEP_BODY: JsonDict = {"content": {"model/step": {"schema": STEP_FILE}}, "required": True}
 
 
 @router.post("/verify", openapi_extra={"requestBody": STEP_BODY}, responses=refusals(404))
@@ -188,8 +191,16 @@ async def verify_step(request: Request, models: TheModels) -> Verification:
 
 
 def send_file(
-    store: ArtifactStore, file: Any, headers: dict[str, str] | None = None, name: str | None = None
+    store: ArtifactStore, file: File | None, headers: dict[str, str] | None = None, name: str | None = None
 ) -> Response:
-    """A stored file with its hash as ETag."""
+    """A stored file with its hash as ETag.
+
+    Raises
+    ------
+    NotFound
+        If there is none: its build was deleted since the file was made.
+    """
+    if file is None:
+        raise NotFound("the build was deleted a moment ago; ask again, and it is made again")
     sent = {"ETag": f'"{file.sha256}"', **(headers or {})}
     return StoredFile(store, file.sha256, MEDIA_TYPES[file.kind], sent, name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import asdict
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Header, Request, Response
 from starlette.concurrency import run_in_threadpool
@@ -22,7 +22,7 @@ from app.reports.content import Report
 from app.reports.screen import page
 from app.reports.service import Reports, tag
 from app.schemas.designs import RevisionWorksheet
-from app.schemas.problems import refusals
+from app.schemas.problems import Responses, RouteOptions, refusals
 from app.storage.errors import NotFound
 
 router = APIRouter(
@@ -39,15 +39,13 @@ PATIENCE = 15.0  # s that a report waits for its pictures, unless the client say
 WEIGHT = re.compile(r"\bq=([01](?:\.[0-9]{0,3})?)")
 
 
-def _described(kinds: Mapping[str, str], *, later: bool = False) -> dict[str, Any]:
-    content: dict[str, Any] = {media: {} for media in kinds.values()}
-    told = "the report without the pictures that are still being made; their job is in the header Location"
-    more: dict[int | str, Any] = {202: {"description": told, "content": content}} if later else {}
-    unchanged: dict[int | str, Any] = {
-        304: {"description": "as it was when the ETag of If-None-Match was sent"}
-    }
-    answer: dict[str, Any] = {"content": content, **({"model": RevisionWorksheet} if "json" in kinds else {})}
-    responses: dict[int | str, Any] = {200: answer, **unchanged, **more, **refusals(404, 429)}
+def _described(kinds: Mapping[str, str], *, later: bool = False) -> RouteOptions:
+    content: dict[str, object] = {media: {} for media in kinds.values()}
+    going_on = "the report without the pictures that are still being made; Location names their job"
+    more: Responses = {202: {"description": going_on, "content": content}} if later else {}
+    unchanged: Responses = {304: {"description": "as it was when the ETag of If-None-Match was sent"}}
+    model = {"model": RevisionWorksheet} if "json" in kinds else {}
+    responses: Responses = {200: {"content": content, **model}, **unchanged, **more, **refusals(404, 429)}
     return {"response_class": Response, "responses": responses}
 
 

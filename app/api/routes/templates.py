@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, TypeVar
 
 from fastapi import APIRouter, Path
 
@@ -54,12 +54,15 @@ def show_accuracy(id: Id, number: Number, catalogues: TheCatalogues) -> Accuracy
     return Accuracy.model_validate(measured.content)
 
 
-def listed(catalogue: Catalogue[Any], limit: int, cursor: str | None) -> TemplateList:
+T = TypeVar("T", bound=Template)
+
+
+def listed(catalogue: Catalogue[T], limit: int, cursor: str | None) -> TemplateList:
     """One page of all versions in a catalogue."""
     return page_of(TemplateList, list(catalogue), limit, cursor, lambda cls: summary(cls, catalogue))
 
 
-def versions_of(catalogue: Catalogue[Any], id: str) -> TemplateVersions:
+def versions_of(catalogue: Catalogue[T], id: str) -> TemplateVersions:
     """All versions of one template or model.
 
     Raises
@@ -71,7 +74,7 @@ def versions_of(catalogue: Catalogue[Any], id: str) -> TemplateVersions:
     return TemplateVersions(id=id, items=items, next=None)
 
 
-def summary(cls: type[Template], catalogue: Catalogue[Any]) -> TemplateSummary:
+def summary(cls: type[Template], catalogue: Catalogue[T]) -> TemplateSummary:
     """One version in a list."""
     return TemplateSummary(
         id=cls.id,

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from templates.core.language.comparisons import Comparison, Operand, outcome, worst_share
 from templates.core.language.meaning import Bounds, Meaning
@@ -50,16 +51,17 @@ def checks(template: Template) -> Iterator[Check]:
     """Every bound that says more than a sign, and every rule, as far as their values were calculated."""
     for declared in template.declarations.values():
         value = vars(template).get(declared.attribute)
-        if _is_number(value) and np.any(np.isfinite(value)):
+        if isinstance(value, (float, np.ndarray)) and _has_number(value):
             yield from _of_bounds(template, declared, declared.meaning.at(template.level), value)
     for rule in template.requirements:
         if template.ledger.missing.isdisjoint(rule.uses) or rule.missing:
             yield _of_rule(template, rule)
 
 
-def _is_number(value: object) -> bool:
-    """Whether a value is a number or an array of numbers; a text for each point has no bounds."""
-    return isinstance(value, float) or (isinstance(value, np.ndarray) and value.dtype.kind in "fiu")
+def _has_number(value: float | NDArray[np.generic]) -> bool:
+    """Whether there is a finite number in a value; a text for each point has no bounds."""
+    numbers = np.asarray(value)
+    return numbers.dtype.kind in "fiu" and bool(np.isfinite(numbers).any())
 
 
 def _of_bounds(template: Template, declared: Declaration, meaning: Meaning, value: Any) -> Iterator[Check]:

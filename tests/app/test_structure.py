@@ -1,0 +1,22 @@
+"""The structure of `app`, as the script counts it."""
+
+from benchmarks.structure import arrows, upward, words
+
+MOST_ANY = 40  # each with its reason; there were 513
+MOST_JSON = 270  # values of any shape that a model, a migration or a schema checks as a whole
+
+
+def test_no_import_points_against_the_layers():
+    counted = arrows()
+    assert counted.total() > 300
+    assert upward(counted) == []
+
+
+def test_what_is_typed_as_any_does_not_grow():
+    assert 0 < words("Any").total() <= MOST_ANY
+    assert 0 < words("Json|JsonObject").total() <= MOST_JSON
+
+
+def test_words_are_counted_whole(tmp_path):
+    (tmp_path / "some.py").write_text("Any, Anything: list[Any]  # Many, Any\n", encoding="utf-8")
+    assert words("Any", tmp_path) == {"some.py": 3}
