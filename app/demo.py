@@ -61,8 +61,8 @@ def service(data: Path) -> Iterator[Client]:
     command = [sys.executable, "-m", "app", "serve", "--port", str(port), "--data", str(data)]
     data.mkdir(parents=True, exist_ok=True)
     log = data / "service.log"
-    with log.open("wb") as told:
-        process = subprocess.Popen(command, stderr=told)
+    with log.open("wb") as errors:
+        process = subprocess.Popen(command, stderr=errors)
     try:
         with Client(f"http://127.0.0.1:{port}") as client:
             _await(client, process, log)

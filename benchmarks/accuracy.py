@@ -48,7 +48,7 @@ MARGIN = 1.02
 SCATTERED = 8, 8
 NEARBY = 1.5
 COEFFICIENTS = [f"{name}_{xy}" for name in ("stiffness", "damping") for xy in ("xx", "xy", "yx", "yy")]
-DEAR = {"reynolds": 800, "mass_conserving": 400}
+FEWER_POINTS = {"reynolds": 800, "mass_conserving": 400}
 
 Errors = dict[str, Array]
 
@@ -163,7 +163,7 @@ def converged(*, streamers: bool) -> tuple[Array, Array, JournalFilm, tuple[Arra
 def solved(level: str) -> dict[str, Array]:
     """The largest error of a level near each cell, against the converged solutions, with a margin."""
     x, y, truth, matrices = converged(streamers=level == "mass_conserving")
-    some = slice(DEAR.get(level, x.size))
+    some = slice(FEWER_POINTS.get(level, x.size))
     x, y = x[some], y[some]
     truth = JournalFilm(*(getattr(truth, field.name)[some] for field in fields(truth)))
     ratio = np.exp(y)
@@ -218,7 +218,7 @@ def paper() -> dict[str, Any]:
 
 def cost(level: str) -> dict[str, float]:
     """Processor seconds a point, alone and among many, at eps 0.8 and B/D 1: true on a busy machine too."""
-    So, many = 3.5718, (DEAR.get(level) and 20) or 20_000
+    So, many = 3.5718, (FEWER_POINTS.get(level) and 20) or 20_000
 
     def seconds(count: int) -> float:
         loads = np.full(count, So) if count > 1 else np.float64(So)
@@ -230,7 +230,7 @@ def cost(level: str) -> dict[str, float]:
     return {"single": min(seconds(1) for _ in range(5)), "vectorised": min(seconds(many) for _ in range(3))}
 
 
-def told(cls: type, truth: str, axes: list[dict[str, Any]], levels: dict[str, Any]) -> dict[str, Any]:
+def content_of(cls: type, truth: str, axes: list[dict[str, Any]], levels: dict[str, Any]) -> dict[str, Any]:
     """The whole file."""
     return {
         "template": {"id": cls.id, "version": cls.version},
@@ -280,9 +280,9 @@ def measure() -> None:
     }
     width = axis("b", "width_ratio", WIDTH)
     truth = "Swift-Stieber film, extrapolated from 256 × 32 and 512 × 64 intervals"
-    write(OilFilm, told(OilFilm, truth, [axis("eps", "relative_eccentricity", EPS), width], levels))
+    write(OilFilm, content_of(OilFilm, truth, [axis("eps", "relative_eccentricity", EPS), width], levels))
     axes = [axis("S_0", "sommerfeld_number", LOADS), axis("b", "width_ratio", PAPER_WIDTH)]
-    write(Paper, told(Paper, truth, axes, {"only": {"cost": {}, **paper()}}))
+    write(Paper, content_of(Paper, truth, axes, {"only": {"cost": {}, **paper()}}))
 
 
 def costs() -> None:

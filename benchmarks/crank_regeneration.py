@@ -157,13 +157,13 @@ def main() -> None:
     load = os.getloadavg()
     with tempfile.TemporaryDirectory() as folder:
         rows = [row(case, Path(folder)) for case in CASES]
-    told = {
+    summary = {
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
         "load average": {"before": load, "after": os.getloadavg()},
         "rounds": ROUNDS,
         "rows": rows,
     }
-    RESULTS.write_text(json.dumps(told, indent=1) + "\n")
+    RESULTS.write_text(json.dumps(summary, indent=1) + "\n")
     for one in rows:
         print(json.dumps(one))
 

@@ -88,7 +88,7 @@ class State:
     """A shaft as one revision of the design has it."""
 
     stiffness: float  # [N m/rad], by finite elements
-    error: float  # of that, relative, as told
+    error: float  # of that, relative, as estimated
     frequency: float  # [Hz], of stiffness and measured inertia, as the paper takes it
     mode: float  # [Hz], the first torsional mode of the solid by finite elements
     recommended: float  # [N m/rad], of the throw alone in closed form
@@ -129,14 +129,14 @@ def states(client: Client, base: Mapping[str, str], changes: Sequence[Mapping[st
     for change in changes:
         parameters = {**base, **change}
         design = client.change(
-            design, {"models": {"crank": {"parameters": parameters}}, "note": told(change)}
+            design, {"models": {"crank": {"parameters": parameters}}, "note": note_of(change)}
         )
         found.append(state(client, design))
-        print(told(change), found[-1], flush=True)
+        print(note_of(change), found[-1], flush=True)
     return found
 
 
-def told(change: Mapping[str, str]) -> str:
+def note_of(change: Mapping[str, str]) -> str:
     """A change as the note of its revision."""
     return ", ".join(f"{name} {value}" for name, value in change.items()) or "as drawn"
 

@@ -84,7 +84,7 @@ def nine_cylinders() -> dict[str, dict[str, Any]]:
     outputs = evaluate(Engine, CASE["inputs"]).outputs
     names = [*CASE["printed"], "rotating_force", "primary_force", "secondary_force", "primary_couple",
              "secondary_couple"]  # fmt: skip
-    printed = {name: told["value"] for name, told in CASE["printed"].items()}
+    printed = {name: row["value"] for name, row in CASE["printed"].items()}
     return {
         name: {"printed": printed.get(name), "reproduced": outputs[name].value, "unit": outputs[name].unit}
         for name in names
@@ -126,14 +126,14 @@ def main() -> None:
     base = cost["one cylinder, all outputs"]["one"]
     print("| | cost | of it without the answer's units and reasons | each of 1000 speeds: times cheaper |")
     print("|---|---|---|---|")
-    for name, told in cost.items():
-        share = f"{told['from_si'] / told['one']:.2f}" if "from_si" in told else ""
-        print(f"| {name} | {told['one'] / base:.2f} | {share} | {told['times_cheaper']:.0f} |")
+    for name, row in cost.items():
+        share = f"{row['from_si'] / row['one']:.2f}" if "from_si" in row else ""
+        print(f"| {name} | {row['one'] / base:.2f} | {share} | {row['times_cheaper']:.0f} |")
     print("\n| | printed | reproduced |\n|---|---|---|")
-    for name, told in case.items():
-        shown = "" if told["printed"] is None else told["printed"]
-        print(f"| {name} [{told['unit']}] | {shown} | {told['reproduced']:.7g} |")
-    print({name: f"{told['one'] * 1e3:.2f} ms" for name, told in cost.items()})
+    for name, row in case.items():
+        shown = "" if row["printed"] is None else row["printed"]
+        print(f"| {name} [{row['unit']}] | {shown} | {row['reproduced']:.7g} |")
+    print({name: f"{row['one'] * 1e3:.2f} ms" for name, row in cost.items()})
 
 
 if __name__ == "__main__":

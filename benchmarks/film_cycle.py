@@ -146,11 +146,11 @@ def main() -> None:
     """Measure, write, print."""
     found, cost = levels(), costs()
     draw(found)
-    told = {level: {n: v for n, v in answers.items() if n != "curves"} for level, answers in found.items()}
-    RESULTS.write_text(json.dumps({"levels": told, "mobility": cost}, indent=1) + "\n", encoding="utf-8")
-    base = told["mobility"]["orbit_seconds"]
+    summary = {level: {n: v for n, v in answers.items() if n != "curves"} for level, answers in found.items()}
+    RESULTS.write_text(json.dumps({"levels": summary, "mobility": cost}, indent=1) + "\n", encoding="utf-8")
+    base = summary["mobility"]["orbit_seconds"]
     print("| level |", " | ".join(f"{n} [{UNITS[n]}]" if n in UNITS else n for n in SHOWN), "| cost |")
-    for level, answers in told.items():
+    for level, answers in summary.items():
         row = ("none" if answers[n] is None else f"{answers[n]:.4g}" for n in SHOWN)
         print(f"| `{level}` |", " | ".join(row), f"| {answers['orbit_seconds'] / base:.3g} |")
     print({name: round(value, 5) for name, value in cost.items()})

@@ -9,8 +9,8 @@ bearing of a two-stroke engine. Errors of the mobility levels are differences fr
 another boundary condition and a history of its oil: that, not numerical error, is most of them. The error
 of level transient is its change from a coarser mesh, for the main bearing. Of a cell the largest counts,
 half of it added. Errors are relative; of curves, the largest difference over the largest value; of an
-eccentricity, of the clearance. An angle is not told: of two films nearly alike now one, now the other is
-the smallest.
+eccentricity, of the clearance. An angle has no stated error: of two films nearly alike now one, now the other
+is the smallest.
 """
 
 import itertools
@@ -142,7 +142,7 @@ def costs() -> dict[str, dict[str, float]]:
     return found
 
 
-def told(value: float) -> float | None:
+def rounded(value: float) -> float | None:
     """Two digits; None where it was not found."""
     return None if not np.isfinite(value) else float(f"{value:.2g}")
 
@@ -154,7 +154,7 @@ def main() -> None:
         for level, by_name in found.items():
             for name, error in by_name.items():
                 empty: list[list[float | None]] = [[None] * (len(WIDTHS) - 1) for _ in LOADS[1:]]
-                tables[level].setdefault(name, empty)[i][j] = told(error)
+                tables[level].setdefault(name, empty)[i][j] = rounded(error)
         print(i, j, {level: round(e["minimum_film_thickness"], 4) for level, e in found.items()}, flush=True)
     cost = costs()
     page: dict[str, Any] = {

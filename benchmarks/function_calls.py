@@ -46,7 +46,7 @@ class Calls:
 
     @contextmanager
     def counting(self) -> Iterator[None]:
-        """Count anew, in this thread and in those that were started under `threading.setprofile`."""
+        """Count from zero, in this thread and in those that were started under `threading.setprofile`."""
         self.counts.clear()
         self._is_on = True
         sys.setprofile(self)

@@ -2,7 +2,7 @@
 
     python -m benchmarks.levels
 
-The bearing is the template's example. The error is what the template tells of the minimum film thickness
+The bearing is the template's example. The error is what the template states for the minimum film thickness
 there; the cost is processor time a point among many, stiffness apart, as a multiple of the closed form's.
 """
 
@@ -24,11 +24,11 @@ def row(level: str) -> list[str]:
     units = {name: unit for name, (_, unit, _) in COLUMNS.items()}
     made = evaluate(OilFilm, OilFilm.example, level=level, outputs=list(COLUMNS), units=units)
     values = [made.outputs[name].value for name in COLUMNS]
-    told = [
+    cells = [
         "none" if v is None else format(v, how)
         for v, (_, _, how) in zip(values, COLUMNS.values(), strict=True)
     ]
-    return [f"`{level}`", *told, f"{100 * made.error['minimum_film_thickness']:.2g} %"]
+    return [f"`{level}`", *cells, f"{100 * made.error['minimum_film_thickness']:.2g} %"]
 
 
 def main() -> None:

@@ -75,10 +75,10 @@ def row(
     **more: Any,
 ) -> Row:
     """A line from its repeats, with the ratios to those of the baseline."""
-    told: dict[str, Any] = {}
+    figures: dict[str, Any] = {}
     if baseline is not None:
-        told["ratio"], told["ratio_quartiles"] = _spread(np.divide(values, baseline))
-    return Row(part, what, unit, *_spread(values), **told, **more)
+        figures["ratio"], figures["ratio_quartiles"] = _spread(np.divide(values, baseline))
+    return Row(part, what, unit, *_spread(values), **figures, **more)
 
 
 def _spread(values: Any) -> tuple[float, tuple[float, float]]:
@@ -187,8 +187,8 @@ class Changes:
     def build(self) -> str:
         """The key of the model's build."""
         number = self.tag.strip('"')
-        told = self.http.get(f"{self.place}/revisions/{number}").raise_for_status().json()
-        return str(told["models"]["model"]["build"])
+        revision = self.http.get(f"{self.place}/revisions/{number}").raise_for_status().json()
+        return str(revision["models"]["model"]["build"])
 
 
 def regenerations(server: Server, folder: Path, rounds: int) -> list[Row]:
@@ -363,7 +363,7 @@ def pings(server: Server, count: int) -> list[float]:
 
 
 def hostile(server: Server, folder: Path, rounds: int) -> list[Row]:
-    """Every hostile input, to its whole answer; the slowest of its repeats is told too."""
+    """Every hostile input, to its whole answer; the slowest of its repeats is printed too."""
     rows = []
     for name, found in service_hostile.measure(server, service_hostile.CASES, rounds).items():
         refused = all(400 <= status < 500 for status in found["statuses"])
@@ -399,14 +399,14 @@ def main() -> None:
         for name in wanted:
             measure, rounds = PARTS[name]
             made = measure(server, folder, 3 if QUICK else rounds)
-            print("\n".join(line(told) for told in made), flush=True)
+            print("\n".join(line(summary) for summary in made), flush=True)
             rows += made
-    told = {
+    summary = {
         "commit": commit(),
         "machine": machine(),
         "load_average": {"before": before, "after": os.getloadavg()},
     }
-    print(json.dumps(told))
+    print(json.dumps(summary))
     if len(wanted) == len(PARTS) and not QUICK:
         RESULTS.parent.mkdir(exist_ok=True)
         written = [
@@ -414,7 +414,7 @@ def main() -> None:
         ]
         lines = ",\n".join(f"  {json.dumps(made, ensure_ascii=False)}" for made in written)
         date = datetime.now(UTC).isoformat(timespec="seconds")
-        head = json.dumps({"date": date, **told}, ensure_ascii=False)[:-1]
+        head = json.dumps({"date": date, **summary}, ensure_ascii=False)[:-1]
         RESULTS.write_text(f'{head}, "rows": [\n{lines}\n]}}\n')
 
 

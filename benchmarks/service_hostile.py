@@ -83,7 +83,7 @@ def _declared(request: socket.socket) -> None:
 
 
 def _chunked(request: socket.socket) -> None:
-    """50 MB whose length nobody has told."""
+    """50 MB whose length is not stated."""
     request.sendall(_head(EVALUATE, "Transfer-Encoding: chunked"))
     _send_while_unanswered(request, b"%x\r\n%b\r\n" % (CHUNK, b" " * CHUNK))
 
@@ -134,8 +134,8 @@ def _status(request: socket.socket) -> int:
         if not (more := request.recv(1 << 16)):
             return 0
         answer += more
-    told = re.search(rb"(?i)content-length: *(\d+)", head[0])
-    missing = head.end() + int(told[1]) - len(answer) if told else 0
+    length = re.search(rb"(?i)content-length: *(\d+)", head[0])
+    missing = head.end() + int(length[1]) - len(answer) if length else 0
     while missing > 0 and (more := request.recv(1 << 20)):
         missing -= len(more)
     return int(head[1])

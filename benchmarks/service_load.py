@@ -33,10 +33,10 @@ def requests_per_second(url: str, body: bytes, seconds: float) -> float:
 def _by_wrk(url: str, body: bytes, seconds: float) -> float:
     # wrk counts whole seconds
     command = [WRK, "-t1", f"-c{CONNECTIONS}", f"-d{max(1, round(seconds))}s", "-s", _script(body), url]
-    told = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    found = re.search(r"Requests/sec:\s*([0-9.]+)", told)
-    if found is None or "Non-2xx" in told or "Socket errors" in told:
-        raise RuntimeError(f"{url}: {told}")
+    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    found = re.search(r"Requests/sec:\s*([0-9.]+)", printed)
+    if found is None or "Non-2xx" in printed or "Socket errors" in printed:
+        raise RuntimeError(f"{url}: {printed}")
     return float(found[1])
 
 

@@ -101,7 +101,7 @@ def costs(level: str) -> dict[str, float]:
 def main() -> None:
     """Fill the table and print the figures."""
     levels = {level: {"cost": costs(level), "errors": table(level)} for level in SliderBearing.levels}
-    told = {
+    summary = {
         "template": {"id": SliderBearing.id, "version": SliderBearing.version},
         "made_by": "python -m benchmarks.slider_bearing",
         "truth": "pads of finite width, extrapolated from 128 × 32 and 256 × 64 intervals",
@@ -114,7 +114,7 @@ def main() -> None:
         ],
         "levels": levels,
     }
-    TABLE.write_text(json.dumps(told, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
+    TABLE.write_text(json.dumps(summary, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
     for level, measured in levels.items():
         print(level, measured["cost"])
         for name, cells in measured["errors"].items():

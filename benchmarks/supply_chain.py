@@ -71,15 +71,15 @@ def _needs(found: Distribution) -> tuple[str, ...]:
 
 
 def _licence(found: Distribution) -> str:
-    told = found.metadata
+    metadata = found.metadata
     classified = [
         line.rpartition("::")[2].strip()
-        for line in told.get_all("Classifier", ())
+        for line in metadata.get_all("Classifier", ())
         if line.startswith("License ::") and line != "License :: OSI Approved"
     ]
-    written = (told.get("License") or "").strip()
+    written = (metadata.get("License") or "").strip()
     short = written if len(written) <= LONGEST and "\n" not in written else ""
-    return told.get("License-Expression") or " / ".join(classified) or short or _from_text(found)
+    return metadata.get("License-Expression") or " / ".join(classified) or short or _from_text(found)
 
 
 def _from_text(found: Distribution) -> str:

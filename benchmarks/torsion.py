@@ -56,7 +56,7 @@ def ours(step: bytes, asked: AnalysisRequest) -> dict[str, Any]:
     found = analyse(step, SHAFT, asked, ["stiffness"], lambda done, what: None).outputs["stiffness"]
     return {
         "stiffness": found["value"],
-        "told error": found["error"],
+        "estimated error": found["error"],
         "level": found["level"],
         **found["mesh"],
     }
@@ -68,7 +68,7 @@ def greatest_stress(step: bytes) -> dict[str, Any]:
     found = analyse(step, SHAFT, AnalysisRequest(), outputs, lambda done, what: None).outputs[
         "maximum_stress"
     ]
-    return {"stress": found["value"], "told error": found["error"], **found["mesh"]}
+    return {"stress": found["value"], "estimated error": found["error"], **found["mesh"]}
 
 
 def calculix(step: bytes, size: float, curvature: float) -> dict[str, Any]:
@@ -121,7 +121,7 @@ def main() -> None:
     step = alone(throw, times=1)["step"]
     own = alone(ours, step, AnalysisRequest(tolerance=TOLERANCE))
     levels = {level: alone(ours, step, AnalysisRequest(level=level)) for level in NAMES}
-    dear = alone(greatest_stress, step, times=1)
+    stress = alone(greatest_stress, step, times=1)
     others = climb(step, abs(own["error"]))
     ratios = [
         {"error": other["error"], "time": other["seconds"] / own["seconds"]}
@@ -131,7 +131,7 @@ def main() -> None:
     table = {
         "ours at 0.5 %": own,
         "levels": levels,
-        "greatest stress": dear,
+        "greatest stress": stress,
         "CalculiX": others,
         "CalculiX by ours": ratios,
     }

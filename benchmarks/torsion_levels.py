@@ -3,9 +3,9 @@
     python -m benchmarks.torsion_levels [COUNT]
 
 For each throw and level the true error of every output but stress, and the change from one order less, whose
-multiple is told as the error, above a floor. Every second throw has no fillets: its corners are sharp. The
-truth is a run with elements of a higher order on a mesh of its own, far finer along sharp corners. `told` is
-the true error by the one told, which must be below 1. Kept after every throw in
+multiple is stated as the error, above a floor. Every second throw has no fillets: its corners are sharp. The
+truth is a run with elements of a higher order on a mesh of its own, far finer along sharp corners. `share` is
+the true error by the stated one, which must be below 1. Kept after every throw in
 benchmarks/results/torsion_levels.json; with COUNT 0 what is kept there is judged by the present table.
 """
 
@@ -93,7 +93,7 @@ Found = dict[str, float]
 
 def found_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Found:
     """Outputs on one mesh: stiffnesses [N·m/rad], frequency [Hz]."""
-    told: Found = {}
+    outputs: Found = {}
     few = FREQUENCY not in outputs
     for load in KINDS:
         asked = {name: end for name, (kind, end) in ASKED.items() if kind == load and name in outputs}
@@ -102,10 +102,10 @@ def found_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = OU
         system = System(grid, order, shaft.material, load, few_forces=few)
         for name, boundary in asked.items():
             response = respond(system, boundary)
-            told[name] = 1e-3 / response.compliance
+            outputs[name] = 1e-3 / response.compliance
             if name == "stiffness" and not few:
-                told[FREQUENCY] = torsional_mode(response).frequency
-    return told
+                outputs[FREQUENCY] = torsional_mode(response).frequency
+    return outputs
 
 
 def truth(step: bytes, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Found:
@@ -131,7 +131,7 @@ def row(parameters: dict[str, Any]) -> dict[str, Any]:
 
 
 def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """For each level and sort of corners the greatest true error, change and share of the error told."""
+    """For each level and sort of corners the greatest true error, change and share of the stated error."""
     return {
         f"{level.name}, {'sharp' if sharp else 'filleted'}": worst(
             level, [one[level.name] for one in rows if one[level.name]["is sharp"] == sharp], is_sharp=sharp
@@ -143,17 +143,17 @@ def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
 
 def worst(level: Level, found: list[dict[str, Any]], *, is_sharp: bool) -> dict[str, Any]:
     """By output, the greatest of each, in magnitude."""
-    told: dict[str, Any] = {}
+    worst_ones: dict[str, Any] = {}
     for name in OUTPUTS:
         errors = [(abs(one["outputs"][name]["true error"]), one["outputs"][name]["change"]) for one in found]
-        told[name] = {
+        worst_ones[name] = {
             "true error": max((true for true, _ in errors), default=0),
             "change": max((abs(change) for _, change in errors), default=0),
-            "told": max(
+            "share": max(
                 (true / level.error(1 + change, 1, is_sharp=is_sharp) for true, change in errors), default=0
             ),
         }
-    return told
+    return worst_ones
 
 
 def main(count: int) -> None:
@@ -168,8 +168,8 @@ def main(count: int) -> None:
 
 def keep(rows: list[dict[str, Any]]) -> None:
     """Write what is known so far."""
-    told = {"throws": len(rows), "summary": summary(rows), "rows": rows}
-    RESULTS.write_text(json.dumps(told, indent=1) + "\n")
+    record = {"throws": len(rows), "summary": summary(rows), "rows": rows}
+    RESULTS.write_text(json.dumps(record, indent=1) + "\n")
 
 
 if __name__ == "__main__":

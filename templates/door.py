@@ -217,8 +217,8 @@ def _plain(error: Any) -> Any:
 
 def _refuse_names(cls: type[Template], level: str | None, outputs: Iterable[str] | None) -> None:
     if outputs is not None:
-        told = "outputs says what a tolerance is about; give a tolerance, or leave outputs out"
-        raise InvalidInputs([Fault("outputs", "no_tolerance", told)])
+        message = "outputs says what a tolerance is about; give a tolerance, or leave outputs out"
+        raise InvalidInputs([Fault("outputs", "no_tolerance", message)])
     if level is not None and level not in cls.levels:
         raise InvalidInputs([unknown_name(level, cls.levels, "level").within("level")])
 

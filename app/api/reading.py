@@ -133,13 +133,13 @@ class StrictRoute(APIRoute):
         async def strict(request: Request) -> Response:
             if is_patch and "if-match" not in request.headers:
                 raise PreconditionRequired('send If-Match with the ETag of the design you read, such as "3"')
-            told = StrictRequest(request.scope, request.receive)
+            strictly = StrictRequest(request.scope, request.receive)
             if takes_json:
                 check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
                 # here, because FastAPI answers whatever is raised in its reading with 400
-                await self._admit(told)
-                await _check_intricacy(told)
-            return await self.shortcut(told) or await handler(told)
+                await self._admit(strictly)
+                await _check_intricacy(strictly)
+            return await self.shortcut(strictly) or await handler(strictly)
 
         return strict
 
@@ -199,9 +199,9 @@ async def _check_intricacy(request: StrictRequest) -> None:
         brackets += part.count(b"[") + part.count(b"{")
         quotes += part.count(b'"')
     if brackets > MOST_BRACKETS or quotes > MOST_QUOTES:
-        told = f"a body may open {MOST_BRACKETS} brackets and have {MOST_QUOTES // 2} texts and names"
+        message = f"a body may open {MOST_BRACKETS} brackets and have {MOST_QUOTES // 2} texts and names"
         raise TooIntricate(
-            f'{told}; send numbers as one list with one unit: {{"value": [1, 2], "unit": "mm"}}'
+            f'{message}; send numbers as one list with one unit: {{"value": [1, 2], "unit": "mm"}}'
         )
 
 
@@ -217,14 +217,14 @@ class BodyLimit:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        told = f"a body may have at most {self.limit / 2**20:g} MiB"
+        message = f"a body may have at most {self.limit / 2**20:g} MiB"
         length = dict(scope["headers"]).get(b"content-length", b"0")
         if not length.isdigit() or int(length) > self.limit:
-            await self.refuse(told)(scope, receive, send)
+            await self.refuse(message)(scope, receive, send)
             return
-        await self.app(scope, self._counted(receive, told) if length == b"0" else receive, send)
+        await self.app(scope, self._counted(receive, message) if length == b"0" else receive, send)
 
-    def _counted(self, receive: Receive, told: str) -> Callable[[], Awaitable[Message]]:
+    def _counted(self, receive: Receive, message: str) -> Callable[[], Awaitable[Message]]:
         """For a body of unknown length: raise once it grows beyond the limit."""
         size = 0
 
@@ -233,7 +233,7 @@ class BodyLimit:
             message = await receive()
             size += len(message.get("body", b""))
             if size > self.limit:
-                raise BodyTooLarge(told)
+                raise BodyTooLarge(message)
             return message
 
         return counted

@@ -26,7 +26,7 @@ def script() -> bytes:
 
 @cache
 def tag() -> str:
-    """What tells one version of the file from another."""
+    """What distinguishes one version of the file from another."""
     return f'"plotly-{version("plotly")}"'
 
 

@@ -167,7 +167,7 @@ def place(
     choices: tuple[tuple[str, int], ...],
     seed: int,
 ) -> Place:
-    """Return a place with its rank; equal lines are told apart by their order."""
+    """Return a place with its rank; equal lines differ by their order."""
     line = lines[span[0][0] - 1]
     column = span[0][1] - (len(line) - len(line.lstrip()))
     identity = f"{Path(file).name}|{line.strip()}|{column}|{kind}"

@@ -29,7 +29,7 @@ PATIENCE = patient(60.0)  # for a server to start [s]; importing the geometry ke
 HANG = patient(5.0)  # an answer that takes longer hangs [s]
 
 MOODY = '''
-"""A block that misbehaves when it is told to."""
+"""A block that misbehaves on request."""
 
 import ctypes
 import time
@@ -41,7 +41,7 @@ from templates.core.template import Array, choice, given
 
 
 class Moody(CadModel):
-    """A block that misbehaves when it is told to."""
+    """A block that misbehaves on request."""
 
     example = {"size": "10 mm"}
 
@@ -325,19 +325,19 @@ def problem(answer: httpx.Response, status: int, slug: str) -> dict:
     """The problem in an answer, which must be of this kind."""
     assert answer.status_code == status, (answer.status_code, answer.text[:2000])
     assert answer.headers["content-type"] == "application/problem+json"
-    told = answer.json()
-    assert told["type"] == f"/problems/{slug}", told
-    assert told["status"] == status
-    assert told["title"]
-    assert told["detail"]
-    return told
+    content = answer.json()
+    assert content["type"] == f"/problems/{slug}", content
+    assert content["status"] == status
+    assert content["title"]
+    assert content["detail"]
+    return content
 
 
 def faults(answer: httpx.Response) -> dict[str, str]:
     """The wrong inputs of a refusal: name → code."""
-    told = problem(answer, 422, "invalid-inputs")
-    assert all(fault["name"] and fault["code"] and fault["detail"] for fault in told["errors"])
-    return {fault["name"]: fault["code"] for fault in told["errors"]}
+    content = problem(answer, 422, "invalid-inputs")
+    assert all(fault["name"] and fault["code"] and fault["detail"] for fault in content["errors"])
+    return {fault["name"]: fault["code"] for fault in content["errors"]}
 
 
 def heard(stream: httpx.Response):

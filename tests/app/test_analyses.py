@@ -17,7 +17,7 @@ from cad.analysis.levels import LEVELS
 BAR = f"{API}/models/bar/versions/1/analyses"
 YOUNG, POISSON, DENSITY = 210e9, 0.3, 7850.0
 SHEAR = YOUNG / 2 / (1 + POISSON)
-TYPICAL = LEVELS[0].typical  # the error that the coarse level tells
+TYPICAL = LEVELS[0].typical  # the error that the coarse level states
 
 
 def bar(diameter=20, length=40, **more):
@@ -81,7 +81,7 @@ class TestAnswer:
         assert torsion["warnings"] == []
 
     def test_only_what_is_asked_for(self, http, torsion):
-        assert torsion["outputs"].keys() == {"stiffness", "torsional_frequency"}  # the stress is dear
+        assert torsion["outputs"].keys() == {"stiffness", "torsional_frequency"}  # the stress is expensive
         assert asked(http, outputs=["stiffness"])["outputs"].keys() == {"stiffness"}
 
     def test_boundary(self, http, torsion):
@@ -129,29 +129,29 @@ class TestAnswer:
 
 class TestSurface:
     def test_an_analysis_links_to_it(self, http, painted):
-        told = painted["outputs"]["surface"]
+        surface = painted["outputs"]["surface"]
         assert painted["outputs"].keys() == {"surface"}
-        assert told["url"] == f"{API}/analyses/{painted['id']}/surface"
-        assert "value" not in told
-        answer = http.get(told["url"])
+        assert surface["url"] == f"{API}/analyses/{painted['id']}/surface"
+        assert "value" not in surface
+        answer = http.get(surface["url"])
         assert answer.headers["content-type"] == "application/json"
-        assert len(answer.content) == told["size"] < 1_000_000
-        assert answer.headers["etag"] == f'"{told["sha256"]}"'
-        assert hashlib.sha256(answer.content).hexdigest() == told["sha256"]
-        assert len(answer.json()["triangles"]) == told["triangles"]
-        again = http.get(told["url"], headers={"If-None-Match": answer.headers["etag"]})
+        assert len(answer.content) == surface["size"] < 1_000_000
+        assert answer.headers["etag"] == f'"{surface["sha256"]}"'
+        assert hashlib.sha256(answer.content).hexdigest() == surface["sha256"]
+        assert len(answer.json()["triangles"]) == surface["triangles"]
+        again = http.get(surface["url"], headers={"If-None-Match": answer.headers["etag"]})
         assert (again.status_code, again.content) == (304, b"")
-        assert http.get(f"{API}/artifacts/{told['sha256']}").content == answer.content
+        assert http.get(f"{API}/artifacts/{surface['sha256']}").content == answer.content
 
     def test_analytic_it_is_twisted_and_stressed_as_coulomb_says(self, http, painted):
         """At z: φ = T z / (G J); at the rim √3 16 T / (π d³), as near as the coarse level is."""
-        told = http.get(painted["outputs"]["surface"]["url"]).json()
-        units = {name: part["unit"] for name, part in told.items() if isinstance(part, dict)}
+        answer = http.get(painted["outputs"]["surface"]["url"]).json()
+        units = {name: part["unit"] for name, part in answer.items() if isinstance(part, dict)}
         assert units == {"points": "mm", "displacement": "mm", "twist": "deg", "stress": "MPa"}
-        assert told["load"] == "a torque of 1 N*m about z"
+        assert answer["load"] == "a torque of 1 N*m about z"
         largest = degrees(0.040 / (SHEAR * pi / 32 * 0.024**4))
         for (x, y, z), twist, stress in zip(
-            told["points"]["value"], told["twist"]["value"], told["stress"]["value"], strict=True
+            answer["points"]["value"], answer["twist"]["value"], answer["stress"]["value"], strict=True
         ):
             assert twist == pytest.approx(largest * z / 40, abs=0.02 * largest)
             rim = sqrt(3) * 16 / (pi * 0.024**3) / 1e6
@@ -183,8 +183,8 @@ class TestSurface:
         assert len(jobs(http)) == len(before) + 1
 
     def test_bending_has_no_twist(self, http):
-        told = asked(http, kind="bending", outputs=["surface"])["outputs"]["surface"]
-        found = http.get(told["url"]).json()
+        surface = asked(http, kind="bending", outputs=["surface"])["outputs"]["surface"]
+        found = http.get(surface["url"]).json()
         assert "twist" not in found
         assert found["load"] == "a moment of 1 N*m about y"
 
@@ -266,10 +266,10 @@ def test_the_deadline_of_analyses_is_their_own(tmp_path):
         data=tmp_path / "data", template_folders=folders, analysis_deadline=1, wait_seconds=60
     )
     with serving(settings) as server, httpx.Client(base_url=server.url, timeout=90, trust_env=False) as http:
-        dear = {"level": "fine", "outputs": ["maximum_stress"]}
-        answer = ask(http, bar(400, 900), **dear)
-        told = problem(answer, 422, "deadline")
-        assert "1 s" in told["detail"]
+        expensive = {"level": "fine", "outputs": ["maximum_stress"]}
+        answer = ask(http, bar(400, 900), **expensive)
+        refusal = problem(answer, 422, "deadline")
+        assert "1 s" in refusal["detail"]
         assert http.get(f"{API}/models").status_code == 200
 
 
@@ -294,9 +294,9 @@ class TestRefusals:
         ],
     )
     def test_by_name(self, http, wrong, named, remedy):
-        told = problem(ask(http, **wrong), 422, "invalid-inputs")
-        assert [fault["name"] for fault in told["errors"]] == [named]
-        assert remedy in told["errors"][0]["detail"]
+        refusal = problem(ask(http, **wrong), 422, "invalid-inputs")
+        assert [fault["name"] for fault in refusal["errors"]] == [named]
+        assert remedy in refusal["errors"][0]["detail"]
 
     def test_a_wrong_load_of_what_is_known(self, http, torsion):
         answer = http.get(f"{API}/analyses/{torsion['id']}", params={"load": "5 mm"})
@@ -312,15 +312,15 @@ class TestRefusals:
         assert faults(answer) == {"model": "no_shaft"}
 
     def test_no_shaft_with_these_parameters(self, http):
-        told = problem(ask(http, bar(ends="none")), 422, "analysis")
-        assert told["errors"][0]["code"] == "no_shaft"
+        refusal = problem(ask(http, bar(ends="none")), 422, "analysis")
+        assert refusal["errors"][0]["code"] == "no_shaft"
 
     def test_no_end(self, http):
         """A failure of the analysis itself; the next request asks again."""
         for _ in range(2):
-            told = problem(ask(http, bar(ends="elsewhere")), 422, "analysis")
-            assert told["errors"][0]["code"] == "no_end"
-            assert "41 mm" in told["detail"]
+            refusal = problem(ask(http, bar(ends="elsewhere")), 422, "analysis")
+            assert refusal["errors"][0]["code"] == "no_end"
+            assert "41 mm" in refusal["detail"]
 
     def test_unknown(self, http):
         answer = http.post(f"{BAR}/twist", json={"parameters": bar()})
@@ -342,6 +342,6 @@ def test_the_server_knows_what_the_elements_tell() -> None:
 def test_an_error_beyond_the_tolerance_is_told() -> None:
     asked_for = question("torsion", Options(tolerance=0.001))
     found = {"stiffness": {"error": 0.002}, "torsional_frequency": {"error": 0.0005}}
-    told = warnings(asked_for, found)
-    assert [(warning["code"], warning["name"]) for warning in told] == [("tolerance_unmet", "stiffness")]
+    listed = warnings(asked_for, found)
+    assert [(warning["code"], warning["name"]) for warning in listed] == [("tolerance_unmet", "stiffness")]
     assert warnings(question("torsion", Options(level="fine")), found) == []

@@ -15,7 +15,7 @@ from cad.analysis.levels import LEVELS
 DESIGNS = f"{API}/designs"
 SHEAR = 210e9 / 2.6
 COARSE = 0.01  # relative: so near do these bars come at the coarse level
-TYPICAL = LEVELS[0].typical  # the error that it tells
+TYPICAL = LEVELS[0].typical  # the error that it reports
 
 
 def bar(diameter="20 mm", length="40 mm", torsion=None, **more):
@@ -41,8 +41,8 @@ def coulomb(diameter, length=0.040):
     return SHEAR * pi / 32 * diameter**4 / length
 
 
-def used_stiffness(told):
-    answer = told["steps"]["train"]["inputs"]["stiffnesses"]
+def used_stiffness(revised):
+    answer = revised["steps"]["train"]["inputs"]["stiffnesses"]
     assert answer["unit"] == "N*m/rad"
     return answer["value"][0]
 
@@ -56,25 +56,25 @@ def design(http):
 
 class TestRelation:
     def test_analytic_the_train_is_as_stiff_as_the_solid(self, http, design):
-        told = revision(http, design)
-        assert used_stiffness(told) == pytest.approx(coulomb(0.020), rel=COARSE)
-        frequency = told["steps"]["train"]["outputs"]["natural_frequencies"]["value"][1]
-        assert frequency == pytest.approx((used_stiffness(told) * 1.5) ** 0.5 / 2 / pi, rel=1e-9)
+        answer = revision(http, design)
+        assert used_stiffness(answer) == pytest.approx(coulomb(0.020), rel=COARSE)
+        frequency = answer["steps"]["train"]["outputs"]["natural_frequencies"]["value"][1]
+        assert frequency == pytest.approx((used_stiffness(answer) * 1.5) ** 0.5 / 2 / pi, rel=1e-9)
 
     def test_only_what_is_used_is_found(self, http, design):
-        told = revision(http, design)["models"]["bar"]["analyses"]["torsion"]
-        assert told["outputs"].keys() == {"stiffness"}
-        assert told["boundary"] == "free_end"
-        assert told["level"] == "coarse"
-        found = told["outputs"]["stiffness"]
+        torsion = revision(http, design)["models"]["bar"]["analyses"]["torsion"]
+        assert torsion["outputs"].keys() == {"stiffness"}
+        assert torsion["boundary"] == "free_end"
+        assert torsion["level"] == "coarse"
+        found = torsion["outputs"]["stiffness"]
         assert found["value"] == pytest.approx(used_stiffness(revision(http, design)), rel=1e-12)
         assert 0 < found["error"] <= TYPICAL
         assert "seconds" not in found
-        assert http.get(f"{API}/analyses/{told['id']}").json()["outputs"]["stiffness"] == found
+        assert http.get(f"{API}/analyses/{torsion['id']}").json()["outputs"]["stiffness"] == found
 
     def test_measurements_tell_it(self, http, design):
-        told = http.get(f"{DESIGNS}/{design['id']}/measurements").json()["bar"]
-        assert told["analyses"] == revision(http, design)["models"]["bar"]["analyses"]
+        answer = http.get(f"{DESIGNS}/{design['id']}/measurements").json()["bar"]
+        assert answer["analyses"] == revision(http, design)["models"]["bar"]["analyses"]
 
     def test_reports_and_worksheets_tell_it(self, http, design):
         found = revision(http, design)["models"]["bar"]["analyses"]["torsion"]["outputs"]["stiffness"]
@@ -88,9 +88,9 @@ class TestRelation:
             assert f"± {100 * found['error']:.2g} %" in text
             assert f"{found['mesh']['elements']} elements of order {found['mesh']['order']}" in text
         rows = csv.DictReader(io.StringIO(http.get(f"{url}/worksheet.csv").content.decode("utf-8-sig")))
-        told = next(row for row in rows if row["name"] == "torsion.stiffness")
-        assert float(told["value"]) == pytest.approx(found["value"], rel=1e-12)
-        assert told["unit"] == "N*m/rad"
+        row = next(row for row in rows if row["name"] == "torsion.stiffness")
+        assert float(row["value"]) == pytest.approx(found["value"], rel=1e-12)
+        assert row["unit"] == "N*m/rad"
 
     def test_a_preview_has_it_old_and_new(self, http, design):
         answer = http.post(f"{DESIGNS}/{design['id']}/preview", json={}, params={"worksheet": True})
@@ -109,10 +109,12 @@ class TestRelation:
         document = train("15 mm")
         document["models"]["bar"]["analyses"] = wanted
         made = created(http, document)
-        told = revision(http, made)["models"]["bar"]["analyses"]["torsion"]["warnings"]
-        assert [(warning["code"], warning["name"]) for warning in told] == [("tolerance_unmet", "stiffness")]
+        warnings = revision(http, made)["models"]["bar"]["analyses"]["torsion"]["warnings"]
+        assert [(warning["code"], warning["name"]) for warning in warnings] == [
+            ("tolerance_unmet", "stiffness")
+        ]
         report = http.get(f"{DESIGNS}/{made['id']}/report.html").text
-        assert told[0]["detail"] in report
+        assert warnings[0]["detail"] in report
         assert "1 warning" in report
 
     def test_nothing_used_nothing_found(self, http):
@@ -127,23 +129,23 @@ class TestRelation:
         answer = http.patch(f"{DESIGNS}/{design['id']}", json=patch, headers=headers)
         assert answer.status_code == 200
         assert answer.json()["state"] == "current"
-        told = revision(http, design, 2)
-        assert told["models"] == revision(http, design, 1)["models"]
+        content = revision(http, design, 2)
+        assert content["models"] == revision(http, design, 1)["models"]
         http.post(f"{DESIGNS}/{design['id']}/revisions/1/restore", headers={"If-Match": "*"})
 
     def test_another_solid_is_analysed_anew(self, http, design):
         made = created(http, train("24 mm"))
-        told = revision(http, made)
-        assert used_stiffness(told) == pytest.approx(coulomb(0.024), rel=COARSE)
+        answer = revision(http, made)
+        assert used_stiffness(answer) == pytest.approx(coulomb(0.024), rel=COARSE)
 
     def test_an_analysis_can_be_changed_by_a_patch(self, http):
         made = created(http, train())
         boundary = {"models": {"bar": {"analyses": {"torsion": {"boundary": "guided_end"}}}}}
         guided = patched(http, made, boundary)
         assert guided["models"]["bar"]["analyses"]["torsion"]["level"] == "coarse"
-        told = revision(http, guided)["models"]["bar"]["analyses"]["torsion"]
-        assert told["boundary"] == "guided_end"
-        assert told["outputs"]["stiffness"]["value"] > 0
+        torsion = revision(http, guided)["models"]["bar"]["analyses"]["torsion"]
+        assert torsion["boundary"] == "guided_end"
+        assert torsion["outputs"]["stiffness"]["value"] > 0
         refused = http.patch(
             f"{DESIGNS}/{made['id']}", json={"models": {"bar": {"analyses": None}}}, headers={"If-Match": "*"}
         )
@@ -153,26 +155,26 @@ class TestRelation:
 class TestBeforeItIsKnown:
     def test_preview_waits(self, http, design):
         patch = {"models": {"bar": {"parameters": {"diameter": "26 mm"}}}}
-        told = http.post(f"{DESIGNS}/{design['id']}/preview", json=patch).json()
-        stiffness = told["outputs"]["bar.torsion.stiffness"]
+        answer = http.post(f"{DESIGNS}/{design['id']}/preview", json=patch).json()
+        stiffness = answer["outputs"]["bar.torsion.stiffness"]
         assert stiffness["old"]["value"] == pytest.approx(coulomb(0.020), rel=COARSE)
         assert stiffness["new"] is None
-        assert told["outputs"]["train.natural_frequencies"]["new"] is None
-        assert told["model_parameters"]["bar.diameter"]["status"] == "ok"
+        assert answer["outputs"]["train.natural_frequencies"]["new"] is None
+        assert answer["model_parameters"]["bar.diameter"]["status"] == "ok"
 
     def test_a_dimension_that_follows_is_pending(self, http, design):
         second = {**bar("= 20 mm * (bar.torsion.stiffness / (40 kN*m/rad))**0.25", torsion={})}
         patch = {"models": {"second": second, "bar": {"parameters": {"diameter": "27 mm"}}}}
-        told = http.post(f"{DESIGNS}/{design['id']}/preview", json=patch).json()
-        assert told["model_parameters"]["second.diameter"]["status"] == "pending"
+        answer = http.post(f"{DESIGNS}/{design['id']}/preview", json=patch).json()
+        assert answer["model_parameters"]["second.diameter"]["status"] == "pending"
 
     def test_explained(self, http):
         document = train()
         document["models"]["second"] = bar("= 20 mm * (bar.torsion.stiffness / (40 kN*m/rad))**0.25")
         made = created(http, document)
         assert made["state"] == "current", made["problem"]
-        told = http.get(f"{DESIGNS}/{made['id']}/explain/second.diameter").json()
-        (because,) = told["because"]
+        answer = http.get(f"{DESIGNS}/{made['id']}/explain/second.diameter").json()
+        (because,) = answer["because"]
         assert because["name"] == "bar.torsion.stiffness"
         assert because["kind"] == "analysis"
         assert because["analysis"]["kind"] == "torsion"
@@ -209,8 +211,8 @@ class TestRefused:
         assert "no surface" in detail
         iterated = {**train(), "iterations": [{"through": "bar.torsion.surface", "start": "1 MPa"}]}
         assert self.refused(http, iterated)[0] == {"iterations": "unknown_name"}
-        told = http.get(f"{DESIGNS}/{design['id']}/measurements").json()["bar"]["analyses"]["torsion"]
-        assert told["outputs"].keys() == {"stiffness"}
+        torsion = http.get(f"{DESIGNS}/{design['id']}/measurements").json()["bar"]["analyses"]["torsion"]
+        assert torsion["outputs"].keys() == {"stiffness"}
 
     def test_unit(self, http):
         named, _ = self.refused(http, train(stiffness="= bar.torsion.torsional_frequency"))
@@ -261,13 +263,13 @@ class TestLoad:
         }
         made = created(http, document)
         assert made["state"] == "current", made["problem"]
-        told = revision(http, made)
-        analysis = told["models"]["bar"]["analyses"]["torsion"]
+        answer = revision(http, made)
+        analysis = answer["models"]["bar"]["analyses"]["torsion"]
         found = analysis["outputs"]["maximum_stress"]
         assert analysis["load"] == {"value": 300.0, "unit": "N*m"}
         assert found["value"] == pytest.approx(3**0.5 * 16 * torque / pi / diameter**3 / 1e6, rel=0.03)
         assert found["convergence"][-1]["value"] == found["value"]
-        cycles = told["steps"]["life"]["outputs"]["cycles"]["value"]
+        cycles = answer["steps"]["life"]["outputs"]["cycles"]["value"]
         assert cycles == pytest.approx((found["value"] * 1e6 / strength) ** (1 / exponent) / 2, rel=1e-6)
 
     def test_property_another_load_is_no_other_analysis(self, http):
@@ -276,15 +278,15 @@ class TestLoad:
         for load in ("1 N*m", "0.2 kN*m"):
             short = bar(length="12 mm", torsion={"torsion": {"load": load}})
             made.append(revision(http, created(http, {**document, "models": {"bar": short}})))
-        one, other = (told["models"]["bar"]["analyses"]["torsion"] for told in made)
-        stresses = [told["outputs"]["maximum_stress"]["value"] for told in (one, other)]
+        one, other = (one_of_both["models"]["bar"]["analyses"]["torsion"] for one_of_both in made)
+        stresses = [one_of_both["outputs"]["maximum_stress"]["value"] for one_of_both in (one, other)]
         assert one["id"] == other["id"]
         assert stresses[1] == pytest.approx(200 * stresses[0], rel=1e-12)
 
 
 class TestRuns:
     def test_an_iteration_through_an_analysis(self, http):
-        """A bar as thick as its own stiffness tells."""
+        """A bar as thick as its own stiffness says."""
         document = {
             "name": "iterated",
             "models": {"bar": bar("= 18 mm + bar.torsion.stiffness * 0.02 mm*rad/(kN*m)")},
@@ -294,18 +296,18 @@ class TestRuns:
         }
         made = created(http, document)
         assert made["state"] == "current", made["problem"]
-        told = revision(http, made)
-        last = told["iterations"][-1]
+        answer = revision(http, made)
+        last = answer["iterations"][-1]
         assert (last["through"], last["unit"]) == ("bar.torsion.stiffness", "N*m/rad")
         assert last["measured"] == pytest.approx(last["assumed"], rel=1e-3)
-        diameter = told["models"]["bar"]["parameters"]["diameter"]["value"]
+        diameter = answer["models"]["bar"]["parameters"]["diameter"]["value"]
         assert diameter == pytest.approx(18 + 0.02 * last["assumed"] / 1000, rel=1e-9)
         assert last["measured"] == pytest.approx(coulomb(diameter / 1000), rel=COARSE)
-        found = told["models"]["bar"]["analyses"]["torsion"]["outputs"]["stiffness"]["value"]
+        found = answer["models"]["bar"]["analyses"]["torsion"]["outputs"]["stiffness"]["value"]
         assert found == pytest.approx(last["measured"], rel=1e-12)
 
     def test_a_reason_instead_of_a_value(self, http, served):
-        """As a stress that does not converge leaves it: nothing follows from it, and the reason is told."""
+        """As a stress that does not converge leaves it: nothing follows, and the reason is reported."""
         build = revision(http, created(http, {"name": "bar", "models": {"bar": bar("19 mm")}}))
         key = build["models"]["bar"]["build"]
         none = {"value": None, "unit": "MPa", "error": 0.2, "reason": "it has no limit", "level": None}
@@ -349,5 +351,5 @@ class TestRuns:
         assert (fault["name"], fault["code"]) == ("bar.torsion", "no_end")
         assert failed["problem"]["changed"] == ["bar.ends"]
         assert http.get(f"{DESIGNS}/{design['id']}/model").content == good
-        mended = patched(http, failed, {"models": {"bar": {"parameters": {"ends": "flat"}}}})
-        assert mended["state"] == "current"
+        corrected = patched(http, failed, {"models": {"bar": {"parameters": {"ends": "flat"}}}})
+        assert corrected["state"] == "current"

@@ -83,10 +83,10 @@ def sql(data, *statements):
 
 class TestCheck:
     def test_a_clean_folder(self, data):
-        told = run("check", "--data", data)
-        assert told.exit_code == 0, told.output
-        assert f"{len(artifacts(data))} good artifacts" in told.output
-        assert "0 faults" in told.output
+        result = run("check", "--data", data)
+        assert result.exit_code == 0, result.output
+        assert f"{len(artifacts(data))} good artifacts" in result.output
+        assert "0 faults" in result.output
 
     @pytest.mark.parametrize(
         ("damage", "said"),
@@ -101,10 +101,10 @@ class TestCheck:
         rows = 6  # two STEP files and two pictures of blocks, whose bytes are equal; a bar and its surface
         for path in artifacts(data):
             damage(path)
-        told = run("check", "--data", data)
-        assert told.exit_code == 1
-        assert told.output.count(said) == rows
-        assert f"{rows} faults" in told.output
+        result = run("check", "--data", data)
+        assert result.exit_code == 1
+        assert result.output.count(said) == rows
+        assert f"{rows} faults" in result.output
 
     @pytest.mark.parametrize(
         "damage",
@@ -138,20 +138,20 @@ class TestCheck:
             "UPDATE design SET head = 7 WHERE id = (SELECT min(id) FROM design)",
             "UPDATE job SET revision = 9 WHERE id = (SELECT min(id) FROM job WHERE revision IS NOT NULL)",
         )
-        told = run("check", "--data", data)
-        assert told.exit_code == 1
-        assert "has no revision of the number of its newest one" in told.output
-        assert "belongs to a revision that does not exist" in told.output
-        assert "table job refers to a row of revision" in told.output
+        result = run("check", "--data", data)
+        assert result.exit_code == 1
+        assert "has no revision of the number of its newest one" in result.output
+        assert "belongs to a revision that does not exist" in result.output
+        assert "table job refers to a row of revision" in result.output
 
     def test_what_cannot_be_repaired_stays_a_fault(self, data):
         sql(data, "UPDATE build SET model = 'gone' WHERE model = 'bar'")
         for path in artifacts(data):
             path.unlink()
-        told = run("check", "--repair", "--data", data)
-        assert told.exit_code == 1
-        assert "not repaired: step" in told.output
-        assert "model gone version 1" in told.output
+        result = run("check", "--repair", "--data", data)
+        assert result.exit_code == 1
+        assert "not repaired: step" in result.output
+        assert "model gone version 1" in result.output
 
     def test_a_damaged_database(self, data):
         sql(data, "PRAGMA journal_mode = delete")
@@ -159,9 +159,9 @@ class TestCheck:
             file.seek(5 * 4096)
             file.write(b"\xff" * 4096)
         before = (data / "crankwright.sqlite").read_bytes()
-        told = run("check", "--data", data)
-        assert told.exit_code == 1
-        assert "Page 6" in told.output
+        result = run("check", "--data", data)
+        assert result.exit_code == 1
+        assert "Page 6" in result.output
         refused = run("check", "--repair", "--data", data)
         assert refused.exit_code == 2
         assert "restore the last backup" in refused.output
@@ -169,9 +169,9 @@ class TestCheck:
         assert (data / "crankwright.sqlite").read_bytes() == before
 
     def test_no_folder(self, tmp_path):
-        told = run("check", "--data", tmp_path / "none")
-        assert told.exit_code == 2
-        assert "There is no database" in told.output
+        result = run("check", "--data", tmp_path / "none")
+        assert result.exit_code == 2
+        assert "There is no database" in result.output
         assert not (tmp_path / "none").exists()
 
     def test_another_schema(self, data):
@@ -181,24 +181,24 @@ class TestCheck:
     def test_beside_the_service_it_only_reads(self, data):
         with serving(Settings(data=data)):
             assert run("check", "--data", data).exit_code == 0
-            told = run("check", "--repair", "--data", data)
-        assert told.exit_code == 2
-        assert "Stop it" in told.output
+            result = run("check", "--repair", "--data", data)
+        assert result.exit_code == 2
+        assert "Stop it" in result.output
 
     def test_postgresql(self, data, monkeypatch):
         monkeypatch.setenv("CRANKWRIGHT_DATABASE_URL", "postgresql+psycopg://nowhere/none")
         for command in (["check"], ["backup", data / "b.tar"]):
-            told = run(*command, "--data", data)
-            assert told.exit_code == 2
-            assert "pg_dump" in told.output
+            result = run(*command, "--data", data)
+            assert result.exit_code == 2
+            assert "pg_dump" in result.output
 
 
 class TestRestore:
     @pytest.mark.parametrize("name", ["whole.tar", "whole.tar.gz"])
     def test_what_was_backed_up_comes_back(self, data, tmp_path, name):
         assert run("backup", tmp_path / name, "--data", data).exit_code == 0
-        told = run("restore", tmp_path / name, "--data", tmp_path / "new")
-        assert told.exit_code == 0, told.output
+        result = run("restore", tmp_path / name, "--data", tmp_path / "new")
+        assert result.exit_code == 0, result.output
         assert digests(tmp_path / "new") == digests(data)
         assert run("check", "--data", tmp_path / "new").exit_code == 0
         assert sorted(path.name for path in tmp_path.iterdir()) == ["data", "new", name]
@@ -209,18 +209,18 @@ class TestRestore:
 
     def test_never_over_anything(self, backup, data, tmp_path):
         before = digests(data)
-        told = run("restore", backup, "--data", data)
-        assert told.exit_code == 2
-        assert "move the old one aside" in told.output
+        result = run("restore", backup, "--data", data)
+        assert result.exit_code == 2
+        assert "move the old one aside" in result.output
         assert digests(data) == before
         assert run("backup", backup, "--data", data).exit_code == 2, "a backup replaces another"
 
     def test_a_lost_file_is_said_and_made_again(self, data, tmp_path):
         lost = artifacts(data)[0]
         lost.write_bytes(b"damaged")
-        told = run("backup", tmp_path / "b.tar", "--data", data)
-        assert told.exit_code == 1
-        assert lost.name in told.output
+        result = run("backup", tmp_path / "b.tar", "--data", data)
+        assert result.exit_code == 1
+        assert lost.name in result.output
         restored = run("restore", tmp_path / "b.tar", "--data", tmp_path / "new")
         assert restored.exit_code == 0, restored.output
         assert "1 files were lost" in restored.output
@@ -238,12 +238,12 @@ class TestRestore:
         return path
 
     def refused(self, archive, tmp_path):
-        told = run("restore", archive, "--data", tmp_path / "new")
-        assert told.exit_code == 2, told.output
-        assert "Traceback" not in told.output
+        result = run("restore", archive, "--data", tmp_path / "new")
+        assert result.exit_code == 2, result.output
+        assert "Traceback" not in result.output
         assert not (tmp_path / "new").exists()
         assert not list(tmp_path.glob(".new*"))
-        return told.output
+        return result.output
 
     @pytest.mark.parametrize("name", ["../evil", "/tmp/evil", "artifacts/../../evil", "artifacts/ab/evil"])
     def test_no_entry_leads_elsewhere(self, backup, tmp_path, name):
@@ -341,10 +341,10 @@ def test_a_backup_among_writes_is_complete(folders, tmp_path, each):
                 time.sleep(0.005)
             with writers.lock:
                 before = list(writers.acknowledged)
-            told = run("backup", tmp_path / "busy.tar", "--data", busy)
+            result = run("backup", tmp_path / "busy.tar", "--data", busy)
             for future in changing:
                 future.result()
-        assert told.exit_code == 0, told.output
+        assert result.exit_code == 0, result.output
         assert len(writers.acknowledged) == changes
         assert len(before) < changes, "the backup came after the writes"
     assert run("restore", tmp_path / "busy.tar", "--data", tmp_path / "new").exit_code == 0

@@ -351,20 +351,22 @@ class TestLostAnswers:
         job, _ = self.done(http)
         flip(self.file(settings, job))
         answer = http.get(job["result"], headers={"Prefer": "respond-async"})
-        told = problem(answer, 503, "rebuilding")
-        assert answer.headers["Location"] == told["job"]
-        assert ended(http, told["job"])["state"] == "done"
+        refusal = problem(answer, 503, "rebuilding")
+        assert answer.headers["Location"] == refusal["job"]
+        assert ended(http, refusal["job"])["state"] == "done"
         assert http.get(job["result"]).status_code == 200
-        truncate(self.file(settings, http.get(told["job"]).json()))  # a rebuilt answer can be lost as well
-        assert http.get(told["job"].replace("jobs", "evaluations"), headers={"Prefer": "wait=30"}).is_success
+        truncate(self.file(settings, http.get(refusal["job"]).json()))  # a rebuilt answer can be lost as well
+        assert http.get(
+            refusal["job"].replace("jobs", "evaluations"), headers={"Prefer": "wait=30"}
+        ).is_success
         assert http.get(job["result"]).status_code == 200
 
     def test_without_its_request_it_is_gone(self, server, http, settings):
         job, _ = self.done(http)
         delete(self.file(settings, job))
         server.app.state.services.store.delete(self.asked(server, job))
-        told = problem(http.get(job["result"]), 410, "artifact-gone")
-        assert told["errors"][0]["code"] == "answer_lost"
+        refusal = problem(http.get(job["result"]), 410, "artifact-gone")
+        assert refusal["errors"][0]["code"] == "answer_lost"
 
     def test_a_request_that_is_lost_before_its_turn(self, server, http, log):
         ahead = [sleep(http, "1.5 s", Prefer="respond-async").headers["Location"] for _ in range(2)]
@@ -417,8 +419,8 @@ def test_too_many_are_told_to_come_again_and_a_flood_gives_way(http, log):
         newcomer = threads.submit(ask, "newcomer")
         assert newcomer.result().status_code == 200
         statuses = sorted(f.result().status_code for f in (first, *flood))
-    told = problem(refused.result(), 429, "queue-full")
-    assert "calculations are waiting" in told["detail"]
+    refusal = problem(refused.result(), 429, "queue-full")
+    assert "calculations are waiting" in refusal["detail"]
     assert refused.result().headers["Retry-After"] == "5"
     assert statuses == [200, 200, 429, 429]
 
@@ -471,8 +473,8 @@ def test_a_file_that_changed_is_not_calculated_with_the_old_answer(tmp_path, mon
     chosen = Settings(data=tmp_path / "data", template_folders=(own,), calculation_processes=1)
     with serving(chosen) as server, httpx.Client(base_url=server.url, timeout=60, trust_env=False) as http:
         (own / "sleeper_v1.py").write_text((own / "sleeper_v1.py").read_text() + "\n# changed\n")
-        told = problem(sleep(http), 422, "refused")
-        assert "start the server again" in told["detail"]
+        refusal = problem(sleep(http), 422, "refused")
+        assert "start the server again" in refusal["detail"]
 
 
 def test_a_job_runs_again_after_a_restart(tmp_path, monkeypatch, log):

@@ -24,29 +24,29 @@ def run(*arguments):
 
 class TestEvaluate:
     def test_a_table(self):
-        told = run("evaluate", "oil_film", "--version", "1", *INPUTS)
-        assert told.exit_code == 0, told.output
-        (line,) = [line for line in told.output.splitlines() if line.startswith("minimum_film_thickness")]
+        result = run("evaluate", "oil_film", "--version", "1", *INPUTS)
+        assert result.exit_code == 0, result.output
+        (line,) = [line for line in result.output.splitlines() if line.startswith("minimum_film_thickness")]
         _, value, unit = line.split()
         assert (float(value), unit) == (pytest.approx(3.2449, abs=5e-5), "µm")
 
     def test_json(self):
-        told = run("evaluate", "oil_film", "--version", "1", "--json", "--output", "density", *INPUTS)
-        answer = json.loads(told.output)
+        result = run("evaluate", "oil_film", "--version", "1", "--json", "--output", "density", *INPUTS)
+        answer = json.loads(result.output)
         assert answer["outputs"].keys() == {"density"}
         assert answer["template"]["version"] == 1
 
     def test_all_faults_at_once(self):
-        told = run("evaluate", "oil_film", "--version", "1", "radial_load=-4 kN", "speed=40 MPa", "sped=1")
-        assert told.exit_code == 1
-        assert "Traceback" not in told.output
+        result = run("evaluate", "oil_film", "--version", "1", "radial_load=-4 kN", "speed=40 MPa", "sped=1")
+        assert result.exit_code == 1
+        assert "Traceback" not in result.output
         for name in ("radial_load:", "speed:", "sped:", "bearing_diameter:"):
-            assert name in told.output
+            assert name in result.output
 
     def test_warnings_are_told(self):
-        told = run("evaluate", "oil_film", "--version", "1", *INPUTS, "bearing_width=48 mm")
-        assert told.exit_code == 0
-        assert "width_ratio" in told.stderr
+        result = run("evaluate", "oil_film", "--version", "1", *INPUTS, "bearing_width=48 mm")
+        assert result.exit_code == 0
+        assert "width_ratio" in result.stderr
 
     @pytest.mark.parametrize(
         ("arguments", "said"),
@@ -59,10 +59,10 @@ class TestEvaluate:
         ],
     )
     def test_mistakes_are_told_in_one_line(self, arguments, said):
-        told = run(*arguments)
-        assert told.exit_code in (1, 2)
-        assert said in told.output
-        assert "Traceback" not in told.output
+        result = run(*arguments)
+        assert result.exit_code in (1, 2)
+        assert said in result.output
+        assert "Traceback" not in result.output
 
 
 class TestTemplates:
@@ -70,18 +70,18 @@ class TestTemplates:
         (tmp_path / "own_v1.py").write_text("a = 1\nb = nothing\n")
         monkeypatch.setenv("CRANKWRIGHT_TEMPLATE_FOLDERS", f'["{tmp_path}"]')
         for arguments in (["template", "list"], ["serve", "--data", str(tmp_path / "data")]):
-            told = run(*arguments)
-            assert told.exit_code == 1
-            assert "own_v1.py: line 2: NameError: name 'nothing' is not defined" in told.output
-            assert "Traceback" not in told.output
+            result = run(*arguments)
+            assert result.exit_code == 1
+            assert "own_v1.py: line 2: NameError: name 'nothing' is not defined" in result.output
+            assert "Traceback" not in result.output
 
     def test_list(self):
-        told = run("template", "list")
-        assert told.exit_code == 0
-        assert "oil_film 1" in told.output
+        result = run("template", "list")
+        assert result.exit_code == 0
+        assert "oil_film 1" in result.output
 
     def test_show(self):
-        told = run("template", "show", "oil_film", "--version", "1").output
+        output = run("template", "show", "oil_film", "--version", "1").output
         for part in (
             "Inputs",
             "Outputs",
@@ -91,7 +91,7 @@ class TestTemplates:
             "radial_load",
             "minimum_film_thickness",
         ):
-            assert part in told
+            assert part in output
 
     def test_freeze_writes_once(self, tmp_path):
         arguments = ("freeze", "oil_film", "1", "--folder", str(tmp_path))
@@ -107,9 +107,9 @@ class TestTemplates:
         assert json.loads(frozen)["digest"] == golden["digest"]
 
     def test_help_names_every_command(self):
-        told = run("--help").output
+        output = run("--help").output
         for command in ("serve", "demo", "evaluate", "template", "freeze"):
-            assert command in told
+            assert command in output
 
 
 class TestServe:

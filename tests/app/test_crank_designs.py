@@ -40,8 +40,8 @@ def growing(per_mass="0.4 mm/kN", **iteration):
     }
 
 
-def frequencies(told):
-    answer = told["steps"]["train"]["outputs"]["natural_frequencies"]
+def frequencies(revised):
+    answer = revised["steps"]["train"]["outputs"]["natural_frequencies"]
     assert answer["unit"] == "Hz"
     return answer["value"]
 
@@ -56,10 +56,10 @@ class TestInertiaOfTheSolid:
     def test_analytic_the_train_takes_the_measured_inertia(self, http, measure):
         design = created(http, vibrating(f"= model.{measure}"))
         assert design["state"] == "current", design["problem"]
-        told = revision(http, design)
-        inertia = told["steps"]["train"]["inputs"]["inertias"]["value"][0]
+        answer = revision(http, design)
+        inertia = answer["steps"]["train"]["inputs"]["inertias"]["value"][0]
         assert 1e-4 < inertia < 1e-1
-        assert frequencies(told) == pytest.approx([0, two_masses(inertia)], rel=1e-12)
+        assert frequencies(answer) == pytest.approx([0, two_masses(inertia)], rel=1e-12)
 
     def test_property_a_new_solid_is_a_new_frequency(self, http):
         """Without a loop and without an iteration: the step waits for the solid."""
@@ -69,7 +69,9 @@ class TestInertiaOfTheSolid:
         after = revision(http, heavier)
         assert heavier["state"] == "current", heavier["problem"]
         assert after["models"]["model"]["build"] != before["models"]["model"]["build"]
-        inertias = [told["steps"]["train"]["inputs"]["inertias"]["value"][0] for told in (before, after)]
+        inertias = [
+            revised["steps"]["train"]["inputs"]["inertias"]["value"][0] for revised in (before, after)
+        ]
         measured = http.get(f"{DESIGNS}/{design['id']}/measurements").json()["model"]["inertia"]["zz"]
         assert inertias[1] == pytest.approx(measured["value"], rel=1e-12)
         assert inertias[1] > 1.1 * inertias[0]
@@ -158,13 +160,13 @@ class TestIteration:
     def test_analytic_one_that_converges_reports_its_steps(self, http):
         design = created(http, growing(tolerance=1e-6))
         assert design["state"] == "current", design["problem"]
-        told = revision(http, design)
-        rounds = told["iterations"]
+        answer = revision(http, design)
+        rounds = answer["iterations"]
         assert [done["round"] for done in rounds] == list(range(1, len(rounds) + 1))
         assert len(rounds) > 3
         assert rounds[0]["assumed"] == pytest.approx(3)
         assert rounds[-1]["measured"] == pytest.approx(rounds[-1]["assumed"], rel=1e-6)
-        thickness = told["models"]["model"]["parameters"]["web_thickness"]["value"]
+        thickness = answer["models"]["model"]["parameters"]["web_thickness"]["value"]
         assert thickness == pytest.approx(14 + 0.4 * rounds[-1]["assumed"] * 0.04 * 300**2 / 1000, rel=1e-9)
         again = created(http, {**growing(tolerance=1e-6), "iterations": [
             {"through": "model.mass", "start": "5 kg", "tolerance": 1e-6}]})  # fmt: skip
@@ -174,11 +176,11 @@ class TestIteration:
     def test_property_one_that_does_not_says_so(self, http):
         design = created(http, growing("2.4 mm/kN", limit=3))
         assert design["state"] == "failed"
-        told = design["problem"]
-        assert told["type"] == "/problems/not-converged"
-        assert "model.mass" in told["detail"]
-        assert "3 rounds" in told["detail"]
-        assert len(told["rounds"]) == 3
+        refusal = design["problem"]
+        assert refusal["type"] == "/problems/not-converged"
+        assert "model.mass" in refusal["detail"]
+        assert "3 rounds" in refusal["detail"]
+        assert len(refusal["rounds"]) == 3
 
     def test_property_undeclared_it_is_a_loop(self, http):
         document = growing()

@@ -1,4 +1,4 @@
-"""`kill -9` at any moment: what was accepted is there once, whole, and built or told why not.
+"""`kill -9` at any moment: what was accepted is there once, whole, and built, or it says why not.
 
 Clients change designs and repeat, under the same Idempotency-Key, whatever was not answered. Meanwhile the
 server is killed again and again. In the end every accepted change is one revision, no more and no less, and
@@ -194,8 +194,8 @@ def test_a_killed_servers_loop_is_ended_with_it_and_resumed(tmp_path):
         nothing_lives(family)
         server.start().ready()
         try:
-            told = settled(http, answer.json()["id"])
-            assert told["problem"]["type"] == "/problems/deadline"
-            assert told["revision"] == 1
+            content = settled(http, answer.json()["id"])
+            assert content["problem"]["type"] == "/problems/deadline"
+            assert content["revision"] == 1
         finally:
             assert server.stop() in (0, -signal.SIGTERM)  # uvicorn ends by the signal itself

@@ -116,9 +116,9 @@ class TestInterface:
         address = f"{API}/templates/bearing_load/versions/1/evaluate"
         plain = http.post(address, json=body).json()["outputs"]
         other = {**body, "units": {"crankpin_load_x": "lbf", "gas_pressure": "psi"}}
-        told = http.post(address, json=other).json()["outputs"]
-        assert told["crankpin_load_x"]["unit"] == "lbf"
-        ratio = np.array(plain["gas_pressure"]["value"]) / told["gas_pressure"]["value"]
+        outputs = http.post(address, json=other).json()["outputs"]
+        assert outputs["crankpin_load_x"]["unit"] == "lbf"
+        ratio = np.array(plain["gas_pressure"]["value"]) / outputs["gas_pressure"]["value"]
         assert ratio == pytest.approx(0.0689475729, rel=1e-9)
 
 

@@ -73,12 +73,12 @@ class TestServed:
         sha = files(http, design)["step"]
         damage(place(served, sha))
         answer = http.get(f"{API}/designs/{design['id']}/model.step", headers={"Prefer": "respond-async"})
-        told = problem(answer, 503, "rebuilding")
+        refusal = problem(answer, 503, "rebuilding")
         assert int(answer.headers["retry-after"]) > 0
-        assert answer.headers["location"] == told["job"]
+        assert answer.headers["location"] == refusal["job"]
         again = http.get(f"{API}/designs/{design['id']}/model.step", headers=WAIT)
         assert hashlib.sha256(again.content).hexdigest() == sha
-        assert http.get(told["job"]).json()["state"] == "done"
+        assert http.get(refusal["job"]).json()["state"] == "done"
 
     def test_a_picture_is_made_again_although_the_step_file_is_lost_too(self, served, http, design):
         shas = files(http, design)
@@ -218,13 +218,13 @@ class TestAnotherMaker:
 
         served.app.state.services.database.write(older)
         flip(place(served, sha))
-        told = problem(http.get(f"{API}/artifacts/{sha}", headers=WAIT), 410, "artifact-gone")
-        assert "Old Kernel 1, recipe 1" in told["detail"]
-        assert told["errors"][0]["code"] == "other_recipe"
-        assert told["build"] == f"{API}/builds/{new}"
-        with http.stream("GET", f"{told['job']}/events") as events:
+        refusal = problem(http.get(f"{API}/artifacts/{sha}", headers=WAIT), 410, "artifact-gone")
+        assert "Old Kernel 1, recipe 1" in refusal["detail"]
+        assert refusal["errors"][0]["code"] == "other_recipe"
+        assert refusal["build"] == f"{API}/builds/{new}"
+        with http.stream("GET", f"{refusal['job']}/events") as events:
             events.read()
-        assert http.get(told["build"]).json()["measurements"]["mass"]
+        assert http.get(refusal["build"]).json()["measurements"]["mass"]
 
     def test_a_model_that_changed_makes_nothing_under_the_old_hash(self, own, monkeypatch):
         served, http, folder = own
@@ -235,8 +235,8 @@ class TestAnotherMaker:
             file.read_text().replace('Part("block"', 'Part("brick"').replace('seen["block"]', 'seen["brick"]')
         )
         flip(place(served, sha))
-        told = problem(http.get(f"{API}/artifacts/{sha}", headers=WAIT), 410, "artifact-gone")
-        assert told["errors"][0]["code"] == "model_changed"
+        refusal = problem(http.get(f"{API}/artifacts/{sha}", headers=WAIT), 410, "artifact-gone")
+        assert refusal["errors"][0]["code"] == "model_changed"
         jobs = len(http.get(f"{API}/jobs").json()["items"])
         problem(http.get(f"{API}/artifacts/{sha}", headers=WAIT), 410, "artifact-gone")
         assert len(http.get(f"{API}/jobs").json()["items"]) == jobs, "it was tried again in vain"
@@ -248,9 +248,9 @@ class TestAnotherMaker:
         change = update(BuildRow).where(BuildRow.key == build).values(model="gone")
         served.app.state.services.database.write(lambda session: session.execute(change))
         delete(place(served, sha))
-        told = problem(http.get(f"{API}/artifacts/{sha}", headers=WAIT), 410, "artifact-gone")
-        assert told["errors"][0]["code"] == "model_gone"
-        assert "gone version 1" in told["detail"]
+        refusal = problem(http.get(f"{API}/artifacts/{sha}", headers=WAIT), 410, "artifact-gone")
+        assert refusal["errors"][0]["code"] == "model_gone"
+        assert "gone version 1" in refusal["detail"]
 
     def test_a_picture_with_other_bytes_is_another_artifact(self, shared):
         served, http, _ = shared
@@ -277,8 +277,8 @@ class TestAnotherMaker:
             lambda session: session.execute(update(AnalysisRow).values(key="0" * 64))
         )
         delete(place(served, found["outputs"]["surface"]["sha256"]))
-        told = problem(http.get(f"{API}/analyses/{'0' * 64}/surface", headers=WAIT), 410, "artifact-gone")
-        assert told["analysis"] == f"{API}/analyses/{found['id']}"
+        refusal = problem(http.get(f"{API}/analyses/{'0' * 64}/surface", headers=WAIT), 410, "artifact-gone")
+        assert refusal["analysis"] == f"{API}/analyses/{found['id']}"
 
 
 def test_damage_while_serving_is_503_and_not_ready(own):
@@ -288,8 +288,8 @@ def test_damage_while_serving_is_503_and_not_ready(own):
     served.app.state.services.database.write(
         lambda session: session.connection().exec_driver_sql("UPDATE revision SET document = '{'")
     )
-    told = problem(http.get(f"{API}/designs/{design['id']}"), 503, "database-damaged")
-    assert "revision" in told["detail"]
+    refusal = problem(http.get(f"{API}/designs/{design['id']}"), 503, "database-damaged")
+    assert "revision" in refusal["detail"]
     problem(http.post(f"{API}/designs", json={"name": "more"}), 503, "database-damaged")
     ready = until(lambda: http.get("/readyz"), lambda answer: answer.status_code != 200)
     assert [fault["name"] for fault in problem(ready, 503, "not-ready")["errors"]] == ["database"]

@@ -78,11 +78,11 @@ class TestDatabase:
             out.seek((page - 1) * PAGE)
             out.write(b"\xff" * PAGE)
         before = file.read_bytes()
-        told = CliRunner().invoke(main, ["serve", "--data", str(file.parent)])
-        assert told.exit_code == 1
-        assert f"Page {page}" in told.output.replace(f"page {page}", f"Page {page}")
-        assert "crankwright restore" in told.output
-        assert "Traceback" not in told.output
+        result = CliRunner().invoke(main, ["serve", "--data", str(file.parent)])
+        assert result.exit_code == 1
+        assert f"Page {page}" in result.output.replace(f"page {page}", f"Page {page}")
+        assert "crankwright restore" in result.output
+        assert "Traceback" not in result.output
         assert file.read_bytes() == before
 
     def test_a_file_that_is_no_json_is_named(self, file):

@@ -43,11 +43,11 @@ def test_the_film_and_the_changed_dimensions_are_told(shown):
 
 
 def test_scale_regenerates_again_and_load_does_not(shown):
-    told = [line for line in shown[0].splitlines() if line.startswith("revision")]
-    assert len(told) == 2
-    assert "a new solid" in told[0]
-    assert "48.96 mm" in told[0]
-    assert "the same solid" in told[1]
+    lines = [line for line in shown[0].splitlines() if line.startswith("revision")]
+    assert len(lines) == 2
+    assert "a new solid" in lines[0]
+    assert "48.96 mm" in lines[0]
+    assert "the same solid" in lines[1]
 
 
 def test_the_step_file_lies_where_it_says(shown):

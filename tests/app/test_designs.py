@@ -11,9 +11,9 @@ DESIGNS = f"{API}/designs"
 
 def bore(http, design):
     """The inner diameter [mm] as the service read it back from the STEP file."""
-    told = http.get(f"{DESIGNS}/{design['id']}/measurements").json()
-    assert told["model"]["dimensions"]["inner_diameter"]["unit"] == "mm"
-    return told["model"]["dimensions"]["inner_diameter"]["value"]
+    answer = http.get(f"{DESIGNS}/{design['id']}/measurements").json()
+    assert answer["model"]["dimensions"]["inner_diameter"]["unit"] == "mm"
+    return answer["model"]["dimensions"]["inner_diameter"]["value"]
 
 
 def build_of(http, design, model="model"):
@@ -79,8 +79,8 @@ def good(http):
 class TestDemonstration:
     def test_the_bore_changes_from_50_to_48_mm(self, http, bearing, tied):
         first = revision(http, tied, 1)["models"]["model"]["build"]
-        told = http.get(f"{API}/builds/{first}").json()["measurements"]["dimensions"]["inner_diameter"]
-        assert told["value"] == pytest.approx(50, abs=1e-6)
+        diameter = http.get(f"{API}/builds/{first}").json()["measurements"]["dimensions"]["inner_diameter"]
+        assert diameter["value"] == pytest.approx(50, abs=1e-6)
         assert bore(http, tied) == pytest.approx(48, abs=1e-6)
 
     def test_an_independent_import_of_the_step_measures_48_mm(self, http, tied, tmp_path):
@@ -140,9 +140,9 @@ class TestSeveralModels:
         assert files["shell"].content != files["ball"].content
 
     def test_the_short_path_names_them(self, http, pair):
-        told = problem(http.get(f"{DESIGNS}/{pair['id']}/model"), 404, "not-found")
-        assert "shell" in told["detail"]
-        assert "ball" in told["detail"]
+        refusal = problem(http.get(f"{DESIGNS}/{pair['id']}/model"), 404, "not-found")
+        assert "shell" in refusal["detail"]
+        assert "ball" in refusal["detail"]
 
     def test_only_the_one_that_changed_is_rebuilt(self, http, pair):
         changed = patched(http, pair, {"models": {"ball": {"parameters": {"size": "7 mm"}}}})
@@ -197,10 +197,10 @@ class TestRelationsBothWays:
         design = created(http, document)
         assert design["state"] == "failed"
         assert "film.radial_load" in {fault["name"] for fault in design["problem"]["errors"]}
-        mending = {"steps": {"film": {"inputs": {"radial_load": "25 kN"}}}}
-        shown = http.post(f"{DESIGNS}/{design['id']}/preview", json=mending)
+        correction = {"steps": {"film": {"inputs": {"radial_load": "25 kN"}}}}
+        shown = http.post(f"{DESIGNS}/{design['id']}/preview", json=correction)
         assert shown.status_code == 200, shown.text
-        assert patched(http, design, mending)["state"] == "current"
+        assert patched(http, design, correction)["state"] == "current"
 
 
 class TestIterations:
@@ -219,10 +219,10 @@ class TestIterations:
     def test_one_that_does_not_says_so(self, http):
         design = created(http, feedback("5 mm/kg", limit=3, tolerance=1e-9))
         assert design["state"] == "failed"
-        told = design["problem"]
-        assert told["type"] == "/problems/not-converged"
-        assert "model.mass" in told["detail"]
-        assert "3 rounds" in told["detail"]
+        refusal = design["problem"]
+        assert refusal["type"] == "/problems/not-converged"
+        assert "model.mass" in refusal["detail"]
+        assert "3 rounds" in refusal["detail"]
 
     def test_two_run_together(self, http):
         document = feedback(tolerance=1e-6)
@@ -249,21 +249,21 @@ class TestIterations:
 
 
 class TestRefusals:
-    """Nothing is saved, and everything that is wrong is told at once."""
+    """Nothing is saved, and every fault is reported at once."""
 
     def test_a_loop_is_refused_with_its_path(self, http):
         document = feedback()
         del document["iterations"]
-        told = problem(http.post(DESIGNS, json=document), 422, "invalid-inputs")
-        (loop,) = told["errors"]
+        refusal = problem(http.post(DESIGNS, json=document), 422, "invalid-inputs")
+        (loop,) = refusal["errors"]
         assert loop["code"] == "loop"
         for name in ("size", "model.size", "model.mass", "iteration"):
             assert name in loop["detail"]
 
     def test_a_loop_of_parameters_is_refused_with_its_path(self, http):
         document = {"name": "loop", "parameters": {"a": "= b + 1", "b": "= c", "c": "= a", "d": "1"}}
-        told = problem(http.post(DESIGNS, json=document), 422, "invalid-inputs")
-        (loop,) = told["errors"]
+        refusal = problem(http.post(DESIGNS, json=document), 422, "invalid-inputs")
+        (loop,) = refusal["errors"]
         assert loop["code"] == "loop"
         assert {"a", "b", "c"} <= set(loop["detail"].replace("→", " ").replace(";", " ").split())
         assert "d" not in loop["detail"].partition(";")[0].split(": ")[-1].split()
@@ -362,9 +362,9 @@ class TestRefusals:
 class TestUnsetParameters:
     def test_the_design_is_saved_without_a_solid(self, http, unset):
         assert unset["state"] == "current"
-        told = revision(http, unset)["models"]["model"]
-        assert told["build"] is None
-        assert told["artifacts"] == {}
+        answer = revision(http, unset)["models"]["model"]
+        assert answer["build"] is None
+        assert answer["artifacts"] == {}
         assert problem(http.get(f"{DESIGNS}/{unset['id']}/model.step"), 404, "not-found")
 
     def test_preview_says_missing(self, http, unset):
@@ -459,11 +459,11 @@ class TestPreview:
 
 class TestExplain:
     def test_the_chain_from_dimension_to_inputs(self, http, tied):
-        told = http.get(f"{DESIGNS}/{tied['id']}/explain/inner_diameter").json()
-        assert told["name"] == "model.inner_diameter"
-        assert told["value"] == {"value": pytest.approx(48), "unit": "mm"}
-        assert told["relation"] == "= film.bearing_diameter"
-        (diameter,) = told["because"]
+        answer = http.get(f"{DESIGNS}/{tied['id']}/explain/inner_diameter").json()
+        assert answer["name"] == "model.inner_diameter"
+        assert answer["value"] == {"value": pytest.approx(48), "unit": "mm"}
+        assert answer["relation"] == "= film.bearing_diameter"
+        (diameter,) = answer["because"]
         assert (diameter["name"], diameter["relation"]) == ("film.bearing_diameter", "= scale * 48 mm")
         (scale,) = diameter["because"]
         assert (scale["name"], scale["kind"], scale["typed"]) == ("scale", "given", "1")
@@ -471,8 +471,8 @@ class TestExplain:
     def test_formulas_are_told_on_paper(self, http, tied):
         patch = {"models": {"model": {"parameters": {"inner_diameter": "= film.journal_diameter"}}}}
         copy = created_by(http.post(f"{DESIGNS}/{tied['id']}/copy"))
-        told = http.get(f"{DESIGNS}/{patched(http, copy, patch)['id']}/explain/model.inner_diameter").json()
-        (journal,) = told["because"]
+        answer = http.get(f"{DESIGNS}/{patched(http, copy, patch)['id']}/explain/model.inner_diameter").json()
+        (journal,) = answer["because"]
         assert journal["kind"] == "formula"
         assert journal["template"]["id"] == "oil_film"
         assert journal["latex"]
@@ -488,8 +488,8 @@ class TestExplain:
         assert width["value"]["unit"] == "mm"
 
     def test_an_unknown_parameter(self, http, tied):
-        told = problem(http.get(f"{DESIGNS}/{tied['id']}/explain/colour"), 404, "not-found")
-        assert "model.inner_diameter" in told["detail"]
+        refusal = problem(http.get(f"{DESIGNS}/{tied['id']}/explain/colour"), 404, "not-found")
+        assert "model.inner_diameter" in refusal["detail"]
 
 
 class TestRevisions:
@@ -662,15 +662,15 @@ class TestFailingRebuild:
         kept = revision(http, failed)
         assert (kept["state"], kept["problem"]) == ("failed", failed["problem"])
         assert revision(http, failed, 1)["state"] == "current"
-        told = problem(http.get(f"{place}/revisions/2/model.step"), 404, "not-found")
-        assert failed["problem"]["detail"][:40] in told["detail"]
-        mended = patched(
+        refusal = problem(http.get(f"{place}/revisions/2/model.step"), 404, "not-found")
+        assert failed["problem"]["detail"][:40] in refusal["detail"]
+        corrected = patched(
             http, failed, {"models": {"model": {"parameters": {"mood": "good", "size": "22 mm"}}}}
         )
-        assert mended["state"] == "current"
+        assert corrected["state"] == "current"
         assert http.get(f"{place}/model.step").headers["design-revision"] == "3"
 
 
 def size_of(http, design):
-    told = http.get(f"{DESIGNS}/{design['id']}/measurements").json()
-    return told["model"]["dimensions"]["size"]["value"]
+    answer = http.get(f"{DESIGNS}/{design['id']}/measurements").json()
+    return answer["model"]["dimensions"]["size"]["value"]

@@ -221,9 +221,9 @@ class TestJobs:
         design, job = looping(http)
         until(http, job, "running")
         assert http.delete(job).json()["state"] == "cancelled"
-        told = settled(http, design["id"])
-        assert told["state"] == "failed"
-        assert told["problem"]["type"] == "/problems/cancelled"
+        answer = settled(http, design["id"])
+        assert answer["state"] == "failed"
+        assert answer["problem"]["type"] == "/problems/cancelled"
         assert http.get(job).json()["problem"]["type"] == "/problems/cancelled"
         problem(http.delete(job), 409, "job-finished")
 
@@ -281,13 +281,13 @@ class TestWhileAJobLoops:
             json={"inputs": paper()["steps"]["film"]["inputs"] | {"bearing_diameter": "48 mm"}},
         )
         assert answer.status_code == 200
-        told = settled(http, design["id"], served.jobs.settings.job_deadline + 20)
-        assert told["state"] == "failed"
-        assert told["problem"]["type"] == "/problems/deadline"
-        assert f"{served.jobs.settings.job_deadline:g} s" in told["problem"]["detail"]
-        assert told["problem"]["changed"] == ["model.mood", "model.size"]
-        assert until(http, job, "failed")["problem"]["detail"] == told["problem"]["detail"]
-        assert revision(http, told)["problem"] == told["problem"]
+        content = settled(http, design["id"], served.jobs.settings.job_deadline + 20)
+        assert content["state"] == "failed"
+        assert content["problem"]["type"] == "/problems/deadline"
+        assert f"{served.jobs.settings.job_deadline:g} s" in content["problem"]["detail"]
+        assert content["problem"]["changed"] == ["model.mood", "model.size"]
+        assert until(http, job, "failed")["problem"]["detail"] == content["problem"]["detail"]
+        assert revision(http, content)["problem"] == content["problem"]
 
     def test_a_job_that_eats_memory_is_ended_by_its_limit(self, http):
         design = created(http, moody("19.5 mm", "eats"))

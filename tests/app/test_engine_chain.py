@@ -122,9 +122,9 @@ def test_swing_of_the_sleeve_matters(http, chain):
     """The preview shows another film if the big end is taken as standing still."""
     still = {**CHAIN["steps"]["film"], "inputs": {**FILM, "sleeve_speed": "0 rpm"}}
     change = {**CHAIN, "steps": {**CHAIN["steps"], "film": still}}
-    told = http.post(f"{API}/designs/{chain['id']}/preview", json=change)
-    assert told.status_code == 200, told.text
-    film = told.json()["outputs"]["film.minimum_film_thickness"]
+    response = http.post(f"{API}/designs/{chain['id']}/preview", json=change)
+    assert response.status_code == 200, response.text
+    film = response.json()["outputs"]["film.minimum_film_thickness"]
     assert film["new"]["value"] != pytest.approx(film["old"]["value"], rel=1e-3)
 
 
@@ -162,8 +162,8 @@ def test_curves_scale_in_relations(http):
     }  # fmt: skip
     document = {"name": "twice", "parameters": CHAIN["parameters"], "steps": steps}
     design = created(http, document)
-    told = revision(http, design)["steps"]
-    single, twice = (np.array(told[s]["outputs" if s == "load" else "inputs"][n]["value"])
+    steps = revision(http, design)["steps"]
+    single, twice = (np.array(steps[s]["outputs" if s == "load" else "inputs"][n]["value"])
                      for s, n in (("load", "crankpin_load_x"), ("film", "load_x")))  # fmt: skip
     assert twice == pytest.approx(-2 * single, rel=1e-12)
     wrong = {**steps["film"], "inputs": {**steps["film"]["inputs"], "load_x": "= load.torque"}}
@@ -191,6 +191,6 @@ def test_curves_that_are_too_many_for_an_answer_are_refused(http):
     body = {"inputs": {**BearingLoad.example, "speed": speeds, "crank_angle_step": "1 deg"}}
     address = f"{API}/templates/bearing_load/versions/1/evaluate"
     assert http.post(address, json=body).status_code == 413
-    told = http.post(address, json={**body, "outputs": ["crankpin_load_max", "mean_torque"]})
-    assert told.status_code == 200
-    assert len(told.json()["outputs"]["crankpin_load_max"]["value"]) == 1000
+    response = http.post(address, json={**body, "outputs": ["crankpin_load_max", "mean_torque"]})
+    assert response.status_code == 200
+    assert len(response.json()["outputs"]["crankpin_load_max"]["value"]) == 1000

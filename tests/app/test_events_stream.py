@@ -1,4 +1,4 @@
-"""What happens to designs and jobs is told as it happens, in order (server-sent events)."""
+"""What happens to designs and jobs is sent as it happens, in order (server-sent events)."""
 
 import threading
 from contextlib import contextmanager
@@ -11,7 +11,7 @@ DESIGNS = f"{API}/designs"
 
 
 class Listener:
-    """Hears a stream in a thread, until it ends or `until` is told."""
+    """Hears a stream in a thread, until it ends or `until` comes."""
 
     def __init__(self, url, path, until):
         self.events, self.until = [], until
@@ -53,8 +53,8 @@ def test_a_job_from_start_to_end(served, http):
     assert listener.type.startswith("text/event-stream")
     assert listener.names[-1] == "done"
     assert listener.events[-1][1]["result"] == f"/api/v1/designs/{answer.json()['id']}/revisions/1"
-    told = [data["progress"] for name, data in listener.events if name == "progress"]
-    assert told == sorted(told)
+    fractions = [data["progress"] for name, data in listener.events if name == "progress"]
+    assert fractions == sorted(fractions)
     order = [name for name in dict.fromkeys(listener.names) if name != "progress"]
     assert order in (["queued", "running", "done"], ["running", "done"], ["done"])
 
@@ -84,10 +84,10 @@ def test_a_change_without_geometry_tells_revision_and_current(served, http):
     path = f"{DESIGNS}/{design['id']}/events"
     with listening(served, path, ends(3, "current")) as listener:
         second = patched(http, design, {"parameters": {"a": "2"}})
-        patched(http, second, {"parameters": {"a": "2"}})  # changes nothing, so it tells nothing
+        patched(http, second, {"parameters": {"a": "2"}})  # changes nothing, so nothing is sent
         patched(http, second, {"parameters": {"a": "3"}})
-    told = [(name, data["revision"]) for name, data in listener.events]
-    assert told == [("current", 1), ("revision", 2), ("current", 2), ("revision", 3), ("current", 3)]
+    events = [(name, data["revision"]) for name, data in listener.events]
+    assert events == [("current", 1), ("revision", 2), ("current", 2), ("revision", 3), ("current", 3)]
 
 
 @pytest.mark.parametrize("path", [f"{DESIGNS}/none/events", f"{API}/jobs/none/events"])

@@ -410,8 +410,8 @@ class TestAnswers:
 
     def test_the_place_of_a_fault_is_short(self):
         error = SimpleNamespace(errors=lambda: [{"loc": ("body", "x" * 10**6), "msg": "wrong", "type": "t"}])
-        (told,) = problems._validation(error)["errors"]
-        assert len(told["name"]) == problems.LONGEST_PLACE
+        (fault,) = problems._validation(error)["errors"]
+        assert len(fault["name"]) == problems.LONGEST_PLACE
 
     @pytest.mark.parametrize("piece", ["a", "\x00", "\u202e", " "])
     def test_a_text_in_a_report(self, piece):

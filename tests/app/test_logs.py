@@ -21,7 +21,7 @@ HARMLESS = re.compile(r"[A-Za-z0-9._-]{1,64}")
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory):
+def logged(tmp_path_factory):
     """A server in a process that logs JSON; requests to it, and the lines it has left when it has ended."""
     data = tmp_path_factory.mktemp("logs") / "data"
     with ServerProcess(data, CRANKWRIGHT_LOG_LEVEL="info", CRANKWRIGHT_LOG_FORMAT="json") as server:
@@ -47,17 +47,17 @@ def told(tmp_path_factory):
     return answers, lines, text
 
 
-def lines_of(told, name):
-    answers, lines, _ = told
+def lines_of(logged, name):
+    answers, lines, _ = logged
     id = answers[name].headers["x-request-id"]
     return [line for line in lines if line.get("request_id") == id]
 
 
-def test_one_id_in_header_problem_and_line(told):
-    answer = told[0]["problem"]
+def test_one_id_in_header_problem_and_line(logged):
+    answer = logged[0]["problem"]
     assert answer.headers["x-request-id"] == "mine.1"
     assert answer.json()["request_id"] == "mine.1"
-    (line,) = lines_of(told, "problem")
+    (line,) = lines_of(logged, "problem")
     assert line["status"] == 404
     assert line["method"] == "GET"
     assert line["route"] == f"{DESIGNS}/{{id}}"
@@ -67,28 +67,28 @@ def test_one_id_in_header_problem_and_line(told):
     assert line["level"] == "info"
 
 
-def test_the_client_is_named_but_no_secret(told):
-    (line, *_) = [line for line in lines_of(told, "created") if "status" in line]
+def test_the_client_is_named_but_no_secret(logged):
+    (line, *_) = [line for line in lines_of(logged, "created") if "status" in line]
     assert line["client"] == "name:office-7"
-    (line,) = [line for line in lines_of(told, "model") if "status" in line]
+    (line,) = [line for line in lines_of(logged, "model") if "status" in line]
     assert re.fullmatch("session:[0-9a-f]{12}", line["client"])
-    assert "hunter2" not in told[2], "neither bodies nor queries nor cookies"
+    assert "hunter2" not in logged[2], "neither bodies nor queries nor cookies"
 
 
-def test_a_job_carries_the_id_of_its_request(told):
-    assert told[0]["model"].is_success, told[0]["model"].text
-    job = [line["message"].split(" ", 2)[2] for line in lines_of(told, "model") if "job" in line]
+def test_a_job_carries_the_id_of_its_request(logged):
+    assert logged[0]["model"].is_success, logged[0]["model"].text
+    job = [line["message"].split(" ", 2)[2] for line in lines_of(logged, "model") if "job" in line]
     assert job == ["(build) queued", "(build) begins", "(build) done"]
 
 
-def test_calls_within_a_page_carry_its_id(told):
-    assert told[0]["page"].status_code == 200
-    assert {line["route"] for line in lines_of(told, "page")} >= {"/", DESIGNS, f"{API}/templates"}
+def test_calls_within_a_page_carry_its_id(logged):
+    assert logged[0]["page"].status_code == 200
+    assert {line["route"] for line in lines_of(logged, "page")} >= {"/", DESIGNS, f"{API}/templates"}
 
 
-def test_control_characters_are_escaped(told):
-    assert "\x1b" not in told[2]
-    (line,) = lines_of(told, "control")
+def test_control_characters_are_escaped(logged):
+    assert "\x1b" not in logged[2]
+    (line,) = lines_of(logged, "control")
     assert "forged" in line["path"]
 
 

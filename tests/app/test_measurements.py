@@ -1,4 +1,4 @@
-"""What a solid measures, as the interface tells it: also of builds that an older recipe made."""
+"""What a solid measures, as the interface shows it: also of builds that an older recipe made."""
 
 from app.solids.measures import measurements
 from cad.inspect import MEASURES

@@ -41,11 +41,11 @@ class TestCatalogue:
         assert "oil_film" not in {item["id"] for item in listed}
 
     def test_show(self, http):
-        told = http.get(BALL).json()
-        assert told["parameters"]["required"] == ["inner_diameter"]
-        assert told["parameters"]["properties"]["inner_diameter"]["unit"] == "mm"
-        assert told["measures"]["mass"] == "kg"
-        picture = http.get(told["picture"], headers={"Prefer": "wait=60"})
+        answer = http.get(BALL).json()
+        assert answer["parameters"]["required"] == ["inner_diameter"]
+        assert answer["parameters"]["properties"]["inner_diameter"]["unit"] == "mm"
+        assert answer["measures"]["mass"] == "kg"
+        picture = http.get(answer["picture"], headers={"Prefer": "wait=60"})
         assert picture.headers["content-type"] == "image/png"
         assert picture.content.startswith(KINDS["png"][1])
 
@@ -95,8 +95,8 @@ class TestBuild:
     def test_a_failing_kernel_is_a_problem(self, http):
         body = {"parameters": {"size": "28 mm", "mood": "raises"}, "artifacts": ["step"]}
         answer = http.post(f"{API}/models/moody/versions/1/build", json=body, headers={"Prefer": "wait=60"})
-        told = problem(answer, 422, "geometry")
-        assert "mood" in {fault["name"] for fault in told["errors"]}
+        refusal = problem(answer, 422, "geometry")
+        assert "mood" in {fault["name"] for fault in refusal["errors"]}
 
 
 class TestFiles:
@@ -186,11 +186,11 @@ class TestVerify:
         first = created(http, moody("29.5 mm"))
         step = http.get(place(first, "model.step")).content
         patched(http, first, {"models": {"model": {"parameters": {"size": "29.6 mm"}}}})
-        told = self.verify(http, step).json()
-        assert told["model"] == {"id": "moody", "version": 1}
-        assert told["build"] == revision(http, first, 1)["models"]["model"]["build"]
-        assert told["revisions"] == [{"design": first["id"], "revision": 1, "current": False}]
-        assert told["intact"] is True
+        origin = self.verify(http, step).json()
+        assert origin["model"] == {"id": "moody", "version": 1}
+        assert origin["build"] == revision(http, first, 1)["models"]["model"]["build"]
+        assert origin["revisions"] == [{"design": first["id"], "revision": 1, "current": False}]
+        assert origin["intact"] is True
 
     def test_a_changed_file_is_told(self, http, design):
         step = http.get(place(design, "model.step")).content
@@ -210,8 +210,8 @@ class TestVerify:
         "media", ["application/json", "text/plain", "model/step+zip", "", "model/", "step"]
     )
     def test_another_type(self, http, media):
-        told = problem(self.verify(http, b"{}", media), 415, "not-step")
-        assert "model/step" in told["detail"]
+        refusal = problem(self.verify(http, b"{}", media), 415, "not-step")
+        assert "model/step" in refusal["detail"]
 
     def test_no_type(self, http):
         problem(http.post(f"{API}/verify", content=b"ISO-10303-21;"), 415, "not-step")

@@ -14,7 +14,7 @@ from app.storage.identity import now
 REFERENCES = Path(__file__).parents[1] / "references"
 BEFORE = json.loads((REFERENCES / "version_0_1.json").read_text())
 DESIGNS = BEFORE["designs"]
-SETTLED = {id for id, told in DESIGNS.items() if told["design"]["state"] != "regenerating"}
+SETTLED = {id for id, design in DESIGNS.items() if design["design"]["state"] != "regenerating"}
 UNTIL_STATES_CHANGE = {"queued", "running"}
 
 
@@ -44,8 +44,8 @@ def http(upgraded):
 
 def test_the_reference_holds_every_case():
     assert len(SETTLED) >= 4
-    assert {told["design"]["state"] for told in DESIGNS.values()} == {"current", "failed"}
-    assert max(len(told["revisions"]) for told in DESIGNS.values()) >= 4
+    assert {design["design"]["state"] for design in DESIGNS.values()} == {"current", "failed"}
+    assert max(len(design["revisions"]) for design in DESIGNS.values()) >= 4
     with sqlite3.connect(":memory:") as connection:
         connection.executescript((REFERENCES / "version_0_1.sql").read_text())
         jobs = {state for (state,) in connection.execute("SELECT state FROM job")}

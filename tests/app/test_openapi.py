@@ -42,21 +42,23 @@ def test_it_is_valid_openapi_3_1(document):
 
 def test_every_operation_says_what_it_does(operations):
     assert len(operations) > 30
-    for name, told in operations.items():
-        assert told.get("summary"), name
-        assert told.get("description"), name
-    assert len({told["operationId"] for told in operations.values()}) == len(operations)
+    for name, operation in operations.items():
+        assert operation.get("summary"), name
+        assert operation.get("description"), name
+    assert len({operation["operationId"] for operation in operations.values()}) == len(operations)
 
 
 def test_every_operation_says_what_it_answers(operations):
-    for name, told in operations.items():
-        assert "4XX" in told["responses"], name
-        assert "application/problem+json" in told["responses"]["4XX"]["content"]
-        assert any(status.startswith("2") for status in told["responses"]), name
+    for name, operation in operations.items():
+        assert "4XX" in operation["responses"], name
+        assert "application/problem+json" in operation["responses"]["4XX"]["content"]
+        assert any(status.startswith("2") for status in operation["responses"]), name
 
 
 def test_every_body_has_an_example(document, operations):
-    with_body = {name: told["requestBody"] for name, told in operations.items() if "requestBody" in told}
+    with_body = {
+        name: operation["requestBody"] for name, operation in operations.items() if "requestBody" in operation
+    }
     bodies = {name: body["content"].get("application/json") for name, body in with_body.items()}
     missing = [name for name, body in bodies.items() if body and not examples(document, body["schema"])]
     assert [name for name in missing if not name.endswith(("/copy", "/restore"))] == []
@@ -90,8 +92,8 @@ def test_every_example_runs(http, document, operations, example):
         for media, body in operation.get("requestBody", {}).get("content", {}).items():
             for sent in examples(document, body["schema"]):
                 headers = {"Content-Type": media, "Prefer": "wait=60", "If-Match": "*"}
-                told = {"json": sent} if media.endswith("json") else {"content": sent}
-                answer = http.request(method, filled(path, operation, example), headers=headers, **told)
+                body = {"json": sent} if media.endswith("json") else {"content": sent}
+                answer = http.request(method, filled(path, operation, example), headers=headers, **body)
                 assert answer.is_success, (name, sent, answer.text)
                 ran.append(name)
     assert len(ran) >= 6, ran

@@ -98,10 +98,10 @@ def dumped(document):
 def a_problem_or_fine(answer):
     assert answer.status_code < 500, answer.text
     if answer.status_code >= 400:
-        told = answer.json()
+        content = answer.json()
         assert answer.headers["content-type"] == "application/problem+json"
-        assert told["status"] == answer.status_code
-        for fault in told.get("errors", ()):
+        assert content["status"] == answer.status_code
+        for fault in content.get("errors", ()):
             assert fault["name"]
             assert fault["code"]
             assert fault["detail"]

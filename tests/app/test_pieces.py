@@ -195,8 +195,8 @@ def test_a_large_body_is_refused_as_a_small_one_when_the_pool_is_full(full, http
     flood = {**JSON, "Crankwright-Client": "flood"}
     large = http.post(PLACE, content=PADDING, headers=flood)
     small = http.post(PLACE, content=b'{"inputs": {"duration": "1 ms"}}', headers=flood)
-    told = [problem(answer, 429, "queue-full") for answer in (large, small)]
-    assert told[0]["detail"] == told[1]["detail"]
+    refusals = [problem(answer, 429, "queue-full") for answer in (large, small)]
+    assert refusals[0]["detail"] == refusals[1]["detail"]
     assert large.headers["Retry-After"] == small.headers["Retry-After"]
 
 

@@ -14,11 +14,11 @@ KINDS = {kind.slug: kind for kind in (*TABLE.values(), *HTTP.values(), INTERNAL)
 
 @pytest.mark.parametrize("slug", KINDS)
 def test_every_kind_answers_with_its_meaning_and_remedy(http, slug):
-    told = http.get(f"/problems/{slug}").json()
-    assert told["slug"] == slug
-    assert told["title"]
-    assert told["remedy"]
-    assert told["status"] == KINDS[slug].status
+    answer = http.get(f"/problems/{slug}").json()
+    assert answer["slug"] == slug
+    assert answer["title"]
+    assert answer["remedy"]
+    assert answer["status"] == KINDS[slug].status
 
 
 def test_slugs_and_titles_are_distinct():
@@ -79,8 +79,8 @@ def test_a_body_too_large_is_413_whether_its_length_is_told_or_not(http, path):
     media = "application/json" if path == "designs" else "model/step"
     headers = {"Content-Type": media}
     piece = b" " * 2**20
-    told = http.post(f"{API}/{path}", content=piece * 50, headers=headers)
-    assert "16 MiB" in problem(told, 413, "body-too-large")["detail"]
+    response = http.post(f"{API}/{path}", content=piece * 50, headers=headers)
+    assert "16 MiB" in problem(response, 413, "body-too-large")["detail"]
     untold = http.post(f"{API}/{path}", content=(piece for _ in range(18)), headers=headers)
     assert "16 MiB" in problem(untold, 413, "body-too-large")["detail"]
 

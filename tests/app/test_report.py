@@ -77,10 +77,10 @@ def on_screen(http, design, **more):
 
 class TestContents:
     def test_html_and_pdf_say_the_same(self, http, bearing, printed):
-        told = http.get(f"{DESIGNS}/{bearing['id']}/revisions/2").json()
-        digest = told["steps"]["film"]["template"]["digest"]
-        step = told["models"]["model"]["artifacts"]["step"]
-        build = told["models"]["model"]["build"]
+        answer = http.get(f"{DESIGNS}/{bearing['id']}/revisions/2").json()
+        digest = answer["steps"]["film"]["template"]["digest"]
+        step = answer["models"]["model"]["artifacts"]["step"]
+        build = answer["models"]["model"]["build"]
         paper_text, _ = printed
         for text in (on_screen(http, bearing).text, paper_text):
             for wanted in (
@@ -155,11 +155,11 @@ class TestEveryTemplate:
         """A unit that one of them declares was once not known to the reports."""
         templates = http.get(f"{API}/templates", params={"limit": 500}).json()["items"]
         assert len(templates) >= 10
-        for told in templates:
-            path = f"{API}/templates/{told['id']}/versions/{told['version']}"
+        for template in templates:
+            path = f"{API}/templates/{template['id']}/versions/{template['version']}"
             step = {
-                "template": told["id"],
-                "version": told["version"],
+                "template": template["id"],
+                "version": template["version"],
                 "inputs": http.get(path).json()["example"],
             }
             design = created(http, {"name": "example", "steps": {"one": step}})
@@ -193,9 +193,9 @@ class TestConditions:
         assert read(http, bearing, kind, number=1).headers["etag"] != tag
 
     def test_date_of_the_document_is_that_of_the_revision(self, http, bearing):
-        told = http.get(f"{DESIGNS}/{bearing['id']}/revisions/2").json()
+        answer = http.get(f"{DESIGNS}/{bearing['id']}/revisions/2").json()
         about = pypdf.PdfReader(io.BytesIO(read(http, bearing, "pdf").content)).metadata
-        assert about.creation_date_raw.startswith(f"D:{told['created'][:10].replace('-', '')}")
+        assert about.creation_date_raw.startswith(f"D:{answer['created'][:10].replace('-', '')}")
         assert about.title == "report, revision 2"
 
     def test_strict_policy(self, http, bearing):
@@ -209,8 +209,8 @@ class TestConditions:
     def test_unknown_ones(self, http, bearing):
         problem(http.get(f"{DESIGNS}/nothing/report"), 404, "not-found")
         problem(http.get(f"{DESIGNS}/{bearing['id']}/revisions/9/report"), 404, "not-found")
-        told = problem(http.get(f"{DESIGNS}/{bearing['id']}/report.docx"), 404, "not-found")
-        assert "pdf" in told["detail"]
+        refusal = problem(http.get(f"{DESIGNS}/{bearing['id']}/report.docx"), 404, "not-found")
+        assert "pdf" in refusal["detail"]
 
     def test_a_revision_of_a_deleted_design_keeps_its_report(self, http):
         design = created(http, {"name": "gone", "parameters": {"a": "1 mm"}})

@@ -31,7 +31,7 @@ def bearing(http):
 
 
 @pytest.fixture(scope="module")
-def told(http, bearing):
+def worksheet(http, bearing):
     return http.get(f"{DESIGNS}/{bearing['id']}/revisions/1").json()
 
 
@@ -58,8 +58,8 @@ def values(book):
     return {(row[0], row[2]): dict(zip(rows[0], row, strict=True)) for row in rows[1:]}
 
 
-def test_csv_has_every_input_and_output(lines, told):
-    film = told["steps"]["film"]
+def test_csv_has_every_input_and_output(lines, worksheet):
+    film = worksheet["steps"]["film"]
     found = {(line["block"], line["kind"], line["name"]): line for line in lines}
     for kind, part in (("input", "inputs"), ("output", "outputs")):
         for name, quantity in film[part].items():
@@ -69,8 +69,8 @@ def test_csv_has_every_input_and_output(lines, told):
     assert found["model", "dimension", "inner_diameter"]["value"] == "48.0"
 
 
-def test_csv_counts_points_and_tells_reasons(lines, told):
-    ratios = told["steps"]["friction"]["outputs"]["sommerfeld_number"]
+def test_csv_counts_points_and_tells_reasons(lines, worksheet):
+    ratios = worksheet["steps"]["friction"]["outputs"]["sommerfeld_number"]
     found = [line for line in lines if line["name"] == "friction_force"]
     assert [line["index"] for line in found] == ["1", "2", "3"]
     masked = [line for line in lines if line["name"] == "sommerfeld_number" and line["block"] == "friction"]
@@ -78,9 +78,9 @@ def test_csv_counts_points_and_tells_reasons(lines, told):
     assert [line["remark"] for line in masked] == [reason or "" for reason in ratios["reasons"]]
 
 
-def test_xlsx_numbers_are_numbers_and_units_stand_apart(book, told):
+def test_xlsx_numbers_are_numbers_and_units_stand_apart(book, worksheet):
     found = values(book)
-    for name, quantity in told["steps"]["film"]["outputs"].items():
+    for name, quantity in worksheet["steps"]["film"]["outputs"].items():
         row = found["film", name]
         assert row["value"] == pytest.approx(quantity["value"], rel=DIGITS)
         assert isinstance(row["value"], (int, float))
@@ -88,10 +88,10 @@ def test_xlsx_numbers_are_numbers_and_units_stand_apart(book, told):
     assert found["design", "scale"]["value"] == 1
 
 
-def test_xlsx_curves_have_a_sheet_of_their_own(book, told):
+def test_xlsx_curves_have_a_sheet_of_their_own(book, worksheet):
     sheet = book["friction"]
     columns = {column[0]: column for column in sheet.iter_cols(values_only=True)}
-    force = told["steps"]["friction"]["outputs"]["friction_force"]
+    force = worksheet["steps"]["friction"]["outputs"]["friction_force"]
     assert columns["friction_force"][1] == "N"
     assert list(columns["friction_force"][2:]) == pytest.approx(force["value"], rel=DIGITS)
     assert columns["speed"][1:] == ("rpm", 1000, 2000, 0)
@@ -117,21 +117,21 @@ def _is_number(text):
 
 
 def test_us_units(http, bearing):
-    told = csv.DictReader(io.StringIO(http.get(f"{place(bearing)}.csv", params={"units": "us"}).text))
-    film = next(line for line in told if line["name"] == "minimum_film_thickness")
+    table = csv.DictReader(io.StringIO(http.get(f"{place(bearing)}.csv", params={"units": "us"}).text))
+    film = next(line for line in table if line["name"] == "minimum_film_thickness")
     assert film["unit"] == "thou"
 
 
 def test_json_is_the_usual_kind(http, bearing):
     for accept in ("*/*", "application/json", "image/gif"):
-        told = http.get(place(bearing), headers={"Accept": accept}).json()
-        assert told["steps"]["film"]["formulas"]
-    assert http.get(f"{DESIGNS}/{bearing['id']}/revisions/1/worksheet").json() == told
+        answer = http.get(place(bearing), headers={"Accept": accept}).json()
+        assert answer["steps"]["film"]["formulas"]
+    assert http.get(f"{DESIGNS}/{bearing['id']}/revisions/1/worksheet").json() == answer
 
 
 def test_unknown_kind(http, bearing):
-    told = problem(http.get(f"{place(bearing)}.ods"), 404, "not-found")
-    assert "xlsx" in told["detail"]
+    refusal = problem(http.get(f"{place(bearing)}.ods"), 404, "not-found")
+    assert "xlsx" in refusal["detail"]
 
 
 def test_names_of_sheets(http):

@@ -70,19 +70,19 @@ def problem_in(answer: bytes) -> dict:
     """The one problem in raw bytes, which carries the id in its header."""
     top, _, body = answer.partition(b"\r\n\r\n")
     lines = top.decode().lower().split("\r\n")
-    told = json.loads(body)
+    content = json.loads(body)
     assert "content-type: application/problem+json" in lines
-    assert f"x-request-id: {told['request_id']}" in lines
+    assert f"x-request-id: {content['request_id']}" in lines
     assert "connection: close" in lines
-    assert int(lines[0].split()[1]) == told["status"]
-    return told
+    assert int(lines[0].split()[1]) == content["status"]
+    return content
 
 
 @pytest.mark.parametrize("piece", [b"X-Filler: aaaaaaaaaaaaaaaaaaaaaaaaaaaa\r\n", b"a" * 40])
 def test_a_head_at_a_trickle(slow, piece):
-    told = problem_in(dripped(slow, b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n", piece))
-    assert told["type"] == "/problems/too-slow"
-    assert told["status"] == 408
+    refusal = problem_in(dripped(slow, b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n", piece))
+    assert refusal["type"] == "/problems/too-slow"
+    assert refusal["status"] == 408
 
 
 def test_a_second_head_at_a_trickle(slow):
@@ -105,9 +105,9 @@ def test_empty_lines_are_no_request(slow, start):
     ],
 )
 def test_a_body_at_a_trickle(slow, framing, piece):
-    told = problem_in(dripped(slow, head(f"POST {EVALUATE}", JSON, framing), piece))
-    assert told["type"] == "/problems/too-slow"
-    assert "bytes/s" in told["detail"]
+    refusal = problem_in(dripped(slow, head(f"POST {EVALUATE}", JSON, framing), piece))
+    assert refusal["type"] == "/problems/too-slow"
+    assert "bytes/s" in refusal["detail"]
 
 
 def test_a_body_that_stops(slow):
@@ -181,9 +181,9 @@ def test_the_kernel_keeps_nothing_for_who_does_not_read(slow):
 
 
 def test_a_head_without_end(slow):
-    told = problem_in(dripped(slow, b"GET / HTTP/1.1\r\nX-A: " + b"a" * (LONGEST_HEAD - 100), b"a" * 200))
-    assert told["type"] == "/problems/head-too-large"
-    assert f"{LONGEST_HEAD} bytes" in told["detail"]
+    refusal = problem_in(dripped(slow, b"GET / HTTP/1.1\r\nX-A: " + b"a" * (LONGEST_HEAD - 100), b"a" * 200))
+    assert refusal["type"] == "/problems/head-too-large"
+    assert f"{LONGEST_HEAD} bytes" in refusal["detail"]
 
 
 def test_what_is_no_http(slow):

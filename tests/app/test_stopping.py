@@ -123,9 +123,9 @@ def test_a_long_calculation_is_cut(server):
         assert not calculation.done(), calculation.result().text[:500]
         assert server.stop() == 0
         answer = calculation.result()
-    told = problem(answer, 503, "stopping")
+    refusal = problem(answer, 503, "stopping")
     assert int(answer.headers["Retry-After"]) > 0
-    assert answer.headers["X-Request-ID"] == told["request_id"]
+    assert answer.headers["X-Request-ID"] == refusal["request_id"]
     assert answer.headers["X-Content-Type-Options"] == "nosniff"
     assert "Traceback" not in server.log.read_text()
 

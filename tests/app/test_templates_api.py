@@ -40,16 +40,16 @@ class TestCatalogue:
         assert 1 in [item["version"] for item in http.get(f"{API}/templates/oil_film").json()["items"]]
 
     def test_show(self, http):
-        told = http.get(FILM).json()
-        load = told["inputs"]["properties"]["radial_load"]
+        answer = http.get(FILM).json()
+        load = answer["inputs"]["properties"]["radial_load"]
         assert (load["unit"], load["title"], load["symbol"]) == ("N", "radial load", "F")
-        assert "reference_density" not in told["inputs"]["required"]
-        film = next(f for f in told["formulas"] if f["name"] == "minimum_film_thickness")
+        assert "reference_density" not in answer["inputs"]["required"]
+        film = next(f for f in answer["formulas"] if f["name"] == "minimum_film_thickness")
         assert film["latex"]
         assert "<math" in film["mathml"]
-        assert told["limits"]
-        assert told["errata"]
-        assert len(told["digest"]) == 64
+        assert answer["limits"]
+        assert answer["errata"]
+        assert len(answer["digest"]) == 64
 
     @pytest.mark.parametrize("path", ["none", "none/versions/1", "oil_film/versions/999"])
     def test_unknown(self, http, path):
@@ -63,8 +63,8 @@ class TestOwnTemplates:
         assert "double" in {item["id"] for item in http.get(f"{API}/templates").json()["items"]}
         assert "double" not in {item["id"] for item in http.get(f"{API}/models").json()["items"]}
         body = {"inputs": {"length": "3 mm"}}
-        told = http.post(f"{API}/templates/double/versions/1/evaluate", json=body).json()
-        assert told["outputs"] == {"twice_the_length": {"value": 6, "unit": "mm"}}
+        answer = http.post(f"{API}/templates/double/versions/1/evaluate", json=body).json()
+        assert answer["outputs"] == {"twice_the_length": {"value": 6, "unit": "mm"}}
 
     def test_they_drive_models(self, http):
         document = moody("= twice.twice_the_length")
@@ -77,14 +77,14 @@ class TestOwnTemplates:
 
 class TestEvaluate:
     def test_the_paper(self, http):
-        told = evaluate(http, OIL_FILM)
-        values = {name: answer["value"] for name, answer in told["outputs"].items()}
+        content = evaluate(http, OIL_FILM)
+        values = {name: answer["value"] for name, answer in content["outputs"].items()}
         assert values["sommerfeld_number"] == pytest.approx(3.948, abs=5e-4)
         assert values["relative_eccentricity"] == pytest.approx(0.8821, abs=5e-5)
         assert values["minimum_film_thickness"] == pytest.approx(3.245, abs=5e-4)
-        assert told["outputs"]["minimum_film_thickness"]["unit"] == "um"
-        assert told["template"]["id"] == "oil_film"
-        assert told["warnings"] == []
+        assert content["outputs"]["minimum_film_thickness"]["unit"] == "um"
+        assert content["template"]["id"] == "oil_film"
+        assert content["warnings"] == []
 
     def test_every_value_of_the_papers_list_is_there(self, http):
         assert evaluate(http, OIL_FILM)["outputs"].keys() >= {
@@ -95,14 +95,14 @@ class TestEvaluate:
 
     @pytest.mark.parametrize(("name", "typed"), [(n, t) for n, forms in OTHER_UNITS.items() for t in forms])
     def test_other_units_give_the_same(self, http, name, typed):
-        told = evaluate(http, {**OIL_FILM, name: typed}, outputs=["minimum_film_thickness"])
+        answer = evaluate(http, {**OIL_FILM, name: typed}, outputs=["minimum_film_thickness"])
         plain = evaluate(http, OIL_FILM, outputs=["minimum_film_thickness"])
         film = "minimum_film_thickness"
-        assert told["outputs"][film]["value"] == pytest.approx(plain["outputs"][film]["value"], rel=1e-7)
+        assert answer["outputs"][film]["value"] == pytest.approx(plain["outputs"][film]["value"], rel=1e-7)
 
     def test_only_what_is_asked_for_and_in_the_unit_asked_for(self, http):
-        told = evaluate(http, OIL_FILM, outputs=["journal_diameter"], units={"journal_diameter": "inch"})
-        assert told["outputs"] == {
+        answer = evaluate(http, OIL_FILM, outputs=["journal_diameter"], units={"journal_diameter": "inch"})
+        assert answer["outputs"] == {
             "journal_diameter": {"value": pytest.approx(47.945 / 25.4), "unit": "inch"},
         }
 
@@ -116,24 +116,24 @@ class TestEvaluate:
         [({"radial_load": "3.166 kN"}, "sommerfeld_number"), ({"bearing_width": "48 mm"}, "width_ratio")],
     )
     def test_outside_its_limits_it_answers_with_a_warning_that_names_the_limit(self, http, change, limit):
-        told = evaluate(http, {**OIL_FILM, **change})
-        assert told["outputs"]["minimum_film_thickness"]["value"] > 0
-        assert limit in {warning["name"] for warning in told["warnings"]}
-        assert all(warning["code"] and warning["detail"] for warning in told["warnings"])
+        answer = evaluate(http, {**OIL_FILM, **change})
+        assert answer["outputs"]["minimum_film_thickness"]["value"] > 0
+        assert limit in {warning["name"] for warning in answer["warnings"]}
+        assert all(warning["code"] and warning["detail"] for warning in answer["warnings"])
 
     def test_arrays_are_pointwise(self, http):
         loads = [20, 25, 30]
-        told = evaluate(http, {**OIL_FILM, "radial_load": {"value": loads, "unit": "kN"}})
+        answer = evaluate(http, {**OIL_FILM, "radial_load": {"value": loads, "unit": "kN"}})
         single = [
             evaluate(http, {**OIL_FILM, "radial_load": f"{load} kN"})["outputs"]["minimum_film_thickness"]
             for load in loads
         ]
-        film = told["outputs"]["minimum_film_thickness"]
+        film = answer["outputs"]["minimum_film_thickness"]
         assert film["value"] == pytest.approx([one["value"] for one in single], rel=1e-12)
 
     def test_a_point_outside_the_domain_is_null_with_its_reason(self, http):
-        told = evaluate(http, {**OIL_FILM, "radial_load": {"value": [25, 25000], "unit": "kN"}})
-        film = told["outputs"]["minimum_film_thickness"]
+        answer = evaluate(http, {**OIL_FILM, "radial_load": {"value": [25, 25000], "unit": "kN"}})
+        film = answer["outputs"]["minimum_film_thickness"]
         assert film["value"][0] > 0
         assert film["value"][1] is None
         assert film["reasons"][0] is None
@@ -141,8 +141,8 @@ class TestEvaluate:
 
     def test_many_points(self, http):
         loads = {"value": [20 + i * 1e-4 for i in range(5000)], "unit": "kN"}
-        told = evaluate(http, {**OIL_FILM, "radial_load": loads}, outputs=["minimum_film_thickness"])
-        assert len(told["outputs"]["minimum_film_thickness"]["value"]) == 5000
+        answer = evaluate(http, {**OIL_FILM, "radial_load": loads}, outputs=["minimum_film_thickness"])
+        assert len(answer["outputs"]["minimum_film_thickness"]["value"]) == 5000
 
     def test_all_faults_at_once(self, http):
         wrong = {
@@ -179,14 +179,14 @@ class TestSolve:
         return http.post(f"{FILM}/solve", json={**body, **change})
 
     def test_the_width_of_the_paper(self, http):
-        told = self.solve(http).json()
-        assert told["unknown"] == {"value": pytest.approx(18, abs=0.01), "unit": "mm"}
-        film = told["evaluation"]["outputs"]["minimum_film_thickness"]
+        answer = self.solve(http).json()
+        assert answer["unknown"] == {"value": pytest.approx(18, abs=0.01), "unit": "mm"}
+        film = answer["evaluation"]["outputs"]["minimum_film_thickness"]
         assert film["value"] == pytest.approx(3.2449, rel=1e-6)
 
     def test_out_of_reach_tells_the_range(self, http):
-        told = problem(self.solve(http, target={"minimum_film_thickness": "30 um"}), 422, "unreachable")
-        low, high = told["reachable"]
+        refusal = problem(self.solve(http, target={"minimum_film_thickness": "30 um"}), 422, "unreachable")
+        low, high = refusal["reachable"]
         assert low["unit"] == high["unit"] == "um"
         assert low["value"] < high["value"] < 30
 

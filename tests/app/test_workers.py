@@ -36,7 +36,7 @@ def worker():
 
 
 def alive(pid):
-    """Whether a process lives; one that is dead but not yet buried does not."""
+    """Whether a process lives; one that is dead but not yet waited for does not."""
     try:
         return "\nState:\tZ" not in Path(f"/proc/{pid}/status").read_text()
     except (FileNotFoundError, ProcessLookupError):
@@ -53,11 +53,11 @@ def eventually(condition, seconds=20.0):
 
 @pytest.mark.parametrize("inline", [False, True])
 def test_result_and_progress_arrive(worker, inline):
-    told = []
+    reports = []
     chosen = Inline() if inline else worker
-    result = chosen.run(victims.count_to, 4, on_progress=lambda *message: told.append(message))
+    result = chosen.run(victims.count_to, 4, on_progress=lambda *message: reports.append(message))
     assert result == 4
-    assert told == [(0.0, "step 0"), (0.25, "step 1"), (0.5, "step 2"), (0.75, "step 3")]
+    assert reports == [(0.0, "step 0"), (0.25, "step 1"), (0.5, "step 2"), (0.75, "step 3")]
 
 
 def test_progress_is_silent_outside_a_job():

@@ -1,7 +1,7 @@
 """What cranks measured when they were released: frozen records do not cover the geometry that they share.
 
 A change in `cad/cranks` that moves one of these makes other solids of the same parameters: it belongs in a
-new version of the models, beside the old geometry. `python tests/cad/test_cranks_golden.py` writes it anew.
+new version of the models, beside the old geometry. `python tests/cad/test_cranks_golden.py` writes it again.
 """
 
 import json

@@ -282,7 +282,7 @@ def random_duties(rng: np.random.Generator, count: int, points: int) -> tuple[Cy
 
 
 def check_random(count: int, seed: int) -> None:
-    """Every orbit that is told lies in its bearing, repeats, and obeys its equation; nearly all are found."""
+    """Every orbit returned lies in its bearing, repeats, and obeys its equation; nearly all are found."""
     load, ratio = random_duties(np.random.default_rng(seed), count, 72)
     orbit = periodic_orbit(load, MapLaw(ratio))
     result = np.isfinite(orbit.least_gap)

@@ -120,15 +120,15 @@ def fill(service):
 
 def answers(service):
     """What the service says of its designs and jobs, to be compared after an upgrade."""
-    told = {}
+    answered = {}
     for design in service.http.get("/designs", params={"limit": 500}).json()["items"]:
         place = f"/designs/{design['id']}"
         revisions = service.http.get(f"{place}/revisions", params={"limit": 500}).json()["items"]
-        told[design["id"]] = {
+        answered[design["id"]] = {
             "design": service.http.get(place).json(),
             "revisions": [service.http.get(f"{place}/revisions/{one['number']}").json() for one in revisions],
         }
-    return {"designs": told, "jobs": service.http.get("/jobs", params={"limit": 500}).json()["items"]}
+    return {"designs": answered, "jobs": service.http.get("/jobs", params={"limit": 500}).json()["items"]}
 
 
 def leave_work_behind(service):
@@ -151,7 +151,7 @@ def main(program):
         data = Path(folder) / "data"
         service = Service(program, data)
         repeated = fill(service)
-        told = {"repeated": repeated, **answers(service)}
+        reference = {"repeated": repeated, **answers(service)}
         leave_work_behind(service)
         connection = sqlite3.connect(data / "crankwright.sqlite")
         text = "\n".join(connection.iterdump())
@@ -159,7 +159,7 @@ def main(program):
     assert set(states) == {"queued", "running", "done", "failed", "cancelled"}, states
     assert folder not in text
     (HERE / "version_0_1.sql").write_text(f"{text}\n")
-    (HERE / "version_0_1.json").write_text(f"{json.dumps(told, indent=1, ensure_ascii=False)}\n")
+    (HERE / "version_0_1.json").write_text(f"{json.dumps(reference, indent=1, ensure_ascii=False)}\n")
 
 
 if __name__ == "__main__":

@@ -60,12 +60,12 @@ class Watched:
 
     def __init__(self, page, url: str) -> None:
         self.page, self.url = page, url
-        self.outside, self.failed, self.told, self.requests = [], [], [], []
+        self.outside, self.failed, self.messages, self.requests = [], [], [], []
         page.route("**/*", self._route)
         page.on("requestfailed", self._on_failure)
         page.on("response", self._on_response)
         page.on("console", self._on_console)
-        page.on("pageerror", lambda error: self.told.append(str(error)))
+        page.on("pageerror", lambda error: self.messages.append(str(error)))
 
     def _route(self, route) -> None:
         address = route.request.url
@@ -87,7 +87,7 @@ class Watched:
 
     def _on_console(self, message) -> None:
         if message.type == "error":
-            self.told.append(message.text)
+            self.messages.append(message.text)
 
     def open(self, path: str, **options):
         """Go to a page of the service."""
@@ -95,7 +95,7 @@ class Watched:
 
     def faults(self) -> list:
         """Everything that went wrong since the page was made."""
-        return [*self.outside, *self.failed, *self.told]
+        return [*self.outside, *self.failed, *self.messages]
 
 
 def created(http, example: str) -> str:

@@ -45,8 +45,8 @@ def test_parameters_called_like_parts_of_a_form_are_previewed_and_saved(watched,
     expect(page.locator(SUM)).to_have_text("21")
     expect(page.locator('[data-value="awkward.elements"]')).to_have_text("= 6 mm")
     save(page, 2)
-    told = http.get(f"/api/v1{awkward}").json()
-    assert told["parameters"] == {**dict.fromkeys(NAMES, "5 mm"), "elements": "6 mm"}
+    answer = http.get(f"/api/v1{awkward}").json()
+    assert answer["parameters"] == {**dict.fromkeys(NAMES, "5 mm"), "elements": "6 mm"}
     assert watched.faults() == []
 
 

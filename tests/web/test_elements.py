@@ -1,4 +1,4 @@
-"""Property: finite elements in the page: asked for, followed, told, painted; and read without a script."""
+"""Property: finite elements in the page: asked for, followed, shown, painted; and read without a script."""
 
 import re
 
@@ -94,14 +94,14 @@ def analyses(http):
 
 
 def test_nothing_is_found_twice_and_what_is_known_is_shown_without_a_script(watched, plain, http):
-    told = asked(http, outputs=["stiffness", "torsional_frequency", "surface"])
+    answer = asked(http, outputs=["stiffness", "torsional_frequency", "surface"])
     jobs = analyses(http)
     watched.open(PAGE)
     analysed(watched.page)
     assert analyses(http) == jobs
     plain.open(PAGE)
-    row = plain.page.locator(f'[data-analysis="{told["id"]}"] [data-found="stiffness"]')
-    expect(row).to_contain_text(plain_number(told["outputs"]["stiffness"]["value"]))
+    row = plain.page.locator(f'[data-analysis="{answer["id"]}"] [data-found="stiffness"]')
+    expect(row).to_contain_text(plain_number(answer["outputs"]["stiffness"]["value"]))
     expect(plain.page.get_by_role("button", name="Analyse")).to_be_hidden()
     assert plain.page.locator('[data-found="surface"]').count() == 0
 
@@ -193,8 +193,8 @@ def test_a_design_is_analysed_as_it_declares(watched, http):
 def test_a_ball_bearing_has_neither_elements_nor_an_oil_film_to_paint(http, paper):
     assert "data-paint" not in http.get(paper).text
     assert "Finite elements" not in http.get("/models/ball_bearing/1").text
-    told = http.get(f"{API}/models/ball_bearing/versions/1").json()
-    assert (told["analyses"], told["film_bore"]) == ({}, None)
+    answer = http.get(f"{API}/models/ball_bearing/versions/1").json()
+    assert (answer["analyses"], answer["film_bore"]) == ({}, None)
     assert http.get(f"{API}/models/plain_bearing/versions/1").json()["film_bore"] == "inner_diameter"
     throw = http.get(f"{API}/models/crank_throw/versions/1").json()["analyses"]
     assert throw["torsion"]["outputs"]["stiffness"] == "N*m/rad"

@@ -1,4 +1,4 @@
-"""How a design page tells what is wrong and where, in a browser."""
+"""How a design page shows what is wrong and where, in a browser."""
 
 import re
 

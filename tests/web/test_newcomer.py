@@ -85,8 +85,8 @@ def test_the_paper_in_a_browser(watched, tmp_path):
     assert step_diameters(step) >= {48.0, 88.0}
 
     paper = page.request.get(watched.url + page.get_by_role("link", name="PDF").get_attribute("href")).body()
-    for told in ("25 kN", "= scale * 48 mm", "Minimum film thickness", "= 47.945 mm", "= 3.2449 µm"):
-        assert told in words_of(paper)
+    for text in ("25 kN", "= scale * 48 mm", "Minimum film thickness", "= 47.945 mm", "= 3.2449 µm"):
+        assert text in words_of(paper)
     page.get_by_role("link", name="Open the report").click()
     expect(page.locator("body")).to_contain_text("3.2449")
     expect(page.locator("math").first).to_be_visible()
@@ -96,8 +96,8 @@ def test_the_paper_in_a_browser(watched, tmp_path):
 def words_of(pdf: bytes) -> str:
     """The text of a PDF, its blanks made one each."""
     assert PDF_TO_TEXT
-    told = subprocess.run([PDF_TO_TEXT, "-layout", "-", "-"], input=pdf, capture_output=True, check=True)
-    return " ".join(told.stdout.decode().split())
+    printed = subprocess.run([PDF_TO_TEXT, "-layout", "-", "-"], input=pdf, capture_output=True, check=True)
+    return " ".join(printed.stdout.decode().split())
 
 
 def step_diameters(step: bytes) -> set[float]:
@@ -136,8 +136,8 @@ def test_a_change_by_somebody_else_is_told_and_ours_is_kept(watched, http):
     expect(page.get_by_label("Radial load")).to_have_value("31 kN")
     page.keyboard.press("Control+s")
     expect(page.locator(".page-head")).to_contain_text("revision 3")
-    told = http.get(f"/api/v1{place}").json()["steps"]["film"]["inputs"]
-    assert (told["radial_load"], told["speed"]) == ("31 kN", "4000 rpm")
+    inputs = http.get(f"/api/v1{place}").json()["steps"]["film"]["inputs"]
+    assert (inputs["radial_load"], inputs["speed"]) == ("31 kN", "4000 rpm")
 
 
 def test_the_pressure_is_painted_on_the_bore(watched):

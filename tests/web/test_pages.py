@@ -204,12 +204,12 @@ def test_the_pressure_of_a_film_is_that_of_the_solution_beneath(http):
         "speed": "3000 rpm",
         "dynamic_viscosity": "20 mPa*s",
     }
-    told = http.post("/api/v1/film-pressure", json={"inputs": inputs}).json()
+    content = http.post("/api/v1/film-pressure", json={"inputs": inputs}).json()
     film, _ = extrapolated_film(0.8, 0.5)
     scale = 0.02 * 3000 * 3.141592653589793 / 30 * 1000**2 / 1e6
-    assert told["maximum_pressure"]["value"] == pytest.approx(film.P_max * scale, rel=2e-3)
-    rows, columns = len(told["place"]["value"]), len(told["angle"]["value"])
-    assert (len(told["pressure"]["value"]), len(told["pressure"]["value"][0])) == (rows, columns)
+    assert content["maximum_pressure"]["value"] == pytest.approx(film.P_max * scale, rel=2e-3)
+    rows, columns = len(content["place"]["value"]), len(content["angle"]["value"])
+    assert (len(content["pressure"]["value"]), len(content["pressure"]["value"][0])) == (rows, columns)
     for wrong in (
         {"relative_eccentricity": [0.1, 0.2]},
         {"diametral_clearance": "1e-300 m"},

@@ -69,8 +69,8 @@ class HeadLimit:
         """Refuse, or pass on."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
-        elif told := _too_large(scope):
-            await self.refuse(told)(scope, receive, send)
+        elif message := _too_large(scope):
+            await self.refuse(message)(scope, receive, send)
         else:
             scope["headers"] = list(_without_quoted_cookies(scope["headers"]))
             await self.app(scope, receive, send)

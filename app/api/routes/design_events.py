@@ -14,7 +14,7 @@ from app.api.routes.designs import Id, show_design
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
-# How a design calls what its job tells.
+# How a design names the events of its job.
 NAMES = {"queued": "regenerating", "running": "regenerating", "done": "current", "cancelled": "failed"}
 
 

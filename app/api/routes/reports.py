@@ -76,15 +76,15 @@ async def show_report(
     wanted = _wanted("report", kind, accept, REPORTS)
     revision = await run_in_threadpool(reports.number, id, number)
     job = await _waited(reports, jobs, id, revision, prefer, client)
-    told = await threads.run_for(request, reports.gather, id, revision, units, pending=job is not None)
-    headers = _headers(told, wanted, job)
+    report = await threads.run_for(request, reports.gather, id, revision, units, pending=job is not None)
+    headers = _headers(report, wanted, job)
     if job is None and if_none_match and headers["ETag"] in if_none_match:
         return Response(status_code=304, headers=headers)
     if wanted == "html":
-        body: str | bytes = await run_in_threadpool(page, told)
+        body: str | bytes = await run_in_threadpool(page, report)
     else:
-        pictures = await run_in_threadpool(reports.pictures, told)
-        body = await run_in_threadpool(press.print, asdict(told), pictures)
+        pictures = await run_in_threadpool(reports.pictures, report)
+        body = await run_in_threadpool(press.print, asdict(report), pictures)
     return Response(body, 202 if job else 200, headers, media_type=REPORTS[wanted])
 
 
@@ -111,15 +111,15 @@ async def show_worksheet(
     wanted = _wanted("worksheet", kind, accept, TABLES)
     revision = await run_in_threadpool(reports.number, id, number)
     if within is None:
-        told = await threads.run_for(request, reports.worksheet, id, revision, units)
+        worksheet = await threads.run_for(request, reports.worksheet, id, revision, units)
     else:
-        told = await threads.run_within(within, request, reports.worksheet, id, revision, units)
+        worksheet = await threads.run_within(within, request, reports.worksheet, id, revision, units)
     headers = {"Vary": "Accept", "Design-Revision": str(revision)}
     if wanted == "json":
-        return written(told, headers=headers)
+        return written(worksheet, headers=headers)
     write = tables.write_csv if wanted == "csv" else tables.write_xlsx
     headers["Content-Disposition"] = f'attachment; filename="design_{_plain(id)}_r{revision}.{wanted}"'
-    table = await run_in_threadpool(lambda: write(tables.of(told)))
+    table = await run_in_threadpool(lambda: write(tables.of(worksheet)))
     return Response(table, headers=headers, media_type=TABLES[wanted])
 
 
@@ -133,17 +133,17 @@ async def _waited(
     return None
 
 
-def _headers(told: Report, kind: str, job: str | None) -> dict[str, str]:
-    name = f"design_{_plain(told.design)}_r{told.revision}.{kind}"
+def _headers(report: Report, kind: str, job: str | None) -> dict[str, str]:
+    name = f"design_{_plain(report.design)}_r{report.revision}.{kind}"
     headers = {
-        "Design-Revision": str(told.revision),
+        "Design-Revision": str(report.revision),
         "Vary": "Accept",
         "Cache-Control": "no-store" if job else "no-cache",
         "Content-Security-Policy": PAGE_POLICY,
         "X-Content-Type-Options": "nosniff",
         "Content-Disposition": f'inline; filename="{name}"',
     }
-    return {**headers, "Location": f"/api/v1/jobs/{job}"} if job else {**headers, "ETag": tag(told, kind)}
+    return {**headers, "Location": f"/api/v1/jobs/{job}"} if job else {**headers, "ETag": tag(report, kind)}
 
 
 def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str, str]) -> str:

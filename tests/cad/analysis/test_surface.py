@@ -102,7 +102,7 @@ QUICK = [("torsion", ("x",)), ("bending", ("y",))]  # each load and each plane o
     [image if image in QUICK else pytest.param(*image, marks=pytest.mark.slow) for image in IMAGES],
 )
 def test_an_image_moves_as_the_other_half_does(load: Kind, mirrors: tuple[str, ...]) -> None:
-    """In sign and size: another mesh, of the whole, tells the same up to what two meshes differ by."""
+    """In sign and size: another mesh, of the whole, gives the same up to what two meshes differ by."""
     block = step_of(Workplane().rect(40, 30).extrude(60))
     half, whole = seen(block, 60.0, load, mirrors), seen(block, 60.0, load, ())
     for result in (half, whole):

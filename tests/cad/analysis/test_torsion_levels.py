@@ -1,4 +1,4 @@
-"""Property: the error told bounds the true one, filleted or sharp; two runs tell the same, nearly."""
+"""Property: the estimated error bounds the true one, filleted or sharp; two runs give the same, nearly."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Measured errors of `oil_film`: the reported bounds the true one, a tolerance takes no dearer level."""
+"""Measured errors of `oil_film`: the stated bounds the true one, a tolerance takes the cheapest level."""
 
 import numpy as np
 import pytest

@@ -43,7 +43,7 @@ class TestLiterature:
         assert films["value"][int(np.argmax(load))] / 30 == pytest.approx(2.1889, abs=5e-4)
 
     def test_literature_best_film_ratio_by_solve(self):
-        """Two pads carry what is below the best load; the lower film ratio is told, and the other."""
+        """Two pads carry what is below the best load; the lower film ratio is given, and the other."""
         target = {"load": f"{0.0266 * 6 * 0.03 * 10 * 0.05**2 * 0.05 / 30e-6**2} N"}
         raw = {name: value for name, value in SliderBearing.example.items() if name != "inlet_film"}
         result = solve(SliderBearing, raw, "inlet_film", ["31 um", "150 um"], target, level="infinite")
