@@ -67,7 +67,8 @@ def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[
     ahead = [mutant for mutant in chosen if mutant.key not in rows]
     lock = Lock()
     with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
-        copies = Copies(Path(folder), options.limit, options.nearest)
+        kept = options.record and options.record.resolve().with_name("observations")
+        copies = Copies(Path(folder), options.limit, options.nearest, kept)
         for result in threads.map(partial(tried, copies, options.record, lock), ahead):
             rows[str(result["key"])] = result
     return [rows[mutant.key] for mutant in chosen]
