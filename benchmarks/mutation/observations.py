@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import ast
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from hashlib import sha256
-from itertools import accumulate, chain, zip_longest
+from itertools import accumulate, zip_longest
 from operator import itemgetter
 from pathlib import Path
 from threading import Lock
@@ -27,6 +27,7 @@ MOST_SECONDS = 30.0
 FARTHER = 0.3
 """Time that a test may take longer if its file is one place nearer [s]."""
 _ONE_AT_A_TIME = Lock()  # several threads need the same observations
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 Case = tuple[str, float]
 """A test and the time that it took [s]."""
 
@@ -38,6 +39,7 @@ class Observation:
     seconds: dict[str, float]  # of each test
     lines: dict[str, dict[int, list[str]]]  # of each file: the tests that ran a line
     code: dict[str, str]  # of each file: its digest then
+    has_processes: bool  # so that more may have run than was seen
 
     def tests(self, file: str, lines: Iterable[int]) -> set[str]:
         """Return the tests that ran one of the lines of a file."""
@@ -57,14 +59,14 @@ class Observations:
         self._observe = observe  # runs a test file and writes what was seen; False if it did not end
         folder.mkdir(parents=True, exist_ok=True)
 
-    def of(self, test: str, file: str) -> Observation | None:
-        """Return what is known of a test file that holds for a file; None if a run of it does not end."""
+    def of(self, test: str, file: str) -> Observation:
+        """Return an observation of a test file that holds for a file; an empty one if no run of it ends."""
         target = self.folder / f"{test.replace('/', '-')}-{digest(test)[:12]}.json"
         with _ONE_AT_A_TIME:
             kept = self._read(target)
             if kept is None or not kept.holds_for(file):
                 kept = self._made(test, target)
-        return kept if kept.seconds else None
+        return kept
 
     def _made(self, test: str, target: Path) -> Observation:
         raw = target.with_suffix(".raw")
@@ -72,7 +74,7 @@ class Observations:
             target.write_text(json.dumps(with_digests(json.loads(raw.read_text()))), encoding="utf-8")
             raw.unlink()
         else:
-            target.write_text(json.dumps({"seconds": {}, "lines": {}, "code": {}}), encoding="utf-8")
+            target.write_text(json.dumps({"seconds": {}, "lines": {}, "processes": True}), encoding="utf-8")
         made = self._read(target)
         assert made is not None
         return made
@@ -83,36 +85,34 @@ class Observations:
 
     def quickest(self, file: str, line: int, tests: Sequence[str]) -> list[str]:
         """Return single tests that run a line: a quick case of each function first, then others of it."""
-        groups = self._groups(file, tests, statement(file, line))
-        if not groups:  # an import ran the line: any test that uses the file may depend on it
-            groups = self._groups(file, tests, None)
+        groups = self._groups(file, line, tests)
         order = [case for turn in zip_longest(*groups) for case in turn if case]
         total = accumulate(seconds for _, seconds in order)
         within = [test for (test, _), time in zip(order, total, strict=True) if time <= MOST_SECONDS]
         return (within or [test for test, _ in order[:1]])[:MOST_TESTS]
 
-    def _groups(self, file: str, tests: Sequence[str], lines: Iterable[int] | None) -> list[list[Case]]:
-        """Return the tests of lines by their functions, quick ones and those of near files in front."""
+    def _groups(self, file: str, line: int, tests: Sequence[str]) -> list[list[Case]]:
+        """Return the tests of a line by their functions, quick ones and those of near files in front."""
         ranked: list[tuple[float, list[Case]]] = []
         for distance, test in enumerate(tests):
-            if seen := self.of(test, file):
-                running = seen.tests(file, seen.lines.get(file, ()) if lines is None else lines)
-                groups = by_function(seen, running)
-                ranked += [(group[0][1] + FARTHER * distance, group) for group in groups]
+            seen = self.of(test, file)
+            groups = by_function(seen, seen.tests(file, dependent(file, line)))
+            ranked += [(group[0][1] + FARTHER * distance, group) for group in groups]
         return [group for _, group in sorted(ranked, key=itemgetter(0))]
 
-    def may_reach(self, file: str, line: int, test: str) -> bool:
-        """Whether a test file may run a line: it did, or nobody knows because it has other processes."""
+    def others(self, file: str, line: int, tests: Sequence[str], done: Collection[str]) -> list[str]:
+        """Return what else may run a line: other tests that did, and whole files with processes."""
+        return [other for test in tests for other in self._others(file, line, test) if other not in done]
+
+    def _others(self, file: str, line: int, test: str) -> list[str]:
         seen = self.of(test, file)
-        if seen is None or test.startswith("tests/app/"):
-            return True
-        return any(number in seen.lines.get(file, {}) for number in statement(file, line))
+        if seen.has_processes:
+            return [test]
+        return sorted(seen.tests(file, dependent(file, line)))
 
     def seconds(self, file: str, tests: Iterable[str]) -> float:
         """Return how long single tests took when they were observed [s]."""
-        return sum(
-            seen.seconds.get(test, 0.0) for test in tests if (seen := self.of(test.partition("::")[0], file))
-        )
+        return sum(self.of(test.partition("::")[0], file).seconds[test] for test in tests)
 
 
 def by_function(seen: Observation, tests: Iterable[str]) -> list[list[Case]]:
@@ -137,26 +137,40 @@ def parsed(target: Path, _date: int) -> Observation:
         file: {int(line): [names[i] for i in tests] for line, tests in of_file.items()}
         for file, of_file in raw["lines"].items()
     }
-    return Observation(raw["seconds"], lines, raw["code"])
+    return Observation(raw["seconds"], lines, raw.get("code", {}), raw["processes"])
 
 
 @cache
-def statement(file: str, line: int) -> range:
-    """Return the lines of the smallest statement that has a line; of a compound one only its head."""
-    nodes = (node for node in ast.walk(_tree(file)) if isinstance(node, ast.stmt))
-    spans = [head(node) for node in nodes]
-    return min((span for span in spans if line in span), key=len, default=range(line, line + 1))
+def dependent(file: str, line: int) -> range:
+    """Return the lines that show whether a test depends on one: those of its statement in a function.
+
+    A line of a function's head stands for the function; one that an import runs, for the whole file.
+    """
+    functions = [node for node in ast.walk(_tree(file)) if isinstance(node, FUNCTIONS) and line in span(node)]
+    if not functions:
+        return range(1, len((ROOT / file).read_text(encoding="utf-8").splitlines()) + 1)
+    function = min(functions, key=lambda node: len(span(node)))
+    heads = [head for head in map(before_body, inner(function)) if line in head]
+    return min(heads, key=len) if heads else span(function)
 
 
-def head(node: ast.stmt) -> range:
-    """Return the lines of a statement before its body."""
+def span(node: ast.stmt) -> range:
+    """Return the lines of a statement with its decorators."""
     decorators = getattr(node, "decorator_list", [])
     begin = min([node.lineno, *(one.lineno for one in decorators)])
-    body = getattr(node, "body", None)
-    inside = chain(body or (), getattr(node, "cases", ()))
-    first = next((getattr(one, "lineno", None) or one.pattern.lineno for one in inside), None)
-    end = node.end_lineno or node.lineno
-    return range(begin, max(begin, (first or end + 1) - 1) + 1)
+    return range(begin, (node.end_lineno or begin) + 1)
+
+
+def inner(function: ast.stmt) -> list[ast.stmt]:
+    """Return the statements within a function."""
+    return [node for node in ast.walk(function) if isinstance(node, ast.stmt) and node is not function]
+
+
+def before_body(node: ast.stmt) -> range:
+    """Return the lines of a statement before its body, if it has one."""
+    first = next((one.lineno for one in getattr(node, "body", ())), None)
+    end = span(node).stop if first is None else max(first, node.lineno + 1)
+    return range(span(node).start, end)
 
 
 @cache

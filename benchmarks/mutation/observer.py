@@ -50,7 +50,8 @@ class Observer:
             Path(file).relative_to(self.root).as_posix(): self.tests_of_lines(data.contexts_by_lineno(file))
             for file in data.measured_files()
         }
-        self.target.write_text(json.dumps({"seconds": self.seconds, "lines": lines}), encoding="utf-8")
+        seen = {"seconds": self.seconds, "lines": lines, "processes": has_had_children()}
+        self.target.write_text(json.dumps(seen), encoding="utf-8")
 
     def tests_of_lines(self, contexts: dict[int, list[str]]) -> dict[int, list[int]]:
         """Return the numbers of the tests that run each line; none for a line that only an import runs."""
@@ -58,6 +59,13 @@ class Observer:
         return {
             line: sorted(number[test] for test in tests if test in number) for line, tests in contexts.items()
         }
+
+
+def has_had_children() -> bool:
+    """Whether this process has started others: ended ones have used time, the rest are in the list."""
+    times = os.times()
+    lists = Path("/proc/self/task").glob("*/children")
+    return times.children_user + times.children_system > 0 or any(file.read_text().strip() for file in lists)
 
 
 def pytest_configure(config: pytest.Config) -> None:

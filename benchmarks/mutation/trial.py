@@ -81,13 +81,15 @@ class Copy:
         }
 
     def _parts(self, mutant: Mutant, tests: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], float]]:
-        """Yield what to run: single tests that run the line, of near files first; then all files that may."""
+        """Yield what to run: single tests that run the line, of near files first; then all that may."""
+        done: set[str] = set()
+        place = mutant.file, mutant.line
         for some in (tests[:NEAR], tests[NEAR:]):
-            if single := tuple(self.observations.quickest(mutant.file, mutant.line, some)):
+            if single := tuple(self.observations.quickest(*place, some)):
                 usual = self.observations.seconds(mutant.file, single)
                 yield single, min(self.limit, STARTING + SLOWER * usual)
-        may_reach = self.observations.may_reach
-        yield tuple(test for test in tests if may_reach(mutant.file, mutant.line, test)), self.limit
+                done.update(single)
+        yield tuple(self.observations.others(*place, tests, done)), self.limit
 
     def _with(self, mutant: Mutant, tests: tuple[str, ...], limit: float) -> Run:
         self._write(mutant.file, mutant.source)
