@@ -1,7 +1,7 @@
 """Which tests run a line, by one run of each test file under coverage, kept from night to night.
 
 An observation holds for a test file and the files that it ran, as long as neither changes. Lines that run
-in other processes (servers, jobs) are not seen, so what was not seen to run a line may run it all the same.
+in other processes are not seen; a test file that starts some may run a line all the same.
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ MOST_SECONDS = 30.0
 FARTHER = 0.3
 """Time that a test may take longer if its file is one place nearer [s]."""
 _ONE_AT_A_TIME = Lock()  # several threads need the same observations
+IN_SERVER = ("app/designs/", "app/jobs/", "app/storage/")
+"""Folders whose code runs in the process of the server, not in those where it calculates."""
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 Case = tuple[str, float]
 """A test and the time that it took [s]."""
@@ -39,7 +41,13 @@ class Observation:
     seconds: dict[str, float]  # of each test
     lines: dict[str, dict[int, list[str]]]  # of each file: the tests that ran a line
     code: dict[str, str]  # of each file: its digest then
-    has_processes: bool  # so that more may have run than was seen
+    has_programs: bool  # it started servers or other programs, which may run all of our code
+    has_processes: bool  # it started processes, which may have run templates and solids
+
+    def may_hide(self, file: str) -> bool:
+        """Whether the file may have run in another process, where it was not seen."""
+        is_of_server = file.startswith(IN_SERVER)
+        return self.has_programs if is_of_server else self.has_processes
 
     def tests(self, file: str, lines: Iterable[int]) -> set[str]:
         """Return the tests that ran one of the lines of a file."""
@@ -74,7 +82,10 @@ class Observations:
             target.write_text(json.dumps(with_digests(json.loads(raw.read_text()))), encoding="utf-8")
             raw.unlink()
         else:
-            target.write_text(json.dumps({"seconds": {}, "lines": {}, "processes": True}), encoding="utf-8")
+            target.write_text(
+                json.dumps({"seconds": {}, "lines": {}, "programs": True, "processes": True}),
+                encoding="utf-8",
+            )
         made = self._read(target)
         assert made is not None
         return made
@@ -102,11 +113,12 @@ class Observations:
 
     def others(self, file: str, line: int, tests: Sequence[str], done: Collection[str]) -> list[str]:
         """Return what else may run a line: other tests that did, and whole files with processes."""
-        return [other for test in tests for other in self._others(file, line, test) if other not in done]
+        quick = sorted(tests, key=lambda test: sum(self.of(test, file).seconds.values()))
+        return [other for test in quick for other in self._others(file, line, test) if other not in done]
 
     def _others(self, file: str, line: int, test: str) -> list[str]:
         seen = self.of(test, file)
-        if seen.has_processes:
+        if seen.may_hide(file):
             return [test]
         return sorted(seen.tests(file, dependent(file, line)))
 
@@ -137,7 +149,7 @@ def parsed(target: Path, _date: int) -> Observation:
         file: {int(line): [names[i] for i in tests] for line, tests in of_file.items()}
         for file, of_file in raw["lines"].items()
     }
-    return Observation(raw["seconds"], lines, raw.get("code", {}), raw["processes"])
+    return Observation(raw["seconds"], lines, raw.get("code", {}), raw["programs"], raw["processes"])
 
 
 @cache

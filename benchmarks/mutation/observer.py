@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 import time
 from collections.abc import Generator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from coverage import Coverage
@@ -19,6 +21,8 @@ FILES = "CRANKWRIGHT_OBSERVED_FILES"
 """Names the variable with the file that lists the files to look at, one a line."""
 TARGET = "CRANKWRIGHT_OBSERVED_IN"
 """Names the variable with the file to write."""
+WORKERS = "app.workers"
+"""Stands in the command of every process in which the service calculates."""
 
 
 class Observer:
@@ -29,7 +33,14 @@ class Observer:
         self.seconds: dict[str, float] = {}
         include = [str(self.root / file) for file in files]
         self.coverage = Coverage(data_file=None, config_file=False, include=include)
+        self.has_programs = False
+        sys.addaudithook(self.audited)
         self.coverage.start()
+
+    def audited(self, event: str, arguments: tuple[Any, ...]) -> None:
+        """Notice that a program is started, such as a server; the workers of one do not count."""
+        if event == "subprocess.Popen" and WORKERS not in str(arguments[1]):
+            self.has_programs = True
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, object, object]:
@@ -50,7 +61,8 @@ class Observer:
             Path(file).relative_to(self.root).as_posix(): self.tests_of_lines(data.contexts_by_lineno(file))
             for file in data.measured_files()
         }
-        seen = {"seconds": self.seconds, "lines": lines, "processes": has_had_children()}
+        others = {"programs": self.has_programs, "processes": has_had_children()}
+        seen = {"seconds": self.seconds, "lines": lines, **others}
         self.target.write_text(json.dumps(seen), encoding="utf-8")
 
     def tests_of_lines(self, contexts: dict[int, list[str]]) -> dict[int, list[int]]:
