@@ -69,12 +69,20 @@ class Observations:
 
     def of(self, test: str, file: str) -> Observation:
         """Return an observation of a test file that holds for a file; an empty one if no run of it ends."""
-        target = self.folder / f"{test.replace('/', '-')}-{digest(test)[:12]}.json"
         with _ONE_AT_A_TIME:
+            target = self._target(test)
             kept = self._read(target)
             if kept is None or not kept.holds_for(file):
                 kept = self._made(test, target)
         return kept
+
+    def has(self, test: str, file: str) -> bool:
+        """Whether there is one already."""
+        kept = self._read(self._target(test))
+        return kept is not None and kept.holds_for(file)
+
+    def _target(self, test: str) -> Path:
+        return self.folder / f"{test.replace('/', '-')}-{digest(test)[:12]}.json"
 
     def _made(self, test: str, target: Path) -> Observation:
         raw = target.with_suffix(".raw")

@@ -81,9 +81,14 @@ class Copy:
         }
 
     def _parts(self, mutant: Mutant, tests: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], float]]:
-        """Yield what to run: single tests that run the line, of near files first; then all that may."""
+        """Yield what to run: single tests that run the line, of near files first; then all that may.
+
+        The nearest file as a whole comes before, if it was not observed yet: most mutants end there.
+        """
         done: set[str] = set()
         place = mutant.file, mutant.line
+        if not self.observations.has(tests[0], mutant.file):
+            yield tests[:1], self.limit
         for some in (tests[:NEAR], tests[NEAR:]):
             if single := tuple(self.observations.quickest(*place, some)):
                 usual = self.observations.seconds(mutant.file, single)
