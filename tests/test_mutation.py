@@ -1,10 +1,12 @@
 """The script of the mutation tests: which tests are about a file, what a record amounts to, which mutants."""
 
 import ast
+import json
 import random
 
 import pytest
 
+from benchmarks.mutation import observations
 from benchmarks.mutation.related import NEAREST, changed, related
 from benchmarks.mutation.verdict import REASONS, Reason, by_folder, reasons, verdict
 
@@ -25,10 +27,14 @@ def test_a_file_has_its_own_tests(file, test):
 def test_related_tests_are_few_and_none_of_the_pages():
     for file in ("templates/core/errors.py", "app/jobs/turns.py"):
         tests = related(file)
-        assert 2 < len(tests) <= NEAREST + 2
+        assert 2 < len(tests) <= NEAREST + 2 + len(changed.ABOUT)
         assert len(set(tests)) == len(tests)
         assert not any(test.startswith("tests/web/") for test in tests)
     assert changed.CATALOGUE in related("templates/core/errors.py")
+
+
+def test_a_server_is_stopped_where_the_table_of_slow_tests_says_so():
+    assert "tests/app/test_stopping.py" in related("app/jobs/shutdown.py")
 
 
 def row(key, outcome="survived", file="templates/core/x.py", text="a = b + c", after="a = b - c"):
@@ -126,3 +132,90 @@ class TestPlaces:
         assert [span[0] for span in spans] == [(3, 4)]
         dropped = places.mutate_code(source, places.OPERATORS["ours/DropCall"], 0)
         assert dropped == source.replace("x.flush()", "pass")
+
+
+class TestObservations:
+    """Which tests run a line, from what a run of each file wrote."""
+
+    FILE, TEST = "app/jobs/turns.py", "tests/app/test_turns.py"
+
+    @pytest.fixture
+    def source(self, tmp_path, monkeypatch):
+        """A repository of one file and one test."""
+        for name in (self.FILE, self.TEST):
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name).write_text(
+                "A = (\n    1,\n)\n\n@cache\ndef f(x):\n    if x:\n        return A\n    return 0\n"
+            )
+        monkeypatch.setattr(observations, "ROOT", tmp_path)
+        for function in (observations.dependent, observations._tree, observations.digest):
+            function.cache_clear()
+        yield tmp_path
+        for function in (observations.dependent, observations._tree, observations.digest):
+            function.cache_clear()
+
+    @staticmethod
+    def observed(folder, seen):
+        """Observations that a run of pytest would make, and how often it ran."""
+        runs = []
+
+        def observe(test, target):
+            runs.append(test)
+            if seen is not None:
+                target.write_text(json.dumps(seen))
+            return seen is not None
+
+        return observations.Observations(folder / "kept", observe), runs
+
+    def seen(self, **changes):
+        names = ["slow[1]", "slow[2]", "quick[1]", "quick[2]", "other"]
+        seconds = {f"{self.TEST}::{name}": took for name, took in zip(names, (9, 8, 1, 2, 0.1), strict=True)}
+        lines = {self.FILE: {1: [], 6: [], 7: [0, 1, 2, 3, 4], 8: [0, 1, 2, 3], 9: [4]}}
+        return {"seconds": seconds, "lines": lines, "programs": False, "processes": True} | changes
+
+    @pytest.mark.parametrize(
+        ("line", "lines"),
+        [(2, range(1, 10)), (5, range(5, 10)), (6, range(5, 10)), (7, range(7, 8)), (8, range(8, 9))],
+    )
+    def test_a_line_depends_on_its_statement_a_head_on_its_function_others_on_the_file(
+        self, source, line, lines
+    ):
+        assert observations.dependent(self.FILE, line) == lines
+
+    def test_quick_tests_come_first_and_one_of_each_function(self, source):
+        kept, _ = self.observed(source, self.seen())
+        names = [test.rpartition("::")[2] for test in kept.quickest(self.FILE, 8, [self.TEST])]
+        assert names == ["quick[1]", "slow[2]", "quick[2]", "slow[1]"]
+        assert kept.seconds(self.FILE, kept.quickest(self.FILE, 8, [self.TEST])) == 20
+        assert kept.quickest(self.FILE, 9, [self.TEST]) == [f"{self.TEST}::other"]
+
+    def test_the_first_test_may_take_any_time_and_all_together_half_a_minute(self, source):
+        seconds = {test: 40 * took for test, took in self.seen()["seconds"].items()}
+        kept, _ = self.observed(source, self.seen(seconds=seconds))
+        assert kept.quickest(self.FILE, 8, [self.TEST]) == [f"{self.TEST}::quick[1]"]
+        others = kept.others(self.FILE, 8, [self.TEST], kept.quickest(self.FILE, 8, [self.TEST]))
+        assert [test.rpartition("::")[2] for test in others] == ["quick[2]", "slow[1]", "slow[2]"]
+
+    def test_a_whole_file_runs_only_if_it_starts_servers(self, source):
+        with_server, _ = self.observed(source / "a", self.seen(programs=True))
+        assert with_server.others(self.FILE, 9, [self.TEST], ()) == [self.TEST]
+        without, _ = self.observed(source / "b", self.seen())
+        assert without.others(self.FILE, 9, [self.TEST], ()) == [f"{self.TEST}::other"]
+
+    def test_a_file_that_cannot_be_observed_runs_as_a_whole(self, source):
+        kept, _ = self.observed(source, None)
+        assert kept.quickest(self.FILE, 8, [self.TEST]) == []
+        assert kept.others(self.FILE, 8, [self.TEST], ()) == [self.TEST]
+
+    def test_an_observation_is_kept_until_the_file_or_the_test_changes(self, source):
+        for changed_file, expected in ((None, 1), (self.FILE, 1), (self.TEST, 1)):
+            kept, runs = self.observed(source, self.seen())
+            if changed_file:
+                (source / changed_file).write_text("A = 2\n\n")
+                observations.digest.cache_clear()
+            kept.quickest(self.FILE, 8, [self.TEST])
+            kept.quickest(self.FILE, 9, [self.TEST])
+            assert len(runs) == expected
+            again, runs = self.observed(source, self.seen())
+            again.quickest(self.FILE, 8, [self.TEST])
+            assert runs == []

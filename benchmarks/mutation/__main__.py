@@ -34,7 +34,9 @@ def arguments() -> argparse.Namespace:
         "--limit", type=float, default=900, help="seconds of a run of tests; longer is a hang"
     )
     parser.add_argument("--nearest", type=int, default=NEAREST, help="how many test files for a file")
-    parser.add_argument("--only", default="", help="of the sample, those in files that begin so")
+    parser.add_argument(
+        "--only", nargs="+", default=[""], help="of the sample, those whose file and line begin so"
+    )
     parser.add_argument("--named", action="store_true", help="try the named mutants instead of random ones")
     parser.add_argument("--record", type=Path, help="file of results, one JSON object a line; is appended to")
     parser.add_argument(
@@ -48,7 +50,7 @@ def main() -> None:
     """Try the mutants and exit with the verdict."""
     options = arguments()
     chosen = named(REASONS) if options.named else sample(options.seed, options.count)
-    chosen = [mutant for mutant in chosen if mutant.file.startswith(options.only)]
+    chosen = [mutant for mutant in chosen if f"{mutant.file}:{mutant.line}".startswith(tuple(options.only))]
     if options.list:
         print("\n".join(f"{m.key} {m.file}:{m.line} {m.operator}\n{m.diff}" for m in chosen))
         return
@@ -67,7 +69,8 @@ def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[
     ahead = [mutant for mutant in chosen if mutant.key not in rows]
     lock = Lock()
     with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
-        copies = Copies(Path(folder), options.limit, options.nearest)
+        kept = options.record and options.record.resolve().with_name("observations")
+        copies = Copies(Path(folder), options.limit, options.nearest, kept)
         for result in threads.map(partial(tried, copies, options.record, lock), ahead):
             rows[str(result["key"])] = result
     return [rows[mutant.key] for mutant in chosen]

@@ -1,5 +1,7 @@
 """Which test files are about a file, the nearest first.
 
+Tests of a whole server that the table in `.ci/changed.py` names for a file come after the nearest ones.
+
 The distance is the number of imports between test and file; a template's version is found by its name in the
 text of the test, as it is not imported. A word in common, as of `tests/app/test_jobs.py` and
 `app/jobs/turns.py`, counts as nearer, because tests of the whole server reach every file of it equally far.
@@ -9,6 +11,7 @@ from __future__ import annotations
 
 import importlib.util
 import re
+from fnmatch import fnmatch
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -43,7 +46,12 @@ def related(file: str, nearest: int = NEAREST) -> tuple[str, ...]:
     near = sorted((nearness(file, test, n), test) for test, n in far.items() if n)
     chosen = [test for _, test in near[:nearest]]
     golden = [changed.CATALOGUE] if file.startswith("templates/") else []
-    return tuple(dict.fromkeys([*chosen, VALUES, *golden]))
+    return tuple(dict.fromkeys([*chosen, VALUES, *golden, *named(file)]))
+
+
+def named(file: str) -> list[str]:
+    """Return the tests of a whole server that the table names for a file; not those of the pages."""
+    return [test for test in tests() if any(fnmatch(file, one) for one in changed.ABOUT.get(test, ()))]
 
 
 def nearness(file: str, test: str, steps: int) -> tuple[float, int]:

@@ -13,72 +13,112 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from threading import Lock
+from types import MappingProxyType
 from uuid import uuid4
 
-from benchmarks.mutation import ROOT
-from benchmarks.mutation.places import Mutant
+from benchmarks.mutation import ROOT, observer
+from benchmarks.mutation.observations import Observations
+from benchmarks.mutation.places import Mutant, targets
 from benchmarks.mutation.related import related
 
 PYTEST = ("-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", "--no-header", "--tb=line")
 MEMORY = 12 << 20  # [KiB] of addresses, for a mutant that fills all of it
 MARK = "CRANKWRIGHT_MUTANT"
-_FAILED = re.compile(r"^(?:FAILED|ERROR) (tests/[\w/]+\.py)\S*", re.MULTILINE)
+WIDE = {"COLUMNS": "500"}  # lines of pytest's summary, so that it says why a test failed
+NEAR = 4  # test files whose single tests are tried first
+STARTING = 60.0  # of the time for single tests, what pytest itself may take [s]
+SLOWER = 10.0  # times as slow as when they were observed
+NOTHING_FAILED = (0, 5)  # exit codes of pytest: all passed; all are slow tests, which are left out
+_FAILED = re.compile(r"^(?:FAILED|ERROR) ((tests/[\w/]+\.py).*)", re.MULTILINE)
 
 
 @dataclass(frozen=True)
 class Run:
-    """What pytest said of some files."""
+    """What pytest said of some tests."""
 
     outcome: str  # passed, failed or hung
     by: str = ""  # the test that failed
-    file: str = ""  # and its file
+    tests: tuple[str, ...] = ()  # what has to pass without the mutant
+    limit: float = 0.0  # time that it had [s]
 
 
 class Copy:
     """A copy of the repository on which one mutant at a time is tried."""
 
-    def __init__(self, folder: Path, limit: float, nearest: int) -> None:
+    def __init__(self, folder: Path, limit: float, nearest: int, kept: Path) -> None:
         self.folder = folder
         self.limit = limit
         self.nearest = nearest
-        self._passing: dict[str, bool] = {}
+        self._passing: set[tuple[str, ...]] = set()
         shutil.copytree(
             ROOT, folder, ignore=shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*_cache")
         )
+        self._list = folder / "observed.txt"
+        self._list.write_text("\n".join(targets()), encoding="utf-8")
+        self.observations = Observations(kept, self._observe)
 
     def try_out(self, mutant: Mutant) -> dict[str, object]:
         """Return what became of a mutant, as a row of the record."""
         begin, tests = time.monotonic(), related(mutant.file, self.nearest)
+        run = Run("passed")
+        for part, limit in self._parts(mutant, tests):
+            run = self._with(mutant, part, limit)
+            if run.outcome != "passed":
+                break
+        seconds = round(time.monotonic() - begin, 1)
+        return {
+            **row(mutant, tests),
+            "outcome": self._judged(run),
+            "by": run.by or run.outcome,
+            "seconds": seconds,
+        }
+
+    def _parts(self, mutant: Mutant, tests: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], float]]:
+        """Yield what to run: single tests that run the line, of near files first; then all that may.
+
+        The nearest file as a whole comes before, if it was not observed yet: most mutants end there.
+        """
+        done: set[str] = set()
+        place = mutant.file, mutant.line
+        if not self.observations.has(tests[0], mutant.file):
+            yield tests[:1], self.limit
+        for some in (tests[:NEAR], tests[NEAR:]):
+            if single := tuple(self.observations.quickest(*place, some)):
+                usual = self.observations.seconds(mutant.file, single)
+                yield single, min(self.limit, STARTING + SLOWER * usual)
+                done.update(single)
+        yield tuple(self.observations.others(*place, tests, done)), self.limit
+
+    def _with(self, mutant: Mutant, tests: tuple[str, ...], limit: float) -> Run:
         self._write(mutant.file, mutant.source)
         try:
-            run = self._first_failure(tests)
+            return self._run(tests, limit) if tests else Run("passed")
         finally:
             self._write(mutant.file, (ROOT / mutant.file).read_text(encoding="utf-8"))
-        outcome = {"passed": "survived", "failed": "killed", "hung": "killed"}.get(run.outcome, run.outcome)
-        if run.outcome == "failed" and not self._passes(run.file):
-            outcome = "unclear"  # the test fails without the mutant too
-        seconds = round(time.monotonic() - begin, 1)
-        return {**row(mutant, tests), "outcome": outcome, "by": run.by or run.outcome, "seconds": seconds}
 
-    def _first_failure(self, tests: Sequence[str]) -> Run:
-        """Run the nearest file alone, and the others only if it does not notice."""
-        for part in filter(None, (tests[:1], tests[1:])):
-            run = self._run(part)
-            if run.outcome != "passed":
-                return run
-        return Run("passed")
+    def _judged(self, run: Run) -> str:
+        """Return the outcome for the mutant: a failure or a hang counts only if the original has none."""
+        if run.outcome == "passed":
+            return "survived"
+        is_of_time = run.outcome == "hung" or "Timeout" in run.by
+        if run.tests not in self._passing or is_of_time:  # the load may be another than it was
+            if self._run(run.tests, run.limit).outcome != "passed":
+                return "unclear"
+            self._passing.add(run.tests)
+        return "killed"
 
-    def _passes(self, file: str) -> bool:
-        if file not in self._passing:
-            self._passing[file] = self._run((file,)).outcome == "passed"
-        return self._passing[file]
+    def _observe(self, test: str, target: Path) -> bool:
+        """Run a test file on the original and write which test runs which lines."""
+        names = {observer.FILES: str(self._list), observer.TARGET: str(target)}
+        run = self._run((test,), self.limit, ("-p", observer.__name__, "--maxfail=1000"), names)
+        return run.outcome != "hung"
 
     def _write(self, file: str, text: str) -> None:
         target = self.folder / file
@@ -86,22 +126,19 @@ class Copy:
             compiled.unlink()  # Python compares dates to the second
         target.write_text(text, encoding="utf-8")
 
-    def _run(self, tests: Sequence[str]) -> Run:
+    def _run(
+        self,
+        tests: tuple[str, ...],
+        limit: float,
+        options: tuple[str, ...] = (),
+        variables: Mapping[str, str] = MappingProxyType({}),
+    ) -> Run:
         mark = uuid4().hex
-        command = (
-            "sh",
-            "-c",
-            f'ulimit -v {MEMORY}; exec "$@"',
-            "sh",
-            sys.executable,
-            *PYTEST,
-            *plugins(tests),
-        )
-        environment = {**os.environ, MARK: mark, "PYTHONPATH": str(self.folder)}
+        command = ("sh", "-c", f'ulimit -v {MEMORY}; exec "$@"', "sh", sys.executable, *PYTEST)
         process = subprocess.Popen(
-            (*command, *tests),
+            (*command, *plugins(tests), *options, *tests),
             cwd=self.folder,
-            env=environment,
+            env={**os.environ, **variables, **WIDE, MARK: mark, "PYTHONPATH": str(self.folder)},
             start_new_session=True,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -109,28 +146,31 @@ class Copy:
             errors="replace",
         )
         try:
-            output, _ = process.communicate(timeout=self.limit)
+            output, _ = process.communicate(timeout=limit)
         except subprocess.TimeoutExpired:
-            return Run("hung")
+            return Run("hung", "", tests, limit)
         finally:
             end(process, mark)
-        return understood(process.returncode, output, tests)
+        return understood(process.returncode, output, tests, limit)
 
 
 def plugins(tests: Sequence[str]) -> tuple[str, ...]:
     """Return options that leave out a plugin which takes longer to import than most tests run."""
-    uses = any("schemathesis" in (ROOT / test).read_text(encoding="utf-8") for test in tests)
+    files = {test.partition("::")[0] for test in tests}
+    uses = any("schemathesis" in (ROOT / file).read_text(encoding="utf-8") for file in files)
     return () if uses else ("-p", "no:schemathesis")
 
 
-def understood(code: int, output: str, tests: Sequence[str]) -> Run:
+def understood(code: int, output: str, tests: tuple[str, ...], limit: float) -> Run:
     """Return what pytest's exit code and summary say; a crash of pytest itself is a failure too."""
-    if code == 0:
+    if code in NOTHING_FAILED:
         return Run("passed")
     failure = _FAILED.search(output)
-    if failure:
-        return Run("failed", failure[0].split(" ", 1)[1], failure[1])
-    return Run("failed", output.strip().rpartition("\n")[2][:200], tests[0])
+    if failure is None:
+        return Run("failed", output.strip().rpartition("\n")[2][:200], tests, limit)
+    name = failure[1].partition(" - ")[0]
+    again = (name,) if name in tests else (failure[2],)
+    return Run("failed", failure[1][:200], again, limit)
 
 
 def end(process: subprocess.Popen[str], mark: str) -> None:
@@ -175,8 +215,9 @@ def fingerprint(files: tuple[str, ...]) -> str:
 class Copies:
     """Copies for as many threads as ask for one."""
 
-    def __init__(self, folder: Path, limit: float, nearest: int) -> None:
+    def __init__(self, folder: Path, limit: float, nearest: int, kept: Path | None = None) -> None:
         self._folder, self._limit, self._nearest = folder, limit, nearest
+        self._kept = kept or folder / "observations"
         self._idle: list[Copy] = []
         self._number = 0
         self._lock = Lock()
@@ -192,4 +233,4 @@ class Copies:
             self._idle.append(copy)
 
     def _copy(self) -> Copy:
-        return Copy(self._folder / str(self._number), self._limit, self._nearest)
+        return Copy(self._folder / str(self._number), self._limit, self._nearest, self._kept)

@@ -34,7 +34,7 @@ class AnalysisRequest:
     tolerance: float | None = None
 
 
-@dataclass
+@dataclass(frozen=True)
 class AnalysisResult:
     """Outputs by name: value in the unit of `KINDS`, or the surface, with its error and its mesh."""
 

@@ -97,3 +97,7 @@ def test_errors_say_what_they_are_about_in_another_process_too(error, names):
     for one in (error, pickle.loads(pickle.dumps(error))):
         assert all(name in str(one) for name in names)
         assert vars(one) == vars(error)
+
+
+def test_a_fresh_database_has_counted_nothing(database):
+    assert counters(database) == {"identity": 0, "operation": 0}

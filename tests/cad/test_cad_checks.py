@@ -6,13 +6,15 @@ from dataclasses import replace
 import pytest
 from cadquery import func
 
-from cad.checks import check_bodies, check_dimensions
+from cad.catalogue import models
+from cad.checks import check_bodies, check_box, check_dimensions
 from cad.errors import GeometryError
 from cad.header import Header
 from cad.inspect import look_at, measure
 from cad.model import CadModel, Part
 from cad.models.ball_bearing_v1 import BallBearing
 from cad.models.plain_bearing_v1 import PlainBearing
+from cad.regenerate import as_text, regenerate_from_text
 from cad.step import read_step, write_step
 
 
@@ -75,3 +77,60 @@ def test_no_surface_to_read_from(shell: PlainBearing) -> None:
     bodies = read_step(write_step([block], Header(shell.id, 1, {}, "")))
     with pytest.raises(GeometryError, match="does not show"):
         check_dimensions(shell, look_at(bodies))
+
+
+@pytest.mark.parametrize("which", ["drawn", "wanted"])
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_a_volume_that_is_no_number_is_refused_as_such(shell: PlainBearing, which: str, value: float) -> None:
+    parts = shell.build()
+    bodies = read_step(write_step(parts, Header(shell.id, 1, {}, "")))
+    measured = [measure(body) for body in bodies]
+    if which == "drawn":
+        measured = [replace(one, volume=value) for one in measured]
+    else:
+        parts = tuple(replace(part, volume=value) for part in parts)
+    with pytest.raises(GeometryError) as caught:
+        check_bodies(shell, parts, bodies, measured)
+    assert caught.value.code == "not_finite"
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.9e-5, 1.2e-5])
+def test_a_box_may_differ_by_a_hundredth_of_a_micrometre(shell: PlainBearing, aside: float) -> None:
+    box = shell.bounding_box()
+    other = replace(box, high=(box.high[0] + aside, *box.high[1:]))
+    if aside < 1e-5:
+        check_box(shell, other)
+        return
+    with pytest.raises(GeometryError) as caught:
+        check_box(shell, other)
+    assert caught.value.code == "bounding_box"
+    assert set(caught.value.parameters) == set(shell.inputs)
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "parameters"),
+    [
+        (GeometryError("volume", "too small", ["width"]), "volume", ("width",)),
+        (GeometryError("volume", "too small"), "volume", None),
+        (RuntimeError("null shape"), "kernel", None),
+    ],
+    ids=["of_one", "of_all", "of_the_kernel"],
+)
+def test_what_fails_while_a_solid_is_drawn_names_its_parameters_or_all(
+    shell: PlainBearing,
+    monkeypatch: pytest.MonkeyPatch,
+    error: Exception,
+    code: str,
+    parameters: tuple[str, ...] | None,
+) -> None:
+    def build(self: CadModel) -> tuple[Part, ...]:
+        raise error
+
+    cls = models().get(shell.id, 1)
+    monkeypatch.setattr(cls, "build", build)
+    with pytest.raises(
+        GeometryError, match=f"^{shell.id}: too small|{shell.id}: RuntimeError: null"
+    ) as caught:
+        regenerate_from_text(shell.id, 1, as_text(shell))
+    assert caught.value.code == code
+    assert caught.value.parameters == (tuple(shell.inputs) if parameters is None else parameters)

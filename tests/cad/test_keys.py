@@ -70,3 +70,32 @@ def test_property_an_analysis_does_not_depend_on_its_load():
     assert question("torsion", Options(load="500 N*m")).key(BUILD) == question("torsion", Options()).key(
         BUILD
     )
+
+
+def test_a_question_without_a_load_is_one_of_a_newton_metre():
+    outputs = {
+        "maximum_stress": {"value": 3.0, "convergence": [{"value": 2.0}, {"value": 3.0}]},
+        "torsional_stiffness": {"value": 5.0, "convergence": []},
+    }
+    asked = question("torsion", Options())
+    for one in (asked, questions.Question("torsion", "free_end", None, None), asked.whatever_level()):
+        assert questions.under_load(one, outputs) == outputs
+    doubled = questions.under_load(question("torsion", Options(load="2 N*m")), outputs)
+    assert doubled["maximum_stress"] == {"value": 6.0, "convergence": [{"value": 4.0}, {"value": 6.0}]}
+    assert doubled["torsional_stiffness"] == outputs["torsional_stiffness"]
+
+
+@pytest.mark.parametrize(
+    ("load", "codes"),
+    [
+        (None, []),
+        ("1 N*m", []),
+        ("0 N*m", ["out_of_range"]),
+        ("-1 N*m", ["out_of_range"]),
+        ("1 N", ["wrong_unit"]),
+    ],
+)
+def test_only_a_load_that_is_given_can_be_wrong(load, codes):
+    assert [(fault.name, fault.code) for fault in questions.faults(Options(load=load))] == [
+        ("load", code) for code in codes
+    ]

@@ -1,0 +1,38 @@
+"""What the language says of an absent value and of a fault: the reason, where it holds, and nothing else."""
+
+import numpy as np
+import pytest
+
+from templates.core.errors import Fault, FaultyText, Unreachable
+from templates.core.language.evaluate import evaluate
+from templates.core.language.template import Template, formula, given
+
+
+class Hollow(Template):
+    """A tube."""
+
+    example = {"x": "1 m"}
+
+    x = given("m", "x")
+
+    @formula("m", "bore", absent="thin tubes have no bore")
+    def bore(self):
+        return np.where(self.x > 1, self.x - 1, np.nan)
+
+    @formula("m", "double bore", absent="thin tubes have no bore")
+    def double(self):
+        return 2 * self.bore
+
+
+@pytest.mark.parametrize("name", ["bore", "double_bore"])
+def test_a_value_is_absent_with_its_reason_only_where_it_does_not_exist(name):
+    answer = evaluate(Hollow, {"x": {"value": [0.5, 2.0, 1.0, 3.0], "unit": "m"}}).outputs[name]
+    assert np.isnan(answer.value).tolist() == [True, False, True, False]
+    assert answer.reasons.tolist() == ["thin tubes have no bore", None, "thin tubes have no bore", None]
+
+
+def test_the_text_of_an_error_is_its_sentence():
+    faulty = FaultyText("empty", "give a number")
+    assert str(faulty) == "give a number"
+    assert faulty.fault("speed") == Fault("speed", "empty", "give a number")
+    assert str(Unreachable("speed", "too fast", (1.0, 2.0), "rpm")) == "too fast"
