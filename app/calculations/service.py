@@ -34,7 +34,13 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
     """
     _limit_answer(cls, body)
     result = evaluate(
-        cls, body.inputs, outputs=body.outputs, units=body.units, level=body.level, tolerance=body.tolerance
+        cls,
+        body.inputs,
+        outputs=body.outputs,
+        units=body.units,
+        level=body.level,
+        tolerance=body.tolerance,
+        per_point=body.per_point,
     )
     _limit(result.count())  # curves are longer than their inputs
     return result
