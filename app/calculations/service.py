@@ -10,8 +10,9 @@ from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.size import points
 from app.plain import JsonObject
 from templates.core.language.evaluate import Evaluation, evaluate
+from templates.core.language.question import read_question
 from templates.core.language.request import read_request, require_points
-from templates.core.language.solve import read_question, solve
+from templates.core.language.solve import solve
 from templates.core.language.template import Template
 
 MOST_VALUES = 2_000_000  # in one answer: some 40 MB of JSON
@@ -34,7 +35,13 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
     """
     _limit_answer(cls, body)
     result = evaluate(
-        cls, body.inputs, outputs=body.outputs, units=body.units, level=body.level, tolerance=body.tolerance
+        cls,
+        body.inputs,
+        outputs=body.outputs,
+        units=body.units,
+        level=body.level,
+        tolerance=body.tolerance,
+        per_point=body.per_point,
     )
     _limit(result.count())  # curves are longer than their inputs
     return result
@@ -108,6 +115,4 @@ def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
         level=body.level,
         tolerance=body.tolerance,
     )
-    warnings = [{"code": w.code, "name": w.name, "detail": w.detail} for w in solution.warnings]
-    answer = {"unknown": rendering.quantity(solution.unknown, solution.unit), "warnings": warnings}
-    return {**answer, "evaluation": rendering.evaluation(solution.evaluation)}
+    return rendering.solution(solution)

@@ -48,13 +48,19 @@ Values = Mapping[str, object]
 """Quantities by name: `"25 kN"`, `{"value": 25, "unit": "kN"}`, or a quantity of another answer."""
 
 
-class Options(TypedDict, total=False):
-    """How a template is evaluated."""
+class SolveOptions(TypedDict, total=False):
+    """How a template is evaluated at a solution."""
 
     outputs: list[str]
     level: str
     tolerance: float
     units: dict[str, str]
+
+
+class Options(SolveOptions, total=False):
+    """How a template is evaluated."""
+
+    per_point: bool
 
 
 class AnalysisOptions(TypedDict, total=False):
@@ -78,7 +84,7 @@ def template(id: str, version: int) -> Exchange[Template]:
 
 
 def evaluate(id: str, version: int, inputs: Values, **options: Unpack[Options]) -> Exchange[Evaluation]:
-    """Evaluate a template; options are `outputs`, `level`, `tolerance`, `units`."""
+    """Evaluate a template; options are `outputs`, `level`, `tolerance`, `per_point`, `units`."""
     path = f"/templates/{id}/versions/{version}/evaluate"
     return calculated(Evaluation, post(path, {"inputs": inputs, **options}))
 
@@ -90,10 +96,19 @@ def worksheet(id: str, version: int, inputs: Values, **options: Unpack[Options])
 
 
 def solve(
-    id: str, version: int, inputs: Values, unknown: str, bounds: tuple[object, object], target: Values
+    id: str,
+    version: int,
+    inputs: Values,
+    unknown: str,
+    bounds: tuple[object, object],
+    target: Values,
+    **options: Unpack[SolveOptions],
 ) -> Exchange[Solution]:
-    """Find the input that gives a wanted output, between bounds."""
-    body = {"inputs": inputs, "unknown": unknown, "bounds": bounds, "target": target}
+    """Find the inputs that give a wanted output, between bounds.
+
+    Options are `outputs`, `level`, `tolerance`, `units`.
+    """
+    body = {"inputs": inputs, "unknown": unknown, "bounds": bounds, "target": target, **options}
     return calculated(Solution, post(f"/templates/{id}/versions/{version}/solve", body))
 
 
