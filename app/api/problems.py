@@ -164,9 +164,14 @@ def problem(kind: Kind, detail: str) -> dict[str, Any]:
 
 
 def _faults(error: templates.InvalidInputs) -> dict[str, Any]:
-    listed = [{"name": fault.name, "code": fault.code, "detail": fault.detail} for fault in error.faults]
+    listed = [_fault(fault) for fault in error.faults]
     count = len(listed)
     return {"errors": listed, "detail": f"{count} {'fault' if count == 1 else 'faults'}: {_short(listed)}"}
+
+
+def _fault(fault: templates.Fault) -> dict[str, Any]:
+    also = {"also": list(fault.also)} if fault.also else {}
+    return {"name": fault.name, "code": fault.code, "detail": fault.detail, **also}
 
 
 def _validation(error: RequestValidationError | InvalidBody) -> dict[str, Any]:
