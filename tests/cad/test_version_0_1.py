@@ -63,7 +63,3 @@ def test_a_script_runs():
     assert len(rows) == 3
     assert rows[0].startswith("p=")
     assert (faults, pressure, refused) == ("[]", "59.0625", "['hub_diameter']")
-        "[]",
-        "59.0625",
-        "['hub_diameter']",
-    )  # one fault, at the first name of its rule

@@ -1,7 +1,7 @@
 """One cause, one fault: which input a broken rule is reported at, and which rules one input breaks.
 
 A rule names every input that it is about; of these only some can have broken it. While the rule runs again
-its comparisons are recorded, and those that do not hold say which. Several rules that one input can have$
+its comparisons are recorded, and those that do not hold say which. Several rules that one input can have
 broken make one fault, at that input.
 """
 
