@@ -1,4 +1,4 @@
-"""Files of a design name it: outside, in Content-Disposition, and inside, by a stamp that `/verify` ignores."""
+"""Files of a design name it: outside, in Content-Disposition, and inside, by a stamp; `verify` ignores that."""
 
 import hashlib
 import io
@@ -7,7 +7,7 @@ from urllib.parse import quote
 
 import ezdxf
 import pytest
-from serving import API, created, patched, paper, problem, revision
+from serving import API, created, paper, patched, revision
 
 from cad.part21 import plain
 from cad.step import read_step
