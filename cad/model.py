@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isclose
 from typing import ClassVar
 
 from cadquery import Location, Shape
@@ -33,6 +34,12 @@ BRIGHT_STEEL: Colour = (0.86, 0.88, 0.91)
 BRONZE: Colour = (0.80, 0.62, 0.36)
 
 
+def material_named(name: str, density: float) -> str:
+    """A material by its name and density [kg/m³]; one of no name that is as dense as steel is steel."""
+    name = name or ("steel" if isclose(density, STEEL_DENSITY, rel_tol=1e-6) else "")
+    return f"{name} ({density:.6g} kg/m³)" if name else f"{density:.6g} kg/m³"
+
+
 @dataclass(frozen=True)
 class Part:
     """One solid of a model, at one or several places."""
@@ -45,6 +52,7 @@ class Part:
     places: tuple[Location, ...] = (Location(),)
     tolerance: float = 1e-6  # of the volume, relative; larger only where the closed form approximates
     shaped_by: tuple[str, ...] = ()  # the parameters to name if it fails; all of them, if it does not say
+    material: str = ""  # its name, such as "CuSn8"; steel, if it does not say and has the density of steel
 
     @property
     def solid(self) -> Shape:
@@ -60,6 +68,11 @@ class Part:
             detail = f"{self.name} should be one solid; it is {len(solids)}"
             raise GeometryError("not_one_solid", detail, self.shaped_by)
         return solids[0]
+
+    @property
+    def made_of(self) -> str:
+        """The material as drawings name it, with the density by which the mass is computed."""
+        return material_named(self.material, self.density)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -10,15 +10,22 @@ import re
 from collections.abc import Iterator
 
 _BLANK, _WORD = re.compile(r"\s+"), re.compile(r"[A-Za-z0-9_]+")
-_ESCAPED = re.compile(r"''|\\\\|\\X2\\((?:[0-9A-F]{4})*)\\X0\\")
-_NOT_PLAIN = re.compile(r"[^ -~]+")
+_ESCAPED = re.compile(r"''|\\\\|\\X(2|4)\\((?:[0-9A-F]{4})*)\\X0\\")
+_NOT_PLAIN = re.compile(r"[^ -~\U00010000-\U0010ffff]+|[\U00010000-\U0010ffff]+")
 
 
 def quoted(text: str) -> str:
-    r"""A text as a string of Part 21: quotes and backslashes doubled, other than ASCII as `\X2\…\X0\`."""
+    r"""A text as a string of Part 21: quotes and backslashes doubled, other than ASCII as `\X2\…\X0\`.
+
+    What lies beyond the basic plane, such as a pictogram, is written as `\X4\…\X0\`.
+    """
     doubled = text.replace("\\", "\\\\").replace("'", "''")
-    wide = _NOT_PLAIN.sub(lambda m: f"\\X2\\{m[0].encode('utf-16-be').hex().upper()}\\X0\\", doubled)
-    return f"'{wide}'"
+    return f"'{_NOT_PLAIN.sub(_escaped, doubled)}'"
+
+
+def _escaped(signs: re.Match[str]) -> str:
+    form, encoding = ("X2", "utf-16-be") if signs[0][0] < "\U00010000" else ("X4", "utf-32-be")
+    return f"\\{form}\\{signs[0].encode(encoding).hex().upper()}\\X0\\"
 
 
 def plain(string: str) -> str:
@@ -29,7 +36,8 @@ def plain(string: str) -> str:
 def _unescaped(escape: re.Match[str]) -> str:
     if escape[1] is None:
         return escape[0][0]
-    return bytes.fromhex(escape[1]).decode("utf-16-be", "replace")
+    encoding = "utf-16-be" if escape[1] == "2" else "utf-32-be"
+    return bytes.fromhex(escape[2]).decode(encoding, "replace")
 
 
 def description(text: str) -> list[str]:
@@ -74,15 +82,15 @@ def tokens(text: str) -> Iterator[str]:
 def _end(text: str, start: int) -> int:
     """Where the token, blank or comment that begins at `start` ends."""
     if text[start] == "'":
-        return _end_of_string(text, start)
+        return end_of_string(text, start)
     if text.startswith("/*", start):
         return _behind(text, "*/", start + 2)
     match = _BLANK.match(text, start) or _WORD.match(text, start)
     return match.end() if match else start + 1
 
 
-def _end_of_string(text: str, start: int) -> int:
-    """Behind the quote that closes a string; two quotes are one of the text."""
+def end_of_string(text: str, start: int) -> int:
+    """The place behind the quote that closes a string; two quotes are one of the text."""
     place = _behind(text, "'", start + 1)
     while text.startswith("'", place):
         place = _behind(text, "'", place + 1)

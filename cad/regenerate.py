@@ -28,7 +28,7 @@ __all__ = ["Build", "as_quantities", "as_text", "build_key", "regenerate", "rege
 
 Report = Callable[[float, str], None]
 
-RECIPE = 2
+RECIPE = 3
 """Raised whenever this package makes other bytes or other measures of the same parameters."""
 
 MADE_BY = f"{KERNEL}, recipe {RECIPE}"
@@ -46,6 +46,7 @@ class Build:
     step: bytes
     measures: dict[str, float]  # in the units of `cad.inspect.MEASURES`
     dimensions: dict[str, float]  # read back from the file, in the declared unit of each parameter
+    materials: dict[str, str]  # of every part
 
 
 def ignore(done: float, what: str) -> None:
@@ -143,7 +144,8 @@ def regenerate_from_text(
     densities = {part.name: part.density for part in parts}
     measures = summarise(bodies, measured, densities, box)
     report(1.0, "done")
-    return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions)
+    materials = {part.name: part.made_of for part in parts}
+    return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions, materials)
 
 
 def _plain(model: CadModel) -> dict[str, float | str]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from cadquery import Location, Shape
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
@@ -44,7 +45,10 @@ class Body:
 
 
 def write_step(parts: Sequence[Part], header: Header) -> bytes:
-    """The parts as an assembly in millimetres, with product names and colours; equal parts, equal bytes."""
+    """The parts in millimetres, with product names and colours; equal parts, equal bytes.
+
+    A single part at a single place is one product; several are an assembly.
+    """
     Interface_Static.SetCVal_s("write.step.schema", "AP242DIS")
     Interface_Static.SetCVal_s("write.step.unit", "MM")
     writer = STEPCAFControl_Writer(XSControl_WorkSession(), False)
@@ -92,6 +96,11 @@ def _new_document() -> TDocStd_Document:
 def _fill(document: TDocStd_Document, title: str, parts: Sequence[Part]) -> None:
     shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     shapes.SetAutoNaming_s(False)
+    if is_single(parts):
+        (part,) = parts
+        (place,) = part.places
+        shapes.SetShape(_named(shapes.NewShape(), part.name), _placed(part.solid, place).wrapped)
+        return
     assembly = _named(shapes.NewShape(), title)
     for part in parts:
         product = _named(shapes.NewShape(), part.name)
@@ -99,6 +108,18 @@ def _fill(document: TDocStd_Document, title: str, parts: Sequence[Part]) -> None
         for name, place in zip(part.names, part.places, strict=True):
             _named(shapes.AddComponent(assembly, product, place.wrapped), name)
     shapes.UpdateAssemblies()
+
+
+def is_single(parts: Sequence[Part]) -> bool:
+    """Whether parts are one solid at one place, which needs no assembly."""
+    return len(parts) == 1 and len(parts[0].places) == 1
+
+
+def _placed(solid: Shape, place: Location) -> Shape:
+    """A solid in the coordinates of its place: as a product of its own it has no other."""
+    if place.wrapped.IsIdentity():
+        return solid
+    return Shape.cast(BRepBuilderAPI_Transform(solid.wrapped, place.wrapped.Transformation(), True).Shape())
 
 
 def _named(label: TDF_Label, name: str) -> TDF_Label:

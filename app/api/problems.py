@@ -165,9 +165,14 @@ def problem(kind: Kind, detail: str) -> JsonObject:
 
 
 def _faults(error: templates.InvalidInputs) -> JsonObject:
-    listed = [{"name": fault.name, "code": fault.code, "detail": fault.detail} for fault in error.faults]
+    listed: list[Json] = [_fault(fault) for fault in error.faults]
     count = len(listed)
     return {"errors": listed, "detail": f"{count} {'fault' if count == 1 else 'faults'}: {_short(listed)}"}
+
+
+def _fault(fault: templates.Fault) -> JsonObject:
+    also = {"also": list(fault.also)} if fault.also else {}
+    return {"name": fault.name, "code": fault.code, "detail": fault.detail, **also}
 
 
 def _validation(error: RequestValidationError | InvalidBody) -> JsonObject:

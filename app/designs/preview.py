@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.designs import repository, results
+from app.designs import repository, results, tolerances
 from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
 from app.designs.graph import Catalogues, build_graph, raise_if
@@ -71,7 +71,7 @@ def preview(
             **_compared(_outputs(_steps(old)), _outputs(steps)),
             **_compared(_analysed(old), _analysed(new)),
         },
-        warnings=_warnings(steps),
+        warnings=[*_warnings(steps), *tolerances.warnings(changed.model_dump())],
         model_parameters=_model_parameters(old, new, mismatched),
     ).in_units(system)
     if worksheet:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sqlalchemy.orm import Session
 
-from app.designs import repository
+from app.designs import repository, tolerances
 from app.plain import JsonObject
 from app.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
 from app.solids import measures, rows
@@ -67,6 +67,7 @@ def revision(session: Session, row: RevisionRow) -> Revision:
                 for model in models
             },
             "iterations": results["iterations"],
+            **({"warnings": unused} if (unused := tolerances.warnings(row.document)) else {}),
         }
     )
 

@@ -96,7 +96,7 @@ class Reports:
             problem=f"{problem.title}: {problem.detail}" if problem else "",
             program=f"Crankwright {version('crankwright')}",
             units=system,
-            summary=_summary(steps, models),
+            summary=[*_summary(steps, models), *(f"note on {w.name}: {w.detail}" for w in worked.warnings)],
             parameters=[Line(n, "", Cell(text=typed(value))) for n, value in worked.parameters.items()],
             steps=steps,
             models=models,

@@ -165,6 +165,7 @@ class Revision(Answer):
     steps: dict[str, RevisionStep]
     models: dict[str, RevisionModel]
     iterations: list[Round]
+    warnings: list[Warning] = Field([], description="about the design's own parameters and its models'")
 
 
 class RevisionList(Page[Revision]):

@@ -17,6 +17,7 @@ class Fault(BaseModel):
     name: str = Field(description="the input, parameter or part of the request")
     code: str
     detail: str = Field(description="what is wrong, in which unit, and what would be right")
+    also: list[str] = Field([], description="other names that the detail is about, where there are any")
 
 
 class Problem(BaseModel):

@@ -37,6 +37,9 @@ class Measurements(Answer):
         None, description="about the z axis, in kg*m**2; builds of an older recipe do not have it"
     )
     dimensions: dict[str, Quantity] = Field(description="the model's dimensions, read back from the solid")
+    materials: dict[str, str] | None = Field(
+        None, description="of every part, with its density; builds of an older recipe do not have it"
+    )
 
 
 class Build(Answer):
@@ -63,7 +66,9 @@ class Verification(Answer):
     build: str
     model: Version
     revisions: list[BuildUse]
-    intact: bool = Field(description="whether the bytes are still those that were written")
+    intact: bool = Field(
+        description="whether the bytes are still those that were written, but for the stamp of a download"
+    )
 
 
 class Analysable(Answer):

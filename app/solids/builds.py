@@ -21,7 +21,7 @@ from app.storage.database import Database
 from app.storage.errors import CannotRebuild
 from app.storage.tables import ArtifactRow
 from app.workers.base import Runner
-from cad.export import derive
+from cad.export import DRAWINGS, derive
 from cad.model import CadModel
 from cad.regenerate import (
     MADE_BY,
@@ -31,6 +31,7 @@ from cad.regenerate import (
     regenerate,
     regenerate_from_text,
 )
+from cad.stamp import takes_stamp
 from templates.core.catalogue.finding import Catalogue
 from templates.core.progress import report
 
@@ -91,19 +92,26 @@ class Builds:
     def derive(self, key: str, kind: str, context: Runner) -> None:
         """Make a file of another kind from the good STEP file of a build, unless it is there and good.
 
+        A drawing of an older program, which has no room for a stamp, is drawn again.
+
         A derived file depends on libraries that the build's key does not name. If its bytes come out
         otherwise than before, it is another artifact, and the row names that one.
         """
         row, step = self._row(key, kind), self._row(key, STEP)
-        if row and self.store.exists(row.sha256):
+        if row and self.store.exists(row.sha256) and not self._is_outdated(row):
             return
         assert step is not None, "a build has its STEP file from its first moment"
         file = context.run(derive, self.store.read(step.sha256), kind)
         sha = self.store.put(file)
         if row and row.sha256 != sha:
-            logger.warning("%s of build %s: artifact %s is lost, now it is %s", kind, key, row.sha256, sha)
+            logger.warning(
+                "%s of build %s: artifact %s is out of use, now it is %s", kind, key, row.sha256, sha
+            )
         if row is None or row.sha256 != sha:
             self.database.write(lambda session: rows.add_artifact(session, key, kind, sha, len(file)))
+
+    def _is_outdated(self, row: ArtifactRow) -> bool:
+        return row.kind in DRAWINGS and not takes_stamp(self.store.read(row.sha256), row.kind)
 
     def _row(self, key: str, kind: str) -> ArtifactRow | None:
         with self.database.read() as session:
@@ -113,7 +121,7 @@ class Builds:
         parameters = measures.parameters(shape)
         units = {name: declared.meaning.unit for name, declared in shape.inputs.items()}
         dimensions = {n: {"value": value, "unit": units[n]} for n, value in build.dimensions.items()}
-        measured = {"measures": build.measures, "dimensions": dimensions}
+        measured = {"measures": build.measures, "dimensions": dimensions, "materials": build.materials}
         rows.add_build(session, build.key, build.model, build.version, parameters, measured, MADE_BY)
         rows.add_artifact(session, build.key, STEP, sha, len(build.step))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from app.plain import Json, JsonObject
 from app.schemas.answers import Quantity, Triple
@@ -17,7 +18,9 @@ def parameters(shape: CadModel) -> JsonObject:
     return as_quantities(shape)
 
 
-def measurements(measures: Mapping[str, float], dimensions: Mapping[str, Json]) -> Measurements:
+def measurements(
+    measures: Mapping[str, float], dimensions: Mapping[str, Json], materials: Mapping[str, str] | None = None
+) -> Measurements:
     """What a solid measures; builds of an older recipe measured less."""
 
     def one(name: str) -> Quantity:
@@ -27,7 +30,8 @@ def measurements(measures: Mapping[str, float], dimensions: Mapping[str, Json]) 
         x, y, z = (measures[f"{name}_{axis}"] for axis in "xyz")
         return Triple(value=(x, y, z), unit=MEASURES[f"{name}_x"])
 
-    later = {"polar_inertia": one("polar_inertia")} if "polar_inertia" in measures else {}
+    later: dict[str, Any] = {"materials": materials} if materials is not None else {}
+    later |= {"polar_inertia": one("polar_inertia")} if "polar_inertia" in measures else {}
     return Measurements(
         bounding_box=BoundingBox(low=along_axes("low"), high=along_axes("high")),
         volume=one("volume"),

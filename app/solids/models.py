@@ -23,6 +23,7 @@ from cad.export import DERIVED
 from cad.header import read_header
 from cad.model import CadModel
 from cad.regenerate import as_text, build_key
+from cad.stamp import is_copy
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 
@@ -117,10 +118,14 @@ class Models:
     def verify(self, step: bytes) -> Verification:
         """From which build a STEP file is, which revisions use it, and whether its bytes are still those.
 
+        What a stamp says is not looked at.
+
         Raises
         ------
         NotFound
             If it does not say, or there is no such build here.
+        ArtifactMissing, ArtifactDamaged
+            If it is not the file of the build as stored, and that is lost, so nothing can be compared.
         """
         header = read_header(step)
         if header is None:
@@ -129,8 +134,12 @@ class Models:
         assert build.model is not None, "a recorded build has its model"
         with self.database.read() as session:
             uses = [BuildUse.model_validate(use) for use in rows.users_of(session, header.build)]
-        intact = hashlib.sha256(step).hexdigest() == build.artifacts["step"]
+        intact = self._is_intact(step, build.artifacts["step"])
         return Verification(build=header.build, model=build.model, revisions=uses, intact=intact)
+
+    def _is_intact(self, step: bytes, sha: str) -> bool:
+        """Whether a file is the artifact of this hash, with or without a stamp."""
+        return hashlib.sha256(step).hexdigest() == sha or is_copy(step, self.store.read(sha))
 
 
 class ModelBuild:

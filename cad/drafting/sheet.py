@@ -16,6 +16,7 @@ from typing import Any
 from ezdxf import units
 from ezdxf._options import options
 from ezdxf.document import Drawing
+from ezdxf.entities.text import Text
 from ezdxf.filemanagement import new
 
 from cad.drafting.lanes import Lanes
@@ -23,6 +24,7 @@ from cad.drafting.matching import Dimension, matched, references
 from cad.drafting.measures import Measure, measures
 from cad.drafting.views import Point, Polyline, View, hatch, views
 from cad.header import Header
+from cad.stamp import BLOCK, MARK, line_of
 from cad.step import Body
 
 SHEET = (420.0, 297.0)  # A3 [mm]
@@ -32,8 +34,9 @@ TEXT = 3.5  # height of letters [mm on paper]
 
 _LEFT, _EDGE = 20.0, 10.0  # margins (ISO 5457)
 _COLUMN = 104.0  # of table and title block
-_TITLE = 46.0  # height of the title block
+_TITLE = 64.0  # height of the title block
 _ROOM = 24.0  # around and between views, beside the dimensions
+_ROW = 7.5  # from one line of the title block to the next
 _LANE = 9.0  # from one dimension line to the next
 _HATCH = 2.5
 _SCALES = [f * 10.0**n for n in range(3, -4, -1) for f in (5, 2, 1)]
@@ -279,20 +282,24 @@ class Page:
                 "* not between two surfaces that are drawn", left, top - 6 * (len(parameters) + 1), 2.5
             )
         title = f"{header.model.replace('_', ' ')}, version {header.version}" if header else "part"
+        for row, name in enumerate(BLOCK, 1):
+            line = self._write(line_of(name), left, _EDGE + _TITLE - 8 - _ROW * row, 3.0)
+            line.set_xdata(APP, [(1000, f"{MARK}{name}")])
         lines = [
-            (title, 5.0),
             (f"scale {self.plan.scale_text} on A3, first-angle projection", 3.0),
             ("dimensions in mm, measured on the solid; ( ) for reference", 2.5),
             (f"build {header.build[:32]}" if header else "", 2.5),
             ("checked:", 3.0),
         ]
-        for row, (text, size) in enumerate(lines):
-            self._write(text, left, _EDGE + _TITLE - 8 - 8.2 * row, size)
-        self._write("date:", left + 64, _EDGE + _TITLE - 8 - 8.2 * (len(lines) - 1), 3.0)
+        self._write(title, left, _EDGE + _TITLE - 8, 5.0)
+        lowest = _EDGE + _TITLE - 8 - _ROW * (len(BLOCK) + len(lines))
+        for row, (text, size) in enumerate(reversed(lines)):
+            self._write(text, left, lowest + _ROW * row, size)
+        self._write("date:", left + 64, lowest, 3.0)
 
-    def _write(self, text: str, x: float, y: float, size: float) -> None:
+    def _write(self, text: str, x: float, y: float, size: float) -> Text:
         attributes = {"layer": "TEXT", "style": STYLE, "height": size / self.plan.scale}
-        self.space.add_text(text, dxfattribs={**attributes, "insert": self.plan.at(x, y)})
+        return self.space.add_text(text, dxfattribs={**attributes, "insert": self.plan.at(x, y)})
 
 
 def _text(dimension: Dimension) -> str:

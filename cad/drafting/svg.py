@@ -7,8 +7,9 @@ from html import escape
 from math import cos, degrees, radians, sin
 from typing import Any
 
-from cad.drafting.sheet import SHEET, draw
+from cad.drafting.sheet import APP, SHEET, draw
 from cad.header import Header
+from cad.stamp import MARK
 from cad.step import Body
 
 FONTS = "Inter, 'Liberation Sans', Arial, sans-serif"
@@ -72,7 +73,8 @@ class Ink:
             case "SOLID":
                 return self._solid(entity, layer)
             case "TEXT":
-                return self._text(entity.dxf.text, entity.dxf.insert, entity.dxf.height, 0.0, "start", 0.0)
+                place, size = entity.dxf.insert, entity.dxf.height
+                return self._text(entity.dxf.text, place, size, 0.0, "start", 0.0, _mark_of(entity))
             case "MTEXT":
                 angle = entity.get_rotation()
                 return self._text(
@@ -90,14 +92,23 @@ class Ink:
         d = "M" + "L".join("{:.3f} {:.3f}".format(*self.at(point)) for point in entity.wcs_vertices()) + "z"
         return f'<path fill="{_COLOURS.get(layer, _INK)}" d="{d}"/>\n'
 
-    def _text(self, text: str, place: Any, height: float, angle: float, anchor: str, drop: float) -> str:
+    def _text(
+        self, text: str, place: Any, height: float, angle: float, anchor: str, drop: float, mark: str = ""
+    ) -> str:
         x, y = self.at(place)
         size = height * self.scale * 1.3  # letters of that height; a font's size is that of its line
         turn = f' transform="rotate({-angle:.4g} {x:.3f} {y:.3f})"' if angle else ""
         return (
-            f'<text x="{x:.3f}" y="{y:.3f}" dy="{drop * size:.3f}" font-size="{size:.3f}" fill="{_INK}"'
+            f'<text{mark} x="{x:.3f}" y="{y:.3f}" dy="{drop * size:.3f}" font-size="{size:.3f}" fill="{_INK}"'
             f' text-anchor="{anchor}"{turn}>{escape(text)}</text>\n'
         )
+
+
+def _mark_of(entity: Any) -> str:
+    """The attribute that says which line of the title block a text is, if a stamp fills it in."""
+    if not entity.has_xdata(APP):
+        return ""
+    return f' data-stamp="{entity.get_xdata(APP)[0].value.removeprefix(MARK)}"'
 
 
 def _round(entity: Any) -> Iterator[tuple[float, float]]:

@@ -27,15 +27,25 @@ MOST_LISTED = 100
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing that is wrong: which name, a code for programs, a sentence with its remedy for people."""
+    """One thing that is wrong: which name, a code for programs, a sentence with its remedy for people.
+
+    `also` are other names that the sentence is about: changing one of them may help as well.
+    """
 
     name: str
     code: str
     detail: str
+    also: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Every name that the fault is about, its own first."""
+        return (self.name, *self.also)
 
     def within(self, prefix: str) -> Fault:
         """The same fault, seen from outside: `speed` becomes `film.speed`."""
-        return replace(self, name=f"{prefix}.{self.name}")
+        name, *also = (f"{prefix}.{name}" for name in self.names)
+        return replace(self, name=name, also=tuple(also))
 
 
 class TemplateError(Exception):

@@ -32,7 +32,7 @@ def build(cls: Any, given: dict[str, str]) -> Build:
 def refused(cls: Any, given: dict[str, str]) -> set[str]:
     with pytest.raises(InvalidInputs) as caught:
         cls.from_quantities(given)
-    return {fault.name for fault in caught.value.faults}
+    return {name for fault in caught.value.faults for name in fault.names}
 
 
 class TestClosedForms:

@@ -84,7 +84,7 @@ def refused(cls: type[CadModel], given: dict[str, Any]) -> set[str]:
     try:
         cls.from_si(given)
     except InvalidInputs as error:
-        return {fault.name for fault in error.faults}
+        return {name for fault in error.faults for name in fault.names}
     return set()
 
 

@@ -62,4 +62,4 @@ def test_a_script_runs():
     *rows, faults, pressure, refused = done.stdout.splitlines()
     assert len(rows) == 3
     assert rows[0].startswith("p=")
-    assert (faults, pressure, refused) == ("[]", "59.0625", "['hub_diameter', 'diameter']")
+    assert (faults, pressure, refused) == ("[]", "59.0625", "['hub_diameter']")

@@ -19,7 +19,7 @@ def values(raw, **options):
 def refused(raw):
     with pytest.raises(InvalidInputs) as refusal:
         evaluate(BearingLoad, raw)
-    return {fault.name: fault.detail for fault in refusal.value.faults}
+    return {name: fault.detail for fault in refusal.value.faults for name in fault.names}
 
 
 class TestIdeal:

@@ -190,7 +190,7 @@ def check_case(cls, case, precision):
     if "refused" in case:
         with pytest.raises(InvalidInputs) as refusal:
             golden.results(cls, case["inputs"], case.get("level", ""))
-        assert sorted(fault.code for fault in refusal.value.faults) == case["refused"]
+        assert golden.codes(refusal.value) == sorted(set(case["refused"]))
         return
     results = golden.results(cls, case["inputs"], case.get("level", ""))
     assert results.keys() == case["outputs"].keys()

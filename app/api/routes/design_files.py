@@ -10,6 +10,7 @@ from fastapi.responses import FileResponse
 from starlette.concurrency import run_in_threadpool
 
 from app.api import problems
+from app.api.attachments import MemoryFile, disposition, http_time, is_at_hand, tag, unchanged
 from app.api.dependencies import TheDatabase, TheHealing, TheJobs, TheModels, TheStore
 from app.api.gate.clients import TheClient
 from app.api.reading import StrictRoute
@@ -17,21 +18,32 @@ from app.api.routes.designs import Id, Number, Prefer
 from app.api.routes.models import send_file
 from app.api.stored import UNAVAILABLE, lost
 from app.api.waiting import LATER, accepted, accepted_kinds, finished
-from app.designs import views
+from app.designs import stamps, views
+from app.jobs.service import Jobs
 from app.schemas.problems import RouteOptions
-from app.solids.models import File
+from app.solids.models import File, Models
+from app.storage.artifacts import ArtifactStore
 from app.storage.errors import NotFound
-from app.storage.tables import RevisionModelRow
-from cad.export import MEDIA_TYPES
+from cad.export import DRAWINGS, MEDIA_TYPES
+from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
 
 router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
 
 FILES: RouteOptions = {
     "response_class": FileResponse,
-    "responses": {200: {"content": {media: {} for media in MEDIA_TYPES.values()}}, **LATER, **UNAVAILABLE},
+    "responses": {
+        200: {"content": {media: {} for media in MEDIA_TYPES.values()}},
+        304: {"description": "as it was when the ETag of If-None-Match was sent"},
+        **LATER,
+        **UNAVAILABLE,
+    },
 }
 
+PATIENCE = "wait=30"
+"""How long an answer waits for a file that is still being made, unless the client prefers otherwise."""
+
 Accept = Annotated[str | None, Header(description=", ".join(MEDIA_TYPES.values()))]
+IfNoneMatch = Annotated[str | None, Header(description="the ETags of files that are at hand")]
 
 
 @router.get("/{id}/model", **FILES)
@@ -55,31 +67,65 @@ async def read_model_file(
     number: Number | None = None,
     accept: Accept = None,
     prefer: Prefer = None,
+    if_none_match: IfNoneMatch = None,
 ) -> Response:
-    """A file of a model; other kinds than STEP are made when first asked for."""
+    """A file of a model, which names its design, model and revision.
+
+    Other kinds than STEP are made when first asked for. The answer waits for that, and is 202 if it takes
+    longer than the client waits. STEP files and drawings also say inside whose they are.
+    """
     wanted = kind or _accepted(accept)
     if wanted not in MEDIA_TYPES:
         raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
 
-    def find() -> tuple[RevisionModelRow, str, File | None]:
+    def find() -> tuple[str, Stamp, File | None]:
         with database.read() as session:
             model = views.good_model(session, id, name, number)
-            return model, model.build_key or "", views.file(session, model, wanted)
+            return model.build_key or "", stamps.stamp(session, model), views.file(session, model, wanted)
 
-    model, key, file = await run_in_threadpool(find)
-    if file is None:
-        job = await run_in_threadpool(lambda: models.request_file(key, wanted, client))
-        if not await finished(jobs, job, prefer):
-            return accepted(job)
-        if failed := await run_in_threadpool(lambda: jobs.get(job).problem):
-            return problems.answer(failed)
-        file = await run_in_threadpool(models.file, key, wanted)
-    elif answer := await lost(file.sha256, healing, jobs, prefer):
+    key, stamp, old = await run_in_threadpool(find)
+    answer = await lost(old.sha256, healing, jobs, prefer or PATIENCE) if old else None
+    if answer is None and (old is None or await run_in_threadpool(_is_outdated, models, key, wanted)):
+        answer = await _made(models, jobs, key, wanted, client, prefer or PATIENCE, has_older=bool(old))
+    if answer:
         return answer
-    else:
-        file = await run_in_threadpool(models.file, key, wanted)
-    headers = {"Design-Revision": str(model.number), "Vary": "Accept"}
-    return send_file(store, file, headers, f"{model.model}_v{model.model_version}.{wanted}")
+    file = await run_in_threadpool(lambda: models.file(key, wanted))
+    assert file is not None, "a job that has done its work left its file"
+    return await run_in_threadpool(_sent, store, file, stamp, if_none_match)
+
+
+def _is_outdated(models: Models, key: str, kind: str) -> bool:
+    """Whether a drawing is one of an older program, which had no room for a stamp; it is drawn again."""
+    file = models.file(key, kind) if kind in DRAWINGS else None
+    return file is not None and not takes_stamp(models.store.read(file.sha256), kind)
+
+
+async def _made(
+    models: Models, jobs: Jobs, key: str, kind: str, client: str, prefer: str, *, has_older: bool
+) -> Response | None:
+    """None once a file is made; 202 if the client does not wait so long, or why it cannot be made."""
+    job = await run_in_threadpool(models.request_file, key, kind, client)
+    if not await finished(jobs, job, prefer):
+        return accepted(job)
+    problem = await run_in_threadpool(jobs.problem, job)
+    return problems.answer(problem) if problem and not has_older else None
+
+
+def _sent(store: ArtifactStore, file: File, stamp: Stamp, if_none_match: str | None) -> Response:
+    """A file under its name, or 304; with its stamp, if it is of a kind that has one."""
+    headers = {
+        "Design-Revision": str(stamp.revision),
+        "Vary": "Accept",
+        "Cache-Control": "no-cache",
+        "Content-Disposition": disposition(f"{stamp.stem}.{file.kind}", f"{stamp.wide_stem}.{file.kind}"),
+    }
+    content = stamped(store.read(file.sha256), file.kind, stamp) if file.kind in STAMPED else None
+    headers["ETag"] = f'"{file.sha256}"' if content is None else tag(content)
+    if is_at_hand(if_none_match, headers["ETag"]):
+        return unchanged(headers)
+    if content is None:
+        return send_file(store, file, headers)
+    return MemoryFile(content, MEDIA_TYPES[file.kind], {**headers, "Last-Modified": http_time(stamp.date)})
 
 
 def _accepted(accept: str | None) -> str:

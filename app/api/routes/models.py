@@ -27,7 +27,7 @@ from app.schemas.values import Parameters
 from app.solids.models import File
 from app.solids.questions import what_can_be_asked
 from app.storage.artifacts import ArtifactStore
-from app.storage.errors import NotFound
+from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
 from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.inspect import MEASURES
 from cad.regenerate import build_key
@@ -179,15 +179,33 @@ STEP_FILE: JsonDict = {"type": "string", "format": "binary"}
 STEP_BODY: JsonDict = {"content": {"model/step": {"schema": STEP_FILE}}, "required": True}
 
 
-@router.post("/verify", openapi_extra={"requestBody": STEP_BODY}, responses=refusals(404))
-async def verify_step(request: Request, models: TheModels) -> Verification:
+@router.post(
+    "/verify",
+    response_model=Verification,
+    openapi_extra={"requestBody": STEP_BODY},
+    responses={**UNAVAILABLE, **refusals(404)},
+)
+async def verify_step(
+    request: Request,
+    models: TheModels,
+    healing: TheHealing,
+    jobs: TheJobs,
+    prefer: Annotated[str | None, Header()] = None,
+) -> Verification | Response:
     """From which build a STEP file is, and which revisions use it.
 
     The body is the file itself, sent as `model/step`; `application/step` and `application/p21` mean the same.
-    Which build it is stands in its header, within the first 64 KiB.
+    Which build it is stands in its header, within the first 64 KiB. The stamp of a download, which names
+    design and revision, is not compared.
     """
     require_step(request)
-    return await run_in_threadpool(models.verify, await request.body())
+    body = await request.body()
+    try:
+        return await run_in_threadpool(models.verify, body)
+    except (ArtifactMissing, ArtifactDamaged) as error:
+        if answer := await lost(error.sha, healing, jobs, prefer):
+            return answer
+        return await run_in_threadpool(models.verify, body)
 
 
 def send_file(

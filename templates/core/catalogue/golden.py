@@ -36,6 +36,11 @@ def record(cls: type[Template]) -> dict[str, Any]:
     }
 
 
+def codes(refusal: InvalidInputs) -> list[str]:
+    """Why inputs are refused: each code once, because how many faults one cause makes is no result."""
+    return sorted({fault.code for fault in refusal.faults})
+
+
 def golden_file(cls: type[Template], folder: Path) -> Path:
     """Where the record of a version stands."""
     return folder / f"{cls.id}_v{cls.version}.json"
@@ -75,7 +80,7 @@ def _cases(cls: type[Template]) -> Iterator[dict[str, Any]]:
             try:
                 yield {"inputs": _plain(inputs), "outputs": results(cls, inputs)}
             except InvalidInputs as refusal:
-                yield {"inputs": _plain(inputs), "refused": sorted(fault.code for fault in refusal.faults)}
+                yield {"inputs": _plain(inputs), "refused": codes(refusal)}
 
 
 def cases_of_levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
@@ -88,7 +93,7 @@ def cases_of_levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
         try:
             yield {**case, "outputs": results(cls, example, level)}
         except InvalidInputs as refusal:
-            yield {**case, "refused": sorted(fault.code for fault in refusal.faults)}
+            yield {**case, "refused": codes(refusal)}
 
 
 def _given(cls: type[Template]) -> dict[str, Any]:

@@ -146,12 +146,16 @@ def worst_share(small: Any, large: Any, where: Truth = True) -> float | None:
 
 @dataclass(frozen=True, eq=False)
 class Outcome(_Recording):
-    """A truth and what it follows from: one comparison, all or any of several outcomes, or unknown causes."""
+    """A truth and what it follows from: one comparison, all or any of several outcomes, or unknown causes.
+
+    An equality is no comparison, because nothing is close to its limit; `equated` are its two sides.
+    """
 
     value: Any
     comparison: Comparison | None = None
     parts: tuple[Outcome, ...] = ()
     needs_all: bool = True
+    equated: tuple[Operand, ...] = ()
 
     def decisive(self, where: Truth = True) -> Iterator[Comparison]:
         """The comparisons on which the truth depends, each with the points at which it does.
@@ -178,7 +182,8 @@ class Outcome(_Recording):
         """The opposite truth: `<` becomes `>=`, "all" becomes "any"."""
         value, one = np.logical_not(self.value), self.comparison
         opposite = one and replace(one, sign=_OPPOSITE[one.sign], holds=value)
-        return Outcome(value, opposite, tuple(part.negated() for part in self.parts), not self.needs_all)
+        parts = tuple(part.negated() for part in self.parts)
+        return Outcome(value, opposite, parts, not self.needs_all, self.equated)
 
 
 def _none_of(guards: Sequence[Outcome], where: Truth) -> Mask:
@@ -240,6 +245,8 @@ def _recorded(ufunc: np.ufunc, inputs: Sequence[Any], result: Any) -> Any:
         return Outcome(result, parts=tuple(map(_outcome, inputs)), needs_all=needs_all)
     if ufunc in (np.invert, np.logical_not):
         return _outcome(inputs[0]).negated()
+    if ufunc in (np.equal, np.not_equal):
+        return Outcome(result, equated=tuple(map(_operand, inputs)))
     return result if np.asarray(result).dtype == bool else Operand(result, _calculated(ufunc, inputs))
 
 

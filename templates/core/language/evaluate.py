@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array
+from templates.core.language import tolerances
 from templates.core.language.admission import absence
 from templates.core.language.climbing import Rung, climb
 from templates.core.language.intake import Input, remarks
@@ -97,7 +98,7 @@ def evaluate(
             for name, declared in cls.inputs.items()
             if name in template.ledger.typed or is_reported(template, declared)
         }
-    notices = [*_standing(cls), *_noticed(rungs)]
+    notices = [*_standing(cls, raw), *_noticed(rungs)]
     if tolerance is not None:
         values = {name: answer.value for name, answer in whole.answers.items()}
         notices += unmet(cls, values, whole.error, whole.level, tolerance)
@@ -255,12 +256,11 @@ def _with_nulls(shown: Array) -> list[Any]:
     return plain.tolist()
 
 
-def _standing(cls: type[Template]) -> list[Notice]:
-    """The warnings that hold for every answer of this version."""
-    if not cls.withdrawn:
-        return []
+def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
+    """The warnings that hold whatever is calculated from these inputs: of the version, and of tolerances."""
     detail = f"{cls.id} version {cls.version} is withdrawn: {cls.withdrawn}"
-    return [Notice("withdrawn", cls.id, detail)]
+    withdrawn = [Notice("withdrawn", cls.id, detail)] if cls.withdrawn else []
+    return [*withdrawn, *tolerances.unused(given)]
 
 
 def evaluate_at_level(
@@ -277,7 +277,8 @@ def evaluate_at_level(
     """
     with np.errstate(all="ignore"):
         part = _part(template, list(outputs), {})
-    return part.answers, part.error, [*_standing(type(template)), *_noticed([Rung(template, None)])]
+    standing = _standing(type(template), template.ledger.typed)
+    return part.answers, part.error, [*standing, *_noticed([Rung(template, None)])]
 
 
 def _noticed(rungs: list[Rung]) -> list[Notice]:

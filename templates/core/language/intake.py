@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_names
 from templates.core.language.admission import outside_published
+from templates.core.language.causes import BROKEN, suspects
 from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Requirement, Table
 from templates.core.units.quantity import Typed, read
@@ -199,7 +200,7 @@ def points_of(self: Template, arrays: Mapping[str, Array]) -> tuple[int, ...]:
 
 
 def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
-    """The faults of inputs that break a rule; points of arrays are masked instead."""
+    """The fault of a rule that does not hold, if it does not; points of arrays are masked instead."""
     if rule.warning or (not rule.missing and not self.ledger.missing.isdisjoint(rule.uses)):
         return
     holds = rule.function(self)
@@ -208,9 +209,9 @@ def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
             names = tuple(self.inputs[name].attribute for name in rule.names)
             self.ledger.masks.append(Mask(names, ~holds, f"{rule.sentence}: {rule.remedy}"))
     elif not holds:
-        values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in rule.names)
-        detail = f"{rule.sentence}, but {values}; {rule.remedy}"
-        yield from (Fault(name, "inconsistent", detail) for name in rule.names)
+        name, *also = names = suspects(self, rule)
+        values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in names)
+        yield Fault(name, BROKEN, f"{rule.sentence}, but {values}; {rule.remedy}", tuple(also))
 
 
 def remarks(self: Template) -> Iterator[Notice]:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array, Truth
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.language.admission import absence, masked, outside_published, refusal, whole
+from templates.core.language.causes import by_cause
 from templates.core.language.declare import (
     by_name,
     choice,
@@ -214,7 +215,7 @@ class Template:
                 except InvalidInputs as error:  # a default that the rule reads is refused
                     faults += (fault for fault in error.faults if fault not in faults)
         if faults:
-            raise InvalidInputs(faults)
+            raise InvalidInputs(by_cause(faults))
         return self
 
     @classmethod

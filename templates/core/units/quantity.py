@@ -27,7 +27,7 @@ _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?"
 _PATTERN = re.compile(rf"({_NUMBER})\s*(.*)", re.DOTALL)  # of a text without blanks at its ends
 _LONGEST_TEXT = 200
 _DEEPEST = 4  # axes of an array
-_TOLERANCES = ("plus", "minus")
+TOLERANCES = ("plus", "minus")
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def _parted(text: str) -> tuple[str, str] | None:
 
 
 def _read_object(raw: dict[str, Any], declared: str) -> Typed:
-    if "value" not in raw or not raw.keys() <= {"value", "unit", *_TOLERANCES}:
+    if "value" not in raw or not raw.keys() <= {"value", "unit", *TOLERANCES}:
         raise _no_quantity(raw, declared)
     if "unit" not in raw and declared != "1":
         raise FaultyText("missing_unit", f'the unit is missing; add "unit": "{declared}"')
@@ -118,7 +118,7 @@ def _read_object(raw: dict[str, Any], declared: str) -> Typed:
     if isinstance(value, (np.ndarray, np.number)):
         value = value.tolist()
     magnitude = _array(value) if isinstance(value, (list, tuple)) else _number(value)
-    extra = {key: raw[key] for key in _TOLERANCES if key in raw}
+    extra = {key: raw[key] for key in TOLERANCES if key in raw}
     for tolerance in extra.values():
         _check_tolerance(tolerance, declared)
     typed = _quantity(magnitude, name, declared)

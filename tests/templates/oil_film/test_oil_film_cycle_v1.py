@@ -53,7 +53,7 @@ X, Y = 2 + 3 * np.exp(6 * (np.cos(ANGLE - 0.4) - 1)) + 0.5 * np.cos(2 * ANGLE), 
 def refusal(raw, level="mobility"):
     with pytest.raises(InvalidInputs) as refused:
         evaluate(OilFilmCycle, raw, level=level)
-    return {fault.name: fault.detail for fault in refused.value.faults}
+    return {name: fault.detail for fault in refused.value.faults for name in fault.names}
 
 
 class TestStatics:

@@ -30,7 +30,7 @@ def outputs(raw, *names):
 def refused(raw, *names):
     with pytest.raises(InvalidInputs) as refusal:
         evaluate(CrankStiffness, raw, outputs=names or None)
-    return {(fault.name, fault.code) for fault in refusal.value.faults}
+    return {(name, fault.code) for fault in refusal.value.faults for name in fault.names}
 
 
 def carter(Lj, Dj, dj, Lw, W, Lc, Dc, dc, R):

@@ -1,0 +1,60 @@
+"""Files that a client saves: under which name, whether it has them already, and bytes sent as a file."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from email.utils import format_datetime
+from urllib.parse import quote
+
+from fastapi import Response
+from fastapi.responses import FileResponse
+from starlette.types import Receive, Scope, Send
+
+
+def disposition(plain: str, wide: str) -> str:
+    """Content-Disposition with the name in ASCII, and in all letters (RFC 6266, RFC 8187)."""
+    return f"attachment; filename=\"{plain}\"; filename*=UTF-8''{quote(wide, safe='')}"
+
+
+def tag(file: bytes) -> str:
+    """A strong ETag: equal bytes have equal tags."""
+    return f'"{hashlib.sha256(file).hexdigest()}"'
+
+
+def is_at_hand(if_none_match: str | None, etag: str) -> bool:
+    """Whether a client has a file already, by the tags that it sent."""
+    tags = (one.strip().removeprefix("W/") for one in (if_none_match or "").split(","))
+    return any(one in (etag, "*") for one in tags)
+
+
+def unchanged(headers: Mapping[str, str]) -> Response:
+    """304, with the headers that a 200 would have but for those of its body."""
+    kept = {name: value for name, value in headers.items() if name != "Content-Disposition"}
+    return Response(status_code=304, headers=kept)
+
+
+def http_time(date: str) -> str:
+    """A time in UTC (ISO 8601, without a zone) as HTTP writes it."""
+    return format_datetime(datetime.fromisoformat(date).replace(tzinfo=UTC), usegmt=True)
+
+
+class MemoryFile(FileResponse):
+    """Bytes in memory, sent as a file is: whole or in ranges."""
+
+    def __init__(self, content: bytes, media_type: str, headers: Mapping[str, str]) -> None:
+        super().__init__("", media_type=media_type, headers=headers)
+        self._content = content
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send the file from one without a name, which goes when it is closed."""
+        with tempfile.TemporaryFile() as file:
+            file.write(self._content)
+            file.flush()
+            self.path = f"/dev/fd/{file.fileno()}"
+            self.stat_result = os.fstat(file.fileno())
+            self.set_stat_headers(self.stat_result)
+            await super().__call__(scope, receive, send)

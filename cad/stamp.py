@@ -1,0 +1,207 @@
+"""What a downloaded file says of the design that it belongs to: a stamp on a STEP file or a drawing.
+
+A build is shared by all designs of equal parameters, so its files name none. A stamp is written into a copy
+when it is downloaded: into the names of products and the time of a STEP file, into the title block of a
+drawing. It is a pure function of file and stamp. `is_copy` recognises a STEP file whatever its stamp says.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from html import escape
+
+from cad.naming import stem, wide_stem
+from cad.part21 import end_of_string, plain, quoted
+
+_STRING = r"'(?:[^']|'')*'"
+_FILE = re.compile(rf"FILE_NAME\(({_STRING}\s*,\s*{_STRING})")
+_PRODUCT = re.compile(rf"^#\d+ = PRODUCT\(\s*({_STRING}\s*,\s*({_STRING})\s*,\s*{_STRING})", re.MULTILINE)
+_COMMA = re.compile(r"\s*,\s*")
+_VERSION = re.compile(rf"^#\d+ = PRODUCT_DEFINITION_FORMATION\(\s*({_STRING})", re.MULTILINE)
+
+BLOCK = ("design", "part", "material")
+"""The lines of a drawing's title block that a stamp fills in."""
+
+MARK = "stamp:"
+"""In the extended data of a DXF text: behind it stands which line of the block the text is."""
+
+LONGEST_LINE = 44  # letters that have room in the title block
+_SVG_LINE = re.compile(r'(<text data-stamp="([a-z]+)"[^>]*>)[^<]*')
+
+
+@dataclass(frozen=True)
+class Stamp:
+    """Whose file it is; `model` is its name in the design, `date` when the revision was made (ISO 8601).
+
+    `materials` are those of the parts by name, empty where they are not known.
+    """
+
+    design: str
+    model: str
+    revision: int
+    date: str
+    materials: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def stem(self) -> str:
+        """The file's name without its ending, in ASCII."""
+        return stem(self.design, self.model, self.revision)
+
+    @property
+    def wide_stem(self) -> str:
+        """The file's name without its ending, in the letters of its user."""
+        return wide_stem(self.design, self.model, self.revision)
+
+    @property
+    def block(self) -> dict[str, str]:
+        """The lines of a drawing's title block."""
+        part = f"{self.model}, revision {self.revision}, {self.date[:10]}"
+        return {"design": self.design, "part": part, "material": self.material}
+
+    @property
+    def material(self) -> str:
+        """The materials of all parts, each once; of several, with the names of their parts."""
+        parts: dict[str, list[str]] = {}
+        for part, material in self.materials.items():
+            parts.setdefault(material, []).append(part)
+        if len(parts) < 2:
+            return "".join(parts)
+        return "; ".join(f"{', '.join(names)}: {material}" for material, names in parts.items())
+
+
+def stamped(file: bytes, kind: str, stamp: Stamp) -> bytes:
+    """The file of that kind with its stamp; as it is if the kind carries none."""
+    write = _WRITERS.get(kind)
+    return write(file.decode(_ENCODING[kind]), stamp).encode(_ENCODING[kind]) if write else file
+
+
+def takes_stamp(file: bytes, kind: str) -> bool:
+    """Whether a file has the lines that its stamp fills in; drawings of older programs have none."""
+    return kind not in _MARKS or _MARKS[kind] in file
+
+
+def is_copy(file: bytes, original: bytes) -> bool:
+    """Whether a STEP file is another one but for its stamp; linear in the length of both."""
+    text, source = file.decode("latin-1"), original.decode("latin-1")
+    place, done = 0, 0
+    for hole in _holes(source):
+        if not text.startswith(source[done : hole.start], place):
+            return False
+        place, done = _behind_strings(text, place + hole.start - done, hole.strings), hole.end
+    return text[place:] == source[done:]
+
+
+@dataclass(frozen=True)
+class _Hole:
+    """A place of a finished STEP file that a stamp replaces, and how many strings stand there."""
+
+    start: int
+    end: int
+    strings: int
+    written: Callable[[Stamp], tuple[str, ...]]
+
+
+def _holes(text: str) -> list[_Hole]:
+    """Every such place in the order of the text: file and time, products, their versions."""
+    file = _FILE.search(text)
+    holes = [_Hole(*file.span(1), 2, _file)] if file else []
+    for number, product in enumerate(_PRODUCT.finditer(text)):
+        write = partial(_part, plain(product[2])) if number else _root
+        holes.append(_Hole(*product.span(1), 3, write))
+    holes += (_Hole(*version.span(1), 1, _version) for version in _VERSION.finditer(text))
+    return sorted(holes, key=lambda hole: hole.start)
+
+
+def _file(stamp: Stamp) -> tuple[str, ...]:
+    return f"{stamp.wide_stem}.step", stamp.date
+
+
+def _root(stamp: Stamp) -> tuple[str, ...]:
+    """Id, name and description of the product that is the file."""
+    described = (
+        f"design {stamp.design}",
+        f"model {stamp.model}",
+        f"revision {stamp.revision}",
+        stamp.material,
+    )
+    return stamp.stem, stamp.wide_stem, ", ".join(filter(None, described))
+
+
+def _part(name: str, stamp: Stamp) -> tuple[str, ...]:
+    """Id, name and description of a part of an assembly."""
+    return f"{stamp.stem}_{name}", name, stamp.materials.get(name, "")
+
+
+def _version(stamp: Stamp) -> tuple[str, ...]:
+    return (str(stamp.revision),)
+
+
+def _stamped_step(text: str, stamp: Stamp) -> str:
+    pieces, done = [], 0
+    for hole in _holes(text):
+        pieces += [text[done : hole.start], ",\n  ".join(map(quoted, hole.written(stamp)))]
+        done = hole.end
+    return "".join([*pieces, text[done:]])
+
+
+def _behind_strings(text: str, place: int, count: int) -> int:
+    """Behind so many strings with commas between them, as far as they stand at a place."""
+    for number in range(count):
+        if number:
+            place = _behind_comma(text, place)
+        if text.startswith("'", place):
+            place = end_of_string(text, place)
+    return place
+
+
+def _behind_comma(text: str, place: int) -> int:
+    match = _COMMA.match(text, place)
+    return match.end() if match else place
+
+
+def _stamped_svg(text: str, stamp: Stamp) -> str:
+    lines = {name: escape(line) for name, line in _lines(stamp).items()}
+    return _SVG_LINE.sub(lambda found: found[1] + lines.get(found[2], ""), text)
+
+
+def _stamped_dxf(text: str, stamp: Stamp) -> str:
+    """DXF is pairs of lines, a code and its value; the mark of a text stands behind the text."""
+    lines, written = text.split("\n"), _lines(stamp)
+    last = 0
+    for place in range(0, len(lines) - 1, 2):
+        code, value = lines[place].strip(), lines[place + 1]
+        if code == "1":
+            last = place + 1
+        elif code == "1000" and (name := value.removeprefix(MARK)) != value and name in written:
+            lines[last] = written[name].replace("^", "^ ").replace("%%", "%%%%%%")
+    return "\n".join(lines)
+
+
+def _lines(stamp: Stamp) -> dict[str, str]:
+    """The lines of a title block as they are drawn."""
+    return {name: _clipped(line_of(name, value)) for name, value in stamp.block.items()}
+
+
+def line_of(name: str, value: str = "") -> str:
+    """A line of a title block; without a value there is room to write it by hand."""
+    return f"{name}: {value}".rstrip()
+
+
+def _clipped(line: str) -> str:
+    plain_line = "".join(sign if sign.isprintable() else " " for sign in line)
+    return plain_line if len(plain_line) <= LONGEST_LINE else f"{plain_line[: LONGEST_LINE - 1]}…"
+
+
+_WRITERS: dict[str, Callable[[str, Stamp], str]] = {
+    "step": _stamped_step,
+    "drawing.svg": _stamped_svg,
+    "dxf": _stamped_dxf,
+}
+STAMPED = tuple(_WRITERS)
+"""The kinds of files that carry a stamp."""
+
+_ENCODING = {"step": "latin-1", "drawing.svg": "utf-8", "dxf": "utf-8"}
+_MARKS = {"drawing.svg": b'data-stamp="', "dxf": MARK.encode()}

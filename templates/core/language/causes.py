@@ -1,0 +1,86 @@
+"""One cause, one fault: which input a broken rule is reported at, and which rules one input breaks.
+
+A rule names every input that it is about; of these only some can have broken it. While the rule runs again
+its comparisons are recorded, and those that do not hold say which. Several rules that one input can have
+broken make one fault, at that input.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from templates.core.errors import Fault
+from templates.core.language.comparisons import Operand, Outcome, outcome
+from templates.core.language.spec import Choice, Requirement
+
+if TYPE_CHECKING:
+    from templates.core.language.template import Template
+
+BROKEN = "inconsistent"
+"""The code of a fault that a broken rule is."""
+
+
+def suspects(template: Template, rule: Requirement) -> tuple[str, ...]:
+    """The inputs that can have broken a rule of a single point, by API name.
+
+    Those that were given come before those that follow from others, else in the order of the rule.
+    """
+    with np.errstate(all="ignore"):
+        sides = list(_compared(outcome(template, rule)))
+    used = set[str]().union(*(_inputs_of(template, side) for side in sides))
+    seen = [name for name in rule.names if name in used or isinstance(template.inputs[name], Choice)]
+    names = seen if used.intersection(seen) else list(rule.names)  # a choice alone is not what was compared
+    return tuple(sorted(names, key=lambda name: name not in template.ledger.typed))
+
+
+def _compared(result: Outcome) -> Iterator[Operand]:
+    """What was compared in those parts of a rule that do not hold; a side of unknown causes where one is."""
+    if result.comparison is not None:
+        yield from (result.comparison.left, result.comparison.right)
+    elif result.parts:
+        for part in result.parts:
+            if not np.all(part.value):  # of alternatives none holds
+                yield from _compared(part)
+    else:
+        yield from result.equated or (Operand(result.value),)
+
+
+def _inputs_of(template: Template, side: Operand) -> set[str]:
+    """The inputs from which a side follows; every one where it cannot be written."""
+    if side.node is None:
+        return set(template.inputs)
+    read = (node.attr for node in ast.walk(side.node) if isinstance(node, ast.Attribute))
+    beneath = {name for attribute in read for name in template.depends_on(attribute)}
+    return {name for name, declared in template.inputs.items() if declared.attribute in beneath}
+
+
+def by_cause(faults: Iterable[Fault]) -> list[Fault]:
+    """The faults of broken rules joined by the input that explains most of them; others as they are."""
+    faults = list(faults)
+    broken = [fault for fault in faults if fault.code == BROKEN]
+    return [fault for fault in faults if fault.code != BROKEN] + list(_joined(broken))
+
+
+def _joined(broken: Sequence[Fault]) -> Iterator[Fault]:
+    while broken:
+        cause = _commonest(broken)
+        yield _at(cause, [fault for fault in broken if cause in fault.names])
+        broken = [fault for fault in broken if cause not in fault.names]
+
+
+def _commonest(broken: Sequence[Fault]) -> str:
+    """The input that most rules can have been broken by; of several the one that they name first."""
+    places: dict[str, list[int]] = {}
+    for fault in broken:
+        for place, name in enumerate(fault.names):
+            places.setdefault(name, []).append(place)
+    return min(places, key=lambda name: (-len(places[name]), sum(places[name])))
+
+
+def _at(cause: str, faults: Sequence[Fault]) -> Fault:
+    others = dict.fromkeys(name for fault in faults for name in fault.names if name != cause)
+    return Fault(cause, BROKEN, ". ".join(fault.detail for fault in faults), tuple(others))
