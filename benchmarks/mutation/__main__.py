@@ -67,6 +67,7 @@ def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[
     current = {mutant.key: row(mutant, related(mutant.file, options.nearest)) for mutant in chosen}
     rows = {key: old for key, old in earlier.items() if key in current and is_valid(old, current[key])}
     ahead = [mutant for mutant in chosen if mutant.key not in rows]
+    ahead.sort(key=lambda mutant: mutant.key in earlier)  # a run that is cut short has tried the new ones
     lock = Lock()
     with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
         kept = options.record and options.record.resolve().with_name("observations")

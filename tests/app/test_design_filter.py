@@ -60,6 +60,7 @@ def shelf(database):
         ({"template": "oil_film/3"}, []),
         ({"template": "oil"}, []),
         ({"template": "plain_bearing"}, ["main SHELL"]),
+        ({"template": "plain_bearings"}, []),
         ({"template": "plain_bearing/1"}, ["main SHELL"]),
         ({"template": "plain_bearing/2"}, []),
         ({"name": "main", "state": "current", "template": "oil_film"}, ["Main bearing"]),

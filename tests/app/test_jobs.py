@@ -468,3 +468,13 @@ def test_a_restarted_server_finds_its_queue(url, failures):
     assert ended(jobs, id).state == "done"
     jobs.stop()
     reopened.close()
+
+
+def test_a_job_that_has_ended_is_no_longer_held(make, database, failures):
+    """Nobody can interrupt it, and the dispatcher keeps nothing of it."""
+    jobs = make()
+    jobs.register(KIND, storing, failures)
+    jobs.start()
+    ids = [put(jobs, database, key) for key in "abc"]
+    assert [ended(jobs, id).state for id in ids] == ["done"] * 3
+    until(lambda: not jobs._dispatcher._running)
