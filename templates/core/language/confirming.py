@@ -14,6 +14,8 @@ from templates.core.language.scan import TargetCurve
 
 CONFIRMED = 8  # solutions that are calculated again at a level that is not the scan's
 POLISHES, POLISHED = 8, 1e-9  # steps at that level, and the relative miss with which they end
+SETTLED = 1e-3  # relative miss after the last step beyond which it is no solution
+ALIKE = 1e-9  # of the bounds' distance, within which two solutions are one
 STEP = 1e-6  # of the unknown, by which the slope is measured
 
 
@@ -42,8 +44,24 @@ def confirmed(
     """The solutions at the level requested; one of the scan where that has none near, or after so many."""
     most = CONFIRMED if "tolerance" in requested.fidelity or _is_finer(requested, scanned) else len(places)
     near = [_at_requested(requested, scanned, place, bounds) for place in places[:most]]
-    others = [None] * (len(places) - most)
-    return [root or _unconfirmed(scanned, p) for root, p in zip([*near, *others], places, strict=True)]
+    found = [*near, *(None for _ in places[most:])]
+    roots = [root or _unconfirmed(scanned, place) for root, place in zip(found, places, strict=True)]
+    return _distinct(sorted(roots, key=lambda root: root.value), _shown(scanned, bounds))
+
+
+def _shown(curve: TargetCurve, bounds: tuple[float, float]) -> float:
+    """The distance of the bounds in the declared unit."""
+    scale = curve.declared.meaning.scale
+    return float(scale.from_si(bounds[1])) - float(scale.from_si(bounds[0]))
+
+
+def _distinct(roots: list[Root], span: float) -> list[Root]:
+    """Each solution once: two of the scan may have moved to the same one."""
+    kept: list[Root] = []
+    for root in roots:
+        if not (kept and root.confirmed and root.value - kept[-1].value <= ALIKE * span):
+            kept.append(root)
+    return kept
 
 
 def _is_finer(requested: TargetCurve, scanned: TargetCurve) -> bool:
@@ -89,7 +107,7 @@ def _polished(
         miss = curve.miss_of(evaluation)
         secant = (miss - before_miss) / (x - before) if x != before else slope
         slope = secant if secant * slope > 0 else slope
-    return None if np.isnan(miss) else (x, evaluation)
+    return (x, evaluation) if abs(miss) <= SETTLED * size else None
 
 
 def _slope(curve: TargetCurve, x: float, bounds: tuple[float, float]) -> float:

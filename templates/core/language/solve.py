@@ -32,6 +32,7 @@ __all__ = [
 ]  # fmt: skip
 
 NAMED = 10  # solutions that a warning names
+MISSED = 1e-6  # relative miss of a solution beyond which a warning says so
 
 
 @dataclass(frozen=True)
@@ -139,12 +140,11 @@ def _cheap(cls: type[Template], fidelity: dict[str, Any]) -> dict[str, Any]:
 def _moved_away(scanned: TargetCurve, samples: Samples, level: Any) -> Unreachable:
     """The error where the solutions of the scan are none between the bounds at the level requested."""
     error = scanned.unreachable(samples)
-    detail = f"at level {level} no value between the bounds gives the target, as at {_level(scanned)}"
+    there = scanned.fidelity.get("level")
+    detail = (
+        f"at level {level} no value between the bounds is found for the target; at level {there} there is"
+    )
     return Unreachable(error.name, detail, error.reachable, error.unit)
-
-
-def _level(curve: TargetCurve) -> str:
-    return f"level {curve.fidelity.get('level')}"
 
 
 def _jump(curve: TargetCurve, leap: Leap) -> Jump:
@@ -189,13 +189,9 @@ def _others(declared: Input, lowest: Root, roots: list[Root], more: int) -> list
 def _unsettled(formula: Formula[Any], roots: list[Root]) -> list[Notice]:
     """A warning if a finer level still misses the target after the last step."""
     worst = max((root.miss for root in roots if root.confirmed), default=0.0)
-    if worst <= SETTLED:
+    if worst <= MISSED:
         return []
     detail = (
         f"{formula.name} misses the target by {worst:.2g} of it after {POLISHES} steps at the finer level"
     )
     return [Notice("not_settled", formula.name, detail)]
-
-
-SETTLED = 1e-3
-"""Relative miss beyond which a warning says so."""
