@@ -64,9 +64,9 @@ class Engine(Cylinder):
     its bank; angles of balancing masses count likewise, in the sense of the crank angle.
     Positions are along the shaft, from any plane; couples are about reference_position.
     Bank angles (V engines) count from the x axis in the sense of rotation; each cylinder brings its own crank
-    masses, so two rods on one pin share what is given. Bank angles with their signs swapped describe another
-    crank, with other throws, not the same engine seen from its other end. Left out for banks: unequal firing intervals, and
-    articulated rods.
+    masses, so two rods on one pin share what is given. Bank angles with their signs
+    swapped describe another crank: each throw follows from the bank of its cylinder. Left out for banks:
+    unequal firing intervals, and articulated rods.
     Primary and secondary amplitudes are of the reciprocating masses alone, in banks the largest on the way
     round; the rotating couple is of the rotating masses alone. Residual forces are all of these, up to the
     second harmonic.

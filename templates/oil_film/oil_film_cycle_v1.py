@@ -77,8 +77,8 @@ class OilFilmCycle(Template):
     shear of a full film by the difference of journal and sleeve speed (transient: by the oil there is), and
     the work of the load on the film. Side flow is what the motion of the journal displaces from the ends;
     flow driven by a supply pressure is left out.
-    Rigid and isoviscous: criteria with warnings say where the pressure deforms steel by the clearance, or makes
-    the oil 22 000 times as thick, and where the film is below 0.05 µm.
+    Rigid and isoviscous: criteria with warnings say where the pressure deforms steel by the clearance, or
+    makes the oil 22 000 times as thick, and where the film is below 0.05 µm.
     A load number below 1e-4 is refused: with a mean speed of half the crank's, a journal in a four-stroke
     engine may then whirl as it likes.
 

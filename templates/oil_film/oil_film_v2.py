@@ -96,9 +96,8 @@ class OilFilm(Template):
     none is reported: grooves narrower than 5° or nearer to each other are not resolved.
     Angles count from the load in the sense of the hydrodynamic speed, those of grooves too.
     Laminar flow: a warning says where the film Reynolds number exceeds 41.3 √(D/c).
-    Rigid and isoviscous: at high pressure the bearing deforms and the oil thickens. Criteria with warnings say
-    where the pressure deforms steel by the clearance, or makes the oil 22 000 times as thick; well below that
-    the true film is thicker and the true pressure lower than those here.
+    Rigid and isoviscous: pressure deforms the bearing and thickens the oil. Criteria with warnings say where
+    it deforms steel by the clearance, or makes the oil 22 000 times as thick; both matter well below that.
     A film below 0.05 µm, or below the roughness of the surfaces, is no film: criteria with warnings say so.
     The heat balance takes power and side flow from level map whatever the level, so that temperature and
     viscosity do not depend on it; flow driven by the supply pressure is left out, which errs to the hot side.

@@ -58,8 +58,8 @@ class SliderBearing(Template):
     The squeeze number takes the time in which oil passes the pad, l/U, unless another is given; then it
     equals R_x.
     The film is laminar up to rho U h/eta of about 1000.
-    Rigid and isoviscous: criteria with warnings say where the pressure deforms steel by the film's thickness, or
-    makes the oil 22 000 times as thick.
+    Rigid and isoviscous: criteria with warnings say where the pressure deforms steel by the film's thickness,
+    or makes the oil 22 000 times as thick.
     Pressure and velocity are those at mid-width; the stations of the pressure are equally spaced in x.
 
     Errata
