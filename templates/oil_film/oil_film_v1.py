@@ -54,6 +54,18 @@ class OilFilm(Template):
         "oil_inlet_temperature": "80 degC",
         "oil_outlet_temperature": "87.762 degC",
     }
+    criteria = {
+        "film": {
+            "require": "minimum_film_thickness >= smallest_permissible_film",
+            "words": "the smallest film is not thinner than the smallest permissible one",
+            "limits": {
+                "smallest_permissible_film": {
+                    "unit": "um",
+                    "words": "smallest film that the bearing may have",
+                }
+            },
+        }
+    }
 
     F: Array = given("N", "radial load", ge=0, also=("bearing load", "load"))
     c: Array = given("mm", "diametral clearance", gt=0)

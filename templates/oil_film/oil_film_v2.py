@@ -139,6 +139,14 @@ class OilFilm(Template):
         "journal_roughness": "0.2 um",
         "bearing_roughness": "0.4 um",
     }
+    criteria = {
+        "film": {
+            "require": "minimum_film_thickness >= smallest_permissible_film",
+            "words": "the smallest film is not thinner than the smallest permissible one",
+            "source": "ISO 7902-3:1998 as textbooks quote it",
+            "unverified": "no public copy of ISO 7902-3 was at hand",
+        }
+    }
 
     F: Array = given("N", "radial load", ge=0, also=("bearing load", "load"))
     c: Array = given("mm", "diametral clearance", gt=0)
