@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from templates.core.errors import Fault, InvalidInputs, TemplateError
-from templates.core.nearest import nearest
+from templates.core.errors import TemplateError
 from templates.core.units.units import unit
 from templates.library.reading import Cited, Row, UnusableTable, read_rows, read_sources
 from templates.physics.journals.oil import MM2_PER_S
@@ -134,14 +133,14 @@ def limits_of(table_id: str, row_id: str) -> Mapping[str, Cited]:
     ------
     UnknownTable
         If the library has no such table, or one whose rows give no limits.
-    InvalidInputs
-        With code `unknown_row` and the nearest names, if the table has no such row.
+    KeyError
+        If the table has no such row.
     """
     if not table(table_id).limits:
         raise UnknownTable(table_id)
     row = table(table_id).row(row_id)
     if row is None:
-        raise InvalidInputs([_unknown(table(table_id), row_id)])
+        raise KeyError(row_id)
     return row.values
 
 
@@ -151,12 +150,6 @@ def fills(input_name: str) -> Iterator[tuple[Row, Cited]]:
         names = [column.name for column in one.columns if input_name in column.fills]
         for row in one.rows:
             yield from ((row, row.values[name]) for name in names if name in row.values)
-
-
-def _unknown(table: Table, row_id: str) -> Fault:
-    close = nearest(row_id, (row.id for row in table.rows))
-    hint = f"did you mean {' or '.join(close)}?" if close else f"GET /api/v1/library/{table.id} lists them"
-    return Fault(table.id, "unknown_row", f"{row_id[:60]!r} is no row of {table.title.lower()}; {hint}")
 
 
 def _read(name: str, columns: tuple[Column, ...]) -> tuple[Row, ...]:

@@ -238,7 +238,7 @@ class OilFilm(Template):
             "words": "the journal turns more slowly than where it begins to whirl",
             "source": "Lund 1965, for a rigid rotor",
             "warning": "journal_whirls",
-            "endless": {
+            "absent": {
                 "whirl_threshold_speed": {
                     "with": "stiffness_xx",
                     "reason": "the film is stable at every speed, or carries no mass",

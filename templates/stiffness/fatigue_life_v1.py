@@ -128,7 +128,7 @@ class FatigueLife(Template):
             "limits": {
                 "required_safety_factor": {"unit": "1", "words": "smallest safety factor of the load"}
             },
-            "endless": {
+            "absent": {
                 "safety_factor": {
                     "with": "allowable_amplitude",
                     "reason": "amplitude and mean may grow without end: there is no stress, or compression"

@@ -11,7 +11,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText
 from templates.core.judging.bands import Estimate
-from templates.core.judging.criterion import Criterion, Known, is_angle, read_criterion
+from templates.core.judging.criterion import Criterion, Known, Limit, Missing, is_angle, read_criterion
 from templates.core.judging.judgement import Judgement, sentence
 from templates.core.judging.judging import Absent, Along, judge
 from templates.core.judging.limits import GivenLimit
@@ -156,15 +156,27 @@ def estimate_of(evaluated: Evaluated, criterion: Criterion, name: str) -> Estima
     limit = next((limit for limit in criterion.limits if limit.name == name), None)
     if limit is not None:
         given = evaluated.limits.get(name)
-        return Absent((name,), limit.remedy) if given is None else _estimate_of_limit(evaluated, given)
+        return _default_of(evaluated, limit) if given is None else _estimate_of_limit(evaluated, given)
     if _is_output(template, name):
-        return _estimate_of_output(evaluated, name)
+        return _estimate_of_output(evaluated, name, criterion.absent.get(name))
     declared = template.inputs[name]
     with np.errstate(all="ignore"):
         si = getattr(template, declared.attribute)
     if not np.ndim(si) and np.isnan(si):
         return Absent((name,), f"give {name}")
     return Estimate(si, axes=1 if isinstance(declared, Curve) and np.ndim(si) else 0)
+
+
+def _default_of(evaluated: Evaluated, limit: Limit) -> Estimate | Absent:
+    """A limit that nobody gave: an end of an input that is a list, where that is declared and given."""
+    if limit.default is None:
+        return Absent((limit.name,), limit.remedy)
+    function, name = limit.default
+    with np.errstate(all="ignore"):
+        si = getattr(evaluated.template, evaluated.template.inputs[name].attribute)
+    if not np.ndim(si):
+        return Absent((limit.name,), limit.remedy)
+    return Estimate({"min": np.min, "max": np.max}[function](si, axis=-1))
 
 
 def _estimate_of_limit(evaluated: Evaluated, given: GivenLimit) -> Estimate:
@@ -181,15 +193,22 @@ def _fits(shape: tuple[int, ...], points: tuple[int, ...]) -> bool:
         return False
 
 
-def _estimate_of_output(evaluated: Evaluated, name: str) -> Estimate | Absent:
+def _estimate_of_output(evaluated: Evaluated, name: str, missing: Missing | None = None) -> Estimate | Absent:
     template, formula = evaluated.template, evaluated.template.formulas[name]
     answer = evaluated.answers[name]
     if formula.attribute in template.ledger.absent and not np.ndim(answer.value):
+        if missing and _has_value(evaluated, missing.beside):
+            return Absent((), missing.reason)
         return _absent(template, formula, answer.reason)
     axes = formula.axes if isinstance(formula, Profile) else 0
     error, is_stated = _error(evaluated, name)
     scale = RIGHT_ANGLE if not axes and is_angle(formula.meaning.unit) else None
     return Estimate(evaluated.value(name), error, is_stated, axes, scale, answer.reasons)
+
+
+def _has_value(evaluated: Evaluated, name: str) -> bool:
+    """Whether an output was evaluated and exists."""
+    return name in evaluated.answers and evaluated.answers[name].value is not None
 
 
 def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Absent:

@@ -3,7 +3,11 @@
 import pytest
 
 from templates.core.errors import InvalidInputs
+from templates.core.judging.criterion import read_criterion
+from templates.core.judging.limits import read_limits
 from templates.core.units.units import require_same_kind, unit
+from templates.door import built_in
+from templates.library.choices import CHOICES
 from templates.library.reading import Source, UnusableTable, read_rows, read_sources
 from templates.library.tables import UnknownTable, fills, limits_of, table, tables
 from templates.physics.journals.oil_grades import grades
@@ -82,17 +86,73 @@ def test_a_finish_is_a_root_mean_square_of_1_25_ra():
     assert list(fills("radial_load")) == []
 
 
-def test_unknown_names_are_refused_with_what_is_near():
+def test_unknown_names_are_refused_with_what_there_is():
     with pytest.raises(UnknownTable, match="bearing_material, oil, surface_finish"):
         table("steel")
     with pytest.raises(UnknownTable):
         limits_of("oil", "sae_30")  # gives inputs, no limits
-    with pytest.raises(InvalidInputs) as refused:
+    with pytest.raises(KeyError):
         limits_of("bearing_material", "tin_bronse")
-    assert [(fault.name, fault.code) for fault in refused.value.faults] == [
-        ("bearing_material", "unknown_row")
-    ]
-    assert "did you mean tin_bronze" in refused.value.faults[0].detail
+
+
+def bearing_criteria():
+    """Two criteria that take limits from a bearing material."""
+    limits = {
+        "permissible_specific_load": {"unit": "N/mm**2", "from": "bearing_material"},
+        "permissible_temperature": {"unit": "K", "from": "bearing_material"},
+    }
+    loaded = {"require": "9 MPa <= permissible_specific_load"}
+    heated = {"require": "350 K <= permissible_temperature"}
+    pairs = zip((loaded, heated), limits.items(), strict=True)
+    return [read_criterion("one", {**raw, "limits": {name: limit}}, {}) for raw, (name, limit) in pairs]
+
+
+def test_a_row_fills_the_limits_for_which_it_has_a_value():
+    given = read_limits(bearing_criteria(), {"bearing_material": "tin_bronze"})
+    assert given["permissible_specific_load"].value == pytest.approx(30e6)
+    assert given["permissible_temperature"].value == pytest.approx(533.15)
+    assert "Carvill" in given["permissible_temperature"].source
+    given = read_limits(bearing_criteria(), {"bearing_material": "white_metal_thin_lining"})
+    assert {name: limit.value for name, limit in given.items()} == {"permissible_specific_load": 14e6}
+
+
+def test_a_limit_given_by_hand_wins_over_a_row():
+    raw = {"bearing_material": "tin_bronze", "permissible_specific_load": "12 MPa"}
+    given = read_limits(bearing_criteria(), raw)
+    assert given["permissible_specific_load"].value == pytest.approx(12e6)
+    assert given["permissible_specific_load"].source is None
+    assert given["permissible_temperature"].value == pytest.approx(533.15)
+
+
+def test_an_unknown_row_is_refused_with_what_is_near():
+    with pytest.raises(InvalidInputs) as refused:
+        read_limits(bearing_criteria(), {"bearing_material": "tin_bronse"})
+    assert [fault.name for fault in refused.value.faults] == ["limits.bearing_material"]
+    assert "tin_bronze" in refused.value.faults[0].detail
+
+
+def test_the_choices_are_the_tables_that_give_limits():
+    assert set(CHOICES) == {one.id for one in tables().values() if one.limits}
+
+
+def test_every_limit_that_a_template_takes_from_a_table_is_a_column_of_it():
+    """Of the same kind of quantity, and given by some row."""
+    taken = {
+        (limit.library, limit.name, limit.unit)
+        for cls in built_in()
+        for criterion in cls.declared_criteria
+        for limit in criterion.limits
+        if limit.library
+    }
+    assert {name for _, name, _ in taken} == {
+        "permissible_specific_load",
+        "permissible_pressure",
+        "permissible_temperature",
+    }
+    for library, name, declared in taken:
+        column = next(column for column in table(library).columns if column.name == name)
+        assert require_same_kind(column.unit, declared)
+        assert any(name in row.values for row in table(library).rows)
 
 
 def test_a_whole_table_is_read(tmp_path):
