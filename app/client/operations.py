@@ -55,6 +55,7 @@ class Options(TypedDict, total=False):
     level: str
     tolerance: float
     units: dict[str, str]
+    limits: Mapping[str, Any]
 
 
 class AnalysisOptions(TypedDict, total=False):
@@ -78,7 +79,7 @@ def template(id: str, version: int) -> Exchange[Template]:
 
 
 def evaluate(id: str, version: int, inputs: Values, **options: Unpack[Options]) -> Exchange[Evaluation]:
-    """Evaluate a template; options are `outputs`, `level`, `tolerance`, `units`."""
+    """Evaluate a template; options are `outputs`, `level`, `tolerance`, `units`, `limits`."""
     path = f"/templates/{id}/versions/{version}/evaluate"
     return calculated(Evaluation, post(path, {"inputs": inputs, **options}))
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText
 from templates.core.judging.bands import Estimate
-from templates.core.judging.criterion import Criterion, Known, is_angle, read_criterion
+from templates.core.judging.criterion import Criterion, Known, Limit, is_angle, read_criterion
 from templates.core.judging.judgement import Judgement, sentence
 from templates.core.judging.judging import Absent, Along, judge
 from templates.core.judging.limits import GivenLimit
@@ -122,8 +122,12 @@ def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
     template = evaluated.template
     estimates: dict[str, Estimate] = {}
     absent: dict[str, Absent] = {}
-    for name in criterion.names:
-        one = estimate_of(evaluated, criterion, name)
+    limits = {limit.name: limit for limit in criterion.limits}
+    for name in sorted(criterion.names, key=limits.__contains__):  # a limit has to fit the other values
+        if name in limits:
+            one = _limit(evaluated, limits[name], estimates)
+        else:
+            one = _estimate(evaluated, name)
         if isinstance(one, Absent):
             absent[name] = one
         else:
@@ -150,13 +154,9 @@ def _source(evaluated: Evaluated, criterion: Criterion) -> str | None:
     return "; ".join(dict.fromkeys(source for source in sources if source)) or None
 
 
-def estimate_of(evaluated: Evaluated, criterion: Criterion, name: str) -> Estimate | Absent:
-    """The value of a name with its error, or why there is none."""
+def _estimate(evaluated: Evaluated, name: str) -> Estimate | Absent:
+    """The value of an input or output with its error, or why there is none."""
     template = evaluated.template
-    limit = next((limit for limit in criterion.limits if limit.name == name), None)
-    if limit is not None:
-        given = evaluated.limits.get(name)
-        return Absent((name,), limit.remedy) if given is None else _estimate_of_limit(evaluated, given)
     if _is_output(template, name):
         return _estimate_of_output(evaluated, name)
     declared = template.inputs[name]
@@ -167,16 +167,26 @@ def estimate_of(evaluated: Evaluated, criterion: Criterion, name: str) -> Estima
     return Estimate(si, axes=1 if isinstance(declared, Curve) and np.ndim(si) else 0)
 
 
-def _estimate_of_limit(evaluated: Evaluated, given: GivenLimit) -> Estimate:
-    """A limit of the user; an array that has not the shape of the points lies along the curve."""
-    points = evaluated.template.shape_of_points()
-    axes = 0 if np.ndim(given.value) <= len(points) and _fits(np.shape(given.value), points) else 1
-    return Estimate(given.value, axes=axes)
+def _limit(evaluated: Evaluated, limit: Limit, others: Mapping[str, Estimate]) -> Estimate | Absent:
+    """A limit of the user: one for all, one for each point, or a curve beside a curve."""
+    given = evaluated.limits.get(limit.name)
+    if given is None:
+        return Absent((limit.name,), limit.remedy)
+    shape, points = np.shape(given.value), evaluated.template.shape_of_points()
+    if not shape or _fits(shape, points):
+        return Estimate(given.value)
+    curve = next((other for other in others.values() if other.axes), None)
+    if curve is not None and _fits(shape, (*points, *np.shape(curve.value)[-curve.axes :])):
+        return Estimate(given.value, axes=curve.axes)
+    return Absent(
+        (), f"{limit.name} has {np.size(given.value)} values, which do not fit those of the calculation"
+    )
 
 
-def _fits(shape: tuple[int, ...], points: tuple[int, ...]) -> bool:
+def _fits(shape: tuple[int, ...], wanted: tuple[int, ...]) -> bool:
+    """Whether an array of this shape goes with one of the wanted shape without making it larger."""
     try:
-        return np.broadcast_shapes(shape, points) == points
+        return np.broadcast_shapes(shape, wanted) == wanted
     except ValueError:
         return False
 
