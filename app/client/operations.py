@@ -56,6 +56,7 @@ class Options(TypedDict, total=False):
     level: str
     tolerance: float
     units: dict[str, str]
+    limits: Mapping[str, Any]
 
 
 class AnalysisOptions(TypedDict, total=False):
@@ -89,7 +90,7 @@ def library_table(id: str) -> Exchange[LibraryTable]:
 
 
 def evaluate(id: str, version: int, inputs: Values, **options: Unpack[Options]) -> Exchange[Evaluation]:
-    """Evaluate a template; options are `outputs`, `level`, `tolerance`, `units`."""
+    """Evaluate a template; options are `outputs`, `level`, `tolerance`, `units`, `limits`."""
     path = f"/templates/{id}/versions/{version}/evaluate"
     return calculated(Evaluation, post(path, {"inputs": inputs, **options}))
 

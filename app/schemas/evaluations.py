@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, JsonValue, WithJsonSchema
 
 from app.schemas.answers import Answer, Measured, Shown, Value, Version, Warning
+from app.schemas.criteria import Criterion, Verdict
 
 
 class CalculatedBy(Version):
@@ -58,6 +59,10 @@ class Evaluated(Answer):
     level: Level
     error: dict[str, Error]
     warnings: list[Warning]
+    criteria: list[Criterion] | None = Field(
+        None, description="worst first; absent where the template has none whose outputs are wanted"
+    )
+    verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
 
 
 class Evaluation(Evaluated):

@@ -122,10 +122,14 @@ def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
     template = evaluated.template
     estimates: dict[str, Estimate] = {}
     absent: dict[str, Absent] = {}
-    for name in criterion.names:
-        one = estimate_of(evaluated, criterion, name)
+    limits = {limit.name: limit for limit in criterion.limits}
+    for name in sorted(criterion.names, key=limits.__contains__):  # a limit has to fit the other values
+        if name in limits:
+            one = _limit(evaluated, limits[name], estimates)
+        else:
+            one = _estimate(evaluated, name)
         if isinstance(one, Absent):
-            absent[name] = one
+            absent[name] = _known_reason(evaluated, criterion.absent.get(name)) or one
         else:
             estimates[name] = one
     subject = criterion.subject or ""
@@ -150,15 +154,11 @@ def _source(evaluated: Evaluated, criterion: Criterion) -> str | None:
     return "; ".join(dict.fromkeys(source for source in sources if source)) or None
 
 
-def estimate_of(evaluated: Evaluated, criterion: Criterion, name: str) -> Estimate | Absent:
-    """The value of a name with its error, or why there is none."""
+def _estimate(evaluated: Evaluated, name: str) -> Estimate | Absent:
+    """The value of an input or output with its error, or why there is none."""
     template = evaluated.template
-    limit = next((limit for limit in criterion.limits if limit.name == name), None)
-    if limit is not None:
-        given = evaluated.limits.get(name)
-        return _default_of(evaluated, limit) if given is None else _estimate_of_limit(evaluated, given)
     if _is_output(template, name):
-        return _estimate_of_output(evaluated, name, criterion.absent.get(name))
+        return _estimate_of_output(evaluated, name)
     declared = template.inputs[name]
     with np.errstate(all="ignore"):
         si = getattr(template, declared.attribute)
@@ -167,48 +167,56 @@ def estimate_of(evaluated: Evaluated, criterion: Criterion, name: str) -> Estima
     return Estimate(si, axes=1 if isinstance(declared, Curve) and np.ndim(si) else 0)
 
 
-def _default_of(evaluated: Evaluated, limit: Limit) -> Estimate | Absent:
+def _limit(evaluated: Evaluated, limit: Limit, others: Mapping[str, Estimate]) -> Estimate | Absent:
+    """A limit of the user: one for all, one for each point, or a curve beside a curve."""
+    given = evaluated.limits.get(limit.name)
+    if given is None:
+        return _default(evaluated, limit)
+    shape, points = np.shape(given.value), evaluated.template.shape_of_points()
+    if not shape or _fits(shape, points):
+        return Estimate(given.value)
+    curve = next((other for other in others.values() if other.axes), None)
+    if curve is not None and _fits(shape, (*points, *np.shape(curve.value)[-curve.axes :])):
+        return Estimate(given.value, axes=curve.axes)
+    return Absent(
+        (), f"{limit.name} has {np.size(given.value)} values, which do not fit those of the calculation"
+    )
+
+
+def _default(evaluated: Evaluated, limit: Limit) -> Estimate | Absent:
     """A limit that nobody gave: an end of an input that is a list, where that is declared and given."""
-    if limit.default is None:
-        return Absent((limit.name,), limit.remedy)
-    function, name = limit.default
-    with np.errstate(all="ignore"):
-        si = getattr(evaluated.template, evaluated.template.inputs[name].attribute)
-    if not np.ndim(si):
-        return Absent((limit.name,), limit.remedy)
-    return Estimate({"min": np.min, "max": np.max}[function](si, axis=-1))
+    if limit.default is not None:
+        function, name = limit.default
+        with np.errstate(all="ignore"):
+            si = getattr(evaluated.template, evaluated.template.inputs[name].attribute)
+        if np.ndim(si):
+            return Estimate({"min": np.min, "max": np.max}[function](si, axis=-1))
+    return Absent((limit.name,), limit.remedy)
 
 
-def _estimate_of_limit(evaluated: Evaluated, given: GivenLimit) -> Estimate:
-    """A limit of the user; an array that has not the shape of the points lies along the curve."""
-    points = evaluated.template.shape_of_points()
-    axes = 0 if np.ndim(given.value) <= len(points) and _fits(np.shape(given.value), points) else 1
-    return Estimate(given.value, axes=axes)
+def _known_reason(evaluated: Evaluated, missing: Missing | None) -> Absent | None:
+    """Why an output has no value, where the criterion says so and the output beside it has one."""
+    beside = evaluated.answers.get(missing.beside) if missing else None
+    return Absent((), missing.reason) if missing and beside and beside.value is not None else None
 
 
-def _fits(shape: tuple[int, ...], points: tuple[int, ...]) -> bool:
+def _fits(shape: tuple[int, ...], wanted: tuple[int, ...]) -> bool:
+    """Whether an array of this shape goes with one of the wanted shape without making it larger."""
     try:
-        return np.broadcast_shapes(shape, points) == points
+        return np.broadcast_shapes(shape, wanted) == wanted
     except ValueError:
         return False
 
 
-def _estimate_of_output(evaluated: Evaluated, name: str, missing: Missing | None = None) -> Estimate | Absent:
+def _estimate_of_output(evaluated: Evaluated, name: str) -> Estimate | Absent:
     template, formula = evaluated.template, evaluated.template.formulas[name]
     answer = evaluated.answers[name]
     if formula.attribute in template.ledger.absent and not np.ndim(answer.value):
-        if missing and _has_value(evaluated, missing.beside):
-            return Absent((), missing.reason)
         return _absent(template, formula, answer.reason)
     axes = formula.axes if isinstance(formula, Profile) else 0
     error, is_stated = _error(evaluated, name)
     scale = RIGHT_ANGLE if not axes and is_angle(formula.meaning.unit) else None
     return Estimate(evaluated.value(name), error, is_stated, axes, scale, answer.reasons)
-
-
-def _has_value(evaluated: Evaluated, name: str) -> bool:
-    """Whether an output was evaluated and exists."""
-    return name in evaluated.answers and evaluated.answers[name].value is not None
 
 
 def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Absent:
@@ -221,11 +229,12 @@ def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Ab
 def _error(evaluated: Evaluated, name: str) -> tuple[Any, bool]:
     """The relative error of an output, and whether any was stated.
 
-    A template without levels whose table does not name the output states none; its band has no width. Of one
-    with levels an error that is not known is NaN, and decides nothing.
+    A template of which no errors were measured, or one without levels whose table does not name the output,
+    states none; its band has no width. Of a level an error that is not known is NaN, and decides nothing.
     """
     error = evaluated.errors.get(name)
-    if not evaluated.template.levels and not _is_measured(evaluated.measured, name):
+    has_levels = bool(evaluated.template.levels) and evaluated.measured is not None
+    if not has_levels and not _is_measured(evaluated.measured, name):
         return 0.0, False
     if error is None:
         return float("nan"), False
@@ -275,8 +284,12 @@ def _places(template: Template, axis: Declaration) -> Along | None:
 
 
 def warned(cls: type[Template], judgements: list[Judgement]) -> Iterator[Notice]:
-    """A warning for every criterion that is not met and that declares one."""
+    """A warning for every criterion that declares one and is not met, or whose value misses its limit.
+
+    Where the limit lies within the error of a value that misses it, the verdict is undecided: a film of 1 nm
+    whose error is not known is warned of all the same.
+    """
     first = {criterion.name: criterion.names[0] for criterion in cls.declared_criteria}
     for judgement in judgements:
-        if judgement.verdict == "not_met" and judgement.warning:
+        if judgement.warning and judgement.misses:
             yield Notice(judgement.warning, first[judgement.name], sentence(judgement))
