@@ -54,6 +54,7 @@ class Options(TypedDict, total=False):
     outputs: list[str]
     level: str
     tolerance: float
+    per_point: bool
     units: dict[str, str]
     limits: Mapping[str, Any]
 
@@ -79,7 +80,7 @@ def template(id: str, version: int) -> Exchange[Template]:
 
 
 def evaluate(id: str, version: int, inputs: Values, **options: Unpack[Options]) -> Exchange[Evaluation]:
-    """Evaluate a template; options are `outputs`, `level`, `tolerance`, `units`, `limits`."""
+    """Evaluate; options are `outputs`, `level`, `tolerance`, `per_point`, `units`, `limits`."""
     path = f"/templates/{id}/versions/{version}/evaluate"
     return calculated(Evaluation, post(path, {"inputs": inputs, **options}))
 
