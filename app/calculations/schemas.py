@@ -46,6 +46,10 @@ class Asked(Bounded):
 class EvaluateIn(Asked):
     """Evaluate a template."""
 
+    per_point: bool = Field(
+        False, description="with a tolerance: the cheapest level at each point, not one level for all points"
+    )
+
     model_config = ConfigDict(
         json_schema_extra={"examples": [{"inputs": OIL_FILM, "outputs": ["minimum_film_thickness"]}]}
     )

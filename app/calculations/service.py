@@ -40,6 +40,7 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
         units=body.units,
         level=body.level,
         tolerance=body.tolerance,
+        per_point=body.per_point,
         limits=body.limits,
     )
     _limit(result.count())  # curves are longer than their inputs

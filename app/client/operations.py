@@ -55,6 +55,7 @@ class Options(TypedDict, total=False):
     outputs: list[str]
     level: str
     tolerance: float
+    per_point: bool
     units: dict[str, str]
     limits: Mapping[str, Any]
 
@@ -90,7 +91,7 @@ def library_table(id: str) -> Exchange[LibraryTable]:
 
 
 def evaluate(id: str, version: int, inputs: Values, **options: Unpack[Options]) -> Exchange[Evaluation]:
-    """Evaluate a template; options are `outputs`, `level`, `tolerance`, `units`, `limits`."""
+    """Evaluate; options are `outputs`, `level`, `tolerance`, `per_point`, `units`, `limits`."""
     path = f"/templates/{id}/versions/{version}/evaluate"
     return calculated(Evaluation, post(path, {"inputs": inputs, **options}))
 

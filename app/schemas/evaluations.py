@@ -39,12 +39,13 @@ class Output(Measured):
 
 
 ERROR: dict[str, Any] = {
-    "description": "estimated relative error, of the shape of the output; null where none was measured",
+    "description": "estimated relative error of each point; of a curve, relative to its largest absolute "
+    "value; null where none is stated",
     "anyOf": [{"type": "number"}, {"type": "array", "items": {}}, {"type": "null"}],
 }
 Error = Annotated[Any, WithJsonSchema(ERROR)]
 LEVEL: dict[str, Any] = {
-    "description": "the level of fidelity; an array where it changes from point to point",
+    "description": "the level of fidelity; an array where each point has its own",
     "anyOf": [{"type": "string"}, {"type": "array", "items": {}}, {"type": "null"}],
 }
 Level = Annotated[Any, WithJsonSchema(LEVEL)]

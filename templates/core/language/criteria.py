@@ -142,7 +142,7 @@ def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
         _along(template, criterion),
         shown,
         level=level,
-        truth=truth_of(evaluated.measured, level or "", subject),
+        truth=evaluated.measured.truth(level or "", subject) if evaluated.measured else None,
         source=_source(evaluated, criterion) if criterion.limits else criterion.source,
     )
 
@@ -244,18 +244,6 @@ def _error(evaluated: Evaluated, name: str) -> tuple[Any, bool]:
 def _is_measured(measured: Accuracy | None, name: str) -> bool:
     """Whether a table of errors names the output at all."""
     return measured is not None and any(name in outputs for outputs in measured.errors.values())
-
-
-def truth_of(measured: Accuracy | None, level: str, output: str) -> str | None:
-    """The solution against which the error of an output at a level was measured, if the table says so."""
-    if measured is None:
-        return None
-    truths = (measured.content.get("levels", {}).get(level, {}).get("truth"), measured.content.get("truth"))
-    for truth in truths:
-        named = truth.get(output) if isinstance(truth, Mapping) else truth
-        if isinstance(named, str):
-            return named
-    return None
 
 
 def _along(template: Template, criterion: Criterion) -> Along | None:

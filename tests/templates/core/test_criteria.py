@@ -85,10 +85,12 @@ def wave(monkeypatch):
     content = {
         "axes": [{"attribute": "size", "values": [0, 1]}, {"attribute": "size", "values": [0, 1]}],
         "levels": {
-            "rough": {"errors": {"top": [[0.1]], "height": [[0.05]]}, "truth": {"top": "the sea"}},
+            "rough": {
+                "errors": {"top": [[0.1]], "height": [[0.05]]},
+                "truth": {"top": "the sea", "height": "the lake"},
+            },
             "fine": {"errors": {"top": [[0.0]]}},
         },
-        "truth": "the lake",
     }
     errors = {
         level: {name: np.array(table) for name, table in part["errors"].items()}
