@@ -42,6 +42,7 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
         level=body.level,
         tolerance=body.tolerance,
         per_point=body.per_point,
+        limits=body.limits,
     )
     _limit(result.count())  # curves are longer than their inputs
     return result
@@ -58,7 +59,7 @@ def check_evaluate(cls: type[Template], body: EvaluateIn) -> None:
         If the answer would be too large.
     """
     _limit_answer(cls, body)
-    request = read_request(cls, body.inputs, body.outputs, body.units, body.level)
+    request = read_request(cls, body.inputs, body.outputs, body.units, body.level, body.limits)
     with np.errstate(all="ignore"):
         require_points(request.template, body.level, body.tolerance)
 

@@ -8,6 +8,7 @@ from pydantic import ConfigDict, Field, JsonValue, WithJsonSchema
 from pydantic.config import JsonDict
 
 from app.schemas.answers import Answer, Measured, Quantity, Shown, Value, Values, Version, Warning
+from app.schemas.criteria import Criterion, Verdict
 
 
 class CalculatedBy(Version):
@@ -62,6 +63,10 @@ class Evaluated(Answer):
     level: Level
     error: dict[str, Error]
     warnings: list[Warning]
+    criteria: list[Criterion] | None = Field(
+        None, description="worst first; absent where the template has none whose outputs are wanted"
+    )
+    verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
 
 
 class Evaluation(Evaluated):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache, reduce
 from typing import Any
 
@@ -12,9 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array
+from templates.core.judging.judgement import Judgement
+from templates.core.judging.limits import GivenLimit
 from templates.core.language import tolerances
 from templates.core.language.admission import absence
 from templates.core.language.climbing import Rung, climb
+from templates.core.language.criteria import Evaluated, judged, warned
 from templates.core.language.intake import Input, remarks
 from templates.core.language.ledger import Notice
 from templates.core.language.levels import accuracy, at_level
@@ -50,7 +53,7 @@ class Evaluation:
     """What `evaluate` returns; `template` is the evaluated instance with every SI value it computed.
 
     `level` and `error` (relative; None or NaN where it was not measured) are single values, or arrays of the
-    shape of the outputs.
+    shape of the outputs. `criteria` are those of the template that name no other outputs, worst first.
     """
 
     template: Template
@@ -60,6 +63,7 @@ class Evaluation:
     error: dict[str, Any]
     warnings: list[Notice]
     seconds: float
+    criteria: list[Judgement] = field(default_factory=list)
 
     def count(self) -> int:
         """How many values all outputs have together."""
@@ -74,12 +78,14 @@ def evaluate(
     units: Mapping[str, str] | None = None,
     level: str | None = None,
     tolerance: float | None = None,
+    limits: Mapping[str, Any] | None = None,
     per_point: bool = False,
 ) -> Evaluation:
     """Evaluate the outputs named (all, if None) for inputs as a user types them.
 
     `units` names other units for outputs. Arrays of inputs give arrays of outputs. With a `tolerance` one
-    level serves all points, unless `per_point` asks for the cheapest level at each.
+    level serves all points, unless `per_point` asks for the cheapest level at each. `limits` are those
+    that the template's criteria take from their user.
 
     Raises
     ------
@@ -87,7 +93,7 @@ def evaluate(
         Naming everything that is wrong with the request at once, or the result that is out of its domain.
     """
     start = time.perf_counter()
-    request = read_request(cls, raw, outputs, units, level)
+    request = read_request(cls, raw, outputs, units, level, limits)
     template, names, shown_in = request.template, request.names, request.shown_in
     with np.errstate(all="ignore"):
         rungs = _rungs(template, names, level, tolerance, per_point)
@@ -98,12 +104,29 @@ def evaluate(
             for name, declared in cls.inputs.items()
             if name in template.ledger.typed or is_reported(template, declared)
         }
+        criteria = _judged(rungs, whole, shown_in, request.limits) if cls.declared_criteria else []
     notices = [*_standing(cls, raw), *_noticed(rungs)]
     if tolerance is not None:
         values = {name: answer.value for name, answer in whole.answers.items()}
         notices += unmet(cls, values, whole.error, whole.level, tolerance)
+    notices += warned(cls, criteria)
     seconds = time.perf_counter() - start
-    return Evaluation(rungs[0].template, echoes, whole.answers, whole.level, whole.error, notices, seconds)
+    return Evaluation(
+        rungs[0].template, echoes, whole.answers, whole.level, whole.error, notices, seconds, criteria
+    )
+
+
+def _judged(
+    rungs: list[Rung], whole: _Part, shown_in: Mapping[str, Unit], limits: Mapping[str, GivenLimit]
+) -> list[Judgement]:
+    """The criteria whose outputs were evaluated."""
+    template, is_joined = rungs[0].template, rungs[0].where is not None
+    measured = accuracy(type(template))
+    return judged(
+        Evaluated(
+            template, whole.answers, whole.error, measured, limits, shown_in, whole.level, is_joined=is_joined
+        )
+    )
 
 
 @dataclass(frozen=True)
