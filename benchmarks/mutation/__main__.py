@@ -72,18 +72,24 @@ def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[
     with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
         kept = options.record and options.record.resolve().with_name("observations")
         copies = Copies(Path(folder), options.limit, options.nearest, kept)
-        for result in threads.map(partial(tried, copies, options.record, lock), ahead):
-            rows[str(result["key"])] = result
+        for at_once in (True, False):  # most are killed by the nearest tests: these figures come first
+            attempt = partial(tried, copies, options.record, lock, at_once)
+            results = filter(None, threads.map(attempt, [one for one in ahead if one.key not in rows]))
+            rows |= {str(result["key"]): result for result in results}
     return [rows[mutant.key] for mutant in chosen]
 
 
-def tried(copies: Copies, record: Path | None, lock: Lock, mutant: Mutant) -> dict[str, Any]:
-    """Try a mutant, and record the result at once."""
+def tried(
+    copies: Copies, record: Path | None, lock: Lock, at_once: bool, mutant: Mutant
+) -> dict[str, Any] | None:
+    """Try a mutant, and record the result at once if there is one."""
 
-    def work(copy: Copy) -> dict[str, object]:
-        return copy.try_out(mutant)
+    def work(copy: Copy) -> dict[str, object] | None:
+        return copy.try_out(mutant, at_once=at_once)
 
     result = copies.using(work)
+    if result is None:
+        return None
     with lock:
         print(
             f"{result['outcome']:9} {mutant.file}:{mutant.line} {result['by']} ({result['seconds']} s)",
