@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.mutation import observations
 from benchmarks.mutation.related import NEAREST, changed, related
-from benchmarks.mutation.verdict import REASONS, Reason, by_folder, reasons, verdict
+from benchmarks.mutation.verdict import REASONS, Reason, by_folder, reasons, summary, verdict
 
 
 @pytest.mark.parametrize(
@@ -82,6 +82,14 @@ class TestVerdict:
     def test_a_reason_is_for_one_change_of_one_line(self, other):
         assert EQUIVALENT.covers(row("s"))
         assert not EQUIVALENT.covers(row("s", **other))
+
+    def test_the_summary_counts_all_and_lists_what_was_not_killed(self):
+        rows = [*killed(8), row("s"), row("t", text="x = 1", after="x = 2")]
+        figures = summary(rows, verdict(rows, [EQUIVALENT]))
+        assert (figures["tried"], figures["killed"], figures["equivalent"]) == (10, 8, 1)
+        assert figures["without_reason"] == 1
+        assert figures["share"] == round(8 / 9, 4)
+        assert [one["state"] for one in figures["not_killed"]] == ["equivalent", "without_reason"]
 
     def test_folders_are_counted(self):
         assert by_folder([*killed(2), row("s")]) == {"templates/core": (2, 3)}

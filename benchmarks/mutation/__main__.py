@@ -21,7 +21,7 @@ from benchmarks.mutation.named import named
 from benchmarks.mutation.places import Mutant, sample
 from benchmarks.mutation.related import NEAREST, related
 from benchmarks.mutation.trial import Copies, Copy, row
-from benchmarks.mutation.verdict import REASONS, reasons, report, verdict
+from benchmarks.mutation.verdict import REASONS, reasons, report, summary, verdict
 
 
 def arguments() -> argparse.Namespace:
@@ -42,6 +42,9 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "--resume", action="store_true", help="skip what the record has, if its files are the same"
     )
+    parser.add_argument(
+        "--report", type=Path, help="try none: sum up what the record has, and write the figures here"
+    )
     parser.add_argument("--list", action="store_true", help="print the mutants and try none")
     return parser.parse_args()
 
@@ -55,35 +58,51 @@ def main() -> None:
         print("\n".join(f"{m.key} {m.file}:{m.line} {m.operator}\n{m.diff}" for m in chosen))
         return
     print(f"seed {options.seed}, {len(chosen)} mutants", flush=True)
-    rows = results(chosen, options)
+    rows = valid(chosen, options) if options.report else results(chosen, options)
     outcome = verdict(rows, reasons())
     print(report(rows, outcome))
+    if options.report:
+        figures = {"seed": options.seed, "sample": len(chosen), **summary(rows, outcome)}
+        options.report.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     sys.exit(not outcome.holds)
+
+
+def valid(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[str, Any]]:
+    """Return the rows of the record that still hold."""
+    earlier = recorded(options.record)
+    current = {mutant.key: row(mutant, related(mutant.file, options.nearest)) for mutant in chosen}
+    return [old for key, old in earlier.items() if key in current and is_valid(old, current[key])]
 
 
 def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[str, Any]]:
     """Return a row for each mutant, from the record or from a trial."""
-    earlier = recorded(options.record) if options.resume and options.record else {}
-    current = {mutant.key: row(mutant, related(mutant.file, options.nearest)) for mutant in chosen}
-    rows = {key: old for key, old in earlier.items() if key in current and is_valid(old, current[key])}
+    is_resumed = options.resume and options.record
+    earlier = recorded(options.record) if is_resumed else {}
+    rows = {str(old["key"]): old for old in valid(chosen, options)} if is_resumed else {}
     ahead = [mutant for mutant in chosen if mutant.key not in rows]
     ahead.sort(key=lambda mutant: mutant.key in earlier)  # a run that is cut short has tried the new ones
     lock = Lock()
     with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
         kept = options.record and options.record.resolve().with_name("observations")
         copies = Copies(Path(folder), options.limit, options.nearest, kept)
-        for result in threads.map(partial(tried, copies, options.record, lock), ahead):
-            rows[str(result["key"])] = result
+        for at_once in (True, False):  # most are killed by the nearest tests: these figures come first
+            attempt = partial(tried, copies, options.record, lock, at_once)
+            results = filter(None, threads.map(attempt, [one for one in ahead if one.key not in rows]))
+            rows |= {str(result["key"]): result for result in results}
     return [rows[mutant.key] for mutant in chosen]
 
 
-def tried(copies: Copies, record: Path | None, lock: Lock, mutant: Mutant) -> dict[str, Any]:
-    """Try a mutant, and record the result at once."""
+def tried(
+    copies: Copies, record: Path | None, lock: Lock, at_once: bool, mutant: Mutant
+) -> dict[str, Any] | None:
+    """Try a mutant, and record the result at once if there is one."""
 
-    def work(copy: Copy) -> dict[str, object]:
-        return copy.try_out(mutant)
+    def work(copy: Copy) -> dict[str, object] | None:
+        return copy.try_out(mutant, at_once=at_once)
 
     result = copies.using(work)
+    if result is None:
+        return None
     with lock:
         print(
             f"{result['outcome']:9} {mutant.file}:{mutant.line} {result['by']} ({result['seconds']} s)",

@@ -64,31 +64,35 @@ class Copy:
         self._list.write_text("\n".join(targets()), encoding="utf-8")
         self.observations = Observations(kept, self._observe)
 
-    def try_out(self, mutant: Mutant) -> dict[str, object]:
-        """Return what became of a mutant, as a row of the record."""
+    def try_out(self, mutant: Mutant, *, at_once: bool = False) -> dict[str, object] | None:
+        """Return what became of a mutant, as a row of the record.
+
+        With `at_once`, only the nearest tests run and not for long; None if they do not kill it.
+        """
         begin, tests = time.monotonic(), related(mutant.file, self.nearest)
         run = Run("passed")
-        for part, limit in self._parts(mutant, tests):
+        for part, limit in self._nearest(mutant, tests) if at_once else self._parts(mutant, tests):
             run = self._with(mutant, part, limit)
             if run.outcome != "passed":
                 break
-        seconds = round(time.monotonic() - begin, 1)
-        return {
-            **row(mutant, tests),
-            "outcome": self._judged(run),
-            "by": run.by or run.outcome,
-            "seconds": seconds,
-        }
+        if at_once and run.outcome != "failed":
+            return None
+        outcome, seconds = self._judged(run), round(time.monotonic() - begin, 1)
+        if at_once and outcome != "killed":
+            return None
+        return {**row(mutant, tests), "outcome": outcome, "by": run.by or run.outcome, "seconds": seconds}
+
+    def _nearest(self, mutant: Mutant, tests: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], float]]:
+        """Yield the nearest file, or its single tests that run the line if it was observed."""
+        if not self.observations.has(tests[0], mutant.file):
+            yield tests[:1], STARTING
+        elif single := tuple(self.observations.quickest(mutant.file, mutant.line, tests[:1])):
+            yield single, STARTING
 
     def _parts(self, mutant: Mutant, tests: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], float]]:
-        """Yield what to run: single tests that run the line, of near files first; then all that may.
-
-        The nearest file as a whole comes before, if it was not observed yet: most mutants end there.
-        """
+        """Yield what to run: single tests that run the line, of near files first; then all that may."""
         done: set[str] = set()
         place = mutant.file, mutant.line
-        if not self.observations.has(tests[0], mutant.file):
-            yield tests[:1], self.limit
         for some in (tests[:NEAR], tests[NEAR:]):
             if single := tuple(self.observations.quickest(*place, some)):
                 usual = self.observations.seconds(mutant.file, single)
@@ -222,7 +226,7 @@ class Copies:
         self._number = 0
         self._lock = Lock()
 
-    def using(self, work: Callable[[Copy], dict[str, object]]) -> dict[str, object]:
+    def using(self, work: Callable[[Copy], dict[str, object] | None]) -> dict[str, object] | None:
         """Return what some work on an idle copy returns; makes a copy if none is idle."""
         with self._lock:
             self._number += not self._idle

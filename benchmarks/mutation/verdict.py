@@ -93,6 +93,23 @@ def report(rows: Sequence[dict[str, Any]], result: Verdict) -> str:
     return "\n".join(lines)
 
 
+def summary(rows: Sequence[dict[str, Any]], result: Verdict) -> dict[str, Any]:
+    """Return the figure for a file of results: counts, also by folder, and what was not killed."""
+    groups = {name: getattr(result, name) for name in ("equivalent", "accepted", "without_reason", "unclear")}
+    return {
+        "tried": result.tried,
+        "killed": result.killed,
+        **{name: len(group) for name, group in groups.items()},
+        "share": round(result.share, 4),
+        "folders": {name: {"killed": k, "tried": t} for name, (k, t) in by_folder(rows).items()},
+        "not_killed": [
+            {"state": name, "file": one["file"], "line": one["line"], "change": one["diff"]}
+            for name, group in groups.items()
+            for one in group
+        ],
+    }
+
+
 def by_folder(rows: Sequence[dict[str, Any]]) -> dict[str, tuple[int, int]]:
     """Return the mutants killed and tried in each folder."""
     tried = Counter("/".join(row["file"].split("/")[:2]) for row in rows)

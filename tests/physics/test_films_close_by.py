@@ -5,8 +5,11 @@ import pytest
 
 from templates.physics.cavities import transient_film
 from templates.physics.cavities.transient_balance import balance, transient_mesh
+from templates.physics.journals.heat_balance import Running
+from templates.physics.orbits.cyclic_film import cycle_of
 from templates.physics.orbits.film_mobility import film_mobility
 from templates.physics.orbits.short_mobility import mobility_Booker_1971, short_film_under_load
+from templates.physics.pads.slider_film import finite_pad
 
 
 @pytest.mark.parametrize("eps", [(0.2, 0.1), (0.6, -0.5)])
@@ -43,3 +46,32 @@ def test_the_peak_of_a_short_film_is_the_largest_of_all_places(gap, away):
     P_max, side_flow = short_film_under_load(eps * np.cos(away), -eps * np.sin(away), ratio)
     assert P_max == pytest.approx(6 * ratio**2 * np.hypot(*velocity) * height.max(), rel=1e-4)
     assert side_flow == 1
+
+
+@pytest.mark.parametrize(("last", "covers"), [(1.0, True), (2.0, True), (2.5, False), (3.9, False)])
+def test_a_cycle_may_end_two_steps_after_its_last_angle(last, covers):
+    """Angles of 1° from −180° on, the last one so many degrees before the cycle is over."""
+    count = 361 - int(last)
+    angle = np.radians(np.append(np.arange(-180, -180 + count - 1), 180 - last))
+    assert cycle_of(angle) == pytest.approx(2 * np.pi) if covers else np.isnan(cycle_of(angle))
+
+
+@pytest.mark.parametrize(("a", "width"), [(1.0, np.nan), (2.0, np.nan), (np.nan, 1.0), (np.nan, 0.0)])
+def test_a_pad_of_unknown_shape_bears_nothing_that_is_known(a, width):
+    pad = finite_pad(np.array([a, 2.0]), np.array([width, 1.0]), 16, 8)
+    for name in ("load", "P_max", "inlet_flow", "side_flow", "centre", "peak"):
+        assert np.isnan(getattr(pad, name)).tolist() == [True, False]
+
+
+def test_oil_too_thin_for_the_map_loses_the_power_of_the_thinnest_film_on_it():
+    """Beyond the map the journal stays at its limit: power and flow depend on the load no more."""
+    numbers = dict.fromkeys(("A", "B", "a", "b", "offset", "rho_ref", "T_ref"), np.nan)
+    bearing = {"D": 0.05, "W": 0.025, "psi": 1e-3, "omega_m": 100.0, "omega_s": 100.0, "eta": 1e-4}
+    air = {"heat_capacity": 1.8e6, "T_supply": 313.0, "T_ambient": 293.0, "kA": 10.0}
+    given = {name: np.asarray(value) for name, value in {**numbers, **bearing, **air}.items()}
+    power, flow = Running(F=np.array([1e13, 2e13, 1e15]), **given).power_and_flow(np.asarray(320.0))
+    assert power == pytest.approx(power[0], rel=1e-12)
+    assert flow == pytest.approx(flow[0], rel=1e-12)
+    assert power[0] > 0
+    inside = Running(F=np.array([1.0]), **given).power_and_flow(np.asarray(320.0))[0]
+    assert inside < power[0]

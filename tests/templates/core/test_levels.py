@@ -125,6 +125,12 @@ class TestLadder:
         with pytest.raises(InvalidInputs, match="level fine takes at most 3 points at once, not 4"):
             evaluated("size", length=metres(1, 2, 3, 4))
 
+    @pytest.mark.parametrize("length", [metres(200, 5), metres(5, 200)])
+    def test_property_a_point_beyond_both_ends_of_the_measured_grid_has_no_estimate(self, measured, length):
+        """The breadth is twice the length, so both leave their grids together."""
+        error = evaluated("size", level="rough", length=length).error["size"]
+        assert np.isnan(error).tolist() == [value == 200 for value in length["value"]]
+
     def test_property_unmeasured_is_reported(self):
         assert [w.code for w in evaluated("size", tolerance=0.1).warnings] == ["tolerance_unmet"]
 

@@ -1,11 +1,13 @@
 """What the language says of an absent value and of a fault: the reason, where it holds, and nothing else."""
 
+import jsonschema_rs
 import numpy as np
 import pytest
 
-from templates.core.errors import Fault, FaultyText, Unreachable
+from templates.core.errors import Fault, FaultyText, InvalidInputs, Unreachable
 from templates.core.language.evaluate import evaluate
 from templates.core.language.template import Template, formula, given
+from templates.core.paper import schema
 
 
 class Hollow(Template):
@@ -36,3 +38,13 @@ def test_the_text_of_an_error_is_its_sentence():
     assert str(faulty) == "give a number"
     assert faulty.fault("speed") == Fault("speed", "empty", "give a number")
     assert str(Unreachable("speed", "too fast", (1.0, 2.0), "rpm")) == "too fast"
+
+
+@pytest.mark.parametrize("extra", [{}, {"plus": "1 mm"}, {"colour": "red"}])
+def test_the_schema_of_a_quantity_knows_its_parts_and_no_others(extra):
+    quantity = {"value": 2.0, "unit": "m", **extra}
+    is_valid = jsonschema_rs.is_valid(schema.inputs_schema(Hollow), {"x": quantity})
+    assert is_valid == ("colour" not in extra)
+    if not is_valid:
+        with pytest.raises(InvalidInputs, match="colour"):
+            evaluate(Hollow, {"x": quantity})
