@@ -10,6 +10,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Request, Response
 from starlette.concurrency import run_in_threadpool
 
+from app.api.attachments import named
 from app.api.dependencies import ExpensiveSteps, TheJobs, ThePress, TheReports, TheThreads, Units
 from app.api.gate.clients import TheClient
 from app.api.gate.guard import PAGE_POLICY
@@ -120,7 +121,7 @@ async def show_worksheet(
     if wanted == "json":
         return written(told, headers=headers)
     write = tables.write_csv if wanted == "csv" else tables.write_xlsx
-    headers["Content-Disposition"] = f'attachment; filename="design_{_plain(id)}_r{revision}.{wanted}"'
+    headers["Content-Disposition"] = named(told.name, revision, wanted, how="attachment")
     table = await run_in_threadpool(lambda: write(tables.of(told)))
     return Response(table, headers=headers, media_type=TABLES[wanted])
 
@@ -136,14 +137,13 @@ async def _waited(
 
 
 def _headers(told: Report, kind: str, job: str | None) -> dict[str, str]:
-    name = f"design_{_plain(told.design)}_r{told.revision}.{kind}"
     headers = {
         "Design-Revision": str(told.revision),
         "Vary": "Accept",
         "Cache-Control": "no-store" if job else "no-cache",
         "Content-Security-Policy": PAGE_POLICY,
         "X-Content-Type-Options": "nosniff",
-        "Content-Disposition": f'inline; filename="{name}"',
+        "Content-Disposition": named(told.title, told.revision, kind, how="inline"),
     }
     return {**headers, "Location": f"/api/v1/jobs/{job}"} if job else {**headers, "ETag": tag(told, kind)}
 
@@ -167,7 +167,3 @@ def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str,
 def _weight(parameters: str) -> float:
     found = WEIGHT.search(parameters)
     return float(found[1]) if found else 1.0
-
-
-def _plain(id: str) -> str:
-    return re.sub(r"[^A-Za-z0-9_-]", "", id)
