@@ -1,4 +1,4 @@
-"""The command line: `crankwright serve | demo | evaluate | template | freeze | check | backup | restore`."""
+"""The command line: `crankwright serve | demo | download | evaluate | template | freeze | check | …`."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from app.calculations import rendering
 from app.calculations.arguments import argument
 from app.catalogue.finding import find_templates
 from app.demo import demonstrate
+from app.downloads import download_command
 from app.hosts import is_loopback
 from app.main import create_app
 from app.maintenance.commands import backup_command, check_command, restore_command
@@ -115,15 +116,19 @@ def _check_reach(host: str, insecure: bool) -> None:
 
 
 main.add_command(check_command)
+main.add_command(download_command)
 main.add_command(backup_command)
 main.add_command(restore_command)
 
 
 @main.command()
-@click.option("--data", type=click.Path(path_type=Path), default=Path("crankwright-demo"), show_default=True)
-def demo(data: Path) -> None:
-    """The paper's demonstration: SCALE and D drive a ball bearing from 50 mm to 48 mm."""
-    demonstrate(data)
+@click.option("--data", type=click.Path(path_type=Path), default=None, help="that of `serve`, if not given")
+def demo(data: Path | None) -> None:
+    """The paper's demonstration: SCALE and D drive a ball bearing from 50 mm to 48 mm.
+
+    Its design stays: `crankwright serve` shows it.
+    """
+    demonstrate(data or Settings().data)
 
 
 @main.command()

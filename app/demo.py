@@ -7,7 +7,7 @@ diameter; a relation ties the model's inner diameter to it; regenerate: the bear
 from __future__ import annotations
 
 import json
-import os
+import shlex
 import socket
 import subprocess
 import sys
@@ -23,7 +23,9 @@ from app.designs.schemas import PAPER
 from app.plain import JsonObject
 from app.schemas.answers import Quantity
 from app.schemas.designs import Design
+from app.settings import Settings
 
+LOOPBACK = "127.0.0.1"
 START = 600.0  # for the service to start, which takes minutes on a busy machine with a cold disk [s]
 REMARK = 10.0  # how often to say what the demonstration is waiting for [s]
 END = 30.0  # for the service to stop [s]
@@ -31,7 +33,7 @@ HEADER = f"{'':28}{'before':>14}{'after':>14}"
 
 
 def demonstrate(data: Path) -> None:
-    """Run the demonstration on a service of its own; its data and STEP files stay in the folder `data`."""
+    """Run the demonstration on a service of its own; its data and STEP file stay in the folder `data`."""
     with service(data) as client:
         before = _created(client)
         after = _changed(client, before, "tie inner_diameter to the worksheet", MAPPED)
@@ -42,6 +44,15 @@ def demonstrate(data: Path) -> None:
         _report_rebuild(client, after, scaled)
         _report_rebuild(client, scaled, loaded)
         click.echo(f"\nSTEP file: {step.absolute()}")
+    _point_to(after, data)
+
+
+def _point_to(design: Design, data: Path) -> None:
+    """Say how the design can be seen in the browser."""
+    settings = Settings()
+    option = "" if data.absolute() == settings.data.absolute() else f" --data {shlex.quote(str(data))}"
+    place = f"http://{LOOPBACK}:{settings.port}/designs/{design.id}"
+    click.echo(f"To see it, run `crankwright serve{option}`, then open {place}")
 
 
 MAPPED = {
@@ -55,16 +66,17 @@ LOADED = {"steps": {"film": {"inputs": {"radial_load": "30 kN"}}}, "note": "only
 def service(data: Path) -> Iterator[Client]:
     """A service in a process of its own on a free port, ended when done."""
     with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
+        probe.bind((LOOPBACK, 0))
         port = probe.getsockname()[1]
     click.echo(f"starting the service on port {port}, data in {data.absolute()} …")
-    command = [sys.executable, "-m", "app", "serve", "--port", str(port), "--data", str(data)]
+    command = [sys.executable, "-m", "app", "serve", "--host", LOOPBACK, "--port", str(port)]
+    command += ["--data", str(data)]
     data.mkdir(parents=True, exist_ok=True)
     log = data / "service.log"
     with log.open("wb") as errors:
         process = subprocess.Popen(command, stderr=errors)
     try:
-        with Client(f"http://127.0.0.1:{port}") as client:
+        with Client(f"http://{LOOPBACK}:{port}") as client:
             _await(client, process, log)
             yield client
     finally:
@@ -171,11 +183,7 @@ def _dimensions(client: Client, build: str) -> dict[str, Quantity]:
 
 
 def _saved(client: Client, design: Design, data: Path) -> Path:
-    path = data / f"{design.id}-revision-{design.revision}.step"
-    temporary = path.with_suffix(".part")
-    temporary.write_bytes(client.model(design.id, "step"))
-    os.replace(temporary, path)
-    return path
+    return client.download(design.id, "step", revision=design.revision).save(data)
 
 
 def _report_rebuild(client: Client, old: Design, new: Design) -> None:

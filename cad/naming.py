@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 
-LONGEST = 80  # letters of a design's name that stay
+LONGEST = 120  # of a design's name in UTF-8 [bytes]: file systems take 255 for all
 NAMELESS = "design"
 _OTHER = re.compile(r"[^A-Za-z0-9.-]+")
 
@@ -27,7 +27,7 @@ def _stays(sign: str) -> bool:
 
 
 def _ends(text: str) -> str:
-    return text[:LONGEST].strip("._-") or NAMELESS
+    return text.encode()[:LONGEST].decode(errors="ignore").strip("._-") or NAMELESS
 
 
 def stem(design: str, model: str, revision: int) -> str:

@@ -14,10 +14,19 @@ from fastapi import Response
 from fastapi.responses import FileResponse
 from starlette.types import Receive, Scope, Send
 
+from cad.naming import name as wide_name
+from cad.naming import plain_name
 
-def disposition(plain: str, wide: str) -> str:
+
+def disposition(plain: str, wide: str, how: str = "attachment") -> str:
     """Content-Disposition with the name in ASCII, and in all letters (RFC 6266, RFC 8187)."""
-    return f"attachment; filename=\"{plain}\"; filename*=UTF-8''{quote(wide, safe='')}"
+    return f"{how}; filename=\"{plain}\"; filename*=UTF-8''{quote(wide, safe='')}"
+
+
+def named(design: str, revision: int, kind: str, how: str) -> str:
+    """Content-Disposition of a file that is of a whole design: `{design}_r{revision}.{kind}`."""
+    tail = f"_r{revision}.{kind}"
+    return disposition(plain_name(design) + tail, wide_name(design) + tail, how)
 
 
 def tag(file: bytes) -> str:

@@ -5,7 +5,7 @@ with Client("http://127.0.0.1:8000") as client:
     thickness = answer.outputs["minimum_film_thickness"].value
     design = client.create({"name": "main bearing", …})
     design = client.change(design, {"parameters": {"scale": "1.02"}})
-    step = client.model(design.id, "step")
+    path = client.download(design.id, "step").save()  # main_bearing_model_r2.step
 
 Every call waits for its result: a job that the service starts is followed to its end. `AsyncClient` has the
 same methods, to be awaited.
@@ -13,7 +13,8 @@ same methods, to be awaited.
 
 from app.client.clients import AsyncClient, Client
 from app.client.exchange import Progress
+from app.client.files import File
 from app.client.names import CLIENT_HEADER, user_at_host
 from app.client.problem import Problem
 
-__all__ = ["CLIENT_HEADER", "AsyncClient", "Client", "Problem", "Progress", "user_at_host"]
+__all__ = ["CLIENT_HEADER", "AsyncClient", "Client", "File", "Problem", "Progress", "user_at_host"]

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TypedDict, Unpack
+
+import httpx
 
 from app.client.exchange import (
     BASE,
@@ -23,6 +26,7 @@ from app.client.exchange import (
     read,
     written,
 )
+from app.client.files import File
 from app.client.problem import checked
 from app.schemas.analyses import Analysis, Surface
 from app.schemas.curves import Curves
@@ -257,6 +261,23 @@ def model(id: str, kind: str = "step", *, on_progress: Progress | None = None) -
     return _file(f"/designs/{id}/model.{kind}", on_progress)
 
 
+def download(
+    id: str,
+    kind: str = "step",
+    *,
+    model: str | None = None,
+    revision: int | None = None,
+    on_progress: Progress | None = None,
+) -> Exchange[File]:
+    """A file of a design under its name, `{design}_{model}_r{revision}.{kind}`.
+
+    Of the newest good model if no revision is named; `model` says which one, if the design has several.
+    """
+    one = f"/revisions/{revision}" if revision else ""
+    named = f"/models/{model}" if model else ""
+    return File.of((yield from _awaited(f"/designs/{id}{one}{named}/model.{kind}", on_progress)))
+
+
 def report(id: str, kind: str = "pdf", *, on_progress: Progress | None = None) -> Exchange[bytes]:
     """The calculation report of the design's newest revision, with all its pictures: pdf or html."""
     return _file(f"/designs/{id}/report.{kind}", on_progress)
@@ -295,8 +316,13 @@ def _saved(request: Request, on_progress: Progress | None) -> Exchange[Design]:
 
 def _file(path: str, on_progress: Progress | None) -> Exchange[bytes]:
     """A file once it has been made."""
-    response = yield from awaited(get(path), on_progress)
-    return response.content
+    return (yield from _awaited(path, on_progress)).content
+
+
+def _awaited(path: str, on_progress: Progress | None) -> Exchange[httpx.Response]:
+    """The answer with a file once it has been made, its job followed from the start if progress is wanted."""
+    headers = {"Prefer": "respond-async"} if on_progress else {}
+    return awaited(replace(get(path), headers=headers), on_progress)
 
 
 def _match(design: Design) -> dict[str, str]:

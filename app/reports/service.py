@@ -14,7 +14,7 @@ from importlib.metadata import version
 from pydantic_core import to_json
 from sqlalchemy.orm import Session
 
-from app.designs import repository, views
+from app.designs import repository, stamps, views
 from app.designs.graph import Catalogues
 from app.designs.worksheet import worksheet
 from app.presentation import numbers
@@ -30,6 +30,7 @@ from app.solids import rows
 from app.solids.models import Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from cad.stamp import stamped
 
 PENDING = "its picture and drawing were still being made when this report was written"
 NO_PICTURE = "no picture and drawing could be made of it"
@@ -104,10 +105,17 @@ class Reports:
         )
 
     def pictures(self, report: Report) -> dict[str, dict[str, bytes]]:
-        """Picture and drawing of every model that has them."""
+        """Picture and drawing of every model that has them; the drawing with its stamp."""
         files = {model.name: {file.kind: file.sha256 for file in model.files} for model in report.models}
+        with self.database.read() as session:
+            models = repository.revision(session, report.design, report.revision).models
+            named = {model.name: stamps.stamp(session, model) for model in models}
         return {
-            name: {kind: self.store.read(shas[kind]) for kind in (PICTURE, DRAWING) if kind in shas}
+            name: {
+                kind: stamped(self.store.read(shas[kind]), kind, named[name])
+                for kind in (PICTURE, DRAWING)
+                if kind in shas
+            }
             for name, shas in files.items()
         }
 

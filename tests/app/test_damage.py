@@ -14,6 +14,7 @@ from app.settings import Settings
 from app.storage.errors import ArtifactDamaged
 from app.storage.tables import AnalysisRow, ArtifactRow, BuildRow
 from cad.regenerate import MADE_BY
+from cad.stamp import is_copy
 
 WAIT = {"Prefer": "wait=60"}
 PAGE = 4096
@@ -77,7 +78,9 @@ class TestServed:
         assert int(answer.headers["retry-after"]) > 0
         assert answer.headers["location"] == refusal["job"]
         again = http.get(f"{API}/designs/{design['id']}/model.step", headers=WAIT)
-        assert hashlib.sha256(again.content).hexdigest() == sha
+        stored = http.get(f"{API}/artifacts/{sha}").content
+        assert hashlib.sha256(stored).hexdigest() == sha
+        assert is_copy(again.content, stored)
         assert http.get(refusal["job"]).json()["state"] == "done"
 
     def test_a_picture_is_made_again_although_the_step_file_is_lost_too(self, served, http, design):

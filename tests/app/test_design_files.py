@@ -1,4 +1,4 @@
-"""Files of a design name it outside, in Content-Disposition, and inside, by a stamp; `verify` ignores it."""
+"""Files of a design name it: outside, in Content-Disposition, and inside, by a stamp that `verify` skips."""
 
 import hashlib
 import io

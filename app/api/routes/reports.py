@@ -10,6 +10,7 @@ from typing import Annotated
 from fastapi import APIRouter, Header, Request, Response
 from starlette.concurrency import run_in_threadpool
 
+from app.api.attachments import named
 from app.api.dependencies import ExpensiveSteps, TheJobs, ThePress, TheReports, TheThreads, Units
 from app.api.gate.clients import TheClient
 from app.api.gate.guard import PAGE_POLICY
@@ -118,7 +119,7 @@ async def show_worksheet(
     if wanted == "json":
         return written(worksheet, headers=headers)
     write = tables.write_csv if wanted == "csv" else tables.write_xlsx
-    headers["Content-Disposition"] = f'attachment; filename="design_{_plain(id)}_r{revision}.{wanted}"'
+    headers["Content-Disposition"] = named(worksheet.name, revision, wanted, how="attachment")
     table = await run_in_threadpool(lambda: write(tables.of(worksheet)))
     return Response(table, headers=headers, media_type=TABLES[wanted])
 
@@ -134,14 +135,13 @@ async def _waited(
 
 
 def _headers(report: Report, kind: str, job: str | None) -> dict[str, str]:
-    name = f"design_{_plain(report.design)}_r{report.revision}.{kind}"
     headers = {
         "Design-Revision": str(report.revision),
         "Vary": "Accept",
         "Cache-Control": "no-store" if job else "no-cache",
         "Content-Security-Policy": PAGE_POLICY,
         "X-Content-Type-Options": "nosniff",
-        "Content-Disposition": f'inline; filename="{name}"',
+        "Content-Disposition": named(report.title, report.revision, kind, how="inline"),
     }
     return {**headers, "Location": f"/api/v1/jobs/{job}"} if job else {**headers, "ETag": tag(report, kind)}
 
@@ -165,7 +165,3 @@ def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str,
 def _weight(parameters: str) -> float:
     found = WEIGHT.search(parameters)
     return float(found[1]) if found else 1.0
-
-
-def _plain(id: str) -> str:
-    return re.sub(r"[^A-Za-z0-9_-]", "", id)

@@ -1,6 +1,7 @@
 // The design page while it is used: previews, the draft, saving, progress. Every action is a call of the API.
 import { Refused, call, units } from "./api.js";
 import { calculated } from "./calculation.js";
+import { startDownloads } from "./downloads.js";
 import { Draft } from "./draft.js";
 import { isolated } from "./isolated.js";
 import { live } from "./live.js";
@@ -10,6 +11,8 @@ import { follow } from "./progress.js";
 import { OUTDATED, markOutdated, markWaiting, showFaults, showResults } from "./results.js";
 import { startSolids } from "./solids.js";
 import { nameOf, patchOf } from "./typed.js";
+
+startDownloads();
 
 const form = document.getElementById("sheet");
 const { design: id, revision } = form.dataset;

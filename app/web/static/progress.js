@@ -14,12 +14,19 @@ export function follow(path, place = document.querySelector("[data-progress]"), 
     call("DELETE", path).catch(() => {}); // it has ended meanwhile
   };
   place.scrollIntoView({ block: "nearest" });
+  return watched(path, (progress, text) => {
+    bar.value = progress;
+    words.replaceChildren(isolated(text));
+  });
+}
+
+// Until a job has ended, however it did; `say` hears how far it is.
+export function watched(path, say) {
   return new Promise((ended) => {
     const events = new EventSource(`${path}/events`);
     events.addEventListener("progress", ({ data }) => {
       const { progress, text } = JSON.parse(data);
-      bar.value = progress;
-      words.replaceChildren(isolated(text));
+      say(progress, text);
     });
     const end = () => {
       events.close();

@@ -1,6 +1,9 @@
 // The pictures of a revision, from what the interface answers about it.
 import { call, units } from "./api.js";
+import { startDownloads } from "./downloads.js";
 import { drawPictures } from "./pictures.js";
+
+startDownloads();
 
 const [, id, number] = location.pathname.match(/designs\/([^/]+)\/revisions\/(\d+)/);
 const { told } = await call("GET", `/api/v1/designs/${id}/revisions/${number}/worksheet?units=${units()}`);

@@ -1,0 +1,41 @@
+"""Files that the service sends, under the names that it gives them."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import unquote
+
+import httpx
+
+_WIDE = re.compile(r"filename\*=UTF-8''([^;\s]+)", re.IGNORECASE)
+_PLAIN = re.compile(r'filename="([^"]*)"')
+
+
+@dataclass(frozen=True)
+class File:
+    """A file, and what it is called."""
+
+    name: str
+    content: bytes
+
+    @classmethod
+    def of(cls, response: httpx.Response) -> File:
+        """The file in an answer; one that the service does not name is called as the path ends."""
+        said = response.headers.get("Content-Disposition", "")
+        if wide := _WIDE.search(said):
+            name = unquote(wide[1])
+        else:
+            plain = _PLAIN.search(said)
+            name = plain[1] if plain else response.url.path
+        return cls(Path(name).name or "file", response.content)
+
+    def save(self, folder: str | os.PathLike[str] = ".") -> Path:
+        """Write the file into a folder, whole or not at all; where it is then."""
+        path = Path(folder, self.name)
+        temporary = path.with_name(f".{path.name[:200]}.part")
+        temporary.write_bytes(self.content)
+        os.replace(temporary, path)
+        return path

@@ -1,0 +1,47 @@
+"""`crankwright download`: a file of a design, from a running service, under its name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import httpx
+
+from app.client import Client, Problem
+from app.settings import Settings
+
+
+@click.command("download")
+@click.argument("design")
+@click.argument("kind", default="step")
+@click.option("--model", default=None, help="its name in the design, if there are several")
+@click.option(
+    "--revision", type=click.IntRange(1), default=None, help="that of the newest good model if not given"
+)
+@click.option("--folder", type=click.Path(exists=True, file_okay=False, path_type=Path), default=Path())
+@click.option(
+    "--url", default=None, help="of the service; that of CRANKWRIGHT_PORT on this machine if not given"
+)
+def download_command(
+    design: str, kind: str, model: str | None, revision: int | None, folder: Path, url: str | None
+) -> None:
+    """Save a file of DESIGN (an id) as {design}_{model}_r{revision}.KIND.
+
+    KIND is step, glb, stl, svg, drawing.svg, dxf or png. A file that the service still has to make is waited
+    for.
+    """
+    place = url or f"http://127.0.0.1:{Settings().port}"
+    try:
+        with Client(place) as client:
+            file = client.download(design, kind, model=model, revision=revision, on_progress=_progress)
+        click.echo(file.save(folder))
+    except Problem as problem:
+        raise click.ClickException(str(problem)) from None
+    except httpx.HTTPError as error:
+        raise click.ClickException(f"no service answers at {place}: {error}") from None
+    except OSError as error:
+        raise click.ClickException(f"{folder.absolute()} cannot hold the file: {error.strerror}") from None
+
+
+def _progress(done: float, text: str) -> None:
+    click.echo(f"  {done:4.0%}  {text}", err=True)

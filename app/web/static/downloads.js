@@ -1,0 +1,70 @@
+// Downloads: a file that still has to be made is waited for, and an answer that is no file is never saved.
+import { Refused, call } from "./api.js";
+import { isolated } from "./isolated.js";
+import { watched } from "./progress.js";
+
+export function startDownloads() {
+  for (const link of document.querySelectorAll("[data-download]")) {
+    link.addEventListener("click", (event) => {
+      if (event.ctrlKey || event.metaKey || event.shiftKey) return; // in another tab: the browser's own way
+      event.preventDefault();
+      download(link);
+    });
+  }
+}
+
+async function download(link) {
+  if (link.ariaBusy === "true") return;
+  link.ariaBusy = "true";
+  const status = statusOf(link);
+  try {
+    const answer = await made(link.href, (progress, text) => status.replaceChildren(bar(progress), isolated(text)));
+    save(await answer.blob(), nameIn(answer) ?? (link.download || link.pathname.split("/").pop()));
+    status.textContent = "";
+  } catch (error) {
+    status.replaceChildren(isolated(error instanceof Refused ? error.message : "The file could not be fetched; try again."));
+  } finally {
+    link.ariaBusy = "false";
+  }
+}
+
+// The answer with the file, once no job has to make it first.
+async function made(path, say) {
+  for (;;) {
+    const answer = await fetch(path, { headers: { Prefer: "respond-async" } });
+    const job = [202, 503].includes(answer.status) && answer.headers.get("Location");
+    if (!job) {
+      if (!answer.ok) throw new Refused(answer.status, await answer.json().catch(() => ({})));
+      return answer;
+    }
+    say(0, "The file is being made …");
+    await watched(job, say);
+    const { told } = await call("GET", job);
+    if (told.state !== "done") throw new Refused(told.problem?.status ?? 409, told.problem ?? { detail: "The job was cancelled." });
+  }
+}
+
+function save(blob, name) {
+  const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000); // by then the browser has read it
+}
+
+function nameIn(answer) {
+  const said = answer.headers.get("Content-Disposition") ?? "";
+  const wide = said.match(/filename\*=UTF-8''([^;]+)/i), plain = said.match(/filename="([^"]+)"/);
+  return wide ? decodeURIComponent(wide[1]) : plain?.[1];
+}
+
+// Where it says how far a download is: behind the links.
+function statusOf(link) {
+  const found = link.parentElement.querySelector("[data-download-status]");
+  if (found) return found;
+  const status = document.createElement("span");
+  status.setAttribute("role", "status");
+  status.dataset.downloadStatus = "";
+  link.parentElement.append(status);
+  return status;
+}
+
+const bar = (value) => Object.assign(document.createElement("progress"), { value });

@@ -1,0 +1,79 @@
+"""Downloads in Chromium: a file that has to be made is waited for, and what is no file is never saved."""
+
+import json
+from pathlib import Path
+
+from patience import patient
+from playwright.sync_api import expect
+from serving import API
+
+PATIENCE = patient(60.0) * 1000  # ms
+SHELL = {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "37.5 mm"}}
+PROBLEM = {
+    "type": "/problems/geometry",
+    "title": "Geometry",
+    "status": 422,
+    "detail": "no room for a title block",
+}
+
+
+def design(http, name):
+    body = {"name": name, "models": {"shell": SHELL}}
+    answer = http.post(f"{API}/designs", json=body, headers={"Prefer": "wait=60", "Accept": "*/*"})
+    assert answer.status_code == 201, answer.text
+    return answer.json()["id"]
+
+
+def link(page, kind):
+    return page.get_by_role("link", name=kind, exact=True)
+
+
+def test_a_drawing_that_is_not_made_yet_is_waited_for(watched, http):
+    page = watched.page
+    page.goto(f"{watched.url}/designs/{design(http, 'Käfig 2')}")
+    with page.expect_download(timeout=PATIENCE) as download:
+        link(page, "DXF").click()
+    assert download.value.suggested_filename == "Käfig_2_shell_r1.dxf"
+    assert Path(download.value.path()).read_text().startswith("  0\nSECTION")
+    expect(page.locator("[data-download-status]")).to_be_empty()
+
+
+def test_a_job_is_followed_and_its_answer_is_not_saved(watched, http):
+    """202 twice, as of a queue that is long; the page shows how far the job is, and saves the file alone."""
+    page, answers = watched.page, []
+
+    def slow(route):
+        answers.append(route.fetch())
+        headers = {"Location": f"{API}/jobs/made-up", "Content-Type": "application/json"}
+        if len(answers) < 3:
+            route.fulfill(status=202, headers=headers, body='{"job": "made-up"}')
+        else:
+            route.fulfill(response=answers[-1])
+
+    def events(route):
+        body = 'event: progress\ndata: {"progress": 0.5, "text": "drawing"}\n\nevent: done\ndata: {}\n\n'
+        route.fulfill(headers={"Content-Type": "text/event-stream"}, body=body)
+
+    page.route("**/models/shell/model.stl", slow)
+    page.route("**/jobs/made-up/events", events)
+    page.route("**/jobs/made-up", lambda route: route.fulfill(body=json.dumps({"state": "done"})))
+    page.goto(f"{watched.url}/designs/{design(http, 'slow')}")
+    with page.expect_download(timeout=PATIENCE) as download:
+        link(page, "STL").click()
+    assert download.value.suggested_filename == "slow_shell_r1.stl"
+    assert not Path(download.value.path()).read_bytes().startswith(b"{")
+    assert len(answers) == 3
+
+
+def test_why_a_file_cannot_be_made_is_said_and_nothing_is_saved(watched, http):
+    page, saved = watched.page, []
+    page.on("download", lambda file: saved.append(file))
+    refusal = json.dumps(PROBLEM)
+    page.route(
+        "**/models/shell/model.dxf",
+        lambda route: route.fulfill(status=422, content_type="application/problem+json", body=refusal),
+    )
+    page.goto(f"{watched.url}/designs/{design(http, 'refused')}")
+    link(page, "DXF").click()
+    expect(page.locator("[data-download-status]")).to_contain_text("no room for a title block")
+    assert saved == []
