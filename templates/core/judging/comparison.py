@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.errors import FaultyText
-from templates.core.judging.bands import Bounds, Estimate, aligned, bounds_of
+from templates.core.judging.bands import Bounds, Estimate, Shift, aligned, bounds_of
 from templates.core.judging.criterion import Criterion, Sign, plain_name
 from templates.core.units.relation import Relation
 from templates.core.units.units import Value
@@ -42,8 +42,12 @@ class Compared:
         return worst if worst.ndim else int(worst)
 
 
-def compare(criterion: Criterion, estimates: Mapping[str, Estimate]) -> Compared:
+def compare(
+    criterion: Criterion, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
+) -> Compared:
     """Compare the sides of a criterion whose names all have estimates; NaN is not checked.
+
+    `shifts` are the values of all names, with something upstream shifted to either end of its band.
 
     Raises
     ------
@@ -53,7 +57,8 @@ def compare(criterion: Criterion, estimates: Mapping[str, Estimate]) -> Compared
     axes = max(estimates[name].axes for name in criterion.names) if criterion.names else 0
     fitted = aligned(estimates, axes)
     value, limit = _side(criterion.value, fitted), _side(criterion.limit, fitted)
-    value_bounds, limit_bounds = bounds_of(criterion.value, fitted), bounds_of(criterion.limit, fitted)
+    value_bounds = bounds_of(criterion.value, fitted, shifts)
+    limit_bounds = bounds_of(criterion.limit, fitted, shifts)
     try:
         codes = verdicts(criterion.sign, value, limit, value_bounds, limit_bounds)
     except ValueError:

@@ -127,7 +127,7 @@ def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
         if name in limits:
             one = _limit(evaluated, limits[name], estimates)
         else:
-            one = _estimate(evaluated, name)
+            one = estimate_of(evaluated, name)
         if isinstance(one, Absent):
             absent[name] = one
         else:
@@ -154,7 +154,7 @@ def _source(evaluated: Evaluated, criterion: Criterion) -> str | None:
     return "; ".join(dict.fromkeys(source for source in sources if source)) or None
 
 
-def _estimate(evaluated: Evaluated, name: str) -> Estimate | Absent:
+def estimate_of(evaluated: Evaluated, name: str) -> Estimate | Absent:
     """The value of an input or output with its error, or why there is none."""
     template = evaluated.template
     if _is_output(template, name):
