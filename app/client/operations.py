@@ -41,6 +41,7 @@ from app.schemas.designs import (
 )
 from app.schemas.evaluations import Evaluation, Solution, Worksheet
 from app.schemas.jobs import Job
+from app.schemas.library import LibraryTable, LibraryTables, LibraryTableSummary
 from app.schemas.solids import Build, Verification
 from app.schemas.templates import Template, TemplateList, TemplateSummary
 
@@ -77,6 +78,16 @@ def templates() -> Exchange[list[TemplateSummary]]:
 def template(id: str, version: int) -> Exchange[Template]:
     """One version with its inputs, outputs, formulas, limits and errata."""
     return answered(Template, get(f"/templates/{id}/versions/{version}"))
+
+
+def library() -> Exchange[list[LibraryTableSummary]]:
+    """Every table of the library: bearing materials, oils, surface finishes."""
+    return listed(LibraryTables, "/library")
+
+
+def library_table(id: str) -> Exchange[LibraryTable]:
+    """One table of the library, with a source for each value."""
+    return answered(LibraryTable, get(f"/library/{id}"))
 
 
 def evaluate(id: str, version: int, inputs: Values, **options: Unpack[Options]) -> Exchange[Evaluation]:

@@ -9,21 +9,24 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 from typing import Any, Literal
 
 from templates.core.errors import FaultyText, excerpt, unknown_name
 from templates.core.units.operations import Kind, Name
 from templates.core.units.relation import Relation, parse
-from templates.core.units.units import Unit, compatible, registry, unit
+from templates.core.units.units import Unit, compatible, registry, require_same_kind, unit
 
 Sign = Literal[">=", "<="]
 
 LONGEST_REQUIRE = 2000  # characters
 _SIGN = re.compile("(>=|<=)")
-_KEYS = frozenset({"require", "words", "source", "limits", "unverified", "warning"})
-_LIMIT_KEYS = frozenset({"unit", "words", "from"})
+_KEYS = frozenset({"require", "words", "source", "limits", "unverified", "warning", "absent"})
+_LIMIT_KEYS = frozenset({"unit", "words", "from", "default"})
+_ABSENT_KEYS = frozenset({"with", "reason"})
+_OBJECTS = frozenset({"limits", "absent"})
+_DEFAULT = re.compile(r"(min|max)\(([a-z][a-z0-9_]*)\)")
 _SIGNS = {">=": "≥", "<=": "≤"}
 _RADIAN = registry.Unit("radian")
 
@@ -38,19 +41,33 @@ class Known:
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """A limit that the calculation does not take; `library` is the choice whose rows have a value for it."""
+    """A limit that the calculation does not take.
+
+    `library` is the choice whose rows have a value for it. Where nobody gives the limit, it is the `default`,
+    if there is one: the `min` or `max` of an input that is a list.
+    """
 
     name: str
     unit: str
     words: str
     library: str | None = None
+    default: tuple[str, str] | None = None
 
     @property
     def remedy(self) -> str:
         """What to give."""
         unit = "" if self.unit == "1" else f" in {self.unit}"
         row = f", or a row of {self.library}" if self.library else ""
-        return f"give {self.name}{unit}{row}"
+        other = f", or {self.default[1]}" if self.default else ""
+        return f"give {self.name}{unit}{row}{other}"
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """Why a name has no value although another one, `beside`, has."""
+
+    beside: str
+    reason: str
 
 
 @dataclass(frozen=True)
@@ -72,6 +89,7 @@ class Criterion:
     source: str | None = None
     unverified: str | None = None
     warning: str | None = None
+    absent: Mapping[str, Missing] = field(default_factory=dict)
 
     @cached_property
     def scale(self) -> Unit:
@@ -142,6 +160,7 @@ def read_criterion(name: str, raw: Any, known: Mapping[str, Known]) -> Criterion
         source=parts.get("source"),
         unverified=parts.get("unverified"),
         warning=parts.get("warning"),
+        absent={n: _missing(n, part, used, known) for n, part in _mapping(parts.get("absent", {})).items()},
     )
 
 
@@ -169,13 +188,13 @@ def _check_keys(raw: Any, keys: frozenset[str], needed: str) -> None:
     for key, value in raw.items():
         if key not in keys:
             raise FaultyText("unknown_name", unknown_name(str(key), sorted(keys), "key").detail)
-        if key != "limits" and not (isinstance(value, str) and value.strip()):
+        if key not in _OBJECTS and not (isinstance(value, str) and value.strip()):
             raise FaultyText("syntax", f"{key} is a text, not {excerpt(value)}")
 
 
 def _mapping(raw: Any) -> Mapping[str, Any]:
     if not isinstance(raw, Mapping):
-        raise FaultyText("syntax", f"limits are an object by name, not {excerpt(raw)}")
+        raise FaultyText("syntax", f"limits and absent are objects by name, not {excerpt(raw)}")
     return raw
 
 
@@ -184,7 +203,26 @@ def _limit(name: str, raw: Any, known: Mapping[str, Known]) -> Limit:
         raise FaultyText("twice", f"{name} is an input or output already; name the limit otherwise")
     _check_keys(raw, _LIMIT_KEYS, "unit")
     unit(raw["unit"])
-    return Limit(name, raw["unit"], raw.get("words") or name.replace("_", " "), raw.get("from"))
+    default = _default(raw["default"], known, raw["unit"]) if "default" in raw else None
+    return Limit(name, raw["unit"], raw.get("words") or name.replace("_", " "), raw.get("from"), default)
+
+
+def _default(text: str, known: Mapping[str, Known], wanted: str) -> tuple[str, str]:
+    """Of `min(speed_range)` the function and the name."""
+    match = _DEFAULT.fullmatch(text)
+    if match is None or match[2] not in known:
+        raise FaultyText("syntax", f"a default is min(NAME) or max(NAME) of an input, not {excerpt(text)}")
+    require_same_kind(known[match[2]].unit, wanted)
+    return match[1], match[2]
+
+
+def _missing(name: str, raw: Any, used: tuple[str, ...], known: Mapping[str, Known]) -> Missing:
+    _check_keys(raw, _ABSENT_KEYS, "reason")
+    beside = raw.get("with", "")
+    for candidate, candidates in ((name, used), (beside, known)):
+        if candidate not in candidates:
+            raise FaultyText("unknown_name", unknown_name(candidate, candidates, "name").detail)
+    return Missing(beside, raw["reason"])
 
 
 def _ordered(text: str, names: frozenset[str]) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText
 from templates.core.judging.bands import Estimate
-from templates.core.judging.criterion import Criterion, Known, Limit, is_angle, read_criterion
+from templates.core.judging.criterion import Criterion, Known, Limit, Missing, is_angle, read_criterion
 from templates.core.judging.judgement import Judgement, sentence
 from templates.core.judging.judging import Absent, Along, judge
 from templates.core.judging.limits import GivenLimit
@@ -129,7 +129,7 @@ def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
         else:
             one = estimate_of(evaluated, name)
         if isinstance(one, Absent):
-            absent[name] = one
+            absent[name] = _known_reason(evaluated, criterion.absent.get(name)) or one
         else:
             estimates[name] = one
     subject = criterion.subject or ""
@@ -171,7 +171,7 @@ def _limit(evaluated: Evaluated, limit: Limit, others: Mapping[str, Estimate]) -
     """A limit of the user: one for all, one for each point, or a curve beside a curve."""
     given = evaluated.limits.get(limit.name)
     if given is None:
-        return Absent((limit.name,), limit.remedy)
+        return _default(evaluated, limit)
     shape, points = np.shape(given.value), evaluated.template.shape_of_points()
     if not shape or _fits(shape, points):
         return Estimate(given.value)
@@ -181,6 +181,23 @@ def _limit(evaluated: Evaluated, limit: Limit, others: Mapping[str, Estimate]) -
     return Absent(
         (), f"{limit.name} has {np.size(given.value)} values, which do not fit those of the calculation"
     )
+
+
+def _default(evaluated: Evaluated, limit: Limit) -> Estimate | Absent:
+    """A limit that nobody gave: an end of an input that is a list, where that is declared and given."""
+    if limit.default is not None:
+        function, name = limit.default
+        with np.errstate(all="ignore"):
+            si = getattr(evaluated.template, evaluated.template.inputs[name].attribute)
+        if np.ndim(si):
+            return Estimate({"min": np.min, "max": np.max}[function](si, axis=-1))
+    return Absent((limit.name,), limit.remedy)
+
+
+def _known_reason(evaluated: Evaluated, missing: Missing | None) -> Absent | None:
+    """Why an output has no value, where the criterion says so and the output beside it has one."""
+    beside = evaluated.answers.get(missing.beside) if missing else None
+    return Absent((), missing.reason) if missing and beside and beside.value is not None else None
 
 
 def _fits(shape: tuple[int, ...], wanted: tuple[int, ...]) -> bool:
@@ -212,11 +229,12 @@ def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Ab
 def _error(evaluated: Evaluated, name: str) -> tuple[Any, bool]:
     """The relative error of an output, and whether any was stated.
 
-    A template without levels whose table does not name the output states none; its band has no width. Of one
-    with levels an error that is not known is NaN, and decides nothing.
+    A template of which no errors were measured, or one without levels whose table does not name the output,
+    states none; its band has no width. Of a level an error that is not known is NaN, and decides nothing.
     """
     error = evaluated.errors.get(name)
-    if not evaluated.template.levels and not _is_measured(evaluated.measured, name):
+    has_levels = bool(evaluated.template.levels) and evaluated.measured is not None
+    if not has_levels and not _is_measured(evaluated.measured, name):
         return 0.0, False
     if error is None:
         return float("nan"), False
@@ -254,8 +272,12 @@ def _places(template: Template, axis: Declaration) -> Along | None:
 
 
 def warned(cls: type[Template], judgements: list[Judgement]) -> Iterator[Notice]:
-    """A warning for every criterion that is not met and that declares one."""
+    """A warning for every criterion that declares one and is not met, or whose value misses its limit.
+
+    Where the limit lies within the error of a value that misses it, the verdict is undecided: a film of 1 nm
+    whose error is not known is warned of all the same.
+    """
     first = {criterion.name: criterion.names[0] for criterion in cls.declared_criteria}
     for judgement in judgements:
-        if judgement.verdict == "not_met" and judgement.warning:
+        if judgement.warning and judgement.misses:
             yield Notice(judgement.warning, first[judgement.name], sentence(judgement))
