@@ -28,6 +28,7 @@ def design(row: DesignRow, revision: RevisionRow) -> Design:
             "steps": document["steps"],
             "models": document["models"],
             "iterations": document["iterations"],
+            **{name: document[name] for name in ("criteria",) if name in document},
             "problem": revision.problem,
             "created": row.created,
             "changed": revision.created,
@@ -68,6 +69,7 @@ def revision(session: Session, row: RevisionRow) -> Revision:
             },
             "iterations": results["iterations"],
             **({"warnings": unused} if (unused := tolerances.warnings(row.document)) else {}),
+            **{name: results[name] for name in ("criteria", "verdict") if name in results},
         }
     )
 
