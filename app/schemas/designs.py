@@ -8,6 +8,7 @@ from pydantic import ConfigDict, Field
 
 from app.schemas.analyses import AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Answer, Page, Shown, Version, Warning
+from app.schemas.criteria import Criterion, Verdict
 from app.schemas.evaluations import CalculatedBy, Error, Level, Output, UsedInput, WorkedFormula
 from app.schemas.problems import Problem
 from app.schemas.solids import Measurements
@@ -161,6 +162,8 @@ class Revision(Answer):
     steps: dict[str, RevisionStep]
     models: dict[str, RevisionModel]
     iterations: list[Round]
+    criteria: list[Criterion] = []
+    verdict: Verdict | None = None
 
 
 class RevisionList(Page[Revision]):
@@ -219,6 +222,8 @@ class Preview(Answer):
     model_parameters: dict[str, ParameterChange]
     steps: dict[str, PreviewedStep] | None = None
     parameters: dict[str, Shown] | None = Field(None, description="values of the design's own parameters")
+    criteria: list[Criterion] = []
+    verdict: Verdict | None = None
 
 
 class Explanation(Answer):

@@ -22,6 +22,8 @@ from app.web.declared import properties, required
 from app.web.pictures import Picture, pictures
 from app.web.sheet import Field
 
+MOST_AT_ONCE = 16  # results
+
 
 @dataclass(frozen=True)
 class StepBlock:
@@ -34,6 +36,26 @@ class StepBlock:
     pictures: list[Picture]
     fields: list[Field] = field(default_factory=list)
     options: list[Field] = field(default_factory=list)
+    keys: list[str] = field(default_factory=list)  # outputs in its fold line
+
+    @property
+    def main(self) -> list[str]:
+        """The results that are shown at once: all of a few; of many, those that no other formula uses."""
+        if len(self.outputs) <= MOST_AT_ONCE:
+            return self.outputs
+        used = {name for formula in self.template.formulas for name in formula.uses}
+        return [name for name in self.outputs if name not in used or name in self.keys]
+
+    @property
+    def intermediate(self) -> list[str]:
+        """The results that are folded away."""
+        main = set(self.main)
+        return [name for name in self.outputs if name not in main]
+
+    @property
+    def has_faults(self) -> bool:
+        """Whether one of its fields holds what was refused."""
+        return any(one.error for one in (*self.fields, *self.options))
 
 
 @dataclass(frozen=True)

@@ -171,7 +171,7 @@ QUANTITIES = (
 def test_the_browser_writes_numbers_as_the_server_does(watched):
     watched.open("/")
     script = "async ([numbers, units, quantities]) => { const m = await import('/static/numbers.js');"
-    script += "return [numbers.map(m.aligned), units.map(m.unit), quantities.map(m.told)]; }"
+    script += "return [numbers.map(m.aligned), units.map(m.unit), quantities.map(m.quantityText)]; }"
     numbers, units, quantities = watched.page.evaluate(script, [list(NUMBERS), list(UNITS), list(QUANTITIES)])
     assert numbers == [list(aligned(number)) for number in NUMBERS]
     assert units == [unit(text) for text in UNITS]
