@@ -1,4 +1,4 @@
-"""Criteria in words, for pages and reports alike: what was compared, what is used, what is left, what is missing.
+"""Criteria in words, for pages and reports alike: what was compared, what is used, left, and missing.
 
 Every sentence is about the case: "minimum film thickness 1.53 µm < 2 µm", never the docstring of a rule.
 `static/criteria.js` writes the same while a user types; `tests/web` compares the two.
@@ -223,7 +223,34 @@ def _where(criterion: Judged) -> str:
     at = f"worst at {', '.join(places)}" if places else ""
     if not criterion.points or criterion.points == 1:
         return at
-    counts = ", ".join(
-        f"{number} {WORDS[verdict]}" for verdict, number in (criterion.counts or {}).items() if number
-    )
-    return "; ".join(filter(None, (at, f"{criterion.points} points: {counts}")))
+    each = [f"{number} {WORDS[verdict]}" for verdict, number in (criterion.counts or {}).items() if number]
+    return "; ".join(filter(None, (at, f"{criterion.points} points: {', '.join(each)}")))
+
+
+class Summed(Protocol):
+    """The verdict over all criteria."""
+
+    @property
+    def verdict(self) -> str: ...  # noqa: D102 - the schema describes every field
+    @property
+    def green(self) -> bool: ...  # noqa: D102
+
+
+def tone(verdict: Summed) -> str:
+    """The colour of a verdict: green only where the interface says so."""
+    if verdict.green:
+        return "green"
+    return {"not_met": "bad", "undecided": "open", "not_checked": "open"}.get(verdict.verdict, "plain")
+
+
+NOT_JUDGED = "criteria not judged (calculated before criteria existed); save to judge"
+NO_CRITERIA = "no criteria: its templates declare none, and the design has none of its own"
+_WHY = {
+    "regenerating": "criteria not judged yet: the design is being calculated",
+    "failed": "criteria not judged: the regeneration failed",
+}
+
+
+def headline_of(state: str, *, is_judged: bool) -> str:
+    """What stands in place of a verdict: the design has no criteria, or they were not judged, and why."""
+    return NO_CRITERIA if is_judged else _WHY.get(state, NOT_JUDGED)

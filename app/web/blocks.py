@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from app.reports.pictures import Picture, pictures
 from app.schemas.answers import Shown
+from app.schemas.declared import properties, required
 from app.schemas.designs import (
     Design,
     ParameterChange,
@@ -18,8 +20,6 @@ from app.schemas.evaluations import Output
 from app.schemas.templates import CadModel as Model
 from app.schemas.templates import Template
 from app.web import sheet
-from app.web.declared import properties, required
-from app.web.pictures import Picture, pictures
 from app.web.sheet import Field
 
 MOST_AT_ONCE = 16  # results

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from app.presentation.criteria import Line, line, sides
-from app.schemas.criteria import Criterion, Verdict
+from app.presentation.criteria import Line, headline_of, line, sides, tone
+from app.schemas.criteria import Criterion
 from app.schemas.designs import Design, RevisionWorksheet
 from app.schemas.evaluations import Output
 from app.web.blocks import StepBlock
@@ -15,10 +15,6 @@ from app.web.forms import texts
 
 MOST_KEYS = 4  # results in the fold line of a step
 _NAMES = re.compile(r"[A-Za-z]\w*(?:\.[A-Za-z]\w*)*")
-NOT_JUDGED = "criteria not judged (calculated before criteria existed); save to judge"
-WAITING = "criteria not judged yet: the design is being calculated"
-FAILED = "criteria not judged: the regeneration failed"
-NO_CRITERIA = "no criteria: its templates declare none, and the design has none of its own"
 
 
 @dataclass(frozen=True)
@@ -49,21 +45,12 @@ class Banner:
 def banner(revision: RevisionWorksheet) -> Banner:
     """The verdict of a revision; of one that has none, the reason."""
     verdict = revision.verdict
-    if verdict is None:
-        reasons = {"regenerating": WAITING, "failed": FAILED}
-        return Banner(reasons.get(revision.state, NOT_JUDGED), "plain", None, [], judged=False)
+    if verdict is None or not revision.criteria:
+        headline = headline_of(revision.state, is_judged=verdict is not None)
+        return Banner(headline, "plain", None, [], judged=verdict is not None)
     lines = [line(criterion) for criterion in revision.criteria]
-    if not lines:
-        return Banner(NO_CRITERIA, "plain", None, [], judged=True)
     governing = next((line for line in lines if line.name == verdict.governing), None)
     return Banner(verdict.headline, tone(verdict), governing, lines, judged=True)
-
-
-def tone(verdict: Verdict) -> str:
-    """The colour of a verdict: green only where the interface says so."""
-    if verdict.green:
-        return "green"
-    return {"not_met": "bad", "undecided": "open", "not_checked": "open"}.get(verdict.verdict, "plain")
 
 
 def key_outputs(
@@ -80,7 +67,7 @@ def key_outputs(
 
 
 def _tails(step: str, text: str, name: str) -> list[str]:
-    """The names of a step in a text, without the step; bare ones too, in a criterion of the step's template."""
+    """The names of a step in a text, without it; bare ones too, in a criterion of the step's template."""
     own = name.startswith(f"{step}.")
     names = _NAMES.findall(text)
     return [n.removeprefix(f"{step}.") for n in names if n.startswith(f"{step}.") or (own and "." not in n)]

@@ -8,10 +8,10 @@ from judging import CRITERIA, MET, UNCHECKED, UNDECIDED, WORST, verdict
 from playwright.sync_api import expect
 from serving import API
 
-from app.presentation.criteria import compared, line, margin, step_of, title
+from app.presentation.criteria import compared, line, margin, step_of, title, tone
 from app.schemas.criteria import Criterion, Verdict
 from app.web.rendering import jinja
-from app.web.verdict import banner, key_outputs, tone
+from app.web.verdict import banner, key_outputs
 
 LONGEST = 3000  # pixels of a page with two steps, 1440 wide
 
