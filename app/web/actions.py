@@ -15,12 +15,12 @@ from pydantic import JsonValue
 
 from app.api.reading import FORM_TYPES, NotForm, check_type
 from app.presentation.typed import value_of
-from app.schemas.designs import Design
+from app.schemas.designs import Design, Proposals
 from app.schemas.templates import Template
 from app.web.api import Api, Refused, TheApi, read
 from app.web.blocks import Refusal
 from app.web.design_page import design_page
-from app.web.forms import Patch, fields, kept, patch_of
+from app.web.forms import Patch, fields, inner, kept, patch_of
 from app.web.gallery import GALLERY
 from app.web.rendering import go
 from app.web.routes import Id, Number
@@ -46,8 +46,6 @@ async def create(request: Request, api: TheApi) -> Response:
     example = GALLERY.get(typed.get("example", ""))
     document = example.document if example else await _blank(api, typed)
     design = read(await api.send("POST", "/designs", json=document, headers=AT_ONCE), Design)
-    if not example and design.models:
-        await api.send("POST", f"/designs/{design.id}/auto-map", params={"apply": True}, headers=AT_ONCE)
     return go(f"/designs/{design.id}")
 
 
@@ -83,10 +81,17 @@ async def add(id: Id, request: Request, api: TheApi) -> Response:
 
 @router.post("/designs/{id}/auto-map")
 async def auto_map(id: Id, request: Request, api: TheApi) -> Response:
-    """Save the proposals."""
+    """Save those proposals that the user chose."""
     typed = await fields(request)
-    headers = {**AT_ONCE, "If-Match": _tag(typed.get("revision", ""))}
-    await api.send("POST", f"/designs/{id}/auto-map", params={"apply": True}, headers=headers)
+    proposed = (await api.post(f"/designs/{id}/auto-map", Proposals)).proposals
+    chosen = [item for item in proposed if typed.get(f"map.{item.target}")]
+    patch: Patch = {"models": {}}
+    for item in chosen:
+        model, _, parameter = item.target.partition(".")
+        within = inner(inner(patch["models"], model), "parameters")
+        within[parameter] = item.relation
+    if chosen:
+        await _change(api, id, typed.get("revision", ""), patch, "mapped as proposed")
     return go(f"/designs/{id}")
 
 

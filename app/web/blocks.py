@@ -69,6 +69,11 @@ class ModelBlock:
     old: Mapping[str, Shown] = field(default_factory=dict)
     status: Mapping[str, str | None] = field(default_factory=dict)
 
+    @property
+    def targets(self) -> set[str]:
+        """The names of its parameters in a design."""
+        return {f"{self.name}.{tail}" for tail in properties(self.model.parameters)}
+
 
 @dataclass(frozen=True)
 class Refusal:

@@ -152,7 +152,12 @@ def test_a_design_is_built_up_copied_restored_and_deleted_by_forms(http):
     made = http.post("/designs", data={"name": "own", "template": "oil_film/1", "model": "plain_bearing/1"})
     place = made.headers["location"]
     design = settled(http, place)
-    assert design["models"]["model"]["parameters"]["inner_diameter"] == "= oil_film.bearing_diameter"
+    assert design["models"]["model"]["parameters"] == {}  # a mapping is proposed, never applied on its own
+    assert "model.inner_diameter = oil_film.bearing_diameter" in http.get(place).text
+    chosen = {"revision": str(design["revision"]), "map.model.inner_diameter": "1"}
+    http.post(f"{place}/auto-map", data=chosen)
+    design = settled(http, place)
+    assert design["models"]["model"]["parameters"] == {"inner_diameter": "= oil_film.bearing_diameter"}
     revision = str(design["revision"])
     more = {"revision": revision, "add": "parameter", "name": "k", "value": "2 mm"}
     http.post(f"{place}/blocks", data=more)
