@@ -151,6 +151,10 @@ def test_a_template_file_has_its_page_form_formulas_and_report(watched):
     page.locator(".new-design input[name=name]").fill("thirds")
     page.locator("select[name=template]").select_option("third/1")
     page.locator(".new-design button").click()
+    expect(page.get_by_role("heading", level=1)).to_contain_text("thirds: step third")
+    expect(page.get_by_label("Whole length")).to_have_value("")  # no value of the example is taken over
+    page.get_by_label("Whole length").fill("9 mm")
+    page.get_by_role("button", name="Create the design").click()
     expect(page.get_by_role("heading", level=1)).to_have_text("thirds")
     page.get_by_label("Whole length").fill("10 in")
     expect(page.locator('[data-output="third.third_of_the_length"] .number')).to_have_text("84.667")
