@@ -31,6 +31,7 @@ from app.api.routes.designs import router as designs
 from app.api.routes.evaluations import router as answers
 from app.api.routes.film_pressure import router as film_pressure
 from app.api.routes.jobs import router as jobs
+from app.api.routes.library import router as library
 from app.api.routes.models import router as models
 from app.api.routes.reports import router as reports
 from app.api.routes.templates import router as catalogue
@@ -83,6 +84,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         film_pressure,
         curves,
         catalogue,
+        library,
         designs,
         design_files,
         reports,

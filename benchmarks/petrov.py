@@ -17,6 +17,7 @@ from time import perf_counter
 import numpy as np
 from matplotlib import pyplot as plt
 
+from benchmarks.truths import FULL_SHEAR, meanings
 from templates.core.arrays import Array
 from templates.oil_film.journal_friction_v1 import JournalFriction
 from templates.physics.films.film_map import NARROWEST, WIDEST
@@ -30,6 +31,7 @@ PICTURE = Path("docs/pictures/petrov.svg")
 EPS = [0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999, 0.9999,
        ECCENTRICITY_LIMIT]  # fmt: skip
 RATIO = [NARROWEST, 0.1, 0.25, 0.5, 0.75, 1, 1.5, 2, 4, 10, WIDEST]
+OUTPUTS = ("friction_force", "friction_torque", "power_loss")
 INSIDE = 9
 POINTS = 100_000
 
@@ -65,6 +67,7 @@ def measure() -> None:
         "template": {"id": JournalFriction.id, "version": JournalFriction.version},
         "made_by": "python -m benchmarks.petrov",
         "truth": "Reynolds solution of the loaded film: full circle, Swift–Stieber rupture, shear all around",
+        "truths": meanings(FULL_SHEAR),
         "error": "largest found in each cell; relative; unknown without a load",
         "cost": "seconds a point",
         "axes": [
@@ -74,7 +77,8 @@ def measure() -> None:
         "levels": {
             "only": {
                 "cost": {"single": seconds_a_point(1), "vectorised": seconds_a_point(POINTS)},
-                "errors": dict.fromkeys(("friction_force", "friction_torque", "power_loss"), errors),
+                "truth": dict.fromkeys(OUTPUTS, FULL_SHEAR),
+                "errors": dict.fromkeys(OUTPUTS, errors),
             }
         },
     }

@@ -12,9 +12,11 @@ import json
 from itertools import pairwise
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
+from benchmarks.truths import PAD, meanings
 from templates.core.arrays import Array
 from templates.oil_film.slider_bearing_v1 import SliderBearing
 from templates.physics.pads.slider_film import (
@@ -98,13 +100,20 @@ def costs(level: str) -> dict[str, float]:
     return {"single": seconds_a_point(level, 1), "vectorised": seconds_a_point(level, POINTS)}
 
 
+def measured(level: str) -> dict[str, Any]:
+    """Cost, truth and errors of a level."""
+    errors_by_name = table(level)
+    return {"cost": costs(level), "truth": dict.fromkeys(errors_by_name, PAD), "errors": errors_by_name}
+
+
 def main() -> None:
     """Fill the table and print the figures."""
-    levels = {level: {"cost": costs(level), "errors": table(level)} for level in SliderBearing.levels}
+    levels = {level: measured(level) for level in SliderBearing.levels}
     told = {
         "template": {"id": SliderBearing.id, "version": SliderBearing.version},
         "made_by": "python -m benchmarks.slider_bearing",
         "truth": "pads of finite width, extrapolated from 128 × 32 and 256 × 64 intervals",
+        "truths": meanings(PAD),
         "error": "largest found in each cell; relative, of pressure and its gradient to the largest along "
         "the pad, of the velocity to the runner's, of the friction on the pad to that on the runner",
         "cost": "seconds a point",
@@ -115,9 +124,9 @@ def main() -> None:
         "levels": levels,
     }
     TABLE.write_text(json.dumps(told, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
-    for level, measured in levels.items():
-        print(level, measured["cost"])
-        for name, cells in measured["errors"].items():
+    for level, about in levels.items():
+        print(level, about["cost"])
+        for name, cells in about["errors"].items():
             print(
                 f"  {name}: {np.max(cells):.1e} everywhere, {np.max(cells[:8]):.1e} up to a film ratio of 10"
             )

@@ -96,6 +96,7 @@ class Version:
         level: str | None = None,
         tolerance: float | None = None,
         outputs: Iterable[str] | None = None,
+        per_point: bool = False,
         **inputs: Any,
     ) -> Calculation:
         """Calculate for these inputs.
@@ -107,9 +108,11 @@ class Version:
             asked for.
         tolerance
             The largest relative error wanted. The cheapest level whose measured error meets it for all
-            `outputs` computes these at once.
+            `outputs`, at all points, computes these at once.
         outputs
             The outputs that the tolerance is about; all, if None.
+        per_point
+            Whether each point of arrays has the cheapest level of its own.
         **inputs
             The template's inputs by name.
 
@@ -124,7 +127,9 @@ class Version:
             _refuse_names(self.template, level, outputs)
             made = self.template.from_quantities(raw)
             return Calculation(at_level(made, level or made.starting_level()) if made.levels else made)
-        done = evaluate(self.template, raw, outputs=outputs, level=level, tolerance=tolerance)
+        done = evaluate(
+            self.template, raw, outputs=outputs, level=level, tolerance=tolerance, per_point=per_point
+        )
         return Calculation(done.template, done.outputs, done.error, done.warnings, level=done.level)
 
 

@@ -41,6 +41,7 @@ from app.storage.errors import CannotRebuild
 from app.workers import errors as workers
 from cad.errors import AnalysisError, GeometryError, UnreadableStep
 from templates.core import errors as templates
+from templates.library.tables import UnknownTable
 
 logger = logging.getLogger(__name__)
 
@@ -69,6 +70,7 @@ TABLE: dict[type[Exception], Kind] = {
     RequestValidationError: INVALID,
     InvalidBody: INVALID,
     templates.UnknownTemplate: Kind("unknown-template", 404, "No such version", "GET the list of versions"),
+    UnknownTable: Kind("unknown-table", 404, "No such table", "GET /api/v1/library lists them"),
     templates.Unreachable: Kind("unreachable", 422, "The target is out of reach", "see `reachable`"),
     templates.TemplateError: Kind("refused", 422, "The calculation refuses", "see `detail`"),
     storage.NotFound: Kind("not-found", 404, "Not found", "GET the list to see what there is"),

@@ -16,6 +16,7 @@ import numpy as np
 from app.calculations.size import arrays, spanned
 from app.plain import Raw
 from templates.core.errors import InvalidInputs
+from templates.core.language.climbing import reachable
 from templates.core.language.levels import SINGLE, accuracy
 from templates.core.language.solve import POLISHES, SAMPLES
 from templates.core.language.spec import Curve, Table
@@ -117,7 +118,7 @@ def _levels(
         return (level,)
     ladder = _ladder(cls, inputs, numbers)
     if tolerance is not None:
-        return ladder
+        return reachable(cls, ladder)
     return (cls.default_level if cls.default_level in ladder else ladder[-1],)
 
 

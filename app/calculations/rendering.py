@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from app.calculations import criteria
 from app.plain import Json, JsonObject
 from templates.core.catalogue.digests import content_digest, digest
 from templates.core.language.evaluate import Answer, Echo, Evaluation
@@ -84,5 +85,6 @@ def evaluation(result: Evaluation) -> JsonObject:
         "level": _plain(result.level),
         "error": _errors(result.error),
         "warnings": [{"code": w.code, "name": w.name, "detail": w.detail} for w in result.warnings],
+        **criteria.rendered(result.criteria),
         "seconds": result.seconds,
     }

@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field, StringConstraints
 
 from app.plain import JsonObject
 from app.schemas.bounded import Bounded, at_most
-from app.schemas.values import Given
+from app.schemas.values import Given, Limits
 
 Text = Annotated[str, StringConstraints(max_length=100)]
 MOST_NAMES = 2000  # in one request
@@ -46,9 +46,15 @@ class Asked(Bounded):
 class EvaluateIn(Asked):
     """Evaluate a template."""
 
+    per_point: bool = Field(
+        False, description="with a tolerance: the cheapest level at each point, not one level for all points"
+    )
+
     model_config = ConfigDict(
         json_schema_extra={"examples": [{"inputs": OIL_FILM, "outputs": ["minimum_film_thickness"]}]}
     )
+
+    limits: Limits = {}
 
 
 class SolveIn(Asked):

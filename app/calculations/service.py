@@ -34,7 +34,14 @@ def evaluated(cls: type[Template], body: EvaluateIn) -> Evaluation:
     """
     _limit_answer(cls, body)
     result = evaluate(
-        cls, body.inputs, outputs=body.outputs, units=body.units, level=body.level, tolerance=body.tolerance
+        cls,
+        body.inputs,
+        outputs=body.outputs,
+        units=body.units,
+        level=body.level,
+        tolerance=body.tolerance,
+        per_point=body.per_point,
+        limits=body.limits,
     )
     _limit(result.count())  # curves are longer than their inputs
     return result
@@ -51,7 +58,7 @@ def check_evaluate(cls: type[Template], body: EvaluateIn) -> None:
         If the answer would be too large.
     """
     _limit_answer(cls, body)
-    request = read_request(cls, body.inputs, body.outputs, body.units, body.level)
+    request = read_request(cls, body.inputs, body.outputs, body.units, body.level, body.limits)
     with np.errstate(all="ignore"):
         require_points(request.template, body.level, body.tolerance)
 

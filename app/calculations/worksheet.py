@@ -29,9 +29,11 @@ def run_worksheet(cls: type[Template], body: EvaluateIn, system: System) -> Json
 def worksheet(evaluation: Evaluation, system: System) -> JsonObject:
     """An evaluation as `evaluate` answers it, in the system's units, with its formulas."""
     answer = rendering.evaluation(evaluation)
+    names = ("outputs", "criteria")
+    shown: JsonObject = {name: converted(answer[name], system) for name in names if name in answer}
     return {
         **answer,
-        "outputs": converted(answer["outputs"], system),
+        **shown,
         "formulas": formulas(evaluation.template, system, evaluation.outputs),
     }
 

@@ -149,6 +149,8 @@ class Client(_Connection):
 
     templates = _Method(operations.templates)
     template = _Method(operations.template)
+    library = _Method(operations.library)
+    library_table = _Method(operations.library_table)
     evaluate = _Method(operations.evaluate)
     worksheet = _Method(operations.worksheet)
     solve = _Method(operations.solve)
@@ -227,6 +229,8 @@ class AsyncClient(_Connection):
 
     templates = _AsyncMethod(operations.templates)
     template = _AsyncMethod(operations.template)
+    library = _AsyncMethod(operations.library)
+    library_table = _AsyncMethod(operations.library_table)
     evaluate = _AsyncMethod(operations.evaluate)
     worksheet = _AsyncMethod(operations.worksheet)
     solve = _AsyncMethod(operations.solve)

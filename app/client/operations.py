@@ -41,6 +41,7 @@ from app.schemas.designs import (
 )
 from app.schemas.evaluations import Evaluation, Solution, Worksheet
 from app.schemas.jobs import Job
+from app.schemas.library import LibraryTable, LibraryTables, LibraryTableSummary
 from app.schemas.solids import Build, Verification
 from app.schemas.templates import Template, TemplateList, TemplateSummary
 
@@ -54,7 +55,9 @@ class Options(TypedDict, total=False):
     outputs: list[str]
     level: str
     tolerance: float
+    per_point: bool
     units: dict[str, str]
+    limits: Mapping[str, Any]
 
 
 class AnalysisOptions(TypedDict, total=False):
@@ -77,8 +80,18 @@ def template(id: str, version: int) -> Exchange[Template]:
     return answered(Template, get(f"/templates/{id}/versions/{version}"))
 
 
+def library() -> Exchange[list[LibraryTableSummary]]:
+    """Every table of the library: bearing materials, oils, surface finishes."""
+    return listed(LibraryTables, "/library")
+
+
+def library_table(id: str) -> Exchange[LibraryTable]:
+    """One table of the library, with a source for each value."""
+    return answered(LibraryTable, get(f"/library/{id}"))
+
+
 def evaluate(id: str, version: int, inputs: Values, **options: Unpack[Options]) -> Exchange[Evaluation]:
-    """Evaluate a template; options are `outputs`, `level`, `tolerance`, `units`."""
+    """Evaluate; options are `outputs`, `level`, `tolerance`, `per_point`, `units`, `limits`."""
     path = f"/templates/{id}/versions/{version}/evaluate"
     return calculated(Evaluation, post(path, {"inputs": inputs, **options}))
 

@@ -13,7 +13,7 @@ def judged(revision: RevisionWorksheet) -> Judged:
     """The verdict of a revision, or why there is none."""
     verdict = revision.verdict
     if verdict is None or not revision.criteria:
-        return Judged(headline_of(revision.state, is_judged=verdict is not None), "plain", "", [])
+        return Judged(headline_of(revision.state, is_judged=revision.criteria is not None), "plain", "", [])
     lines = [line(criterion) for criterion in revision.criteria]
     governing = next((one for one in lines if one.name == verdict.governing), None)
     rows = [_row(one, judged) for one, judged in zip(lines, revision.criteria, strict=True)]

@@ -6,36 +6,47 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.schemas.answers import Answer, Quantity, Shown, Values
+from app.schemas.answers import Answer, Measured, Quantity, Shown
 
 Word = Literal["met", "not_met", "undecided", "not_checked"]
+"""`undecided`: the limit lies within the error of the value; `not_checked`: value or limit is missing."""
+
+
+class Band(Measured):
+    """Where the truth lies: the lower and the upper bound; null where it is open."""
+
+    value: list[float | None] = Field(min_length=2, max_length=2)
+    unit: str
 
 
 class Criterion(Answer):
-    """One criterion, held against its value; fields that do not apply are absent."""
+    """One criterion, held against its value; what does not apply is absent.
 
-    name: str
+    Over several points, or along a curve, the numbers are those of the worst place.
+    """
+
+    name: str = Field(description="in a design with its step: `film.film`")
     words: str
-    require: str
+    require: str = Field(description="the comparison, such as `film >= 3 um`")
     verdict: Word
     value: Quantity | None = None
     limit: Quantity | None = None
-    band: Values | None = None
+    band: Band | None = Field(None, description="of the value; absent where its error is not known")
     relative_error: float | None = None
-    error_stated: bool = False
-    utilisation: float | None = None
-    margin: Quantity | None = None
-    needs: float | None = None
-    give: list[str] = []
+    error_stated: bool = Field(True, description="whether the error of the model was measured at all")
+    utilisation: float | None = Field(None, description="above 1 it is not met; none of a temperature")
+    margin: Quantity | None = Field(None, description="positive is safe; of a temperature in K")
+    needs: float | None = Field(None, description="the relative error that would decide")
+    give: list[str] = Field([], description="what is missing")
     reason: str | None = None
-    level: str | None = None
-    truth: str | None = None
-    where: dict[str, Shown] | None = None
-    points: int | None = None
-    counts: dict[str, int] | None = None
-    source: str | None = None
-    unverified: str | None = None
-    waived: str | None = None
+    level: str | None = Field(None, description="of fidelity")
+    truth: str | None = Field(None, description="against which solution the error was measured")
+    where: dict[str, Shown] | None = Field(None, description="the worst place; points count from 1")
+    points: int | None = Field(None, description="how many were judged")
+    counts: dict[str, int] | None = Field(None, description="points of each verdict")
+    source: str | None = Field(None, description="of the limit, or of the rule")
+    unverified: str | None = Field(None, description="why the limit is not sure; the verdict is never green")
+    waived: str | None = Field(None, description="why it does not count")
 
 
 class Verdict(Answer):
@@ -43,6 +54,6 @@ class Verdict(Answer):
 
     verdict: Word
     counts: dict[str, int]
-    governing: str | None = None
-    headline: str
-    green: bool = Field(description="every criterion is met, with stated errors, and nothing is unverified")
+    governing: str | None = Field(None, description="the first criterion that was checked, worst first")
+    headline: str = Field(description="such as `3 met, 1 undecided, 2 not checked`")
+    green: bool = Field(description="all are met, every error of a model is stated, nothing is unverified")

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, JsonValue, WithJsonSchema
 
 from app.schemas.answers import Answer, Measured, Shown, Value, Version, Warning
+from app.schemas.criteria import Criterion, Verdict
 
 
 class CalculatedBy(Version):
@@ -38,12 +39,13 @@ class Output(Measured):
 
 
 ERROR: dict[str, Any] = {
-    "description": "estimated relative error, of the shape of the output; null where none was measured",
+    "description": "estimated relative error of each point; of a curve, relative to its largest absolute "
+    "value; null where none is stated",
     "anyOf": [{"type": "number"}, {"type": "array", "items": {}}, {"type": "null"}],
 }
 Error = Annotated[Any, WithJsonSchema(ERROR)]
 LEVEL: dict[str, Any] = {
-    "description": "the level of fidelity; an array where it changes from point to point",
+    "description": "the level of fidelity; an array where each point has its own",
     "anyOf": [{"type": "string"}, {"type": "array", "items": {}}, {"type": "null"}],
 }
 Level = Annotated[Any, WithJsonSchema(LEVEL)]
@@ -58,6 +60,10 @@ class Evaluated(Answer):
     level: Level
     error: dict[str, Error]
     warnings: list[Warning]
+    criteria: list[Criterion] | None = Field(
+        None, description="worst first; absent where the template has none whose outputs are wanted"
+    )
+    verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
 
 
 class Evaluation(Evaluated):

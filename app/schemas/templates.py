@@ -109,7 +109,10 @@ class Accuracy(Answer):
 
     made_by: str | None = Field(None, description="the command that measured it")
     truth: str | None = Field(None, description="with which solution the levels are compared")
-    error: str | None = Field(None, description="what the errors are")
+    truths: dict[str, str] = Field({}, description="the solutions that the levels name as their `truth`")
+    error: str | None = Field(None, description="what the errors are; of a profile: over its largest value")
     cost: str | None = Field(None, description="what the costs are")
     axes: list[Axis] = Field([], description="none where one cell covers the whole plane")
-    levels: dict[str, JsonValue] = Field(description="cost, and error by output and cell")
+    levels: dict[str, JsonValue] = Field(
+        description="cost, and by output `errors` by cell and the name of the `truth`"
+    )

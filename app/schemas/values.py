@@ -23,5 +23,16 @@ GIVEN: dict[str, Any] = {
 Given = Annotated[Any, WithJsonSchema(GIVEN)]
 """A value as typed: the domain reads it and says what is wrong."""
 
+Limits = Annotated[
+    dict[str, Given],
+    Field(
+        max_length=200,
+        description="limits of criteria that the calculation does not take, by name, or a row of a library: "
+        '`{"permissible_pressure": "35 MPa"}`, `{"bearing_material": "…"}`',
+    ),
+    at_most(200),
+]
+"""Limits that a user gives for criteria."""
+
 Parameters = Annotated[dict[str, Given], Field(max_length=500), at_most(500)]
 """Parameters of a model by name."""

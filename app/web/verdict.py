@@ -46,8 +46,8 @@ def banner(revision: RevisionWorksheet) -> Banner:
     """The verdict of a revision; of one that has none, the reason."""
     verdict = revision.verdict
     if verdict is None or not revision.criteria:
-        headline = headline_of(revision.state, is_judged=verdict is not None)
-        return Banner(headline, "plain", None, [], judged=verdict is not None)
+        is_judged = revision.criteria is not None
+        return Banner(headline_of(revision.state, is_judged=is_judged), "plain", None, [], judged=is_judged)
     lines = [line(criterion) for criterion in revision.criteria]
     governing = next((line for line in lines if line.name == verdict.governing), None)
     return Banner(verdict.headline, tone(verdict), governing, lines, judged=True)
@@ -77,7 +77,7 @@ def with_keys(steps: Iterable[StepBlock], revision: RevisionWorksheet, design: D
     """The steps, each with the outputs of its fold line."""
     typed = list(texts(design).values())
     return [
-        replace(step, keys=key_outputs(step.name, step.result.outputs, revision.criteria, typed))
+        replace(step, keys=key_outputs(step.name, step.result.outputs, revision.criteria or [], typed))
         for step in steps
     ]
 

@@ -101,6 +101,38 @@ class BearingLoad(Cylinder):
         "crankcase_pressure": "1 bar",
         "crank_angle_step": "30 deg",
     }
+    criteria = {
+        "crankpin_load": {
+            "require": "crankpin_load_max <= permissible_crankpin_load",
+            "words": "the crankpin bearing is loaded within what it bears",
+            "limits": {
+                "permissible_crankpin_load": {
+                    "unit": "N",
+                    "words": "largest load that the crankpin bearing bears",
+                }
+            },
+        },
+        "main_load": {
+            "require": "main_load_max <= permissible_main_load",
+            "words": "the main bearings are loaded within what they bear",
+            "limits": {
+                "permissible_main_load": {
+                    "unit": "N",
+                    "words": "largest load that the main bearings bear together",
+                }
+            },
+        },
+        "gas_pressure": {
+            "require": "peak_gas_pressure <= permissible_gas_pressure",
+            "words": "the gas pressure is within the permissible one",
+            "limits": {"permissible_gas_pressure": {"unit": "bar", "words": "largest gas pressure"}},
+        },
+        "piston_speed": {
+            "require": "abs(speed) * stroke / pi <= permissible_piston_speed",
+            "words": "the mean piston speed is within the permissible one",
+            "limits": {"permissible_piston_speed": {"unit": "m/s", "words": "largest mean piston speed"}},
+        },
+    }
 
     @profile("deg", "crank angle", along=CYCLE, symbol=r"\theta", latex=r"k\,\Delta\theta")
     def theta(self) -> Array:

@@ -64,8 +64,9 @@ class Engine(Cylinder):
     its bank; angles of balancing masses count likewise, in the sense of the crank angle.
     Positions are along the shaft, from any plane; couples are about reference_position.
     Bank angles (V engines) count from the x axis in the sense of rotation; each cylinder brings its own crank
-    masses, so two rods on one pin share what is given. Left out for banks: unequal firing intervals, and
-    articulated rods.
+    masses, so two rods on one pin share what is given. Bank angles with their signs
+    swapped describe another crank: each throw follows from the bank of its cylinder. Left out for banks:
+    unequal firing intervals, and articulated rods.
     Primary and secondary amplitudes are of the reciprocating masses alone, in banks the largest on the way
     round; the rotating couple is of the rotating masses alone. Residual forces are all of these, up to the
     second harmonic.
@@ -119,6 +120,33 @@ class Engine(Cylinder):
         "crankpin_radius": "35 mm",
         "damper_inertia": "0.05 kg*m**2",
         "driven_inertia": "0.5 kg*m**2",
+    }
+    criteria = {
+        "flywheel": {
+            "require": "flywheel_inertia <= planned_flywheel_inertia",
+            "words": "the flywheel that is planned evens out the speed",
+            "limits": {
+                "planned_flywheel_inertia": {
+                    "unit": "kg*m**2",
+                    "words": "inertia of the flywheel that is planned",
+                }
+            },
+        },
+        "shaking_force": {
+            "require": "sqrt(residual_force_x**2 + residual_force_y**2) <= permissible_shaking_force",
+            "words": "the residual force is within the permissible one all the way round",
+            "limits": {"permissible_shaking_force": {"unit": "N", "words": "largest residual force"}},
+        },
+        "primary_couple": {
+            "require": "primary_couple <= permissible_couple",
+            "words": "the primary couple is within the permissible one",
+            "limits": {"permissible_couple": {"unit": "N*m", "words": "largest primary couple"}},
+        },
+        "piston_speed": {
+            "require": "abs(speed) * stroke / pi <= permissible_piston_speed",
+            "words": "the mean piston speed is within the permissible one",
+            "limits": {"permissible_piston_speed": {"unit": "m/s", "words": "largest mean piston speed"}},
+        },
     }
 
     N: Array = given("1", "cylinders", integer=True, single=True, ge=1, le=100)

@@ -46,6 +46,35 @@ class JournalFriction(Template):
         "dynamic_viscosity": "11.877 mPa*s",
         "radial_load": "10 N",
     }
+    criteria = {
+        "film": {
+            "require": "radial_clearance * (1 - relative_eccentricity) >= smallest_permissible_film",
+            "words": "the smallest film is not thinner than the smallest permissible one",
+            "limits": {
+                "smallest_permissible_film": {
+                    "unit": "um",
+                    "words": "smallest film that the bearing may have",
+                }
+            },
+        },
+        "film_exists": {
+            "require": "radial_clearance * (1 - relative_eccentricity) >= 0.05 um",
+            "words": "the film is not thinner than the finest surfaces are rough",
+            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
+            "warning": "film_too_thin",
+        },
+        "specific_load": {
+            "require": "radial_load / (journal_diameter * bearing_width) <= permissible_specific_load",
+            "words": "the load over journal times width is within what the bearing material bears",
+            "limits": {
+                "permissible_specific_load": {
+                    "unit": "MPa",
+                    "words": "largest load over journal times width that the bearing material bears",
+                    "from": "bearing_material",
+                }
+            },
+        },
+    }
 
     d: Array = given("mm", "journal diameter", gt=0)
     b: Array = given("mm", "bearing width", gt=0)

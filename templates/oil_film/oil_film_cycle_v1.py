@@ -77,6 +77,8 @@ class OilFilmCycle(Template):
     shear of a full film by the difference of journal and sleeve speed (transient: by the oil there is), and
     the work of the load on the film. Side flow is what the motion of the journal displaces from the ends;
     flow driven by a supply pressure is left out.
+    Rigid and isoviscous: criteria with warnings say where the pressure deforms steel by the clearance, or
+    makes the oil 22 000 times as thick, and where the film is below 0.05 µm.
     A load number below 1e-4 is refused: with a mean speed of half the crank's, a journal in a four-stroke
     engine may then whirl as it likes.
 
@@ -113,6 +115,45 @@ class OilFilmCycle(Template):
         "diametral_clearance": "0.055 mm",
         "dynamic_viscosity": "10 mPa*s",
     }  # fmt: skip
+    criteria = {
+        "film": {
+            "require": "minimum_film_thickness >= permissible_film",
+            "words": "the smallest film of the cycle is not thinner than the permissible one",
+        },
+        "film_exists": {
+            "require": "minimum_film_thickness >= 0.05 um",
+            "words": "the film is not thinner than the finest surfaces are rough",
+            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
+            "warning": "film_too_thin",
+        },
+        "pressure": {
+            "require": "maximum_pressure <= permissible_pressure",
+            "words": "the largest pressure of the cycle is within the permissible one",
+        },
+        "rigid": {
+            "require": "maximum_pressure <= 231 GPa * relative_clearance",
+            "words": "the pressure deforms the steel by less than the clearance",
+            "source": "elasticity: steel deforms by about p D/E' with E' = 210 GPa/(1 - 0.3**2) = 231 GPa",
+            "warning": "pressure_deforms_bearing",
+        },
+        "isoviscous": {
+            "require": "maximum_pressure <= 500 MPa",
+            "words": "the pressure does not make the oil thousands of times thicker",
+            "source": "Barus 1893, 20 1/GPa for mineral oil: at 500 MPa it is e**10 = 22 000 times as thick",
+            "warning": "pressure_thickens_oil",
+        },
+        "specific_load": {
+            "require": "largest_load / (bearing_diameter * bearing_width) <= permissible_specific_load",
+            "words": "the largest load over bore times width is within what the bearing material bears",
+            "limits": {
+                "permissible_specific_load": {
+                    "unit": "MPa",
+                    "words": "largest load over bore times width that the bearing material bears",
+                    "from": "bearing_material",
+                }
+            },
+        },
+    }
 
     theta: Array = curve("deg", "crank angle", symbol=r"\theta", ge=-720, le=1440)
     F_x: Array = curve("N", "load x", also=("crankpin load x", "main load x"))

@@ -54,6 +54,46 @@ class OilFilm(Template):
         "oil_inlet_temperature": "80 degC",
         "oil_outlet_temperature": "87.762 degC",
     }
+    criteria = {
+        "film": {
+            "require": "minimum_film_thickness >= smallest_permissible_film",
+            "words": "the smallest film is not thinner than the smallest permissible one",
+            "limits": {
+                "smallest_permissible_film": {
+                    "unit": "um",
+                    "words": "smallest film that the bearing may have",
+                }
+            },
+        },
+        "film_exists": {
+            "require": "minimum_film_thickness >= 0.05 um",
+            "words": "the film is not thinner than the finest surfaces are rough",
+            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
+            "warning": "film_too_thin",
+        },
+        "specific_load": {
+            "require": "radial_load / (bearing_diameter * bearing_width) <= permissible_specific_load",
+            "words": "the load over bore times width is within what the bearing material bears",
+            "limits": {
+                "permissible_specific_load": {
+                    "unit": "MPa",
+                    "words": "largest load over bore times width that the bearing material bears",
+                    "from": "bearing_material",
+                }
+            },
+        },
+        "temperature": {
+            "require": "oil_outlet_temperature <= permissible_temperature",
+            "words": "the oil leaves the bearing no hotter than the bearing material bears",
+            "limits": {
+                "permissible_temperature": {
+                    "unit": "degC",
+                    "words": "largest temperature that the bearing material bears",
+                    "from": "bearing_material",
+                }
+            },
+        },
+    }
 
     F: Array = given("N", "radial load", ge=0, also=("bearing load", "load"))
     c: Array = given("mm", "diametral clearance", gt=0)

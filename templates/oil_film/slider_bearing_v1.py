@@ -58,6 +58,8 @@ class SliderBearing(Template):
     The squeeze number takes the time in which oil passes the pad, l/U, unless another is given; then it
     equals R_x.
     The film is laminar up to rho U h/eta of about 1000.
+    Rigid and isoviscous: criteria with warnings say where the pressure deforms steel by the film's thickness,
+    or makes the oil 22 000 times as thick.
     Pressure and velocity are those at mid-width; the stations of the pressure are equally spaced in x.
 
     Errata
@@ -87,6 +89,64 @@ class SliderBearing(Template):
         "dynamic_viscosity": "30 mPa*s",
         "density": "860 kg/m**3",
         "place": "40 mm",
+    }
+    criteria = {
+        "film": {
+            "require": "min(inlet_film, outlet_film) >= smallest_permissible_film",
+            "words": "the smallest film is not thinner than the smallest permissible one",
+            "limits": {
+                "smallest_permissible_film": {
+                    "unit": "um",
+                    "words": "smallest film that the bearing may have",
+                }
+            },
+        },
+        "film_exists": {
+            "require": "min(inlet_film, outlet_film) >= 0.05 um",
+            "words": "the film is not thinner than the finest surfaces are rough",
+            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
+            "warning": "film_too_thin",
+        },
+        "pressure": {
+            "require": "maximum_pressure <= permissible_pressure",
+            "words": "the pressure of the film is within what the bearing material bears",
+            "limits": {
+                "permissible_pressure": {
+                    "unit": "MPa",
+                    "words": "largest pressure of the film that the bearing material bears",
+                    "from": "bearing_material",
+                }
+            },
+        },
+        "rigid": {
+            "require": "maximum_pressure <= 231 GPa * min(inlet_film, outlet_film) / length",
+            "words": "the pressure deforms the steel by less than the film is thick",
+            "source": "elasticity: steel deforms by about p l/E' with E' = 210 GPa/(1 - 0.3**2) = 231 GPa",
+            "warning": "pressure_deforms_bearing",
+        },
+        "isoviscous": {
+            "require": "maximum_pressure <= 500 MPa",
+            "words": "the pressure does not make the oil thousands of times thicker",
+            "source": "Barus 1893, 20 1/GPa for mineral oil: at 500 MPa it is e**10 = 22 000 times as thick",
+            "warning": "pressure_thickens_oil",
+        },
+        "specific_load": {
+            "require": "load / (length * width) <= permissible_specific_load",
+            "words": "the load over length times width is within what the bearing material bears",
+            "limits": {
+                "permissible_specific_load": {
+                    "unit": "MPa",
+                    "words": "largest load over length times width that the bearing material bears",
+                    "from": "bearing_material",
+                }
+            },
+        },
+        "laminar": {
+            "require": "film_reynolds_number <= 1000",
+            "words": "the flow in the film is laminar",
+            "source": "MEC 315",
+            "warning": "turbulent_flow",
+        },
     }
 
     l: Array = given("mm", "length", gt=0)  # noqa: E741, the course's symbol

@@ -62,6 +62,21 @@ class CrankStiffness(Template):
         "shear_modulus": "80 GPa",
         "reference_stiffness": "2.6e6 N*m/rad",
     }
+    criteria = {
+        "stiffness": {
+            "require": "recommended_stiffness >= required_stiffness",
+            "words": "the throw is as stiff as required",
+            "limits": {"required_stiffness": {"unit": "N*m/rad", "words": "smallest stiffness of the throw"}},
+        },
+        "reference": {
+            "require": "abs(recommended_stiffness - reference_stiffness)"
+            " <= permissible_difference * reference_stiffness",
+            "words": "the recommended stiffness agrees with the reference",
+            "limits": {
+                "permissible_difference": {"unit": "1", "words": "largest difference, of the reference"}
+            },
+        },
+    }
 
     L_j: Array = given("mm", "journal length", gt=0)
     D_j: Array = given("mm", "journal diameter", gt=0)

@@ -74,6 +74,10 @@ class FatigueLife(Template):
     `safety_factor` is that of the load: amplitude and mean grow together, up to the line that holds for ever
     or for `design_life`. `amplitude_safety_factor` lets the amplitude alone grow.
     A largest stress at or above the ultimate strength is refused, one above the yield strength warned of.
+    A compressive mean stress is not refused however large it is, and Morrow's life then has no bound: the
+    criterion on strength holds |mean| + amplitude against the ultimate strength, and warns.
+    There is no safety factor where amplitude and mean may grow together without end: without stress, or where
+    compression outweighs the amplitude (Morrow).
     Below 1000 cycles strains are plastic and Basquin's line no longer holds: a warning.
 
     References
@@ -99,6 +103,39 @@ class FatigueLife(Template):
         "fatigue_strength_exponent": -0.09,
         "endurance_limit": "130 MPa",
         "design_life": 1e7,
+    }
+    criteria = {
+        "strength": {
+            "require": "abs(mean_stress) + stress_amplitude <= ultimate_strength",
+            "words": "the largest stress, in tension or compression, is within the ultimate strength",
+            "source": "compression is held against the strength in tension, as of ductile steels",
+            "warning": "static_overload",
+        },
+        "yield": {
+            "require": "abs(mean_stress) + stress_amplitude <= yield_strength",
+            "words": "the largest stress, in tension or compression, is within the yield strength",
+            "source": "Budynas, Nisbett 2011",
+        },
+        "life": {
+            "require": "equivalent_amplitude <= allowable_amplitude",
+            "words": "the stress is borne for the design life, or for ever",
+            "source": "Basquin 1910",
+        },
+        "safety": {
+            "require": "safety_factor >= required_safety_factor",
+            "words": "amplitude and mean may grow together by the required factor",
+            "source": "Budynas, Nisbett 2011",
+            "limits": {
+                "required_safety_factor": {"unit": "1", "words": "smallest safety factor of the load"}
+            },
+            "absent": {
+                "safety_factor": {
+                    "with": "allowable_amplitude",
+                    "reason": "amplitude and mean may grow without end: there is no stress, or compression"
+                    " outweighs the amplitude",
+                }
+            },
+        },
     }
 
     S_a: Array = given("MPa", "nominal stress amplitude", alternative=True, ge=0)

@@ -60,6 +60,26 @@ class TorsionalVibration(Template):
         "engine_orders": [2, 4, 6],
         "speed_range": {"value": [1000, 4000], "unit": "rpm"},
     }
+    criteria = {
+        "separation": {
+            "require": "abs(critical_speeds - (1.1 * highest_running_speed + 0.9 * lowest_running_speed) / 2)"
+            " >= (1.1 * highest_running_speed - 0.9 * lowest_running_speed) / 2",
+            "words": "no critical speed lies in the running range, nor within 10 % of its ends",
+            "source": "10 % as in API 617 for torsional criticals; engines pass some, then stresses decide",
+            "limits": {
+                "lowest_running_speed": {
+                    "unit": "rpm",
+                    "words": "lowest speed of the running range",
+                    "default": "min(speed_range)",
+                },
+                "highest_running_speed": {
+                    "unit": "rpm",
+                    "words": "highest speed of the running range",
+                    "default": "max(speed_range)",
+                },
+            },
+        },
+    }
     precision = 1e-8
 
     J: Array = curve("kg*m**2", "inertias", along="inertias", gt=0)

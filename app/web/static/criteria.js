@@ -40,7 +40,7 @@ export function margin({ margin: left, band, limit, require }) {
   return `${text} (${plain(least)} … ${plain(most)})`;
 }
 
-export function error({ value, error_stated: isStated, relative_error: relative }) {
+export function error({ value, error_stated: isStated = true, relative_error: relative }) {
   if (!value) return "";
   return isStated && typeof relative === "number" ? `± ${percent(relative)}` : "not stated";
 }
@@ -52,7 +52,7 @@ export function missing({ give, verdict, needs, reason }) {
 }
 
 export function remarks(criterion) {
-  const { value, error_stated: isStated, unverified, waived, reason } = criterion;
+  const { value, error_stated: isStated = true, unverified, waived, reason } = criterion;
   return [
     value && !isStated && NOT_STATED,
     unverified && `unverified: ${unverified}`,

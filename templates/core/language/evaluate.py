@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache, reduce
 from typing import Any
 
@@ -12,13 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array
+from templates.core.judging.judgement import Judgement
+from templates.core.judging.limits import GivenLimit
 from templates.core.language.admission import absence
+from templates.core.language.climbing import Rung, climb
+from templates.core.language.criteria import Evaluated, judged, warned
 from templates.core.language.intake import Input, remarks
 from templates.core.language.ledger import Notice
-from templates.core.language.levels import Rung, accuracy, at_level, climb
+from templates.core.language.levels import accuracy, at_level
 from templates.core.language.request import read_request
 from templates.core.language.spec import Choice, Derived, Formula, Given, Profile, Text
 from templates.core.language.template import Template
+from templates.core.language.unmet import unmet
 from templates.core.units.quantity import Typed, Unit
 
 
@@ -47,7 +52,7 @@ class Evaluation:
     """What `evaluate` returns; `template` is the evaluated instance with every SI value it computed.
 
     `level` and `error` (relative; None or NaN where it was not measured) are single values, or arrays of the
-    shape of the outputs.
+    shape of the outputs. `criteria` are those of the template that name no other outputs, worst first.
     """
 
     template: Template
@@ -57,6 +62,7 @@ class Evaluation:
     error: dict[str, Any]
     warnings: list[Notice]
     seconds: float
+    criteria: list[Judgement] = field(default_factory=list)
 
     def count(self) -> int:
         """How many values all outputs have together."""
@@ -71,10 +77,14 @@ def evaluate(
     units: Mapping[str, str] | None = None,
     level: str | None = None,
     tolerance: float | None = None,
+    limits: Mapping[str, Any] | None = None,
+    per_point: bool = False,
 ) -> Evaluation:
     """Evaluate the outputs named (all, if None) for inputs as a user types them.
 
-    `units` names other units for outputs. Arrays of inputs give arrays of outputs.
+    `units` names other units for outputs. Arrays of inputs give arrays of outputs. With a `tolerance` one
+    level serves all points, unless `per_point` asks for the cheapest level at each. `limits` are those
+    that the template's criteria take from their user.
 
     Raises
     ------
@@ -82,10 +92,10 @@ def evaluate(
         Naming everything that is wrong with the request at once, or the result that is out of its domain.
     """
     start = time.perf_counter()
-    request = read_request(cls, raw, outputs, units, level)
+    request = read_request(cls, raw, outputs, units, level, limits)
     template, names, shown_in = request.template, request.names, request.shown_in
     with np.errstate(all="ignore"):
-        rungs = _rungs(template, names, level, tolerance)
+        rungs = _rungs(template, names, level, tolerance, per_point)
         parts = [_part(rung.template, names, shown_in) for rung in rungs]
         whole = parts[0] if rungs[0].where is None else _joined(rungs, parts)
         echoes = {
@@ -93,9 +103,29 @@ def evaluate(
             for name, declared in cls.inputs.items()
             if name in template.ledger.typed or is_reported(template, declared)
         }
-    notices = [*_standing(cls), *_noticed(rungs), *_unmet(cls, whole, names, tolerance)]
+        criteria = _judged(rungs, whole, shown_in, request.limits) if cls.declared_criteria else []
+    notices = [*_standing(cls), *_noticed(rungs)]
+    if tolerance is not None:
+        values = {name: answer.value for name, answer in whole.answers.items()}
+        notices += unmet(cls, values, whole.error, whole.level, tolerance)
+    notices += warned(cls, criteria)
     seconds = time.perf_counter() - start
-    return Evaluation(rungs[0].template, echoes, whole.answers, whole.level, whole.error, notices, seconds)
+    return Evaluation(
+        rungs[0].template, echoes, whole.answers, whole.level, whole.error, notices, seconds, criteria
+    )
+
+
+def _judged(
+    rungs: list[Rung], whole: _Part, shown_in: Mapping[str, Unit], limits: Mapping[str, GivenLimit]
+) -> list[Judgement]:
+    """The criteria whose outputs were evaluated."""
+    template, is_joined = rungs[0].template, rungs[0].where is not None
+    measured = accuracy(type(template))
+    return judged(
+        Evaluated(
+            template, whole.answers, whole.error, measured, limits, shown_in, whole.level, is_joined=is_joined
+        )
+    )
 
 
 @dataclass(frozen=True)
@@ -107,11 +137,13 @@ class _Part:
     error: dict[str, Any]
 
 
-def _rungs(template: Template, names: list[str], level: str | None, tolerance: float | None) -> list[Rung]:
+def _rungs(
+    template: Template, names: list[str], level: str | None, tolerance: float | None, per_point: bool
+) -> list[Rung]:
     if not template.levels:
         return [Rung(template, None)]
     if level is None and tolerance is not None:
-        return list(climb(template, names, tolerance))
+        return list(climb(template, names, tolerance, per_point=per_point))
     return [Rung(at_level(template, level or template.starting_level()), None)]
 
 
@@ -275,21 +307,3 @@ def _noticed(rungs: list[Rung]) -> list[Notice]:
     """The warnings of all levels, each once."""
     noticed = (notice for rung in rungs for notice in rung.template.ledger.warnings)
     return list(dict.fromkeys([*noticed, *(notice for rung in rungs for notice in remarks(rung.template))]))
-
-
-def _unmet(cls: type[Template], whole: _Part, names: list[str], tolerance: float | None) -> list[Notice]:
-    """A warning for every output whose error is not known to be within the tolerance."""
-    if tolerance is None:
-        return []
-    if accuracy(cls) is None:
-        detail = f"the error of {cls.id} version {cls.version} is not measured; no level is known to meet it"
-        return [Notice("tolerance_unmet", "tolerance", detail)]
-    numbers = [name for name in names if not isinstance(cls.formulas[name], Text)]
-    missed = {name: whole.error[name] for name in numbers if not np.all(whole.error[name] <= tolerance)}
-    return [Notice("tolerance_unmet", name, _missed(name, error)) for name, error in missed.items()]
-
-
-def _missed(name: str, error: Any) -> str:
-    if np.isnan(error).all():
-        return f"the error of {name} was not measured here; the finest level was taken"
-    return f"{name} may be off by {np.nanmax(error):.2g} at the finest level, which is more than asked for"

@@ -1,9 +1,14 @@
 """Levels of fidelity: how wrong each is and what it costs, as measured; which is the cheapest that will do.
 
 A template names its levels, cheapest first. Beside its file, `<id>_v<version>.accuracy.json` holds what a
-script in `benchmarks/` measured: for every level and output the error against the converged solution, on a
+script in `benchmarks/` measured: for every level and output the error against a converged solution, on a
 grid over two of the template's quantities. The table lies outside the frozen file, so that a version may gain
 a better one.
+
+Each level and output names its *truth*: the solution, with its conventions, against which the error was
+measured. Two levels may follow two conventions, and then their errors say nothing of each other
+(`truth_of`, `next_levels`). The error of a profile is relative to its largest absolute value
+(`absolute_error`).
 """
 
 from __future__ import annotations
@@ -11,7 +16,7 @@ from __future__ import annotations
 import inspect
 import json
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -22,10 +27,30 @@ from numpy.typing import NDArray
 
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
-from templates.core.language.spec import Text
+from templates.core.language.spec import Profile, Text
 from templates.core.language.template import Template
 
 SINGLE = "only"  # how the table of a template without levels calls its one
+
+
+@dataclass(frozen=True)
+class Condition:
+    """Inputs under which a further error comes on top of the table's, such as those of a heat balance."""
+
+    inputs: tuple[str, ...]
+    measured: Mapping[str, Mapping[str, float | None]]  # by level and output: the error that comes on top
+
+    def holds(self, template: Template) -> bool:
+        """Whether any of the inputs is given."""
+        return not template.ledger.typed.keys().isdisjoint(self.inputs)
+
+    def added(self, template: Template, output: str) -> float:
+        """What comes on top of the error: 0 where the inputs do not matter, NaN where it was not measured."""
+        beneath = template.dependencies(template.formulas[output].attribute)
+        if beneath.isdisjoint(template.inputs[name].attribute for name in self.inputs):
+            return 0.0
+        error = self.measured.get(template.level or SINGLE, {}).get(output)
+        return np.nan if error is None or not template.is_measured() else error
 
 
 @dataclass(frozen=True)
@@ -42,18 +67,38 @@ class Accuracy:
     def of(self, template: Template, outputs: Iterable[str]) -> dict[str, Any]:
         """What `evaluate` reports: none of a text, 0 where the level does not matter, else the estimate.
 
-        An estimate is the largest relative error to expect at the template's level, NaN where it was not
-        measured. Scalars, or arrays of the shape of the points.
+        An estimate is the largest relative error to expect at the template's level, of a profile relative to
+        its largest absolute value; NaN where none is stated. Scalars, or arrays of the shape of the points.
         """
-        names, tables = list(outputs), self.errors.get(template.level or SINGLE, {})
+        return self.expected(template, template.level, outputs)
+
+    def expected(self, template: Template, level: str, outputs: Iterable[str]) -> dict[str, Any]:
+        """The errors stated for a level in the cell in which the template lies at its own level."""
+        names, tables = list(outputs), self.errors.get(level or SINGLE, {})
+        there = template if level == template.level else template.at(level)
         exact = {name for name in names if _same_at_all_levels(template, name)} if template.levels else set()
-        available = tables if template.is_measured() else {}
+        available = tables if there.is_measured() else {}
         measured = [name for name in names if name in available and name not in exact]
         cell = self._cell(template) if measured else None
         estimates = {name: _looked_up(tables[name], cell) for name in measured}
         none = np.zeros(template.shape_of_points())[()]
         unknown = none + np.nan
-        return {n: estimates[n] if n in estimates else none if n in exact else unknown for n in names}
+        errors = {n: estimates[n] if n in estimates else none if n in exact else unknown for n in names}
+        for condition in self._conditions:
+            if condition.holds(there):
+                errors = {name: error + condition.added(there, name) for name, error in errors.items()}
+        return errors
+
+    def truth(self, level: str, output: str) -> str | None:
+        """The name of the solution against which an output was measured; None if none is stated."""
+        truths: Mapping[str, str] = self.content.get("levels", {}).get(level or SINGLE, {}).get("truth", {})
+        return truths.get(output)
+
+    @cached_property
+    def _conditions(self) -> tuple[Condition, ...]:
+        return tuple(
+            Condition(tuple(one["inputs"]), one["added"]) for one in self.content.get("conditions", ())
+        )
 
     def _cell(self, template: Template) -> tuple[Any, Any, Any]:
         """Row and column of the cell in which each point lies, and whether it lies in any."""
@@ -126,35 +171,49 @@ def _loaded(path: Path) -> Accuracy:
     return Accuracy((one, two), (first, second), errors, content)
 
 
+def truth_of(cls: type[Template], level: str, output: str) -> str | None:
+    """The name of the truth of an output's error at a level; None if no error is stated there."""
+    measured = accuracy(cls)
+    return measured.truth(level, output) if measured else None
+
+
+def absolute_error(template: Template, output: str, error: Any) -> Any:
+    """The estimated error of an output in its SI unit, from its relative `error`.
+
+    That of a profile is the same at all its places: a share of its largest absolute value.
+    """
+    formula = template.formulas[output]
+    size = np.abs(getattr(template, formula.attribute))
+    if not isinstance(formula, Profile):
+        return error * size
+    axes = tuple(range(-formula.axes, 0))
+    return np.broadcast_to(
+        np.asarray(error)[(..., *(None,) * formula.axes)] * size.max(axes, keepdims=True), size.shape
+    )
+
+
 @dataclass(frozen=True)
-class Rung:
-    """A template at one level, for those points for which that level was chosen (all, if None)."""
+class NextLevel:
+    """A level with a smaller error, and that error at each point [-]."""
 
-    template: Template
-    where: NDArray[np.bool_] | None
+    level: str
+    error: Any
 
 
-def climb(template: Template, outputs: Iterable[str], tolerance: float) -> Iterator[Rung]:
-    """The cheapest level whose error estimates meet the tolerance for all outputs, point by point.
+def next_levels(template: Template, output: str) -> tuple[NextLevel, ...]:
+    """The levels that answer these inputs with a smaller stated error of an output, cheapest first.
 
-    What no level meets is calculated at the finest.
+    Smaller at one point at least, and measured against the same truth as the error at the template's level.
+    The errors are looked up where the template lies at its own level; nothing is calculated at another.
     """
     measured = accuracy(type(template))
-    names = [name for name in outputs if not isinstance(template.formulas[name], Text)]
-    ladder, left = template.ladder(), np.ones(template.shape_of_points(), dtype=bool)
-    for level in ladder:
-        rung = at_level(template, level, None if left.all() else left)
-        met = level == ladder[-1] or (measured is not None and _meets(measured, rung, names, tolerance))
-        chosen = np.zeros_like(left)
-        chosen[left] = met
-        if chosen.all():
-            yield Rung(rung, None)
-            return
-        if chosen.any():
-            yield Rung(rung if np.all(met) else template.at(level, chosen), chosen)
-        left = left & ~chosen
-        if not left.any():
-            return
+    truth = measured.truth(template.level, output) if measured else None
+    if measured is None or truth is None:
+        return ()
+    here = measured.of(template, [output])[output]
+    others = (level for level in template.ladder() if measured.truth(level, output) == truth)
+    errors = {level: measured.expected(template, level, [output])[output] for level in others}
+    return tuple(NextLevel(level, error) for level, error in errors.items() if np.any(error < here))
 
 
 def at_level(template: Template, level: str, where: NDArray[np.bool_] | None = None) -> Template:
@@ -173,13 +232,3 @@ def at_level(template: Template, level: str, where: NDArray[np.bool_] | None = N
         )
         raise InvalidInputs([Fault("level", "too_many_points", message)])
     return template.at(level, where)
-
-
-def _meets(measured: Accuracy, rung: Template, names: list[str], tolerance: float) -> Any:
-    """Where the errors of all outputs are within the tolerance; nowhere if the level refuses."""
-    try:
-        for name in names:
-            getattr(rung, rung.formulas[name].attribute)
-        return np.logical_and.reduce([e <= tolerance for e in measured.of(rung, names).values()])
-    except InvalidInputs:
-        return False

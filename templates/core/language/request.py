@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name, unknown_names
+from templates.core.judging.limits import GivenLimit, read_limits
 from templates.core.language.levels import at_level
 from templates.core.language.template import Template
 from templates.core.units.quantity import Unit, require_same_kind
@@ -19,6 +20,7 @@ class Request:
     template: Template
     names: list[str]
     shown_in: Mapping[str, Unit]
+    limits: Mapping[str, GivenLimit]
 
 
 def read_request(
@@ -27,8 +29,9 @@ def read_request(
     outputs: Iterable[str] | None = None,
     units: Mapping[str, str] | None = None,
     level: str | None = None,
+    limits: Mapping[str, Any] | None = None,
 ) -> Request:
-    """Read inputs as a user types them, and the names of what is asked for.
+    """Read inputs and limits as a user types them, and the names of what is asked for.
 
     Raises
     ------
@@ -36,13 +39,23 @@ def read_request(
         Naming everything that is wrong at once.
     """
     names, shown_in, faults = read_options(cls, outputs, units, level)
+    given, wrong = _limits(cls, limits) if limits else ({}, [])
+    faults += wrong
     try:
         template = cls.from_quantities(raw)
     except InvalidInputs as error:
         raise InvalidInputs([*faults, *error.faults]) from None
     if faults:
         raise InvalidInputs(faults)
-    return Request(template, names, shown_in)
+    return Request(template, names, shown_in, given)
+
+
+def _limits(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, GivenLimit], list[Fault]]:
+    """The limits that are given for the template's criteria, and what is wrong with them."""
+    try:
+        return read_limits(cls.declared_criteria, raw), []
+    except InvalidInputs as error:
+        return {}, list(error.faults)
 
 
 def require_points(template: Template, level: str | None, tolerance: float | None) -> None:

@@ -17,7 +17,9 @@ from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Truth
 from templates.core.errors import Fault, InvalidInputs
+from templates.core.judging.criterion import Criterion
 from templates.core.language.admission import absence, masked, outside_published, refusal, whole
+from templates.core.language.criteria import declared_criteria
 from templates.core.language.declare import (
     by_name,
     choice,
@@ -69,6 +71,7 @@ class Template:
     version: ClassVar[int] = 0
     withdrawn: ClassVar[str | None] = None
     example: ClassVar[Mapping[str, Any]] = {}
+    criteria: ClassVar[Mapping[str, Any]] = {}  # by name: `"film >= limit"`, or an object with `require`
     precision: ClassVar[float] = (
         1e-12  # relative, to which results of a released version are held; solvers: 1e-8
     )
@@ -78,6 +81,7 @@ class Template:
     requirements: ClassVar[tuple[Requirement, ...]] = ()
     declarations: ClassVar[dict[str, Declaration]] = {}
     intermediates: ClassVar[dict[str, Shared[Any]]] = {}
+    declared_criteria: ClassVar[tuple[Criterion, ...]] = ()
 
     levels: ClassVar[tuple[str, ...]] = ()  # fidelities, cheapest first
     default_level: ClassVar[str] = ""
@@ -101,6 +105,7 @@ class Template:
         cls.formulas = {n: v for n, v in named.items() if n not in cls.inputs or getattr(v, "shown", False)}
         cls.requirements = tuple(v for v in everything.values() if isinstance(v, Requirement))
         cls.intermediates = {name: v for name, v in everything.items() if isinstance(v, Shared)}
+        cls.declared_criteria = declared_criteria(cls.__name__, cls.criteria, cls.inputs, cls.formulas)
 
     def __init__(self, values: Mapping[str, Any], ledger: Ledger | None = None) -> None:
         """Take SI values by attribute, unchecked; a user's input comes in by `from_quantities`."""

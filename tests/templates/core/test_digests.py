@@ -59,7 +59,7 @@ TIDYING = [
     ("withdrawn = None", 'withdrawn = "use 2"'),
     ("withdrawn = None", 'withdrawn: str | None = "use 2"'),
     ("    withdrawn = None\n", ""),
-    ("withdrawn = None", 'criteria = {"length": {"at_most": "1 m"}}'),
+    ("withdrawn = None", 'criteria = {"length": "length <= 1 m"}'),
     ("2 * self.a +", "2*(self.a) +"),
     ("return self.a\n", "return self.a  # as given\n\n"),
 ]

@@ -89,8 +89,9 @@ def measured(monkeypatch):
     return accuracy
 
 
-def evaluated(*names, level=None, tolerance=None, **raw):
-    return evaluate(Ladder, {**Ladder.example, **raw}, outputs=names, level=level, tolerance=tolerance)
+def evaluated(*names, level=None, tolerance=None, per_point=False, **raw):
+    options = {"level": level, "tolerance": tolerance, "per_point": per_point}
+    return evaluate(Ladder, {**Ladder.example, **raw}, outputs=names, **options)
 
 
 def metres(*values):
@@ -101,9 +102,17 @@ class TestLadder:
     def test_property_cheapest_that_will_do(self, measured):
         assert evaluated("size", tolerance=0.2).level == "rough"
         assert evaluated("size", tolerance=0.01).level == "fine"
-        evaluation = evaluated("size", tolerance=0.2, length=metres(5, 20, 30))
+        evaluation = evaluated("size", tolerance=0.2, length=metres(5, 20, 30), per_point=True)
         assert evaluation.level.tolist() == ["rough", "fine", "fine"]
         np.testing.assert_allclose(evaluation.error["size"], [0.1, 0.002, 0.002])
+
+    def test_property_one_level_serves_all_points(self, measured):
+        """A level that changes from point to point would make a step in the curve."""
+        points = metres(5, 20, 30)
+        assert evaluated("size", tolerance=0.2, length=points).level == "fine"
+        assert evaluated("size", tolerance=0.2, length=metres(5, 6, 7)).level == "rough"
+        values = evaluated("size", tolerance=0.2, length=points).outputs["size"].value
+        assert values == pytest.approx(1.001 * np.array([5, 20, 30]))
 
     def test_property_a_level_that_refuses_does_not_do(self, measured):
         assert evaluated("size", tolerance=0.5, length="0.5 m").level == "fine"

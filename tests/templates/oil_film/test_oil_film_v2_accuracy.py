@@ -12,6 +12,7 @@ from templates.physics.films.film_map import mapped_load
 from templates.physics.films.reynolds import extrapolated_film
 
 D, PSI, ETA, OMEGA = 0.1, 1e-3, 0.02, 100.0
+FILM = "minimum_film_thickness"
 NAMES = ("minimum_film_thickness", "attitude_angle", "maximum_pressure", "friction_coefficient", "side_flow")
 
 
@@ -65,11 +66,34 @@ class TestTolerance:
         assert evaluation.level == "reynolds"
         assert [w.code for w in evaluation.warnings] == ["tolerance_unmet"]
 
-    def test_property_points_climb_one_by_one(self):
-        raw = bearing(np.array([0.001, 1.0, 5.0]), np.array([0.05, 0.5, 2.0]))
-        evaluation = evaluate(OilFilm, raw, outputs=["relative_eccentricity"], tolerance=0.02)
+    def test_property_points_climb_one_by_one_if_wanted(self):
+        raw, eps = bearing(np.array([0.001, 1.0, 5.0]), np.array([0.05, 0.5, 2.0])), "relative_eccentricity"
+        evaluation = evaluate(OilFilm, raw, outputs=[eps], tolerance=0.02, per_point=True)
         assert evaluation.level.tolist() == ["short_bearing", "fit", "map"]
-        assert (evaluation.error["relative_eccentricity"] <= 0.02).all()
+        assert (evaluation.error[eps] <= 0.02).all()
+
+    def test_property_one_level_serves_a_sweep(self):
+        """The cheapest that is good enough at every load, so the film falls without a step."""
+        loads = np.geomspace(0.05, 20, 400)
+        sweep = evaluate(OilFilm, bearing(loads, np.full(400, 0.3)), outputs=[FILM], tolerance=0.05)
+        assert sweep.level == "fit"
+        thickness = sweep.outputs[FILM].value
+        assert (np.diff(thickness) < 0).all()
+        separate = evaluate(
+            OilFilm, bearing(loads, np.full(400, 0.3)), outputs=[FILM], tolerance=0.05, per_point=True
+        )
+        assert set(separate.level.tolist()) == {"short_bearing", "fit"}
+
+    def test_property_points_without_a_film_do_not_raise_the_level(self):
+        raw = bearing(np.array([1.0, -1.0, 2.0]), np.full(3, 0.5))
+        raw["speed"] = Typed(None, "rad/s", OMEGA * np.array([1.0, -1.0, 1.0]), {})
+        raw["radial_load"] = Typed(None, "N", np.abs(raw["radial_load"].si), {})
+        evaluation = evaluate(OilFilm, raw, outputs=[FILM], tolerance=0.05)
+        assert np.isfinite(evaluation.outputs[FILM].value).all()
+        raw["speed"] = Typed(None, "rad/s", OMEGA * np.array([1.0, 0.0, 1.0]), {})
+        still = evaluate(OilFilm, raw, outputs=[FILM], tolerance=0.05)
+        assert (still.level, still.warnings) == ("fit", [])
+        assert np.isnan(still.outputs[FILM].value).tolist() == [False, True, False]
 
     def test_property_what_does_not_depend_on_level_is_exact(self):
         evaluation = evaluate(OilFilm, bearing(1.0, 0.5), outputs=["sommerfeld_number", "boundary_condition"])

@@ -1,0 +1,208 @@
+"""How much a heat balance adds to the errors of `oil_film` 2: measured on an ensemble of random bearings.
+
+    python -m benchmarks.heat_balance_accuracy     ten seconds; writes into oil_film_v2.accuracy.json
+
+Run it after `benchmarks.accuracy measure`, which writes the tables. Their errors are those of a film at a
+given viscosity. With a heat balance, friction and side flow make the temperature, and the temperature the
+viscosity, so the errors of the map, from which every level takes both, reach every output.
+
+At each of the 1500 places (eps, B/D) of the film's checks a bearing is drawn, for three oils, with a supply
+temperature and once more with air that cools it. The true temperature is the one at which the power loss of
+the *converged* film is carried off; the load is what that film bears. What a level answers at the temperature
+of its balance, less what it answers at the true one, is what the balance adds. The largest of all, half of it
+added, stands in the table. At level mass_conserving the balance has another convention of friction than the
+level: nothing is stated there.
+"""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.accuracy import converged
+from benchmarks.truths import FILM
+from templates.core.arrays import Array
+from templates.core.language.spec import Text
+from templates.core.units.quantity import Typed
+from templates.oil_film.oil_film_v2 import OilFilm
+from templates.physics.journals.heat_balance import HOTTEST, HeatBalance
+from templates.physics.journals.static_journal import JournalFilm
+from templates.physics.numerics.roots import bracketed_root
+
+FILE = Path("templates/oil_film/oil_film_v2.accuracy.json")
+SEED = 13
+MARGIN = 1.5
+GRADES = ("iso_vg_10", "sae_15w_40", "iso_vg_320")
+LEVELS = {"short_bearing": "short_bearing", "fit": "fit", "map": "map", "reynolds": "map"}
+"""Levels, and at which one it is measured: level reynolds changes with the viscosity as the map does."""
+HOT = 250.0 + 273.15
+"""Bearings hotter than this are left out: their oil would burn [K]."""
+HEAT_CAPACITY = 1.8e6
+"""The template's default [J/(m³ K)]."""
+ANGLES = ("attitude_angle", "maximum_pressure_angle")
+INPUTS = ("supply_temperature", "ambient_temperature")
+
+
+@dataclass(frozen=True)
+class Bearings:
+    """Random bearings in equilibrium: what a user would type, and the true film temperature [K]."""
+
+    inputs: dict[str, Any]
+    T: Array
+    T_out: Array
+    film: JournalFilm
+
+    def template(self) -> OilFilm:
+        """The template, with the balance as it calculates it."""
+        return OilFilm.from_quantities(self.inputs)
+
+    def in_equilibrium(self, level: str) -> OilFilm:
+        """The same at a level, at the true temperature."""
+        template = self.template().at(level)
+        vars(template)["balance"] = HeatBalance(self.T, self.T_out, np.zeros(self.T.shape))
+        return template
+
+
+def drawn(
+    rng: np.random.Generator, film: JournalFilm, ratio: Array, grade: str, *, supplied: bool
+) -> Bearings:
+    """A bearing for each film, cooled by its oil or by air."""
+    count = ratio.size
+    D, psi, omega = (
+        np.exp(rng.uniform(np.log(low), np.log(high), count))
+        for low, high in ((0.02, 0.5), (5e-4, 3e-3), (20.0, 1000.0))
+    )
+    cold = rng.uniform(20, 80, count) + 273.15
+    oil = OilFilm.from_quantities({**OilFilm.example, "oil_grade": grade})
+    scale = ratio * D**2 * omega / psi**2
+    couple = film.eps * film.So * np.sin(film.attitude) / 2
+
+    def viscosity(T: Array) -> Array:
+        return _viscosity(oil, T)
+
+    def power(T: Array) -> Array:
+        return scale * viscosity(T) * psi * D / 2 * (film.shear + couple) * omega
+
+    carried = HEAT_CAPACITY * film.side_flow * (D / 2) ** 3 * psi * omega * 2
+    rise = np.exp(rng.uniform(np.log(2), np.log(120), count))
+    if supplied:
+        rise = bracketed_root(
+            lambda r: 1 - carried * r / power(cold + r), np.zeros(count), HOTTEST - cold, 1e-13
+        )
+    T = cold + rise
+    cool = {"supply_temperature": (cold, "K")} if supplied else {
+        "ambient_temperature": (cold, "K"), "heat_transfer": (power(T) / rise, "W/K")
+    }  # fmt: skip
+    load = {"radial_load": (film.So * scale * viscosity(T), "N"), "bearing_diameter": (D, "m")}
+    size = {
+        "bearing_width": (ratio * D, "m"),
+        "diametral_clearance": (psi * D, "m"),
+        "speed": (omega, "rad/s"),
+    }
+    keep = np.isfinite(T) & (T < HOT)
+    inputs = {n: Typed(None, unit, v[keep], {}) for n, (v, unit) in {**load, **size, **cool}.items()}
+    T_out = 2 * T - cold if supplied else np.full(count, np.nan)
+    kept = replace(film, **{f.name: np.asarray(getattr(film, f.name))[keep] for f in fields(film)})
+    return Bearings({**inputs, "oil_grade": grade}, T[keep], T_out[keep], kept)
+
+
+def _viscosity(oil: OilFilm, T: Array) -> Array:
+    """Dynamic viscosity of an oil at T [K], by the template's own formulas [Pa s]."""
+    warm = oil.at("map")
+    vars(warm)["T_film"] = T
+    return np.asarray(warm.eta)
+
+
+def change(output: str, value: Array, true: Array, largest: Array) -> Array:
+    """Difference of two answers, in the measure of the tables."""
+    size = np.pi / 2 if output in ANGLES else largest
+    with np.errstate(all="ignore"):
+        return np.asarray(np.where(value == true, 0.0, np.abs(value - true) / size))
+
+
+def sizes(template: OilFilm, output: str) -> Array:
+    """What an error is relative to: the largest of four coefficients, else the value itself."""
+    kind = output.partition("_")[0]
+    if kind in ("stiffness", "damping") and not output.endswith("scale"):
+        names = [f"{kind}_{xy}" for xy in ("xx", "xy", "yx", "yy")]
+        return np.max([np.abs(value_of(template, name)) for name in names], axis=0)
+    return np.abs(value_of(template, output))
+
+
+def value_of(template: OilFilm, output: str) -> Array:
+    """An output in SI."""
+    return np.asarray(getattr(template, OilFilm.formulas[output].attribute))
+
+
+def dependent() -> list[str]:
+    """The outputs that a heat balance reaches."""
+    return [
+        name
+        for name, formula in OilFilm.formulas.items()
+        if not isinstance(formula, Text) and "balance" in OilFilm.ancestors(formula.attribute)
+    ]
+
+
+def ensemble(seed: int) -> Iterator[Bearings]:
+    """All bearings, by oil and way of cooling."""
+    rng = np.random.default_rng(seed)
+    _, y, film, _ = converged(streamers=False)
+    for grade in GRADES:
+        for supplied in (True, False):
+            yield drawn(rng, film, np.exp(y), grade, supplied=supplied)
+
+
+def added(bearings: Bearings, level: str) -> dict[str, float]:
+    """The largest change of each output at a level; none where the level has no such output."""
+    own, true = bearings.template().at(level), bearings.in_equilibrium(level)
+    with np.errstate(all="ignore"):
+        found = {
+            name: change(name, value_of(own, name), value_of(true, name), sizes(true, name))
+            for name in dependent()
+            if name != "heat_balance_residual"
+        }
+    return {name: float(np.nanmax(e)) for name, e in found.items() if np.isfinite(e).any()}
+
+
+def upwards(value: float) -> float:
+    """Two digits, upwards."""
+    unit = 10.0 ** (np.floor(np.log10(max(value, 1e-12))) - 1)
+    return float(f"{np.ceil(value / unit) * unit:.2g}")
+
+
+def main() -> None:
+    """Measure and write."""
+    largest: dict[str, dict[str, float]] = {level: {} for level in set(LEVELS.values())}
+    count = 0
+    for bearings in ensemble(SEED):
+        count += bearings.T.size
+        for level, found in largest.items():
+            for name, error in added(bearings, level).items():
+                found[name] = max(found.get(name, 0.0), error)
+    tables = {
+        level: {name: upwards(MARGIN * error) for name, error in largest[source].items()}
+        for level, source in LEVELS.items()
+    }
+    content = json.loads(FILE.read_text(encoding="utf-8"))
+    content["conditions"] = [
+        {
+            "name": "heat balance",
+            "inputs": list(INPUTS),
+            "made_by": "python -m benchmarks.heat_balance_accuracy",
+            "truth": f"{FILM}, at the temperature at which its shear all around heats what carries heat off",
+            "error": f"comes on top; the largest of {count} random bearings, half of it added; of a "
+            "temperature relative to the absolute one; null at level mass_conserving, whose friction is "
+            "not the balance's",
+            "added": tables,
+        }
+    ]
+    FILE.write_text(json.dumps(content, ensure_ascii=False, separators=(",", ":")) + "\n", encoding="utf-8")
+    for level, table in tables.items():
+        print(level, table)
+
+
+if __name__ == "__main__":
+    main()

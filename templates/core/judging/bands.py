@@ -1,0 +1,200 @@
+"""Where the truth lies: the band around a value whose relative error is stated, and around an expression.
+
+A stated error e says |v - t| ≤ e |t|: the truth t lies from v/(1 + e) to v/(1 - e). A bound that is not known
+is NaN, and decides nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.errors import FaultyText
+from templates.core.judging.criterion import plain_name
+from templates.core.units.relation import Relation
+from templates.core.units.units import Value
+
+Bounds = tuple[Value, Value]
+"""The least and the largest truth."""
+
+Shift = tuple[Mapping[str, Value], Mapping[str, Value]]
+"""The values of all names [SI], with something from which they follow shifted to either end of its band."""
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A named value [SI] and how far off it may be.
+
+    Attributes
+    ----------
+    value
+        A number or an array: points first, places along a curve last; NaN where there is none.
+    error
+        Relative; 0 if exact, NaN where it is not known. Of the shape of the points.
+    is_stated
+        Whether the error of the model was measured at all; if not, `error` is 0 and the band has no width.
+    axes
+        How many of the last axes of the value are places along a curve.
+    scale
+        To what the error is relative [SI], where that is not the value itself, such as 90° of an angle. The
+        error of a curve is relative to its largest value.
+    reasons
+        Of an array of points, why there is no value; None where there is one.
+    """
+
+    value: Value
+    error: Value = 0.0
+    is_stated: bool = True
+    axes: int = 0
+    scale: Value | None = None
+    reasons: NDArray[np.object_] | None = None
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether the band has no width."""
+        if isinstance(self.error, float):
+            return self.error == 0
+        return not self.error.any()
+
+    def bounds(self) -> Bounds:
+        """The band of the value."""
+        if self.is_exact:
+            return self.value, self.value
+        error = spread(self.error, self.axes)
+        if self.scale is None and not self.axes:
+            return band(self.value, error)
+        return band_relative_to(self.value, error, self._scale())
+
+    def _scale(self) -> Value:
+        if self.scale is not None:
+            return self.scale
+        places = tuple(range(-self.axes, 0))
+        return np.max(np.abs(self.value), axis=places, keepdims=True)
+
+
+def spread(value: Value, axes: int) -> Value:
+    """Values of points as an array that goes with places along a curve."""
+    return value[(..., *(None,) * axes)] if axes and isinstance(value, np.ndarray) else value
+
+
+def band(value: Value, error: Value) -> Bounds:
+    """From where to where the truth may lie, for values of a stated relative error.
+
+    Parameters
+    ----------
+    value, error
+        Numbers, or arrays that broadcast together; an error is not negative.
+
+    Returns
+    -------
+    tuple
+        The lower and the upper bound: v/(1 + e) and v/(1 - e), swapped where v is negative. For e ≥ 1 the
+        bound away from zero is infinite, and for v = 0 both are. NaN where v or e is.
+    """
+    if isinstance(value, float) and isinstance(error, float):
+        return _band_of_one(float(value), float(error))
+    with np.errstate(all="ignore"):
+        near = value / (1 + error)
+        far = np.where(error < 1, value / (1 - error), np.copysign(np.inf, value))
+        low, high = np.minimum(near, far), np.maximum(near, far)
+    boundless = (np.asarray(value) == 0) & (error >= 1)
+    unknown = np.isnan(value) | np.isnan(error)
+    low = np.where(unknown, np.nan, np.where(boundless, -np.inf, low))
+    return low, np.where(unknown, np.nan, np.where(boundless, np.inf, high))
+
+
+def _band_of_one(value: float, error: float) -> tuple[float, float]:
+    """As `band`, of a single value, at a tenth of the cost."""
+    if math.isnan(value) or math.isnan(error):
+        return math.nan, math.nan
+    if error >= 1:
+        if value == 0:
+            return -math.inf, math.inf
+        near = value / (1 + error)
+        return (near, math.inf) if value > 0 else (-math.inf, near)
+    near, far = value / (1 + error), value / (1 - error)
+    return (near, far) if value >= 0 else (far, near)
+
+
+def band_relative_to(value: Value, error: Value, scale: Value) -> Bounds:
+    """From where to where the truth may lie, for an error relative to a scale, such as 90°.
+
+    The scale is that of the values calculated; that of the truth may be larger by 1/(1 - e).
+    """
+    with np.errstate(all="ignore"):
+        half = np.where(np.asarray(error) < 1, error * scale / (1 - error), np.inf)
+        half = np.where(np.isnan(error), np.nan, half)[()]
+        return value - half, value + half
+
+
+def bounds_of(
+    side: Relation, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
+) -> Bounds:
+    """The band of a side of a comparison.
+
+    Each uncertain name is shifted to both ends of its band, the others kept, and the changes are added; so
+    are those of `shifts`, by which values from which the names follow were shifted.
+
+    Raises
+    ------
+    FaultyText
+        With code `shape`, where arrays of different lengths meet.
+    """
+    name = plain_name(side)
+    if name and not shifts:
+        return estimates[name].bounds()
+    values = {name: estimates[name].value for name in side.names}
+    middle = side.value(values)
+    low, high = estimates[name].bounds() if name else (middle, middle)
+    for shift in (*(() if name else _own_shifts(side, estimates, values)), *shifts):
+        less, more = _changes(side, middle, *shift)
+        low, high = low + less, high + more
+    return low, high
+
+
+def _own_shifts(
+    side: Relation, estimates: Mapping[str, Estimate], values: Mapping[str, Value]
+) -> Iterator[Shift]:
+    """Each uncertain name of a side at both ends of its band, the others kept."""
+    for name in sorted(side.names):
+        if not estimates[name].is_exact:
+            low, high = estimates[name].bounds()
+            yield {**values, name: low}, {**values, name: high}
+
+
+def _changes(side: Relation, middle: Value, low: Mapping[str, Value], high: Mapping[str, Value]) -> Bounds:
+    """How far down and how far up a side moves between two sets of values; NaN if that is not known."""
+    with np.errstate(all="ignore"):
+        one, other = (np.asarray(side.value(end)) - middle for end in (low, high))
+        less, more = np.minimum(np.minimum(one, other), 0.0), np.maximum(np.maximum(one, other), 0.0)
+    return less[()], more[()]
+
+
+def relative_width(value: float, low: float, high: float) -> float | None:
+    """The relative error that a band stands for; None where the band is open or not known."""
+    ends = [end for end in (low, high) if end != value]
+    if not ends:
+        return 0.0
+    if not all(math.isfinite(end) and end != 0 for end in ends):
+        return None
+    return max(abs((end - value) / end) for end in ends)
+
+
+def aligned(estimates: Mapping[str, Estimate], axes: int) -> Mapping[str, Estimate]:
+    """Estimates whose arrays broadcast together: those of points alone go with places along a curve too."""
+    if not axes:
+        return estimates
+    return {name: _aligned(estimate, axes) for name, estimate in estimates.items()}
+
+
+def _aligned(estimate: Estimate, axes: int) -> Estimate:
+    if estimate.axes == axes or not np.ndim(estimate.value):
+        return estimate
+    if estimate.axes:
+        raise FaultyText("shape", "curves and tables of different axes are compared")
+    value, error = spread(estimate.value, axes), spread(estimate.error, axes)
+    return replace(estimate, value=value, error=error)

@@ -1,0 +1,108 @@
+"""One side against the other, each in its band: a verdict for every point, and every place of a curve."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.errors import FaultyText
+from templates.core.judging.bands import Bounds, Estimate, Shift, aligned, bounds_of
+from templates.core.judging.criterion import Criterion, Sign, plain_name
+from templates.core.units.relation import Relation
+from templates.core.units.units import Value
+
+Verdict = Literal["not_met", "undecided", "not_checked", "met"]
+
+WORST_FIRST: tuple[Verdict, ...] = ("not_met", "undecided", "not_checked", "met")
+NOT_MET, UNDECIDED, NOT_CHECKED, MET = range(4)
+Codes = int | NDArray[np.int8]
+"""Verdicts as places in `WORST_FIRST`: the least is the worst."""
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """Both sides of a criterion [SI] with their bands, and the verdict at every point and place."""
+
+    value: Value
+    limit: Value
+    value_bounds: Bounds
+    limit_bounds: Bounds
+    codes: Codes
+    axes: int
+
+    def rows(self) -> Codes:
+        """The verdict at every point: of a curve the worst of its places."""
+        if not self.axes or isinstance(self.codes, int):
+            return self.codes
+        worst = self.codes.min(axis=tuple(range(-self.axes, 0)))
+        return worst if worst.ndim else int(worst)
+
+
+def compare(
+    criterion: Criterion, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
+) -> Compared:
+    """Compare the sides of a criterion whose names all have estimates; NaN is not checked.
+
+    `shifts` are the values of all names, with something upstream shifted to either end of its band.
+
+    Raises
+    ------
+    FaultyText
+        With code `shape`, where arrays of different lengths meet.
+    """
+    axes = max(estimates[name].axes for name in criterion.names) if criterion.names else 0
+    fitted = aligned(estimates, axes)
+    value, limit = _side(criterion.value, fitted), _side(criterion.limit, fitted)
+    value_bounds = bounds_of(criterion.value, fitted, shifts)
+    limit_bounds = bounds_of(criterion.limit, fitted, shifts)
+    try:
+        codes = verdicts(criterion.sign, value, limit, value_bounds, limit_bounds)
+    except ValueError:
+        message = f"{criterion.require!r} compares arrays of different lengths"
+        raise FaultyText("shape", message) from None
+    return Compared(value, limit, value_bounds, limit_bounds, codes, axes)
+
+
+def _side(side: Relation, estimates: Mapping[str, Estimate]) -> Value:
+    if name := plain_name(side):
+        return estimates[name].value
+    return side.value({name: estimates[name].value for name in side.names})
+
+
+def verdicts(sign: Sign, value: Value, limit: Value, value_bounds: Bounds, limit_bounds: Bounds) -> Codes:
+    """The verdict where each side lies in its band; equality meets, a bound that is NaN decides nothing."""
+    safe, bad = _opposed(sign, value_bounds, limit_bounds)
+    if all(isinstance(end, float) for end in (value, limit, *safe, *bad)):
+        if value != value or limit != limit:
+            return NOT_CHECKED
+        return MET if safe[0] >= safe[1] else NOT_MET if bad[0] < bad[1] else UNDECIDED
+    with np.errstate(invalid="ignore"):
+        decided = [
+            np.isnan(value) | np.isnan(limit),
+            np.greater_equal(*safe),
+            np.less(*bad),
+        ]
+    codes = np.select(np.broadcast_arrays(*decided), [NOT_CHECKED, MET, NOT_MET], UNDECIDED)
+    return codes.astype(np.int8) if codes.ndim else int(codes)
+
+
+def _opposed(sign: Sign, value: Bounds, limit: Bounds) -> tuple[Bounds, Bounds]:
+    """Pairs (a, b): a criterion is met if a ≥ b in the first, and not met if a < b in the second."""
+    if sign == ">=":
+        return (value[0], limit[1]), (value[1], limit[0])
+    return (limit[0], value[1]), (limit[1], value[0])
+
+
+def judge_rows(criterion: Criterion, estimates: Mapping[str, Estimate]) -> Codes:
+    """The verdict at every point, as places in `WORST_FIRST`; for arrays of designs.
+
+    Raises
+    ------
+    FaultyText
+        With code `shape`, where arrays of different lengths meet.
+    """
+    return compare(criterion, estimates).rows()

@@ -1,0 +1,259 @@
+"""Criteria as they are declared: `minimum_film_thickness >= smallest_permissible_film`, words and sources.
+
+A criterion compares two sides by one `>=` or `<=`; each side is a relation (`templates.core.units.relation`),
+and both measure the same kind of quantity. A criterion may name *limits*: values that the calculation itself
+does not take and that its user gives.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache, cached_property
+from typing import Any, Literal
+
+from templates.core.errors import FaultyText, excerpt, unknown_name
+from templates.core.units.operations import Kind, Name
+from templates.core.units.relation import Relation, parse
+from templates.core.units.units import Unit, compatible, registry, require_same_kind, unit
+
+Sign = Literal[">=", "<="]
+
+LONGEST_REQUIRE = 2000  # characters
+_SIGN = re.compile("(>=|<=)")
+_KEYS = frozenset({"require", "words", "source", "limits", "unverified", "warning", "absent"})
+_LIMIT_KEYS = frozenset({"unit", "words", "from", "default"})
+_ABSENT_KEYS = frozenset({"with", "reason"})
+_OBJECTS = frozenset({"limits", "absent"})
+_DEFAULT = re.compile(r"(min|max)\(([a-z][a-z0-9_]*)\)")
+_SIGNS = {">=": "≥", "<=": "≤"}
+_RADIAN = registry.Unit("radian")
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """What a name in a criterion measures: its declared unit, and its words."""
+
+    unit: str
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A limit that the calculation does not take.
+
+    `library` is the choice whose rows have a value for it. Where nobody gives the limit, it is the `default`,
+    if there is one: the `min` or `max` of an input that is a list.
+    """
+
+    name: str
+    unit: str
+    words: str
+    library: str | None = None
+    default: tuple[str, str] | None = None
+
+    @property
+    def remedy(self) -> str:
+        """What to give."""
+        unit = "" if self.unit == "1" else f" in {self.unit}"
+        row = f", or a row of {self.library}" if self.library else ""
+        other = f", or {self.default[1]}" if self.default else ""
+        return f"give {self.name}{unit}{row}{other}"
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """Why a name has no value although another one, `beside`, has."""
+
+    beside: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """A criterion whose names exist and whose sides measure the same.
+
+    `unit` is that in which value and limit are shown; `names` stand in the order of the text.
+    """
+
+    name: str
+    require: str
+    sign: Sign
+    value: Relation
+    limit: Relation
+    names: tuple[str, ...]
+    unit: str
+    words: str
+    limits: tuple[Limit, ...] = ()
+    source: str | None = None
+    unverified: str | None = None
+    warning: str | None = None
+    absent: Mapping[str, Missing] = field(default_factory=dict)
+
+    @cached_property
+    def scale(self) -> Unit:
+        """The unit in which value and limit are shown."""
+        return unit(self.unit)
+
+    @cached_property
+    def is_temperature(self) -> bool:
+        """Whether temperatures are compared, whose ratios mean nothing."""
+        return bool(self.scale.base == registry.kelvin)
+
+    @cached_property
+    def subject(self) -> str | None:
+        """The name that is judged, where the value is a name alone."""
+        return plain_name(self.value)
+
+
+def plain_name(relation: Relation) -> str | None:
+    """The name, where a relation is nothing but a name."""
+    return relation.tree.name if isinstance(relation.tree, Name) else None
+
+
+@cache
+def is_angle(name: str) -> bool:
+    """Whether a unit measures an angle; the errors of angles are relative to 90°."""
+    return bool(unit(name).base == _RADIAN)
+
+
+def read_criterion(name: str, raw: Any, known: Mapping[str, Known]) -> Criterion:
+    """Read a criterion as it is declared: its `require` alone, or an object that holds it.
+
+    Parameters
+    ----------
+    name
+        The name of the criterion.
+    raw
+        The text of the comparison, or a mapping with `require` and further keys.
+    known
+        What the names that it may use measure; limits that it declares are added to these.
+
+    Raises
+    ------
+    FaultyText
+        With a code and a remedy.
+    """
+    parts = {"require": raw} if isinstance(raw, str) else raw
+    _check_keys(parts, _KEYS, "require")
+    limits = tuple(_limit(n, part, known) for n, part in _mapping(parts.get("limits", {})).items())
+    names = {**known, **{limit.name: Known(limit.unit, limit.words) for limit in limits}}
+    value, sign, limit_side = read_comparison(parts["require"])
+    used = _ordered(parts["require"], value.names | limit_side.names)
+    for used_name in used:
+        if used_name not in names:
+            raise FaultyText("unknown_name", unknown_name(used_name, names, "name").detail)
+    if unused := [limit.name for limit in limits if limit.name not in used]:
+        raise FaultyText("unused_limit", f"the limit {unused[0]} does not stand in `require`")
+    kind = _shared_kind(value, limit_side, {n: Kind(unit(names[n].unit).base) for n in used}, names)
+    return Criterion(
+        name=name,
+        require=parts["require"].strip(),
+        sign=sign,
+        value=value,
+        limit=limit_side,
+        names=used,
+        unit=_shown_unit(kind, [names[n].unit for n in used]),
+        words=parts.get("words") or _in_words(value, sign, limit_side, names),
+        limits=limits,
+        source=parts.get("source"),
+        unverified=parts.get("unverified"),
+        warning=parts.get("warning"),
+        absent={n: _missing(n, part, used, known) for n, part in _mapping(parts.get("absent", {})).items()},
+    )
+
+
+def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
+    """The two sides of a comparison and its sign.
+
+    Raises
+    ------
+    FaultyText
+        With code `syntax` if it has not one `>=` or `<=`, or as `parse`.
+    """
+    if not isinstance(text, str) or len(text) > LONGEST_REQUIRE:
+        raise FaultyText("syntax", f"`require` is a text of at most {LONGEST_REQUIRE} characters")
+    sides = _SIGN.split(text)
+    if len(sides) != 3 or "=" in sides[0] + sides[2]:
+        form = "write it as in film.minimum_film_thickness >= 3 um"
+        raise FaultyText("syntax", f"a criterion compares two sides by one >= or <=; {form}")
+    sign: Sign = ">=" if sides[1] == ">=" else "<="
+    return parse(sides[0].strip()), sign, parse(sides[2].strip())
+
+
+def _check_keys(raw: Any, keys: frozenset[str], needed: str) -> None:
+    if not isinstance(raw, Mapping) or needed not in raw:
+        raise FaultyText("syntax", f"a text, or an object with {needed!r}, is wanted, not {excerpt(raw)}")
+    for key, value in raw.items():
+        if key not in keys:
+            raise FaultyText("unknown_name", unknown_name(str(key), sorted(keys), "key").detail)
+        if key not in _OBJECTS and not (isinstance(value, str) and value.strip()):
+            raise FaultyText("syntax", f"{key} is a text, not {excerpt(value)}")
+
+
+def _mapping(raw: Any) -> Mapping[str, Any]:
+    if not isinstance(raw, Mapping):
+        raise FaultyText("syntax", f"limits and absent are objects by name, not {excerpt(raw)}")
+    return raw
+
+
+def _limit(name: str, raw: Any, known: Mapping[str, Known]) -> Limit:
+    if name in known:
+        raise FaultyText("twice", f"{name} is an input or output already; name the limit otherwise")
+    _check_keys(raw, _LIMIT_KEYS, "unit")
+    unit(raw["unit"])
+    default = _default(raw["default"], known, raw["unit"]) if "default" in raw else None
+    return Limit(name, raw["unit"], raw.get("words") or name.replace("_", " "), raw.get("from"), default)
+
+
+def _default(text: str, known: Mapping[str, Known], wanted: str) -> tuple[str, str]:
+    """Of `min(speed_range)` the function and the name."""
+    match = _DEFAULT.fullmatch(text)
+    if match is None or match[2] not in known:
+        raise FaultyText("syntax", f"a default is min(NAME) or max(NAME) of an input, not {excerpt(text)}")
+    require_same_kind(known[match[2]].unit, wanted)
+    return match[1], match[2]
+
+
+def _missing(name: str, raw: Any, used: tuple[str, ...], known: Mapping[str, Known]) -> Missing:
+    _check_keys(raw, _ABSENT_KEYS, "reason")
+    beside = raw.get("with", "")
+    for candidate, candidates in ((name, used), (beside, known)):
+        if candidate not in candidates:
+            raise FaultyText("unknown_name", unknown_name(candidate, candidates, "name").detail)
+    return Missing(beside, raw["reason"])
+
+
+def _ordered(text: str, names: frozenset[str]) -> tuple[str, ...]:
+    """The names in the order in which they stand in the text."""
+    return tuple(sorted(names, key=text.find))
+
+
+def _shared_kind(
+    value: Relation, limit: Relation, kinds: Mapping[str, Kind], names: Mapping[str, Known]
+) -> Kind:
+    """What both sides measure."""
+    one, other = value.kind(kinds), limit.kind(kinds)
+    if not compatible(one.base, other.base):
+        what = f"{one.base:~P}" or "a pure number", f"{other.base:~P}" or "a pure number"
+        raise FaultyText("unit_mismatch", f"{value.text} gives {what[0]}, but {limit.text} gives {what[1]}")
+    differences = [unit(names[n].unit).difference for side in (value, limit) for n in side.names]
+    if any(differences) and (one.absolute or other.absolute):
+        raise FaultyText("unit_mismatch", "a difference of temperatures is compared with a temperature")
+    return one
+
+
+def _shown_unit(kind: Kind, declared: list[str]) -> str:
+    """The unit of the first name that measures what the sides do, else the SI base unit."""
+    fitting = (name for name in declared if compatible(unit(name).base, kind.base))
+    return next(fitting, None) or f"{kind.base:~C}" or "1"
+
+
+def _in_words(value: Relation, sign: Sign, limit: Relation, names: Mapping[str, Known]) -> str:
+    return f"{_side(value, names)} {_SIGNS[sign]} {_side(limit, names)}"
+
+
+def _side(relation: Relation, names: Mapping[str, Known]) -> str:
+    name = plain_name(relation)
+    return names[name].words if name else relation.text

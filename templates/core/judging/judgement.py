@@ -1,0 +1,94 @@
+"""A criterion as judged: its verdict, and the numbers behind it at the worst point or place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from templates.core.judging.comparison import NOT_CHECKED, Codes, Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where the worst value lies: a point of an array, counted from 1, or a place along a curve."""
+
+    name: str
+    value: Any
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """A criterion as judged; over several points or places it stands for the worst of them.
+
+    Attributes
+    ----------
+    value, limit, margin
+        In `unit`, the margin in `margin_unit`; None where there is none. A positive margin is safe.
+    band
+        In `unit`; an open end is infinite. None where the error is not known.
+    needs
+        The relative error below which the verdict would be decided.
+    give
+        The names of what is missing.
+    rows
+        The verdict at every point, as places in `WORST_FIRST`.
+    """
+
+    name: str
+    words: str
+    require: str
+    verdict: Verdict
+    unit: str
+    value: float | None = None
+    limit: float | None = None
+    band: tuple[float, float] | None = None
+    relative_error: float | None = None
+    is_stated: bool = True
+    utilisation: float | None = None
+    margin: float | None = None
+    margin_unit: str = ""
+    needs: float | None = None
+    give: tuple[str, ...] = ()
+    reason: str | None = None
+    level: str | None = None
+    truth: str | None = None
+    where: tuple[Place, ...] = ()
+    points: int | None = None
+    counts: Mapping[Verdict, int] | None = None
+    rows: Codes = NOT_CHECKED
+    source: str | None = None
+    unverified: str | None = None
+    warning: str | None = None
+    waived: str | None = None
+
+    @property
+    def is_certain(self) -> bool:
+        """Whether nothing about the verdict is unverified, or of an error that nobody stated."""
+        return self.is_stated and self.unverified is None
+
+    @property
+    def misses(self) -> bool:
+        """Whether the value, its error aside, lies beyond the limit."""
+        return self.margin is not None and self.margin < 0
+
+
+def sentence(judgement: Judgement) -> str:
+    """A verdict as a sentence about the case: `film 1.53 um < permissible_film 2 um (131 %): not met`."""
+    sign = ">=" if ">=" in judgement.require else "<="
+    left, right = (side.strip() for side in judgement.require.split(sign))
+    opposite = {">=": "<", "<=": ">"}[sign] if judgement.misses else sign
+    sides = (
+        _with_value(left, judgement.value, judgement.unit),
+        _with_value(right, judgement.limit, judgement.unit),
+    )
+    used = f" ({judgement.utilisation * 100:.3g} %)" if judgement.utilisation is not None else ""
+    return f"{sides[0]} {opposite} {sides[1]}{used}: {judgement.verdict.replace('_', ' ')}"
+
+
+def _with_value(text: str, value: float | None, unit: str) -> str:
+    """A side and its value; a number stands for itself."""
+    if value is None or text[0].isdigit():
+        return text
+    return f"{text} {value:.4g}{'' if unit == '1' else ' ' + unit}"

@@ -1,0 +1,238 @@
+"""Judge a criterion: compare its sides, and report the worst point and place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from templates.core.errors import FaultyText
+from templates.core.judging.bands import Estimate, Shift, relative_width
+from templates.core.judging.comparison import NOT_CHECKED, WORST_FIRST, Codes, Compared, compare
+from templates.core.judging.criterion import Criterion
+from templates.core.judging.judgement import Judgement, Place
+from templates.core.judging.worst import Worst, worst_of
+from templates.core.units.units import Value
+
+Parts = dict[str, Any]
+"""Fields of a judgement by name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Absent:
+    """Why a name has no value: what to give, or the reason."""
+
+    give: tuple[str, ...] = ()
+    reason: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Along:
+    """The places of a curve: the name of the axis, its values [unit], one row for all points or one each."""
+
+    name: str
+    values: Value
+    unit: str
+
+
+def judge(
+    criterion: Criterion,
+    estimates: Mapping[str, Estimate],
+    absent: Mapping[str, Absent] | None = None,
+    along: Along | None = None,
+    unit_name: str | None = None,
+    shifts: Sequence[Shift] = (),
+    **noted: Any,
+) -> Judgement:
+    """Judge a criterion.
+
+    Parameters
+    ----------
+    criterion
+        What is compared.
+    estimates
+        Values of its names, as far as there are any.
+    absent
+        Why the others have none.
+    along
+        The places, if a curve is judged.
+    unit_name
+        The unit in which to report, if not the criterion's.
+    shifts
+        The values of all names, with something upstream shifted to either end of its band.
+    **noted
+        Further fields of the judgement, such as `level` and `truth`.
+    """
+    shown = criterion if unit_name is None else replace(criterion, unit=unit_name)
+    missing = [name for name in criterion.names if name not in estimates]
+    if missing:
+        parts = _missing(shown, estimates, [(absent or {}).get(name, Absent()) for name in missing])
+    else:
+        try:
+            compared = compare(criterion, estimates, shifts)
+            parts = _compared(shown, compared, estimates, along, bool(shifts))
+        except FaultyText as error:
+            parts = {"verdict": "not_checked", "reason": str(error)}
+    return Judgement(
+        name=criterion.name,
+        words=criterion.words,
+        require=criterion.require,
+        unit=shown.unit,
+        unverified=criterion.unverified,
+        warning=criterion.warning,
+        **{"source": criterion.source, **noted, **parts},
+    )
+
+
+def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: list[Absent]) -> Parts:
+    """A criterion of which names have no value; the side that has one is reported if it is a single value."""
+    sides = {"value": criterion.value, "limit": criterion.limit}
+    there = {side: r for side, r in sides.items() if r.names <= estimates.keys()}
+    values = {side: r.value({n: estimates[n].value for n in r.names}) for side, r in there.items()}
+    shown = {side: _shown(criterion, si) for side, si in values.items()}
+    return {
+        "verdict": "not_checked",
+        **{side: value for side, value in shown.items() if value is not None},
+        "is_stated": all(estimate.is_stated for estimate in estimates.values()),
+        "give": tuple(dict.fromkeys(name for why in absent for name in why.give)),
+        "reason": "; ".join(dict.fromkeys(why.reason for why in absent if why.reason)) or None,
+    }
+
+
+def _shown(criterion: Criterion, si: Value) -> float | None:
+    """A single value [SI] as it is shown; None of an array, and of what does not exist."""
+    if np.ndim(si) or not math.isfinite(si):
+        return None
+    return float(criterion.scale.from_si(float(si)))
+
+
+def _compared(
+    criterion: Criterion,
+    compared: Compared,
+    estimates: Mapping[str, Estimate],
+    along: Along | None,
+    is_shifted: bool,
+) -> Parts:
+    """What a judgement says of both sides, at the worst place."""
+    worst = worst_of(criterion, compared)
+    rows = compared.rows()
+    used = [estimates[name] for name in criterion.names]
+    parts = {
+        "verdict": WORST_FIRST[worst.code],
+        "is_stated": all(estimate.is_stated for estimate in used),
+        "where": _where(worst.index, compared.axes, along),
+        "rows": rows,
+        **_counted(rows),
+    }
+    if worst.code == NOT_CHECKED:
+        return {**parts, "reason": _no_value(used, worst.index[: len(worst.index) - compared.axes])}
+    numbers = _numbers(criterion, parts, worst, estimates)
+    if is_shifted and worst.is_known:  # more than the error of the name that is judged
+        numbers["relative_error"] = relative_width(worst.value, worst.low, worst.high)
+    return {**parts, **numbers}
+
+
+def _where(index: tuple[int, ...], axes: int, along: Along | None) -> tuple[Place, ...]:
+    if not index:
+        return ()
+    points, places = index[: len(index) - axes], index[len(index) - axes :]
+    where = [Place("point", _counted_from_one(points), "1")] if points else []
+    if axes == 1 and along is not None:
+        values = np.asarray(along.values)
+        where.append(Place(along.name, float(values[index[-values.ndim :]]), along.unit))
+    elif axes:
+        where.append(Place("place", _counted_from_one(places), "1"))
+    return tuple(where)
+
+
+def _counted_from_one(index: tuple[int, ...]) -> int | list[int]:
+    numbers = [i + 1 for i in index]
+    return numbers[0] if len(numbers) == 1 else numbers
+
+
+def _counted(rows: Codes) -> Parts:
+    """How many points there are of each verdict; nothing of a single one."""
+    if isinstance(rows, int):
+        return {}
+    numbers = np.bincount(rows.ravel(), minlength=len(WORST_FIRST))
+    counts = {verdict: int(n) for verdict, n in zip(WORST_FIRST, numbers, strict=True) if n}
+    return {"points": int(rows.size), "counts": counts}
+
+
+def _no_value(used: list[Estimate], point: tuple[int, ...]) -> str:
+    """Why there is no value at a point."""
+    for reasons in (estimate.reasons for estimate in used if estimate.reasons is not None):
+        own = point[len(point) - reasons.ndim :]
+        if reason := reasons[tuple(i % n for i, n in zip(own, reasons.shape, strict=True))]:
+            return str(reason)
+    return "there is no value here"
+
+
+def _numbers(criterion: Criterion, parts: Parts, worst: Worst, estimates: Mapping[str, Estimate]) -> Parts:
+    """Value, limit, band and what follows from them, in the unit of the criterion."""
+    scale, is_temperature = criterion.scale, criterion.is_temperature
+    subject = estimates[criterion.subject] if criterion.subject else None
+    needs = _needs(worst, subject) if parts["verdict"] == "undecided" else None
+    difference = worst.value - worst.limit if criterion.sign == ">=" else worst.limit - worst.value
+    return {
+        "value": float(scale.from_si(worst.value)),
+        "limit": float(scale.from_si(worst.limit)),
+        "band": (float(scale.from_si(worst.low)), float(scale.from_si(worst.high)))
+        if worst.is_known
+        else None,
+        "relative_error": _relative_error(subject, worst),
+        "utilisation": None if is_temperature else _utilisation(criterion, worst),
+        "margin": difference / (1.0 if is_temperature else scale.factor),
+        "margin_unit": "K" if is_temperature else criterion.unit,
+        "needs": needs,
+        "reason": _reason(criterion, parts, worst, estimates, needs),
+    }
+
+
+def _relative_error(subject: Estimate | None, worst: Worst) -> float | None:
+    """The stated error of a name that is judged alone; of an expression, that of its band."""
+    if subject is None:
+        return relative_width(worst.value, worst.low, worst.high) if worst.is_known else None
+    at = subject.error
+    if isinstance(at, np.ndarray):
+        points = worst.index[: len(worst.index) - subject.axes]
+        at = np.broadcast_to(at, np.shape(subject.value)[: len(points)])[points]
+    return None if math.isnan(at) else float(at)
+
+
+def _utilisation(criterion: Criterion, worst: Worst) -> float | None:
+    if not (worst.value > 0 and worst.limit > 0):
+        return None
+    share = worst.limit / worst.value if criterion.sign == ">=" else worst.value / worst.limit
+    return share if math.isfinite(share) else None
+
+
+def _needs(worst: Worst, subject: Estimate | None) -> float:
+    """The relative error of the value below which the limit lies outside of its band.
+
+    Where the limit is uncertain too, the same relative error of both.
+    """
+    gap = abs(worst.value - worst.limit)
+    if subject is not None and (subject.axes or subject.scale is not None):
+        size = float(np.nanmax(np.abs(subject.value if subject.scale is None else subject.scale)))
+        return gap / (size + gap) if gap else 0.0
+    if worst.value * worst.limit <= 0:
+        return 1.0 if gap else 0.0
+    return gap / abs(worst.limit if worst.is_limit_exact else worst.value + worst.limit)
+
+
+def _reason(
+    criterion: Criterion, parts: Parts, worst: Worst, estimates: Mapping[str, Estimate], needs: float | None
+) -> str | None:
+    """What to know of a verdict beside its numbers."""
+    if parts["verdict"] != "undecided":
+        return None if parts["is_stated"] else "the error of the model is not stated"
+    unknown = [name for name in criterion.names if np.isnan(estimates[name].error).any()]
+    if unknown and not (worst.is_known and worst.is_limit_known):
+        return f"the error of {', '.join(unknown)} is not known here"
+    if not needs:
+        return "the value equals the limit to within its error"
+    return f"the limit lies within the error of the value; a relative error below {needs:.2g} would decide"

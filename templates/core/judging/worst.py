@@ -1,0 +1,71 @@
+"""The worst of several points and places: the worst verdict, and there the bound nearest to the limit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.judging.comparison import Compared
+from templates.core.judging.criterion import Criterion
+
+
+@dataclass(frozen=True, slots=True)
+class Worst:
+    """Both sides [SI] and their bands at the worst place; `index` is empty for a single value."""
+
+    index: tuple[int, ...]
+    code: int
+    value: float
+    limit: float
+    low: float
+    high: float
+    limit_low: float
+    limit_high: float
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the band of the value is known."""
+        return not (math.isnan(self.low) or math.isnan(self.high))
+
+    @property
+    def is_limit_known(self) -> bool:
+        """Whether the band of the limit is known."""
+        return not (math.isnan(self.limit_low) or math.isnan(self.limit_high))
+
+    @property
+    def is_limit_exact(self) -> bool:
+        """Whether the limit has no error."""
+        return self.limit_low == self.limit_high
+
+
+def worst_of(criterion: Criterion, compared: Compared) -> Worst:
+    """The worst point and place of a comparison."""
+    sides = (compared.value, compared.limit, *compared.value_bounds, *compared.limit_bounds)
+    codes = compared.codes
+    if isinstance(codes, int):
+        return Worst((), codes, *map(float, sides))
+    whole = [np.broadcast_to(side, codes.shape) for side in sides]
+    clearance = np.where(codes == codes.min(), _clearance(criterion, whole), np.inf)
+    index = np.unravel_index(int(np.argmin(clearance)), codes.shape)
+    place = tuple(map(int, index))
+    return Worst(place, int(codes[place]), *(float(side[place]) for side in whole))
+
+
+def _clearance(criterion: Criterion, sides: list[Array]) -> Array:
+    """How far the worst bound lies on the safe side of the limit, relative to it where it is not zero.
+
+    Where the band is open or not known the value itself counts; what does not exist has a finite number too,
+    so that it differs from what is not asked about.
+    """
+    value, limit, low, high, limit_low, limit_high = sides
+    with np.errstate(all="ignore"):
+        if criterion.sign == ">=":
+            bound, nominal = low - limit_high, value - limit
+        else:
+            bound, nominal = limit_low - high, limit - value
+        gap = np.where(np.isfinite(bound), bound, nominal)
+        relative = np.where(limit != 0, gap / np.abs(limit), gap)
+    return np.nan_to_num(relative)

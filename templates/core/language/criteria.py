@@ -1,0 +1,283 @@
+"""The criteria of a template: checked when its class is made, judged when it is evaluated."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Container, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from templates.core.errors import FaultyText
+from templates.core.judging.bands import Estimate
+from templates.core.judging.criterion import Criterion, Known, Limit, Missing, is_angle, read_criterion
+from templates.core.judging.judgement import Judgement, sentence
+from templates.core.judging.judging import Absent, Along, judge
+from templates.core.judging.limits import GivenLimit
+from templates.core.judging.summary import worst_first
+from templates.core.language.admission import absence
+from templates.core.language.intake import Input
+from templates.core.language.ledger import Notice
+from templates.core.language.spec import Choice, Curve, Declaration, Formula, Profile, Table, Text
+from templates.core.units.units import Unit, Value
+
+if TYPE_CHECKING:
+    from templates.core.language.evaluate import Answer
+    from templates.core.language.levels import Accuracy
+    from templates.core.language.template import Template
+
+RIGHT_ANGLE = math.pi / 2  # to which the errors of angles are relative [rad]
+
+
+def declared_criteria(
+    name: str, raw: Any, inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]
+) -> tuple[Criterion, ...]:
+    """The criteria that a class declares.
+
+    Raises
+    ------
+    TypeError
+        Naming the class and the criterion that is wrong.
+    """
+    if not raw:
+        return ()
+    if not isinstance(raw, Mapping):
+        raise TypeError(f"{name}: criteria is a dict by name")
+    known = known_names(inputs, formulas)
+    criteria = []
+    for called, text in raw.items():
+        try:
+            criteria.append(read_criterion(called, text, known))
+        except FaultyText as error:
+            raise TypeError(f"{name}: criterion {called!r}: {error}") from None
+    return tuple(criteria)
+
+
+def known_names(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]) -> dict[str, Known]:
+    """What the names measure that a criterion may use: neither words nor tables."""
+    declared = {**inputs, **formulas}
+    return {
+        name: Known(one.meaning.unit, one.meaning.words)
+        for name, one in declared.items()
+        if not isinstance(one, (Choice, Table, Text))
+    }
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """What was evaluated, as criteria see it.
+
+    Attributes
+    ----------
+    template
+        The evaluated instance; where levels differ from point to point, that of the first.
+    answers
+        The outputs that were evaluated.
+    errors
+        Relative, as `Evaluation.error`; `measured` is the table behind them.
+    is_joined
+        Whether the answers come from several instances.
+    """
+
+    template: Template
+    answers: Mapping[str, Answer]
+    errors: Mapping[str, Any]
+    measured: Accuracy | None
+    limits: Mapping[str, GivenLimit] = field(default_factory=dict)
+    shown_in: Mapping[str, Unit] = field(default_factory=dict)
+    level: Any = None
+    is_joined: bool = False
+
+    def value(self, name: str) -> Value:
+        """The SI value of an output that exists; NaN in an array where there is none."""
+        answer, formula = self.answers[name], self.template.formulas[name]
+        if self.is_joined:
+            return (self.shown_in.get(name) or formula.meaning.scale).to_si(answer.value)
+        si: Value = getattr(self.template, formula.attribute)
+        if answer.reasons is None:
+            return si
+        return np.where(np.isnan(answer.value), np.nan, si)
+
+
+def judged(evaluated: Evaluated) -> list[Judgement]:
+    """The criteria of a template whose outputs were evaluated, worst first."""
+    template = evaluated.template
+    due = (c for c in template.declared_criteria if _is_due(template, c, evaluated.answers))
+    return worst_first(_judged(evaluated, criterion) for criterion in due)
+
+
+def _is_due(template: Template, criterion: Criterion, evaluated: Container[str]) -> bool:
+    """Whether judging computes no output beyond those evaluated."""
+    return all(name in evaluated for name in criterion.names if _is_output(template, name))
+
+
+def _is_output(template: Template, name: str) -> bool:
+    """Whether a name has to be computed here."""
+    formula = template.formulas.get(name)
+    return formula is not None and formula.attribute not in template.ledger.handed
+
+
+def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
+    template = evaluated.template
+    estimates: dict[str, Estimate] = {}
+    absent: dict[str, Absent] = {}
+    limits = {limit.name: limit for limit in criterion.limits}
+    for name in sorted(criterion.names, key=limits.__contains__):  # a limit has to fit the other values
+        if name in limits:
+            one = _limit(evaluated, limits[name], estimates)
+        else:
+            one = estimate_of(evaluated, name)
+        if isinstance(one, Absent):
+            absent[name] = _known_reason(evaluated, criterion.absent.get(name)) or one
+        else:
+            estimates[name] = one
+    subject = criterion.subject or ""
+    shown = evaluated.shown_in[subject].text if subject in evaluated.shown_in else None
+    level = evaluated.level if isinstance(evaluated.level, str) else None
+    return judge(
+        criterion,
+        estimates,
+        absent,
+        _along(template, criterion),
+        shown,
+        level=level,
+        truth=evaluated.measured.truth(level or "", subject) if evaluated.measured else None,
+        source=_source(evaluated, criterion) if criterion.limits else criterion.source,
+    )
+
+
+def _source(evaluated: Evaluated, criterion: Criterion) -> str | None:
+    """The source of the criterion, and those of the limits that a library gave."""
+    given = (evaluated.limits.get(limit.name) for limit in criterion.limits)
+    sources = [criterion.source, *(limit.source for limit in given if limit)]
+    return "; ".join(dict.fromkeys(source for source in sources if source)) or None
+
+
+def estimate_of(evaluated: Evaluated, name: str) -> Estimate | Absent:
+    """The value of an input or output with its error, or why there is none."""
+    template = evaluated.template
+    if _is_output(template, name):
+        return _estimate_of_output(evaluated, name)
+    declared = template.inputs[name]
+    with np.errstate(all="ignore"):
+        si = getattr(template, declared.attribute)
+    if not np.ndim(si) and np.isnan(si):
+        return Absent((name,), f"give {name}")
+    return Estimate(si, axes=1 if isinstance(declared, Curve) and np.ndim(si) else 0)
+
+
+def _limit(evaluated: Evaluated, limit: Limit, others: Mapping[str, Estimate]) -> Estimate | Absent:
+    """A limit of the user: one for all, one for each point, or a curve beside a curve."""
+    given = evaluated.limits.get(limit.name)
+    if given is None:
+        return _default(evaluated, limit)
+    shape, points = np.shape(given.value), evaluated.template.shape_of_points()
+    if not shape or _fits(shape, points):
+        return Estimate(given.value)
+    curve = next((other for other in others.values() if other.axes), None)
+    if curve is not None and _fits(shape, (*points, *np.shape(curve.value)[-curve.axes :])):
+        return Estimate(given.value, axes=curve.axes)
+    return Absent(
+        (), f"{limit.name} has {np.size(given.value)} values, which do not fit those of the calculation"
+    )
+
+
+def _default(evaluated: Evaluated, limit: Limit) -> Estimate | Absent:
+    """A limit that nobody gave: an end of an input that is a list, where that is declared and given."""
+    if limit.default is not None:
+        function, name = limit.default
+        with np.errstate(all="ignore"):
+            si = getattr(evaluated.template, evaluated.template.inputs[name].attribute)
+        if np.ndim(si):
+            return Estimate({"min": np.min, "max": np.max}[function](si, axis=-1))
+    return Absent((limit.name,), limit.remedy)
+
+
+def _known_reason(evaluated: Evaluated, missing: Missing | None) -> Absent | None:
+    """Why an output has no value, where the criterion says so and the output beside it has one."""
+    beside = evaluated.answers.get(missing.beside) if missing else None
+    return Absent((), missing.reason) if missing and beside and beside.value is not None else None
+
+
+def _fits(shape: tuple[int, ...], wanted: tuple[int, ...]) -> bool:
+    """Whether an array of this shape goes with one of the wanted shape without making it larger."""
+    try:
+        return np.broadcast_shapes(shape, wanted) == wanted
+    except ValueError:
+        return False
+
+
+def _estimate_of_output(evaluated: Evaluated, name: str) -> Estimate | Absent:
+    template, formula = evaluated.template, evaluated.template.formulas[name]
+    answer = evaluated.answers[name]
+    if formula.attribute in template.ledger.absent and not np.ndim(answer.value):
+        return _absent(template, formula, answer.reason)
+    axes = formula.axes if isinstance(formula, Profile) else 0
+    error, is_stated = _error(evaluated, name)
+    scale = RIGHT_ANGLE if not axes and is_angle(formula.meaning.unit) else None
+    return Estimate(evaluated.value(name), error, is_stated, axes, scale, answer.reasons)
+
+
+def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Absent:
+    """Why an output does not exist: optional inputs to give, or a reason of its own."""
+    missing = sorted(template.ledger.missing & template.ancestors(formula.attribute))
+    give = tuple(template.declarations[attribute].name for attribute in missing)
+    return Absent(give, reason or absence(template, formula))
+
+
+def _error(evaluated: Evaluated, name: str) -> tuple[Any, bool]:
+    """The relative error of an output, and whether any was stated.
+
+    A template of which no errors were measured, or one without levels whose table does not name the output,
+    states none; its band has no width. Of a level an error that is not known is NaN, and decides nothing.
+    """
+    error = evaluated.errors.get(name)
+    has_levels = bool(evaluated.template.levels) and evaluated.measured is not None
+    if not has_levels and not _is_measured(evaluated.measured, name):
+        return 0.0, False
+    if error is None:
+        return float("nan"), False
+    return error, not (math.isnan(error) if isinstance(error, float) else np.isnan(error).any())
+
+
+def _is_measured(measured: Accuracy | None, name: str) -> bool:
+    """Whether a table of errors names the output at all."""
+    return measured is not None and any(name in outputs for outputs in measured.errors.values())
+
+
+def _along(template: Template, criterion: Criterion) -> Along | None:
+    """The places of the curve that is judged, if there is one."""
+    for name in criterion.names:
+        declared = template.formulas.get(name) or template.inputs.get(name)
+        axis = _axis(template, declared) if declared else None
+        if axis is not None:
+            return _places(template, axis)
+    return None
+
+
+def _axis(template: Template, declared: Declaration) -> Declaration | None:
+    """The input or output that says where the places of a curve are."""
+    if not isinstance(declared, Profile) or declared.axes != 1:
+        return None
+    return template.inputs.get(declared.along) or template.formulas.get(declared.along)
+
+
+def _places(template: Template, axis: Declaration) -> Along | None:
+    with np.errstate(all="ignore"):
+        values = getattr(template, axis.attribute)
+    return (
+        Along(axis.name, axis.meaning.scale.from_si(values), axis.meaning.unit) if np.ndim(values) else None
+    )
+
+
+def warned(cls: type[Template], judgements: list[Judgement]) -> Iterator[Notice]:
+    """A warning for every criterion that declares one and is not met, or whose value misses its limit.
+
+    Where the limit lies within the error of a value that misses it, the verdict is undecided: a film of 1 nm
+    whose error is not known is warned of all the same.
+    """
+    first = {criterion.name: criterion.names[0] for criterion in cls.declared_criteria}
+    for judgement in judgements:
+        if judgement.warning and judgement.misses:
+            yield Notice(judgement.warning, first[judgement.name], sentence(judgement))

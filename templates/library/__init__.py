@@ -1,0 +1,1 @@
+"""Library: bearing materials, oils and surface finishes as cited tables, each value with its source."""
