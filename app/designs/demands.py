@@ -1,7 +1,8 @@
 """The criteria that a design writes: its own, and what it says of those of its templates.
 
 A name without a dot is a criterion of the design, which needs `require`. `film.pressure` is the criterion
-`pressure` of the template of step `film`: the design may replace its comparison, words or source, or waive it.
+`pressure` of the template of step `film`: the design may replace its comparison, words or source, or waive
+it.
 """
 
 from __future__ import annotations
@@ -56,21 +57,32 @@ def _uses(require: str | None) -> dict[str, Reference]:
     return {name: Reference.parse(name) for name in sorted(value.names | limit.names)}
 
 
+def unknown_names_in(network: Network) -> list[Fault]:
+    """A fault for every name in a criterion of the design that means no number."""
+    unknown = [
+        (demand.name, used)
+        for demand in network.demands.values()
+        for used, reference in demand.uses.items()
+        if not _is_value(network, reference)
+    ]
+    if not unknown:
+        return []
+    faults = unknown_names((used for _, used in unknown), network.names(), "name")
+    return [replace(f, name=f"criteria.{name}") for (name, _), f in zip(unknown, faults, strict=True)]
+
+
 def checked_demands(network: Network, kinds: Mapping[str, Kind]) -> tuple[dict[str, Demand], list[Fault]]:
     """The criteria of a network with their units checked, from the kinds of its parameters."""
     demands: dict[str, Demand] = {}
     faults: list[Fault] = []
     for name, demand in network.demands.items():
-        if unknown := [used for used, reference in demand.uses.items() if not _is_value(network, reference)]:
-            named = unknown_names(unknown, list(network.names()), "name")
-            faults += (replace(fault, name=f"criteria.{name}") for fault in named)
-        elif demand.written.require is None or not _parameters(network, demand) <= kinds.keys():
+        if demand.written.require is None or not _parameters(network, demand) <= kinds.keys():
             demands[name] = demand  # a parameter whose kind is not known is a fault already
-        else:
-            try:
-                demands[name] = replace(demand, criterion=_checked(network, kinds, demand))
-            except FaultyText as error:
-                faults.append(fault_of(name, error))
+            continue
+        try:
+            demands[name] = replace(demand, criterion=_checked(network, kinds, demand))
+        except FaultyText as error:
+            faults.append(fault_of(name, error))
     return demands, faults
 
 
@@ -81,9 +93,7 @@ def _is_value(network: Network, reference: Reference) -> bool:
     if network.node(reference) is None:
         return False
     block = network.blocks.get(reference.block)
-    declared = block and (
-        block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member)
-    )
+    declared = block and (block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member))
     return not isinstance(declared, (Text, Table))
 
 
@@ -111,4 +121,3 @@ def _known(network: Network, kinds: Mapping[str, Kind], name: str, reference: Re
 def fault_of(name: str, error: FaultyText) -> Fault:
     """What is wrong with a criterion, by its place in the document."""
     return error.fault(f"criteria.{name}")
-

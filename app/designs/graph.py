@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from app.designs.analyses import is_measured, questions, remedy
-from app.designs.demands import checked_demands, read_demands
+from app.designs.demands import checked_demands, read_demands, unknown_names_in
 from app.designs.document import Document, Model, Step, Version
 from app.designs.kinds import checked_kinds
 from app.designs.network import Block, Cell, Graph, Network, Node
@@ -50,7 +50,7 @@ def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list
         return Graph({}, {}, frozenset()), faults
     network, faults = _network(document, catalogues)
     links = {cell: _links(network, cell) for cell in network.cells() if cell.uses}
-    if faults := [*faults, *_unknown(network, links)]:
+    if faults := [*faults, *_unknown(network, links), *unknown_names_in(network)]:
         return _graph(network), faults
     sources = _sources(network, links)
     order, faults = ordered(network, sources)

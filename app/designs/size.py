@@ -25,9 +25,8 @@ def too_many_relations(document: Document) -> Iterator[Fault]:
         return
     length = required + sum(len(text) for text in texts if is_relation(text))
     if length > MOST_RELATION_TEXT:
-        message = (
-            f"the relations and criteria of a design have at most {MOST_RELATION_TEXT} characters together, not {length}"
-        )
+        most = f"at most {MOST_RELATION_TEXT} characters together, not {length}"
+        message = f"the relations and criteria of a design have {most}"
         yield Fault("design", "too_long", message)
 
 

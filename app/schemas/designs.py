@@ -174,7 +174,8 @@ class Revision(Answer):
     models: dict[str, RevisionModel]
     iterations: list[Round]
     criteria: list[Criterion] | None = Field(
-        None, description="as judged when it was calculated, worst first; absent in revisions of older programs"
+        None,
+        description="as judged when it was calculated, worst first; absent in revisions of older programs",
     )
     verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
 

@@ -131,9 +131,7 @@ def band_relative_to(value: Value, error: Value, scale: Value) -> Bounds:
         return value - half, value + half
 
 
-def bounds_of(
-    side: Relation, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
-) -> Bounds:
+def bounds_of(side: Relation, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()) -> Bounds:
     """The band of a side of a comparison.
 
     Each uncertain name is shifted to both ends of its band, the others kept, and the changes are added; so

@@ -45,7 +45,7 @@ def judge(
     along: Along | None = None,
     unit_name: str | None = None,
     shifts: Sequence[Shift] = (),
-    **noted: Any,
+    noted: Mapping[str, Any] | None = None,
 ) -> Judgement:
     """Judge a criterion.
 
@@ -63,7 +63,7 @@ def judge(
         The unit in which to report, if not the criterion's.
     shifts
         The values of all names, with something upstream shifted to either end of its band.
-    **noted
+    noted
         Further fields of the judgement, such as `level` and `truth`.
     """
     shown = criterion if unit_name is None else replace(criterion, unit=unit_name)
@@ -83,7 +83,7 @@ def judge(
         unit=shown.unit,
         unverified=criterion.unverified,
         warning=criterion.warning,
-        **{"source": criterion.source, **noted, **parts},
+        **{"source": criterion.source, **(noted or {}), **parts},
     )
 
 
