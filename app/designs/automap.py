@@ -1,4 +1,13 @@
-"""Proposals for model parameters that are not set: mapped by name and unit, each with its reason."""
+"""Proposals for model parameters that are not set, by kind, name and role of a quantity, with reasons.
+
+A proposal is never applied unless its user says so. Three things must fit:
+
+- the *kind*: both are measured alike, and a single value is not tied to a curve;
+- the *name*: the step's quantity is called as the parameter is, or as it is `also` known;
+- the *role*: a name of general words alone, such as `bore` or `width`, does not say of which part it is: the
+  bore of an engine is that of its cylinder. It counts only under the very name of the parameter, in a
+  template whose id shares a word with the model's.
+"""
 
 from __future__ import annotations
 
@@ -7,46 +16,79 @@ from collections.abc import Iterator
 from app.designs.network import Block, Graph
 from app.designs.reference import Reference
 from app.schemas.designs import Proposal
-from templates.core.language.spec import Choice
+from templates.core.language.spec import Choice, Curve, Profile, Table, Text
 from templates.core.units.units import compatible, unit
+
+GENERAL = frozenset(
+    "angle area bore clearance depth diameter face height inner length load mass number outer radius size "
+    "speed stroke temperature thickness volume wall width".split()
+)
+"""Words that say what is measured, but not of which part."""
+NO_SINGLE_VALUE = (Choice, Curve, Profile, Table, Text)
 
 
 def proposals(graph: Graph) -> list[Proposal]:
-    """One proposal for every unset model parameter that something fits by name and unit."""
+    """One proposal for every unset model parameter that something fits."""
     models = [block for block in graph.blocks.values() if block.is_model]
-    return [
-        found for model in models for name in model.cls.inputs if (found := _proposal(graph, model, name))
-    ]
+    candidates = (_proposal(graph, model, name) for model in models for name in model.cls.inputs)
+    return [proposal for proposal in candidates if proposal is not None]
 
 
 def _proposal(graph: Graph, model: Block, name: str) -> Proposal | None:
     declared = model.cls.inputs[name]
     if name in model.cells or isinstance(declared, Choice):
         return None
-    target = f"{model.name}.{name}"
     for called in (name, *declared.meaning.also):
-        fitting = [source for source in _named(graph, called) if _fits(graph, source, declared.meaning.unit)]
+        fitting = [s for s in _named(graph, model, name, called) if _fits(graph, s, declared.meaning.unit)]
         if fitting:
-            words = called.replace("_", " ")
-            same = (
-                f"both are called {words}" if called == name else f"{declared.meaning.words} is also {words}"
+            chosen, *others = sorted(fitting, key=lambda source: not _is_namesake(source, model))
+            relation = f"= {chosen}"
+            return Proposal(
+                target=f"{model.name}.{name}", relation=relation, reason=_reason(model, name, called, others)
             )
-            others = f"; {', '.join(map(str, fitting[1:]))} would fit too" if fitting[1:] else ""
-            reason = f"{same}, and both are given in {declared.meaning.unit} or its like{others}"
-            return Proposal(target=target, relation=f"= {fitting[0]}", reason=reason)
     return None
 
 
-def _named(graph: Graph, called: str) -> Iterator[Reference]:
+def _reason(model: Block, name: str, called: str, others: list[Reference]) -> str:
+    meaning, words = model.cls.inputs[name].meaning, called.replace("_", " ")
+    same = f"both are called {words}" if called == name else f"{meaning.words} is also {words}"
+    more = f"; {', '.join(map(str, others))} would fit too" if others else ""
+    return f"{same}, and both are given in {meaning.unit} or its like{more}"
+
+
+def _named(graph: Graph, model: Block, name: str, called: str) -> Iterator[Reference]:
     """What is called so: outputs and inputs of steps first, then parameters of the design."""
     steps = [block for block in graph.blocks.values() if not block.is_model]
-    yield from (Reference(step.name, None, called) for step in steps if called in step.cls.formulas)
-    yield from (Reference(step.name, None, called) for step in steps if called in step.cls.inputs)
-    if called in graph.parameters:
+    fitting = [
+        step for step in steps if _tells_its_part(called) or (called == name and _share_a_role(step, model))
+    ]
+    yield from (Reference(step.name, None, called) for step in fitting if called in step.cls.formulas)
+    yield from (Reference(step.name, None, called) for step in fitting if called in step.cls.inputs)
+    if called in graph.parameters and (_tells_its_part(called) or called == name):
         yield Reference(called)
 
 
+def _tells_its_part(called: str) -> bool:
+    """Whether a name says of which part it is: `bearing_width` does, `width` does not."""
+    return not GENERAL.issuperset(called.split("_"))
+
+
+def _share_a_role(step: Block, model: Block) -> bool:
+    return not set(step.cls.id.split("_")).isdisjoint(model.cls.id.split("_"))
+
+
+def _is_namesake(source: Reference, model: Block) -> bool:
+    """Whether the names of step and model share a word: `front_shell` goes with `front_film`."""
+    block = source.block if source.output is not None else ""
+    return not set(block.split("_")).isdisjoint(model.name.split("_"))
+
+
 def _fits(graph: Graph, source: Reference, wanted: str) -> bool:
+    """Whether a source is of the kind that is wanted, and a single value."""
     if source.output is None:
         return compatible(graph.kinds[source.block].base, unit(wanted).base)
+    cls = graph.blocks[source.block].cls
+    declared = cls.formulas.get(source.output) or cls.inputs[source.output]
+    if isinstance(declared, NO_SINGLE_VALUE):
+        return False
     return compatible(unit(graph.unit_of(source)).base, unit(wanted).base)

@@ -34,17 +34,50 @@ class Formula:
 
 
 @dataclass(frozen=True)
-class Verdict:
-    """A bound or a rule held against the values."""
+class Criterion:
+    """A criterion as judged, in words about the case."""
+
+    words: str
+    verdict: str  # met, not_met, undecided, not_checked
+    verdict_words: str
+    compared: str
+    used: str
+    margin: str
+    error: str
+    source: str
+    remarks: list[str]  # what restricts the verdict, and what to give
+
+
+@dataclass(frozen=True)
+class Judged:
+    """The verdict with which a report begins; without criteria, the headline says why there is none."""
+
+    headline: str
+    tone: str  # green, bad, open, plain
+    governing: str
+    criteria: list[Criterion]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A range or a rule of a template, held against the values; no verdict on the design."""
 
     words: str
     kind: str
     demand: str  # MathML
-    numbers: str  # MathML
+    numbers: str  # MathML, with the sign that is true
     used: str  # of the allowance
-    share: float | None
     holds: bool
+    state: str  # inside, outside; kept, violated
     remark: str
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A chart of a step."""
+
+    title: str
+    svg: str
 
 
 @dataclass(frozen=True)
@@ -77,7 +110,9 @@ class Step:
     inputs: list[Line]
     formulas: list[Formula]
     results: list[Line]
-    checks: list[Verdict]
+    plots: list[Plot]
+    ranges: list[Rule]  # the range of validity: domains and published ranges
+    rules: list[Rule]
     warnings: list[Warned]
     references: list[str]
 
@@ -116,7 +151,7 @@ class Model:
     measures: list[Line]
     analyses: list[Line]  # what finite elements computed; origin is how
     warnings: list[Warned]
-    checks: list[Verdict]
+    rules: list[Rule]
     files: list[File]
     remark: str  # on pictures that could not be had
 
@@ -145,6 +180,7 @@ class Report:
     problem: str
     program: str
     units: str
+    verdict: Judged
     summary: list[str]
     parameters: list[Line]
     steps: list[Step]

@@ -13,8 +13,8 @@ from app.presentation import numbers
 from app.presentation.numbers import told as in_line
 from app.presentation.units import System
 from app.reports.cells import NOTHING, cell, typed
-from app.reports.content import File, Line, Mapped, Model, Verdict, Warned
-from app.reports.steps import class_of, symbol_of, verdicts, version_of, words_of
+from app.reports.content import File, Line, Mapped, Model, Rule, Warned
+from app.reports.steps import class_of, rules, symbol_of, version_of, words_of
 from app.reports.typesetting import DRAWING, PICTURE
 from app.schemas.analyses import AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Quantity, Shown
@@ -57,7 +57,7 @@ def model_of(
         measures=[*_measures(measured, system)] if measured else [],
         analyses=[*_analyses(model.analyses, system)],
         warnings=_warnings(model.analyses),
-        checks=_checks(model, cls),
+        rules=_rules(model, cls),
         files=[File(kind, model.artifacts[kind]) for kind in KEPT if kind in model.artifacts],
         remark=remark,
     )
@@ -134,7 +134,7 @@ def _analysed(kind: str, analysis: ModelAnalysis, name: str, output: AnalysisOut
     )
 
 
-def _checks(model: RevisionModel, cls: type[CadModel] | None) -> list[Verdict]:
+def _rules(model: RevisionModel, cls: type[CadModel] | None) -> list[Rule]:
     """The rules between the parameters; ranges are those of a whole family of sizes and say little."""
     if cls is None or not model.parameters:
         return []
@@ -144,4 +144,4 @@ def _checks(model: RevisionModel, cls: type[CadModel] | None) -> list[Verdict]:
     except TemplateError:  # the file of this version was changed
         return []
     with np.errstate(all="ignore"):
-        return verdicts(check for check in checks(shape) if check.kind in ("rule", "warning"))
+        return rules(check for check in checks(shape) if check.kind in ("rule", "warning"))

@@ -7,7 +7,7 @@ drawing) may come later, and the report says so.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 
@@ -17,13 +17,13 @@ from sqlalchemy.orm import Session
 from app.designs import repository, stamps, views
 from app.designs.graph import Catalogues
 from app.designs.worksheet import worksheet
-from app.presentation import numbers
 from app.presentation.units import System
 from app.reports.cells import Cell, cell, clean, typed
-from app.reports.content import Line, Model, Report, Round, Step, Verdict
+from app.reports.content import Line, Model, Report, Round, Step
 from app.reports.models import model_of
 from app.reports.steps import step_of
 from app.reports.typesetting import DRAWING, PICTURE
+from app.reports.verdict import judged
 from app.schemas import designs as schemas
 from app.schemas.answers import Quantity
 from app.solids import rows
@@ -97,6 +97,7 @@ class Reports:
             problem=f"{problem.title}: {problem.detail}" if problem else "",
             program=f"Crankwright {version('crankwright')}",
             units=system,
+            verdict=judged(worked),
             summary=[*_summary(steps, models), *(f"note on {w.name}: {w.detail}" for w in worked.warnings)],
             parameters=[Line(n, "", Cell(text=typed(value))) for n, value in worked.parameters.items()],
             steps=steps,
@@ -153,22 +154,14 @@ def _round(one: schemas.Round) -> Round:
 
 
 def _summary(steps: Sequence[Step], models: Sequence[Model]) -> list[str]:
-    """What a checker wants to know first."""
-    checks = [(step.name, check) for step in steps for check in step.checks]
-    checks += [(model.name, check) for model in models for check in model.checks]
+    """What a checker wants to know besides the verdict: warnings, values out of range, violated rules."""
     warnings = sum(len(step.warnings) for step in steps) + sum(len(model.warnings) for model in models)
-    broken = [f"{name}: {check.words}" for name, check in checks if not check.holds]
-    counts = [
-        f"{len(checks)} checks, {len(broken) or 'none'} not met" if checks else "no checks",
-        f"{warnings or 'no'} warning{'' if warnings == 1 else 's'}",
+    outside = [f"{step.name}: {one.words}" for step in steps for one in step.ranges if not one.holds]
+    violated = [
+        f"{part.name}: {one.words}" for part in (*steps, *models) for one in part.rules if not one.holds
     ]
-    worst = _worst(checks)
-    return [", ".join(counts), *([worst] if worst else []), *(f"not met: {words}" for words in broken)]
-
-
-def _worst(checks: Iterable[tuple[str, Verdict]]) -> str:
-    shares = [(check.share, name, check.words) for name, check in checks if check.share is not None]
-    if not shares:
-        return ""
-    share, name, words = max(shares)
-    return f"largest share of an allowance that is used: {numbers.share(share)}, {name}: {words}"
+    return [
+        f"{warnings or 'no'} warning{'' if warnings == 1 else 's'}",
+        *(f"outside its range of validity: {words}" for words in outside),
+        *(f"violated: {words}" for words in violated),
+    ]

@@ -10,7 +10,8 @@ from app.designs.worksheet import checked
 from app.plain import Json, JsonObject, Raw
 from app.presentation import numbers
 from app.reports.cells import Cell, cell, flat, in_si, typed
-from app.reports.content import Formula, Identity, Line, Step, Verdict, Warned
+from app.reports.content import Formula, Identity, Line, Rule, Step, Warned
+from app.reports.plots import plots_of
 from app.schemas.designs import PreviewedStep
 from app.schemas.evaluations import CalculatedBy, Output, UsedInput, WorkedFormula
 from templates.core.catalogue.finding import Catalogue
@@ -25,6 +26,7 @@ from templates.core.paper.verdicts import Check
 WAITS = "waits for a solid that is not built"
 GUARD = 1e-5  # a domain that is used less than this guards against overflow and says nothing to an engineer
 KINDS = {"domain": "range", "published": "published range", "rule": "rule", "warning": "rule"}
+RANGES = ("domain", "published")
 
 T = TypeVar("T", bound=Template)
 Class = type[Template] | None
@@ -35,6 +37,7 @@ def step_of(name: str, step: PreviewedStep, document: JsonObject, catalogue: Cat
     """One step, from the worksheet of a revision and from its `document`, which is the step as typed."""
     calculated_by = step.template
     cls = class_of(catalogue, calculated_by.id, calculated_by.version)
+    checks = checked(step, catalogue)
     return Step(
         name=name,
         template=version_of(calculated_by, cls),
@@ -43,8 +46,10 @@ def step_of(name: str, step: PreviewedStep, document: JsonObject, catalogue: Cat
         inputs=_inputs(step, document["inputs"], cls),
         formulas=[_formula(row) for row in step.formulas if _exists(step.outputs[row.name])],
         results=[_result(n, step, cls) for n in _ordered(step.outputs, cls.formulas if cls else ())],
-        checks=verdicts(checked(step, catalogue)),
-        warnings=[Warned(w.name.replace("_", " "), w.detail) for w in step.warnings],
+        plots=plots_of(step, cls),
+        ranges=rules(check for check in checks if check.kind in RANGES),
+        rules=rules(check for check in checks if check.kind not in RANGES),
+        warnings=[Warned(w.name.replace("_", " "), _about_the_case(w.detail, checks)) for w in step.warnings],
         references=list(documentation(cls).get("References", ())) if cls else [],
     )
 
@@ -65,28 +70,36 @@ def version_of(calculated_by: CalculatedBy, cls: Class) -> Identity:
     return Identity(calculated_by.id, calculated_by.version, digest, title, withdrawn)
 
 
-def verdicts(checks: Iterable[Check]) -> list[Verdict]:
-    """Checks, those that do not hold first, then those that use most."""
+def rules(checks: Iterable[Check]) -> list[Rule]:
+    """Ranges or rules, those that do not hold first, then those that use most."""
     useful = [c for c in checks if not (c.kind == "domain" and c.holds and _idle(c.used))]
-    return [_verdict(check) for check in sorted(useful, key=lambda c: (c.holds, -(c.used or 0.0)))]
+    return [_rule(check) for check in sorted(useful, key=lambda c: (c.holds, -(c.used or 0.0)))]
 
 
 def _idle(used: float | None) -> bool:
     return used is None or used < GUARD
 
 
-def _verdict(check: Check) -> Verdict:
-    remark = f"not at {check.broken} of {check.points} points" if check.broken and check.points > 1 else ""
-    return Verdict(
-        words=check.words,
+def _rule(check: Check) -> Rule:
+    states = ("inside", "outside") if check.kind in RANGES else ("kept", "violated")
+    return Rule(
+        words=check.words if check.holds else check.violation or check.words,
         kind=KINDS[check.kind],
         demand=check.demand and mathml(check.demand),
         numbers=check.numbers and mathml(check.numbers),
         used="" if check.used is None else numbers.share(check.used),
-        share=check.used,
         holds=check.holds,
-        remark=remark,
+        state=states[not check.holds],
+        remark=f"not at {check.broken} of {check.points} points" if check.broken and check.points > 1 else "",
     )
+
+
+def _about_the_case(detail: str, checks: Iterable[Check]) -> str:
+    """A warning; where it begins with the sentence of a rule that is violated, what is instead of that."""
+    for check in checks:
+        if check.violation and detail.startswith(check.words):
+            return check.violation + detail.removeprefix(check.words)
+    return detail
 
 
 def _level(level: Json, tolerance: float | None) -> str:

@@ -8,20 +8,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from urllib.parse import quote
 
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import JsonValue
 
 from app.api.reading import FORM_TYPES, NotForm, check_type
 from app.presentation.typed import value_of
-from app.schemas.designs import Design
-from app.schemas.templates import Template
+from app.schemas.designs import Design, Proposals
 from app.web.api import Api, Refused, TheApi, read
 from app.web.blocks import Refusal
 from app.web.design_page import design_page
-from app.web.forms import Patch, fields, kept, patch_of
+from app.web.forms import Patch, fields, inner, kept, patch_of
 from app.web.gallery import GALLERY
+from app.web.new_step import NewStep, address, beside, new_step, step_page, versioned
 from app.web.rendering import go
 from app.web.routes import Id, Number
 
@@ -41,13 +40,50 @@ router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
 
 @router.post("/designs")
 async def create(request: Request, api: TheApi) -> Response:
-    """A design from the gallery, or one with a template and a model of one's choice."""
+    """A design from the gallery, or one with a template and a model of one's choice.
+
+    A template's inputs are asked for first: its example is never saved as if it were typed.
+    """
     typed = await fields(request)
     example = GALLERY.get(typed.get("example", ""))
-    document = example.document if example else await _blank(api, typed)
+    if example:
+        return await _created(api, example.document)
+    document: dict[str, JsonValue] = {
+        "name": typed.get("design_name", typed.get("name", "")).strip() or "new design"
+    }
+    if typed.get("model"):
+        id, version = versioned(typed["model"])
+        document["model"] = {"id": id, "version": version}
+    if not typed.get("template"):
+        return await _created(api, document)
+    return await _with_step(request, api, typed, document)
+
+
+async def _with_step(
+    request: Request, api: Api, typed: Mapping[str, str], document: dict[str, JsonValue]
+) -> Response:
+    """A design with one step; its form, where that is not filled in, or refused."""
+    if "design_name" not in typed:  # the form of the home page: its name is that of the design
+        return go(address("/designs/new", {**typed, "design_name": str(document["name"]), "name": ""}))
+    step = await new_step(api, typed)
+    try:
+        return await _created(api, {**document, "steps": {step.name: step.plain()}})
+    except Refused as refused:
+        return _step_again(request, step, "/designs", beside(typed), refused)
+
+
+def _step_again(
+    request: Request, step: NewStep, action: str, hidden: Mapping[str, str], refused: Refused
+) -> Response:
+    """The form of a step that was refused."""
+    if refused.status != ILL_NAMED:
+        raise refused
+    notice = None if refused.faults else f"Nothing was saved: {refused.problem.detail}"
+    return step_page(request, step, action, hidden, Refusal(step.typed, refused.faults), notice)
+
+
+async def _created(api: Api, document: Mapping[str, JsonValue]) -> Response:
     design = read(await api.send("POST", "/designs", json=document, headers=AT_ONCE), Design)
-    if not example and design.models:
-        await api.send("POST", f"/designs/{design.id}/auto-map", params={"apply": True}, headers=AT_ONCE)
     return go(f"/designs/{design.id}")
 
 
@@ -69,9 +105,11 @@ async def save(id: Id, request: Request, api: TheApi) -> Response:
 
 @router.post("/designs/{id}/blocks")
 async def add(id: Id, request: Request, api: TheApi) -> Response:
-    """A parameter, a template or a model more, or one less."""
+    """A parameter, a template or a model more, or one less; the inputs of a template are asked for first."""
     typed = await fields(request)
-    patch = await _block(api, typed)
+    if typed.get("add") == "template":
+        return await _add_step(id, request, api, typed)
+    patch = _block(typed)
     design = await api.get(f"/designs/{id}", Design)
     try:
         _refuse_taken(design, patch)
@@ -81,12 +119,37 @@ async def add(id: Id, request: Request, api: TheApi) -> Response:
     return go(f"/designs/{id}")
 
 
+async def _add_step(id: str, request: Request, api: Api, typed: Mapping[str, str]) -> Response:
+    """One more step; its form, where that is not filled in, or refused."""
+    step, design = await new_step(api, typed), await api.get(f"/designs/{id}", Design)
+    patch: Patch = {"steps": {step.name: step.plain()}}
+    try:
+        _refuse_taken(design, patch)
+    except Refused as refused:
+        return await _again(request, api, id, {}, refused)
+    if not step.is_filled:
+        return go(address(f"/designs/{id}/steps/new", typed))
+    try:
+        await _change(api, id, typed.get("revision", ""), patch, "")
+    except Refused as refused:
+        hidden = {**beside(typed), "add": "template", "revision": typed.get("revision", "")}
+        return _step_again(request, step, f"/designs/{id}/blocks", hidden, refused)
+    return go(f"/designs/{id}")
+
+
 @router.post("/designs/{id}/auto-map")
 async def auto_map(id: Id, request: Request, api: TheApi) -> Response:
-    """Save the proposals."""
+    """Save those proposals that the user chose."""
     typed = await fields(request)
-    headers = {**AT_ONCE, "If-Match": _tag(typed.get("revision", ""))}
-    await api.send("POST", f"/designs/{id}/auto-map", params={"apply": True}, headers=headers)
+    proposed = (await api.post(f"/designs/{id}/auto-map", Proposals)).proposals
+    chosen = [item for item in proposed if typed.get(f"map.{item.target}")]
+    patch: Patch = {"models": {}}
+    for item in chosen:
+        model, _, parameter = item.target.partition(".")
+        within = inner(inner(patch["models"], model), "parameters")
+        within[parameter] = item.relation
+    if chosen:
+        await _change(api, id, typed.get("revision", ""), patch, "mapped as proposed")
     return go(f"/designs/{id}")
 
 
@@ -163,42 +226,14 @@ def _refuse_taken(design: Design, patch: Patch) -> None:
                 raise Refused.because(ILL_NAMED, f"{name} is in use: choose another name")
 
 
-async def _blank(api: Api, typed: Mapping[str, str]) -> dict[str, JsonValue]:
-    """A new design with one template, at its example, and perhaps a model."""
-    document: dict[str, JsonValue] = {"name": typed.get("name", "").strip() or "new design"}
-    if typed.get("template"):
-        name, step = await _step(api, typed["template"])
-        document["steps"] = {name: step}
-    if typed.get("model"):
-        id, version = _versioned(typed["model"])
-        document["model"] = {"id": id, "version": version}
-    return document
-
-
-async def _step(api: Api, chosen: str) -> tuple[str, dict[str, JsonValue]]:
-    """The id of a chosen template, and a step with its example."""
-    id, version = _versioned(chosen)
-    template = await api.get(f"/templates/{quote(id, safe='')}/versions/{version}", Template)
-    return id, {"template": id, "version": version, "inputs": template.example}
-
-
-def _versioned(chosen: str) -> tuple[str, int | str]:
-    """`oil_film/2` as the id and version that the interface takes."""
-    id, _, version = chosen.partition("/")
-    return id, int(version) if _NUMBER.fullmatch(version) else "latest"
-
-
-async def _block(api: Api, typed: Mapping[str, str]) -> Patch:
+def _block(typed: Mapping[str, str]) -> Patch:
     """The merge patch that adds or removes what a form names."""
     name = typed.get("name", "").strip()
     match typed.get("add", ""):
         case "parameter":
             return {"parameters": {name: value_of(typed.get("value", ""))}}
-        case "template":
-            id, step = await _step(api, typed.get("template", ""))
-            return {"steps": {name or id: step}}
         case "model":
-            id, version = _versioned(typed.get("model", ""))
+            id, version = versioned(typed.get("model", ""))
             return {"models": {name or id: {"id": id, "version": version}}}
     group, _, removed = typed.get("remove", "").partition(".")
     return {group: {removed: None}}

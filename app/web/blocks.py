@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from app.reports.pictures import Picture, pictures
 from app.schemas.answers import Shown
+from app.schemas.declared import properties, required
 from app.schemas.designs import (
     Design,
     ParameterChange,
@@ -18,9 +20,9 @@ from app.schemas.evaluations import Output
 from app.schemas.templates import CadModel as Model
 from app.schemas.templates import Template
 from app.web import sheet
-from app.web.declared import properties, required
-from app.web.pictures import Picture, pictures
 from app.web.sheet import Field
+
+MOST_AT_ONCE = 16  # results
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,26 @@ class StepBlock:
     pictures: list[Picture]
     fields: list[Field] = field(default_factory=list)
     options: list[Field] = field(default_factory=list)
+    keys: list[str] = field(default_factory=list)  # outputs in its fold line
+
+    @property
+    def main(self) -> list[str]:
+        """The results that are shown at once: all of a few; of many, those that no other formula uses."""
+        if len(self.outputs) <= MOST_AT_ONCE:
+            return self.outputs
+        used = {name for formula in self.template.formulas for name in formula.uses}
+        return [name for name in self.outputs if name not in used or name in self.keys]
+
+    @property
+    def intermediate(self) -> list[str]:
+        """The results that are folded away."""
+        main = set(self.main)
+        return [name for name in self.outputs if name not in main]
+
+    @property
+    def has_faults(self) -> bool:
+        """Whether one of its fields holds what was refused."""
+        return any(one.error for one in (*self.fields, *self.options))
 
 
 @dataclass(frozen=True)
@@ -46,6 +68,11 @@ class ModelBlock:
     fields: list[Field] = field(default_factory=list)
     old: Mapping[str, Shown] = field(default_factory=dict)
     status: Mapping[str, str | None] = field(default_factory=dict)
+
+    @property
+    def targets(self) -> set[str]:
+        """The names of its parameters in a design."""
+        return {f"{self.name}.{tail}" for tail in properties(self.model.parameters)}
 
 
 @dataclass(frozen=True)

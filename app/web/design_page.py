@@ -36,6 +36,7 @@ from app.web.differences import differences
 from app.web.forms import texts
 from app.web.model_page import finished_analyses
 from app.web.rendering import show, units_of
+from app.web.verdict import banner, opened, with_keys
 from cad.export import MEDIA_TYPES
 
 UNFINISHED = ("queued", "running")
@@ -43,6 +44,7 @@ QUICK = (
     1  # how long a page waits for steps; its script asks for what takes longer, and shows the progress [s]
 )
 NO_REFUSAL = Refusal()
+DECIDE = "/api/v1/designs/{id}/decide"
 
 
 async def design_page(
@@ -68,6 +70,8 @@ async def design_page(
         with_changes(block, design, refusal, before, preview.model_parameters)
         for block in models_of(revision, models)
     ]
+    verdict = banner(revision)
+    steps = with_keys(steps, revision, design)
     typed, faults = refusal.typed, refusal.faults
     parameters = sheet.of_parameters(design.parameters, preview.parameters or {}, typed, faults)
     measured = await api.get(
@@ -91,6 +95,9 @@ async def design_page(
         loose=sheet.loose_faults([*parameters, *_fields(steps, parts)], faults),
         refused=bool(faults),
         notice=notice,
+        verdict=verdict,
+        opened=opened([step.name for step in steps], verdict),
+        can_decide=verdict.undecided and _has_route(request, DECIDE),
         base=f"/api/v1/designs/{id}",
         painted=painted(steps, parts),
         was=json.dumps(texts(design)),
@@ -118,6 +125,11 @@ async def revision_page(request: Request, api: Api, id: str, number: int, other:
         kinds=list(MEDIA_TYPES),
         base=f"/api/v1/designs/{id}/revisions/{number}",
     )
+
+
+def _has_route(request: Request, path: str) -> bool:
+    """Whether the interface has this path."""
+    return path in request.app.openapi()["paths"]
 
 
 async def _revision(request: Request, api: Api, id: str, number: int, **options: Scalar) -> RevisionWorksheet:

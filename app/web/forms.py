@@ -108,16 +108,16 @@ def _put(patch: Patch, design: Names, name: str, value: JsonValue) -> None:
     block, kind, tail = _parts(name)
     new = None if value == "" else value
     if kind == "@":
-        _object(patch.setdefault("steps", {}), block)[tail] = option_of(tail, new)
+        inner(patch.setdefault("steps", {}), block)[tail] = option_of(tail, new)
     elif not block:
         patch.setdefault("parameters", {})[tail] = new
     elif block in design.models:
-        _object(_object(patch.setdefault("models", {}), block), "parameters")[tail] = new
+        inner(inner(patch.setdefault("models", {}), block), "parameters")[tail] = new
     else:
-        _object(_object(patch.setdefault("steps", {}), block), "inputs")[tail] = new
+        inner(inner(patch.setdefault("steps", {}), block), "inputs")[tail] = new
 
 
-def _object(outer: dict[str, JsonValue], name: str) -> dict[str, JsonValue]:
+def inner(outer: dict[str, JsonValue], name: str) -> dict[str, JsonValue]:
     """The object of a name; an empty one where there is none yet."""
     inner = outer.setdefault(name, {})
     assert isinstance(inner, dict)

@@ -15,6 +15,7 @@ from app.web.api import Api, TheApi
 from app.web.design_page import design_page, revision_page
 from app.web.gallery import offered
 from app.web.model_page import model_page
+from app.web.new_step import beside, new_step, step_page
 from app.web.rendering import go, show, units_of
 from app.web.template_page import template_page
 
@@ -93,6 +94,24 @@ async def newest_model(id: Id, api: TheApi) -> Response:
 async def model(id: Id, version: Number, request: Request, api: TheApi) -> Response:
     """A CAD model, with a form to build it; what is typed stands in the address."""
     return await model_page(request, api, id, version)
+
+
+@router.get("/designs/new")
+async def new_design(request: Request, api: TheApi) -> Response:
+    """The empty form of a new design's first step."""
+    typed = dict(request.query_params)
+    step = await new_step(api, typed)
+    hidden = {"design_name": "new design", **beside(typed)}
+    return step_page(request, step, "/designs", hidden)
+
+
+@router.get("/designs/{id}/steps/new")
+async def another_step(id: Id, request: Request, api: TheApi) -> Response:
+    """The empty form of one more step of a design."""
+    typed = dict(request.query_params)
+    step, design = await new_step(api, typed), await api.get(f"/designs/{id}", Design)
+    hidden = {**beside(typed), "add": "template", "revision": str(design.revision)}
+    return step_page(request, step, f"/designs/{id}/blocks", hidden)
 
 
 @router.get("/designs/{id}")

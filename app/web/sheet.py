@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from app.presentation import numbers
 from app.presentation.typed import text_of
+from app.schemas.declared import Declared, properties, required
 from app.schemas.templates import Schema, Template
 from app.schemas.values import Given
-from app.web.declared import Declared, properties, required
 from app.web.forms import OPTIONS
 from templates.core.units.relation import is_relation
 

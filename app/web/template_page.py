@@ -8,14 +8,14 @@ from fastapi import Request, Response
 from pydantic import JsonValue
 
 from app.presentation.typed import value_of
+from app.reports.pictures import pictures
+from app.schemas.declared import properties
 from app.schemas.evaluations import CalculatedBy, Output, Worksheet
 from app.schemas.templates import Accuracy, Template, TemplateVersions
 from app.web import sheet
 from app.web.accuracy import table
 from app.web.api import Api, Refused, read
-from app.web.declared import properties
 from app.web.forms import OPTIONS, option_of
-from app.web.pictures import pictures
 from app.web.rendering import show, units_of
 
 ABOUT = {"units"}  # of the address, beside the inputs

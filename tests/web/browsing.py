@@ -107,6 +107,17 @@ def created(http, example: str) -> str:
     return place
 
 
+def from_example(http, template: str) -> str:
+    """The address of a design of one step with the example of a template, `oil_film/2`."""
+    id, _, version = template.partition("/")
+    example = http.get(f"{API}/templates/{id}/versions/{version}").json()["example"]
+    step = {"template": id, "version": int(version), "inputs": example}
+    made = http.post(
+        f"{API}/designs", json={"name": "own", "steps": {id: step}}, headers={"Prefer": "wait=30"}
+    )
+    return f"/designs/{made.json()['id']}"
+
+
 def settled(http, place: str) -> dict:
     """The design of a page once its regeneration has ended."""
 

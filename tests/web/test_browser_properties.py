@@ -151,6 +151,10 @@ def test_a_template_file_has_its_page_form_formulas_and_report(watched):
     page.locator(".new-design input[name=name]").fill("thirds")
     page.locator("select[name=template]").select_option("third/1")
     page.locator(".new-design button").click()
+    expect(page.get_by_role("heading", level=1)).to_contain_text("thirds: step third")
+    expect(page.get_by_label("Whole length")).to_have_value("")  # no value of the example is taken over
+    page.get_by_label("Whole length").fill("9 mm")
+    page.get_by_role("button", name="Create the design").click()
     expect(page.get_by_role("heading", level=1)).to_have_text("thirds")
     page.get_by_label("Whole length").fill("10 in")
     expect(page.locator('[data-output="third.third_of_the_length"] .number')).to_have_text("84.667")
@@ -171,7 +175,7 @@ QUANTITIES = (
 def test_the_browser_writes_numbers_as_the_server_does(watched):
     watched.open("/")
     script = "async ([numbers, units, quantities]) => { const m = await import('/static/numbers.js');"
-    script += "return [numbers.map(m.aligned), units.map(m.unit), quantities.map(m.told)]; }"
+    script += "return [numbers.map(m.aligned), units.map(m.unit), quantities.map(m.quantityText)]; }"
     numbers, units, quantities = watched.page.evaluate(script, [list(NUMBERS), list(UNITS), list(QUANTITIES)])
     assert numbers == [list(aligned(number)) for number in NUMBERS]
     assert units == [unit(text) for text in UNITS]

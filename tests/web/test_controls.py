@@ -5,6 +5,7 @@ import re
 from types import SimpleNamespace
 
 import pytest
+from browsing import from_example
 from playwright.sync_api import expect
 
 from app.web.forms import patch_of
@@ -61,7 +62,7 @@ def test_faults_stand_beside_inputs_with_awkward_names(watched, awkward):
 
 
 def test_faults_of_options_stand_beside_them(watched, http):
-    place = http.post("/designs", data={"name": "own", "template": "oil_film/2"}).headers["location"]
+    place = from_example(http, "oil_film/2")
     for path in (place, "/templates/oil_film/2"):
         watched.open(path)
         watched.page.get_by_label("or largest error").fill("5")
@@ -88,7 +89,7 @@ def test_options_of_a_template_are_kept_apart_from_its_inputs(http):
 
 
 def test_options_of_a_step_are_saved_and_their_faults_told_beside_them(http):
-    place = http.post("/designs", data={"name": "own", "template": "oil_film/2"}).headers["location"]
+    place = from_example(http, "oil_film/2")
     for typed in ("inf", "[1]", "small"):
         wrong = http.post(place, data={"revision": "1", "was": "{}", "oil_film@tolerance": typed})
         assert wrong.status_code == 422

@@ -149,10 +149,23 @@ def test_a_form_from_another_site_is_refused(http, paper):
 
 
 def test_a_design_is_built_up_copied_restored_and_deleted_by_forms(http):
-    made = http.post("/designs", data={"name": "own", "template": "oil_film/1", "model": "plain_bearing/1"})
-    place = made.headers["location"]
+    chosen = {"name": "own", "template": "oil_film/1", "model": "plain_bearing/1"}
+    form = http.post("/designs", data=chosen).headers["location"]
+    assert http.get(form).text.count('value=""') >= 7  # it begins empty
+    inputs = http.get("/api/v1/templates/oil_film/versions/1").json()["example"]
+    typed = {f"oil_film.{name}": value for name, value in inputs.items()}
+    hidden = {"design_name": "own", "template": "oil_film/1", "model": "plain_bearing/1"}
+    refused = http.post("/designs", data={**hidden, **typed, "oil_film.speed": "5 mm"})
+    assert refused.status_code == 422
+    assert 'aria-describedby="oil_film-speed-error"' in refused.text
+    place = http.post("/designs", data={**hidden, **typed}).headers["location"]
     design = settled(http, place)
-    assert design["models"]["model"]["parameters"]["inner_diameter"] == "= oil_film.bearing_diameter"
+    assert design["models"]["model"]["parameters"] == {}  # a mapping is proposed, never applied on its own
+    assert "model.inner_diameter = oil_film.bearing_diameter" in http.get(place).text
+    chosen = {"revision": str(design["revision"]), "map.model.inner_diameter": "1"}
+    http.post(f"{place}/auto-map", data=chosen)
+    design = settled(http, place)
+    assert design["models"]["model"]["parameters"] == {"inner_diameter": "= oil_film.bearing_diameter"}
     revision = str(design["revision"])
     more = {"revision": revision, "add": "parameter", "name": "k", "value": "2 mm"}
     http.post(f"{place}/blocks", data=more)

@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from app.reports.pictures import Picture, pictures
 from app.schemas.evaluations import Output, UsedInput
 from app.web.blocks import painted
-from app.web.pictures import Picture, pictures
 
 CYCLE = [0.0, 90.0, 180.0, 270.0]
 

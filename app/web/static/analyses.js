@@ -1,5 +1,5 @@
 // One analysis as a table, as app/web/pages/elements.html writes it.
-import { percent, told } from "./numbers.js";
+import { percent, quantityText } from "./numbers.js";
 import { cells, warning } from "./results.js";
 
 const HEADS = ["Quantity", "Value", "Unit", "Error, estimated", "Elements / degrees of freedom"];
@@ -16,7 +16,7 @@ function table(analysis) {
   const place = element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: kind });
   place.dataset.analysis = analysis.id;
   const asked = analysis.tolerance === null ? `level ${analysis.level}` : `within ${percent(analysis.tolerance)}`;
-  const caption = element("caption", {}, `${kind} `, element("span", { className: "muted" }, `${words(analysis.boundary)}, ${asked}; under ${told(analysis.load)}`));
+  const caption = element("caption", {}, `${kind} `, element("span", { className: "muted" }, `${words(analysis.boundary)}, ${asked}; under ${quantityText(analysis.load)}`));
   const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
   const rows = Object.entries(analysis.outputs).filter(([name]) => name !== "surface").map(row);
   place.append(element("table", { className: "results elements-results" }, caption, head, element("tbody", {}, ...rows)));

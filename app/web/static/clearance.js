@@ -1,5 +1,5 @@
 // The journal in its clearance circle: moved by eccentricity and attitude. The page draws it at first.
-import { plain, told } from "./numbers.js";
+import { plain, quantityText } from "./numbers.js";
 
 const TRAVEL = 22; // of the drawing, at full eccentricity
 
@@ -9,8 +9,8 @@ export function showClearance(place, picture, values) {
   if (typeof eccentricity !== "number") return;
   place.querySelector("[data-attitude]").setAttribute("transform", `rotate(${-turn})`);
   place.querySelector("[data-journal]").setAttribute("transform", `translate(0 ${TRAVEL * Math.min(eccentricity, 1)})`);
-  place.querySelector("[data-film]").textContent = told(film);
+  place.querySelector("[data-film]").textContent = quantityText(film);
   place.querySelector("[data-eps]").textContent = `ε = ${plain(eccentricity)}`;
-  const words = `Journal displaced by ${plain(eccentricity)} of its clearance; smallest film ${told(film)}`;
+  const words = `Journal displaced by ${plain(eccentricity)} of its clearance; smallest film ${quantityText(film)}`;
   place.querySelector("svg").setAttribute("aria-label", words);
 }

@@ -10,7 +10,9 @@ import { drawPictures } from "./pictures.js";
 import { follow } from "./progress.js";
 import { OUTDATED, markOutdated, markWaiting, showFaults, showResults } from "./results.js";
 import { startSolids } from "./solids.js";
+import { startDecide } from "./decide.js";
 import { nameOf, patchOf } from "./typed.js";
+import { showKeys, showVerdict, startVerdict } from "./verdict.js";
 
 startDownloads();
 
@@ -25,14 +27,15 @@ const CONFLICT = 409; // the calculation was cancelled
 const patch = () => patchOf(draft.changed(), models);
 const progress = document.querySelector("[data-progress]");
 const designState = document.querySelector("[data-design-state]").dataset.designState;
+const isJudged = document.querySelector("[data-verdict]").dataset.verdict === "judged"; // the revision has a verdict
 let steps = {}, conflicted = false, isFollowing = false; // the bar shows the job of a revision
 
 const preview = live(
   (signal) => previewed(signal, isFollowing),
-  ({ told }) => {
+  ({ told: payload }) => {
     clear();
-    show(told);
-    state.textContent = [draft.keep() && "previewed, not saved", waiting(told)].filter(Boolean).join("; ");
+    show(payload);
+    state.textContent = [draft.keep() && "previewed, not saved", waiting(payload)].filter(Boolean).join("; ");
   },
   refusePreview,
 );
@@ -56,17 +59,19 @@ function waiting({ steps }) {
   return names.length > 0 && `${names.join(", ")} not calculated yet`;
 }
 
-function show(told) {
-  steps = told.steps;
-  for (const [step, answer] of Object.entries(told.steps)) {
+function show(payload) {
+  steps = payload.steps;
+  if (isJudged || draft.isChanged()) showVerdict(payload);
+  for (const [step, answer] of Object.entries(steps)) {
     markWaiting(step, isWaiting(answer));
     if (answer.state === "pending") continue;
     showResults(step, answer);
+    showKeys(step, answer);
     showValues(form, step, answer);
     drawPictures(document, step, answer);
   }
-  showValues(form, "", { inputs: told.parameters });
-  showParameters(told.model_parameters);
+  showValues(form, "", { inputs: payload.parameters });
+  showParameters(payload.model_parameters);
 }
 
 function clear() {
@@ -127,8 +132,9 @@ form.querySelector("[data-discard]").addEventListener("click", () => {
 form.addEventListener("submit", async (event) => {
   event.preventDefault();
   const changed = patch();
-  if (Object.keys(changed).length === 0) return (state.textContent = "nothing has changed");
-  const note = form.querySelector("[name=note]").value.trim();
+  const typed = form.querySelector("[name=note]").value.trim(), isSame = Object.keys(changed).length === 0;
+  if (isSame && isJudged) return (state.textContent = "nothing has changed");
+  const note = typed || (isSame ? "criteria judged" : "");
   const headers = { "If-Match": `"${revision}"`, Prefer: "wait=1", "Idempotency-Key": onlyOnce() };
   preview.cancel(); // else it would keep as a draft what is saved by then
   state.textContent = "saving …";
@@ -171,6 +177,8 @@ function conflict() {
 }
 
 async function start() {
+  startVerdict(form);
+  startDecide(api, patch);
   const from = draft.restore();
   if (from !== null) showDraft();
   if (from !== null && from !== Number(revision)) tell(`Revision ${revision} was saved since you typed these changes; look at them once more.`);
@@ -180,10 +188,10 @@ async function start() {
   if (form.querySelector("[data-elements]")) import("./elements.js").then(({ startElements }) => startElements());
   try {
     const isPainted = designState === "current" && document.querySelector("[data-painted]"); // with results of a step
-    const { told } = await previewed(undefined, isFollowing || (from === null && !isPainted));
+    const { told: payload } = await previewed(undefined, isFollowing || (from === null && !isPainted));
     clear();
-    show(told);
-    state.textContent = [state.textContent, waiting(told)].filter(Boolean).join("; ");
+    show(payload);
+    state.textContent = [state.textContent, waiting(payload)].filter(Boolean).join("; ");
   } catch (error) {
     refusePreview(error);
   }

@@ -2,7 +2,7 @@
 import { showAnalysis } from "./analyses.js";
 import { Refused, call, units } from "./api.js";
 import { isolated } from "./isolated.js";
-import { told as written } from "./numbers.js";
+import { quantityText as written } from "./numbers.js";
 import { follow } from "./progress.js";
 
 const EXTRA = "maximum_stress"; // found only if its box is ticked

@@ -22,7 +22,7 @@ export function unit(text) {
 
 export const percent = (relative) => `${plain(Number((relative * 100).toPrecision(2)))} %`;
 
-export function told(quantity) {
+export function quantityText(quantity) {
   if (quantity === null || quantity === undefined) return "";
   if (typeof quantity !== "object" || Array.isArray(quantity)) return written(quantity);
   if (quantity.value === null) return quantity.reason ?? "none";

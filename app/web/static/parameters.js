@@ -1,6 +1,6 @@
 // Values beside the fields: what a relation comes to, and model parameters old → new with their status.
 import { isolated } from "./isolated.js";
-import { told, unit } from "./numbers.js";
+import { quantityText, unit } from "./numbers.js";
 
 const TO_DO = "set it, or map it to an output"; // as app/web/pages/parts.html says it
 
@@ -10,7 +10,7 @@ export function showValues(form, block, { inputs }) {
     const field = form.querySelector(`[name="${block}.${tail}"]`);
     if (!place || !field) continue;
     const isRelation = field.value.trim().startsWith("=");
-    if (isRelation) place.textContent = `= ${told(quantity)}`;
+    if (isRelation) place.textContent = `= ${quantityText(quantity)}`;
     else if (field.value.trim()) place.textContent = "";
   }
 }
@@ -33,8 +33,8 @@ export function showParameters(parameters) {
 
 function shown(old, now) {
   if (!now) return [];
-  const parts = [span("new", told({ value: now.value })), " ", span("unit", unit(now.unit))];
-  return old ? [span("old", `${told({ value: old.value })} → `), ...parts] : parts;
+  const parts = [span("new", quantityText({ value: now.value })), " ", span("unit", unit(now.unit))];
+  return old ? [span("old", `${quantityText({ value: old.value })} → `), ...parts] : parts;
 }
 
 function tag(status, detail) {

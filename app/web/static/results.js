@@ -1,6 +1,6 @@
 // Writes an evaluation into the page: formulas with their numbers, results, errors, warnings.
 import { isolated } from "./isolated.js";
-import { aligned, percent, told, unit } from "./numbers.js";
+import { aligned, percent, quantityText, unit } from "./numbers.js";
 import { reveal } from "./reveal.js";
 import { isOf } from "./typed.js";
 
@@ -40,7 +40,7 @@ export function cells(quantity) {
   if (typeof quantity.value !== "number") {
     value.classList.add("text");
     value.colSpan = 2;
-    value.textContent = told(quantity).replaceAll("_", " ");
+    value.textContent = quantityText(quantity).replaceAll("_", " ");
     return [value];
   }
   value.append(numberOf(quantity.value));

@@ -115,6 +115,11 @@ class Comparison:
     where: Truth = True
 
     @property
+    def actual(self) -> Sign:
+        """The sign that is true of the values: the opposite one where the comparison does not hold."""
+        return self.sign if np.all(plain(self.holds) | ~np.asarray(self.where)) else _OPPOSITE[self.sign]
+
+    @property
     def ordered(self) -> tuple[Operand, Operand]:
         """The side that must be smaller, then the one that must be larger."""
         return (self.left, self.right) if self.sign in ("<", "<=") else (self.right, self.left)

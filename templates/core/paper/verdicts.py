@@ -7,7 +7,7 @@ template that exists has passed the rules that refuse; those that only warn may 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -18,13 +18,14 @@ from templates.core.language.comparisons import Comparison, Operand, outcome, wo
 from templates.core.language.meaning import Bounds, Meaning
 from templates.core.language.spec import Declaration, Requirement
 from templates.core.language.template import Template
-from templates.core.paper.mathml import Writer, amount, symbol, symbols
+from templates.core.paper.mathml import Writer, amount, symbol, symbols, unit_symbol
 from templates.core.paper.report import shown
 from templates.core.units.units import Unit
 
 Kind = Literal["domain", "published", "rule", "warning"]
 
 _SIGNS = {"<": "<", "<=": r"\le ", ">": ">", ">=": r"\ge "}
+_WORDS = {"<": "is below", "<=": "is not above", ">": "is above", ">=": "is not below"}
 _SMALL = 1e-2  # of a number in a rule
 
 
@@ -45,6 +46,7 @@ class Check:
     broken: int = 0  # points at which it does not hold
     points: int = 1
     source: str | None = None
+    violation: str = ""  # of a rule that does not hold: what is, in words
 
 
 def checks(template: Template) -> Iterator[Check]:
@@ -55,7 +57,9 @@ def checks(template: Template) -> Iterator[Check]:
             yield from _of_bounds(template, declared, declared.meaning.at(template.level), value)
     for rule in template.requirements:
         if template.ledger.missing.isdisjoint(rule.uses) or rule.missing:
-            yield _of_rule(template, rule)
+            check = _of_rule(template, rule)
+            if check is not None:
+                yield check
 
 
 def _has_number(value: float | NDArray[np.generic]) -> bool:
@@ -106,11 +110,14 @@ def _share_of(bounds: Bounds, value: Any) -> float | None:
     return max((share for share in (*highs, *lows) if share is not None), default=None)
 
 
-def _of_rule(template: Template, rule: Requirement) -> Check:
+def _of_rule(template: Template, rule: Requirement) -> Check | None:
+    """A rule as it was kept or violated; None where it compared nothing, for want of a limit."""
     with np.errstate(all="ignore"):
         result = outcome(template, rule)
         decisive = list(result.decisive())
     truth = np.asarray(result.value, dtype=bool)
+    if truth.all() and not decisive and _lacks_an_input(template, rule):
+        return None
     shares = [comparison.share for comparison in decisive]
     written = [_written(template, comparison) for comparison in decisive]
     return Check(
@@ -123,7 +130,41 @@ def _of_rule(template: Template, rule: Requirement) -> Check:
         holds=bool(truth.all()),
         broken=int((~truth).sum()),
         points=truth.size,
+        violation="" if truth.all() else _violation(template, rule, decisive),
     )
+
+
+def _lacks_an_input(template: Template, rule: Requirement) -> bool:
+    """Whether one of the inputs that a rule names was not given, and follows from nothing."""
+    inputs = (template.inputs[name] for name in rule.names if name in template.inputs)
+    values = (vars(template).get(declared.attribute) for declared in inputs)
+    return any(isinstance(value, (float, np.ndarray)) and bool(np.isnan(value).all()) for value in values)
+
+
+def _violation(template: Template, rule: Requirement, decisive: Iterable[Comparison]) -> str:
+    """What is, in words, where a rule does not hold; its sentence with a No where it cannot be written."""
+    broken = [comparison for comparison in decisive if comparison.actual != comparison.sign]
+    sides = [
+        (_in_words(template, one.left, one.right), one, _in_words(template, one.right, one.left))
+        for one in broken
+    ]
+    written = [f"{left} {_WORDS[one.actual]} {right}" for left, one, right in sides if left and right]
+    if written and len(written) == len(broken):
+        return "; ".join(written)
+    return f"this does not hold: {rule.sentence[:1].lower()}{rule.sentence[1:]}"
+
+
+def _in_words(template: Template, side: Operand, other: Operand) -> str:
+    """A side of a comparison as name and value; empty where it is calculated within the rule."""
+    declared = template.declarations.get(side.attribute or "")
+    scale = _scale(template, side if declared else other)
+    if scale is None or (declared is None and side.constant is None):
+        return ""
+    value = side.constant if declared is None else side.value
+    number = (
+        f"{float(scale.from_si(value)):.5g} {unit_symbol(scale.text)}".rstrip() if np.ndim(value) == 0 else ""
+    )
+    return " ".join(filter(None, (declared.meaning.words if declared else "", number)))
 
 
 def _written(template: Template, comparison: Comparison) -> tuple[str, str]:
@@ -139,15 +180,25 @@ def _written(template: Template, comparison: Comparison) -> tuple[str, str]:
     used = {node.attr for node in nodes if isinstance(node, ast.Attribute)} & names.keys()
     values = {attribute: shown(template, attribute, {}) for attribute in used}
     demand = _joined(template, comparison, names, r"\,")
-    return demand, _joined(template, comparison, values, r"\cdot ") if all(values.values()) else ""
+    return demand, _joined(template, comparison, values, r"\cdot ", is_filled=True) if all(
+        values.values()
+    ) else ""
 
 
-def _joined(template: Template, comparison: Comparison, texts: Mapping[str, str], times: str) -> str:
+def _joined(
+    template: Template,
+    comparison: Comparison,
+    texts: Mapping[str, str],
+    times: str,
+    *,
+    is_filled: bool = False,
+) -> str:
+    """Both sides with the sign between them: as demanded, or the one that is true of numbers filled in."""
     attributes = {name: (text, 1 if r"\," in text else 3) for name, text in texts.items()}
     writer = Writer({}, attributes, {}, times)
     left, right = comparison.left, comparison.right
     written = _side(template, writer, left, right), _side(template, writer, right, left)
-    return _SIGNS[comparison.sign].join(written)
+    return _SIGNS[comparison.actual if is_filled else comparison.sign].join(written)
 
 
 def _side(template: Template, writer: Writer, side: Operand, other: Operand) -> str:

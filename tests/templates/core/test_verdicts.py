@@ -95,6 +95,45 @@ def test_a_rule_within_a_function_is_written_out_once_it_applies():
     assert check.demand == r"h\ge m"
     assert check.used == pytest.approx(60 / 50)
     assert not check.holds
+    assert check.numbers == r"50\,\text{mm}<60\,\text{mm}"
+    assert check.violation == "height 50 mm is below least height 60 mm"
+
+
+def test_a_violated_rule_never_prints_its_opposite():
+    many = {"value": [30, 10, 190], "unit": "mm"}
+    check = reported(height=many, least_height="20 mm")["warning", "The height is not below the least one"]
+    assert check.violation == "height is below least height 20 mm"
+    flat = reported(height="12 mm", width="5 mm", span="900 mm")[
+        "warning", "A beam of any width is short, or high"
+    ]
+    assert not flat.holds
+    assert flat.violation.startswith("this does not hold: a beam")
+
+
+class Limited(Template):
+    """A beam with a limit that may be left out."""
+
+    h: Array = given("mm", "height", ge=0)
+    m: Array = given("mm", "least height", alternative=True, ge=0)
+
+    @require("least_height", remedy="make it higher", warning="low")
+    def high(self) -> Truth:
+        """The height is not below the least one."""
+        return reserve(self.m, self.h)
+
+    @formula("mm", "twice", symbol="t")
+    def t(self) -> Array:
+        return 2 * self.h
+
+
+def test_a_rule_whose_limit_was_not_given_is_no_check():
+    def rules(**inputs):
+        template = evaluate(Limited, {"height": "50 mm", **inputs}).template
+        return [check.holds for check in checks(template) if check.kind == "warning"]
+
+    assert rules() == []
+    assert rules(least_height="40 mm") == [True]
+    assert rules(least_height="60 mm") == [False]
 
 
 def test_of_alternatives_that_counts_which_applies():

@@ -1,17 +1,18 @@
 """Which pictures a calculation gets: one table, by what its outputs are called and whether they are curves.
 
-`static/pictures.js` draws them, in the page, from the same answer of the interface.
+`static/pictures.js` draws them in the page, `plots.py` in a report, from the same answer of the interface.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
+from app.schemas.declared import Declared, properties
 from app.schemas.designs import RevisionStep
 from app.schemas.evaluations import Evaluated, Output, UsedInput
-from app.schemas.templates import Template
-from app.web.declared import Declared, properties
+from app.schemas.templates import Schema
 
 FEWEST = 3  # points of a curve
 AXES = ("crank_angle",)  # of curves that say no other
@@ -36,7 +37,19 @@ Members = Mapping[str, Declared]
 Rule = Callable[[Values, Members], Iterable[Picture]]
 
 
-def pictures(template: Template, answer: Evaluated | RevisionStep) -> list[Picture]:
+class Declaring(Protocol):
+    """What declares inputs and outputs."""
+
+    @property
+    def inputs(self) -> Schema:
+        """JSON Schema of the inputs."""
+
+    @property
+    def outputs(self) -> Schema:
+        """JSON Schema of the outputs."""
+
+
+def pictures(template: Declaring, answer: Evaluated | RevisionStep) -> list[Picture]:
     """The pictures of one evaluation, in the order of the table below."""
     if not answer.outputs:
         return []

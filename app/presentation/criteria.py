@@ -1,0 +1,256 @@
+"""Criteria in words, for pages and reports alike: what was compared, what is used, left, and missing.
+
+Every sentence is about the case: "minimum film thickness 1.53 µm < 2 µm", never the docstring of a rule.
+`static/criteria.js` writes the same while a user types; `tests/web` compares the two.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from app.presentation import numbers
+
+WORDS = {"met": "met", "not_met": "not met", "undecided": "undecided", "not_checked": "not checked"}
+_SIGN = re.compile(r"^(.*?)\s*(>=|<=)\s*(.*)$", re.DOTALL)
+_NAME = re.compile(r"(?:[A-Za-z]\w*\.)*([A-Za-z]\w*)")
+_ONE_NAME = re.compile(r"\s*(?:[A-Za-z]\w*\.)*[A-Za-z]\w*\s*")
+NOT_STATED = "the error of the calculation is not stated"
+
+
+class Amount(Protocol):
+    """A magnitude with its unit."""
+
+    @property
+    def value(self) -> float:
+        """The magnitude."""
+
+    @property
+    def unit(self) -> str:
+        """Its unit."""
+
+
+class Between(Protocol):
+    """Two ends with one unit; null where an end is infinite."""
+
+    @property
+    def value(self) -> Sequence[float | None]:
+        """Low and high."""
+
+    @property
+    def unit(self) -> str:
+        """Their unit."""
+
+
+class Judged(Protocol):
+    """A criterion as the interface answers it; see `app/schemas/criteria.py`."""
+
+    @property
+    def name(self) -> str: ...  # noqa: D102 - the schema describes every field
+    @property
+    def words(self) -> str: ...  # noqa: D102
+    @property
+    def require(self) -> str: ...  # noqa: D102
+    @property
+    def verdict(self) -> str: ...  # noqa: D102
+    @property
+    def value(self) -> Amount | None: ...  # noqa: D102
+    @property
+    def limit(self) -> Amount | None: ...  # noqa: D102
+    @property
+    def band(self) -> Between | None: ...  # noqa: D102
+    @property
+    def relative_error(self) -> float | None: ...  # noqa: D102
+    @property
+    def error_stated(self) -> bool | None: ...  # noqa: D102
+    @property
+    def utilisation(self) -> float | None: ...  # noqa: D102
+    @property
+    def margin(self) -> Amount | None: ...  # noqa: D102
+    @property
+    def needs(self) -> float | None: ...  # noqa: D102
+    @property
+    def give(self) -> Sequence[str] | None: ...  # noqa: D102
+    @property
+    def reason(self) -> str | None: ...  # noqa: D102
+    @property
+    def where(self) -> Mapping[str, object] | None: ...  # noqa: D102
+    @property
+    def points(self) -> int | None: ...  # noqa: D102
+    @property
+    def counts(self) -> Mapping[str, int] | None: ...  # noqa: D102
+    @property
+    def unverified(self) -> str | None: ...  # noqa: D102
+    @property
+    def waived(self) -> str | None: ...  # noqa: D102
+
+
+@dataclass(frozen=True)
+class Line:
+    """A criterion as a line of a table: texts, and the share of its limit that the bar shows."""
+
+    name: str
+    step: str  # the block whose value is judged; empty for none
+    title: str
+    verdict: str
+    verdict_words: str
+    compared: str
+    used: str
+    share: float | None
+    margin: str
+    error: str
+    missing: str
+    give: tuple[str, ...]
+    remarks: tuple[str, ...]
+
+
+def line(criterion: Judged) -> Line:
+    """A criterion in words."""
+    return Line(
+        name=criterion.name,
+        step=step_of(criterion),
+        title=title(criterion),
+        verdict=criterion.verdict,
+        verdict_words=WORDS[criterion.verdict],
+        compared=compared(criterion),
+        used="" if criterion.utilisation is None else numbers.share(criterion.utilisation),
+        share=criterion.utilisation,
+        margin=margin(criterion),
+        error=error(criterion),
+        missing=missing(criterion),
+        give=tuple(criterion.give or ()),
+        remarks=remarks(criterion),
+    )
+
+
+def sides(require: str) -> tuple[str, str, str]:
+    """Value, sign and limit of a requirement, as written."""
+    parts = _SIGN.match(require)
+    return (parts[1], parts[2], parts[3]) if parts else (require, "", "")
+
+
+def plain_name(text: str) -> str:
+    """A side of a requirement in words: `film.minimum_film_thickness` → `minimum film thickness`."""
+    return _NAME.sub(lambda name: name[1].replace("_", " "), text).strip()
+
+
+def step_of(criterion: Judged) -> str:
+    """The block whose value is judged, by the name of the criterion or by what it requires."""
+    block, dot, _ = criterion.name.partition(".")
+    if dot:
+        return block
+    block, dot, _ = sides(criterion.require)[0].strip().partition(".")
+    return block if dot and block.isidentifier() else ""
+
+
+def title(criterion: Judged) -> str:
+    """What is judged, in words."""
+    return plain_name(sides(criterion.require)[0])
+
+
+def compared(criterion: Judged) -> str:
+    """The value, the sign that is true of it, and the limit: `1.53 µm < 2 µm`; empty if one is missing."""
+    value, limit = criterion.value, criterion.limit
+    if value is None or limit is None:
+        return ""
+    right = sides(criterion.require)[2]
+    called = f"{plain_name(right)} " if _ONE_NAME.fullmatch(right) else ""
+    return f"{numbers.told(value)} {_sign(criterion, value, limit)} {called}{numbers.told(limit)}"
+
+
+def _sign(criterion: Judged, value: Amount, limit: Amount) -> str:
+    """The sign between value and limit that is true of them, near the one that is required."""
+    if sides(criterion.require)[1] == ">=":
+        return "≥" if value.value >= limit.value else "<"
+    return "≤" if value.value <= limit.value else ">"
+
+
+def margin(criterion: Judged) -> str:
+    """What is left to the limit, with the ends that the error allows; negative if the limit is passed."""
+    if criterion.margin is None:
+        return ""
+    left = numbers.told(criterion.margin)
+    ends = _ends(criterion)
+    return f"{left} ({numbers.plain(ends[0])} … {numbers.plain(ends[1])})" if ends else left
+
+
+def _ends(criterion: Judged) -> tuple[float, float] | None:
+    """The least and the largest margin, in the unit of the margin; None where the band does not say."""
+    band, limit, left = criterion.band, criterion.limit, criterion.margin
+    if band is None or limit is None or left is None or not band.unit == limit.unit == left.unit:
+        return None
+    low, high = band.value
+    if low is None or high is None or low == high:
+        return None
+    at_least = sides(criterion.require)[1] == ">="
+    return (low - limit.value, high - limit.value) if at_least else (limit.value - high, limit.value - low)
+
+
+def error(criterion: Judged) -> str:
+    """How far off the value may be."""
+    if criterion.value is None:
+        return ""
+    if not criterion.error_stated or criterion.relative_error is None:
+        return "not stated"
+    return f"± {numbers.percent(criterion.relative_error)}"
+
+
+def missing(criterion: Judged) -> str:
+    """What to give, or what is needed, for a verdict; empty where there is one."""
+    if criterion.give:
+        return f"give {', '.join(map(plain_name, criterion.give))}"
+    if criterion.verdict == "undecided" and criterion.needs is not None:
+        return f"needs an error below {numbers.percent(criterion.needs)}"
+    return criterion.reason or ""
+
+
+def remarks(criterion: Judged) -> tuple[str, ...]:
+    """What restricts the verdict: an error not stated, a limit not verified, a waiver, the worst place."""
+    said = (
+        NOT_STATED if criterion.value is not None and not criterion.error_stated else "",
+        f"unverified: {criterion.unverified}" if criterion.unverified else "",
+        f"waived: {criterion.waived}" if criterion.waived else "",
+        _where(criterion),
+        criterion.reason if criterion.reason and missing(criterion) != criterion.reason else "",
+    )
+    return tuple(remark for remark in said if remark)
+
+
+def _where(criterion: Judged) -> str:
+    places = [f"{plain_name(name)} {numbers.told(at)}" for name, at in (criterion.where or {}).items()]
+    at = f"worst at {', '.join(places)}" if places else ""
+    if not criterion.points or criterion.points == 1:
+        return at
+    each = [f"{number} {WORDS[verdict]}" for verdict, number in (criterion.counts or {}).items() if number]
+    return "; ".join(filter(None, (at, f"{criterion.points} points: {', '.join(each)}")))
+
+
+class Summed(Protocol):
+    """The verdict over all criteria."""
+
+    @property
+    def verdict(self) -> str: ...  # noqa: D102 - the schema describes every field
+    @property
+    def green(self) -> bool: ...  # noqa: D102
+
+
+def tone(verdict: Summed) -> str:
+    """The colour of a verdict: green only where the interface says so."""
+    if verdict.green:
+        return "green"
+    return {"not_met": "bad", "undecided": "open", "not_checked": "open"}.get(verdict.verdict, "plain")
+
+
+NOT_JUDGED = "criteria not judged (calculated before criteria existed); save to judge"
+NO_CRITERIA = "no criteria: its templates declare none, and the design has none of its own"
+_WHY = {
+    "regenerating": "criteria not judged yet: the design is being calculated",
+    "failed": "criteria not judged: the regeneration failed",
+}
+
+
+def headline_of(state: str, *, is_judged: bool) -> str:
+    """What stands in place of a verdict: the design has no criteria, or they were not judged, and why."""
+    return NO_CRITERIA if is_judged else _WHY.get(state, NOT_JUDGED)

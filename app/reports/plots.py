@@ -1,0 +1,149 @@
+"""Plots of a step in a report: polar load diagram, curves, orbit, Campbell diagram, accuracy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from math import cos, pi, sin
+from types import SimpleNamespace
+
+from app.plain import Json
+from app.presentation import numbers
+from app.reports.charts import Chart, Series, svg
+from app.reports.content import Plot
+from app.reports.pictures import Picture, pictures
+from app.schemas.designs import PreviewedStep
+from app.schemas.evaluations import Output, UsedInput
+from templates.core.language.levels import accuracy
+from templates.core.language.template import Template
+from templates.core.paper.schema import inputs_schema, outputs_schema
+
+MOST = 10  # plots of a step
+SHOWN = 4  # outputs in the diagram of accuracy
+
+Valued = UsedInput | Output
+Values = Mapping[str, Valued]
+
+
+def plots_of(step: PreviewedStep, cls: type[Template] | None) -> list[Plot]:
+    """The plots of a step that has results; none if the file of its version was taken away."""
+    if cls is None or not step.outputs:
+        return []
+    declared = SimpleNamespace(inputs=inputs_schema(cls), outputs=outputs_schema(cls))
+    used = {name: value for name, value in step.inputs.items() if isinstance(value, UsedInput)}
+    values: Values = {**used, **step.outputs}
+    drawn = [_plot(picture, values) for picture in pictures(declared, step) if picture.kind in KINDS]
+    return [plot for plot in (*drawn[:MOST], *_accuracy(cls)) if plot.svg]
+
+
+def _plot(picture: Picture, values: Values) -> Plot:
+    return Plot(picture.title, svg(KINDS[picture.kind](picture, values)))
+
+
+def _name(picture: Picture, part: str) -> str:
+    return str(picture.names[part])
+
+
+def _label(name: str, value: Valued) -> str:
+    unit = numbers.unit(value.unit)
+    words = name.replace("_", " ")
+    return f"{words} [{unit}]" if unit else words
+
+
+def _curves(picture: Picture, values: Values) -> Chart:
+    x, names = _name(picture, "x"), picture.names["y"]
+    assert isinstance(names, list)
+    series = [Series(name.replace("_", " "), _list(values[x]), _list(values[name])) for name in names]
+    unit = numbers.unit(values[names[0]].unit)
+    only = _label(names[0], values[names[0]]) if len(names) == 1 else f"[{unit}]" if unit else ""
+    return Chart(_label(x, values[x]), only, series)
+
+
+def _polar(picture: Picture, values: Values) -> Chart:
+    x, y = _name(picture, "x"), _name(picture, "y")
+    return Chart(_label(x, values[x]), _label(y, values[y]), [_closed(values[x], values[y])], square=True)
+
+
+def _orbit(picture: Picture, values: Values) -> Chart:
+    chart = _polar(picture, values)
+    if values[_name(picture, "x")].unit != "1":
+        return chart
+    angles = [n * pi / 60 for n in range(121)]
+    circle = Series("clearance", [cos(a) for a in angles], [sin(a) for a in angles], dashed=True)
+    return Chart(chart.x, chart.y, [*chart.series, circle], square=True)
+
+
+def _campbell(picture: Picture, values: Values) -> Chart:
+    """Natural frequencies as level lines, engine orders as rays, over the speed."""
+    frequencies = [f for f in _numbers(values[_name(picture, "frequencies")]) if f > 1e-9]
+    orders = _numbers(values[_name(picture, "orders")])
+    spans = values.get(_name(picture, "range"))
+    fastest = _numbers(spans)[-1] if spans is not None and isinstance(spans.value, list) else None
+    speed = fastest or 60 * max(frequencies, default=1.0) / min(orders)
+    top = 1.15 * max(frequencies[0], min(max(frequencies), max(orders) * speed / 60)) if frequencies else 1.0
+    modes = [Series(f"mode {n}", [0, speed], [f, f]) for n, f in enumerate(frequencies, 1) if f <= top]
+    rays = [_ray(order, speed, top) for order in orders]
+    return Chart("speed [rpm]", "frequency [Hz]", [*modes, *rays], highest=top)
+
+
+def _ray(order: float, speed: float, top: float) -> Series:
+    """An engine order, as far as it stays below the top of the diagram."""
+    end = min(speed, 60 * top / order)
+    return Series(f"order {numbers.plain(order)}", [0, end], [0, order * end / 60], dashed=True)
+
+
+def _closed(x: Valued, y: Valued) -> Series:
+    across, upright = _list(x), _list(y)
+    return Series("", [*across, *across[:1]], [*upright, *upright[:1]])
+
+
+def _list(value: Valued) -> list[float | None]:
+    assert isinstance(value.value, list)
+    return value.value
+
+
+def _numbers(value: Valued) -> list[float]:
+    return [number for number in _list(value) if number is not None]
+
+
+KINDS: Mapping[str, Callable[[Picture, Values], Chart]] = {
+    "curves": _curves,
+    "polar": _polar,
+    "orbit": _orbit,
+    "campbell": _campbell,
+}
+
+
+def _accuracy(cls: type[Template]) -> Iterator[Plot]:
+    """The measured median error of every level over its cost, of the first outputs."""
+    measured = accuracy(cls)
+    if measured is None:
+        return
+    levels = {name: level for name, level in measured.content["levels"].items() if _milliseconds(level)}
+    outputs = list(dict.fromkeys(output for level in levels.values() for output in level["errors"]))[:SHOWN]
+    series = [
+        Series(output.replace("_", " "), *zip(*points, strict=True), marked=True)
+        for output in outputs
+        if len(points := sorted(_points(levels, output))) > 1
+    ]
+    if series:
+        title = "Accuracy: median error of each level, measured, over its cost"
+        yield Plot(title, svg(Chart("time of one point [ms]", "relative error", series, logarithmic=True)))
+
+
+def _points(levels: Mapping[str, Json], output: str) -> Iterator[tuple[float, float]]:
+    for level in levels.values():
+        errors = sorted(error for error in _flat(level["errors"].get(output)) if error > 0)
+        if errors:
+            yield _milliseconds(level), errors[len(errors) // 2]
+
+
+def _milliseconds(level: Json) -> float:
+    return 1000 * float((level.get("cost") or {}).get("single") or 0.0)
+
+
+def _flat(cells: Json) -> Iterator[float]:
+    if isinstance(cells, list):
+        for cell in cells:
+            yield from _flat(cell)
+    elif isinstance(cells, int | float):
+        yield float(cells)

@@ -1,0 +1,52 @@
+"""The verdict with which a report begins: every criterion as judged, worst first."""
+
+from __future__ import annotations
+
+from app.presentation.criteria import Line, headline_of, line, tone
+from app.reports.cells import clean
+from app.reports.content import Criterion, Judged
+from app.schemas import criteria as schemas
+from app.schemas.designs import RevisionWorksheet
+
+
+def judged(revision: RevisionWorksheet) -> Judged:
+    """The verdict of a revision, or why there is none."""
+    verdict = revision.verdict
+    if verdict is None or not revision.criteria:
+        return Judged(headline_of(revision.state, is_judged=revision.criteria is not None), "plain", "", [])
+    lines = [line(criterion) for criterion in revision.criteria]
+    governing = next((one for one in lines if one.name == verdict.governing), None)
+    rows = [_row(one, judged) for one, judged in zip(lines, revision.criteria, strict=True)]
+    return Judged(verdict.headline, tone(verdict), _governing(governing), rows)
+
+
+def _governing(first: Line | None) -> str:
+    """The criterion that governs, in one sentence."""
+    if first is None:
+        return ""
+    used = f"{first.used} of the limit used" if first.used else ""
+    margin = f"margin {first.margin}" if first.margin else ""
+    error = f"error {first.error}" if first.error else ""
+    said = ", ".join(filter(None, (used, margin, error)))
+    verdict = f"{first.verdict_words} ({said})" if said else first.verdict_words
+    return clean(f"governing: {_where(first)} {first.compared}: {verdict}")
+
+
+def _where(one: Line) -> str:
+    return f"{one.step}: {one.title}" if one.step else one.title
+
+
+def _row(one: Line, criterion: schemas.Criterion) -> Criterion:
+    basis = ", ".join(filter(None, (criterion.level and f"level {criterion.level}", criterion.truth)))
+    remarks = [one.missing, *one.remarks, basis and f"calculated: {basis}"]
+    return Criterion(
+        words=clean(_where(one)),
+        verdict=one.verdict,
+        verdict_words=one.verdict_words,
+        compared=clean(one.compared),
+        used=one.used,
+        margin=one.margin,
+        error=one.error,
+        source=clean(criterion.source or ""),
+        remarks=[clean(remark) for remark in remarks if remark],
+    )

@@ -1,0 +1,112 @@
+"""The form in which a calculation begins: empty, so that no value of an example is ever taken for the user's.
+
+It makes a new design, or a further step of one. Until it is filled in, nothing is saved.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from urllib.parse import quote, urlencode
+
+from fastapi import Request, Response
+from pydantic import JsonValue
+
+from app.presentation.typed import value_of
+from app.schemas.templates import Template
+from app.web import sheet
+from app.web.api import Api
+from app.web.blocks import Refusal
+from app.web.forms import OPTIONS, option_of
+from app.web.rendering import show
+
+_NUMBER = re.compile(r"[0-9]{1,6}")
+FIELDS = ("design_name", "name", "template", "model")
+"""What a form says beside the values of the step."""
+
+
+@dataclass(frozen=True)
+class NewStep:
+    """A step to be made: its name, its template, and what was typed into its fields."""
+
+    name: str
+    template: Template
+    typed: Mapping[str, str]
+
+    @property
+    def is_filled(self) -> bool:
+        """Whether anything was typed into its fields."""
+        return any(self._tails().values())
+
+    def plain(self) -> dict[str, JsonValue]:
+        """The step as the interface takes it."""
+        step: dict[str, JsonValue] = {"template": self.template.id, "version": self.template.version}
+        step["inputs"] = {tail: value_of(text) for tail, text in self._tails().items() if text}
+        options = {option: self.typed.get(f"{self.name}@{option}", "").strip() for option in OPTIONS}
+        return step | {option: option_of(option, text) for option, text in options.items() if text}
+
+    def fields(self, faults: Mapping[str, str]) -> list[sheet.Field]:
+        """The fields of its inputs, empty or as typed."""
+        return sheet.of_block(self.template.inputs, self.name, {}, {}, self.typed, faults)
+
+    def options(self, faults: Mapping[str, str]) -> list[sheet.Field]:
+        """The fields that choose how exact it is."""
+        return sheet.of_options(self.template, self.name, {}, self.typed, faults)
+
+    def _tails(self) -> dict[str, str]:
+        """What was typed, by the name of the input."""
+        begins = f"{self.name}."
+        return {
+            key.removeprefix(begins): text.strip()
+            for key, text in self.typed.items()
+            if key.startswith(begins)
+        }
+
+
+async def new_step(api: Api, typed: Mapping[str, str]) -> NewStep:
+    """The step that a form asks for; named as its template, if it has no name."""
+    id, version = versioned(typed.get("template", ""))
+    template = await api.get(f"/templates/{quote(id, safe='')}/versions/{version}", Template)
+    return NewStep(typed.get("name", "").strip() or template.id, template, typed)
+
+
+def versioned(chosen: str) -> tuple[str, int | str]:
+    """`oil_film/2` as the id and version that the interface takes."""
+    id, _, version = chosen.partition("/")
+    return id, int(version) if _NUMBER.fullmatch(version) else "latest"
+
+
+def beside(typed: Mapping[str, str]) -> dict[str, str]:
+    """What a form says beside the values of the step."""
+    return {name: typed[name] for name in FIELDS if typed.get(name)}
+
+
+def address(base: str, typed: Mapping[str, str]) -> str:
+    """The address of the form."""
+    return f"{base}?{urlencode(beside(typed))}"
+
+
+def step_page(
+    request: Request,
+    step: NewStep,
+    action: str,
+    hidden: Mapping[str, str],
+    refusal: Refusal | None = None,
+    notice: str | None = None,
+) -> Response:
+    """The form, empty; or refused, with what was typed and what is wrong."""
+    faults = refusal.faults if refusal else {}
+    fields, options = step.fields(faults), step.options(faults)
+    return show(
+        request,
+        "new_step.html",
+        status=422 if refusal else 200,
+        step=step,
+        action=action,
+        hidden=hidden,
+        fields=fields,
+        options=options,
+        loose=sheet.loose_faults([*fields, *options], faults),
+        notice=notice,
+    )

@@ -1,0 +1,160 @@
+// The verdict on top of the design page and in the fold lines of its steps, as pages/verdict.html writes them.
+import { WORDS, compared, error, margin, missing, remarks, share, stepOf, title } from "./criteria.js";
+import { isolated } from "./isolated.js";
+import { quantityText } from "./numbers.js";
+import { reveal } from "./reveal.js";
+
+const TONES = { not_met: "bad", undecided: "open", not_checked: "open" };
+const MOST_UNCHECKED = 3;
+const SVG = "http://www.w3.org/2000/svg";
+const HEADS = ["Criterion", "Verdict", "Value and limit", "Used", "Margin", "Error"];
+
+const place = document.querySelector("[data-verdict]");
+const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+function element(tag, properties, ...inside) {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...inside);
+  return made;
+}
+
+// Show a verdict and its criteria; of a design without criteria nothing changes.
+export function showVerdict({ verdict, criteria = [] }) {
+  if (!verdict || criteria.length === 0) return;
+  place.classList.remove("green", "bad", "open", "plain");
+  place.classList.add(verdict.green ? "green" : TONES[verdict.verdict] ?? "plain");
+  const isOpen = place.querySelector("[data-all-criteria]")?.open;
+  place.querySelector("[data-verdict-inside]").replaceChildren(...banner(verdict, criteria, isOpen));
+  for (const line of document.querySelectorAll("[data-fold-verdict]")) {
+    const worst = criteria.find((criterion) => stepOf(criterion) === line.dataset.foldVerdict);
+    line.replaceChildren(...(worst ? [tag(worst), ` ${share(worst.utilisation)}`] : []));
+  }
+}
+
+// The key results of a step in its fold line.
+export function showKeys(step, { outputs = {} }) {
+  for (const [name, quantity] of Object.entries(outputs)) {
+    const key = document.querySelector(`[data-key="${step}.${name}"]`);
+    if (key) key.textContent = quantityText(quantity).replaceAll("_", " ");
+  }
+}
+
+function banner(verdict, criteria, isOpen) {
+  const governing = criteria.find(({ name }) => name === verdict.governing);
+  const head = element("div", { className: "verdict-line" }, element("h2", { className: "headline", id: "verdict" }, capital(verdict.headline)));
+  if (governing) head.append(governs(governing));
+  const unchecked = criteria.filter((criterion) => criterion.verdict === "not_checked");
+  const all = element("details", { open: Boolean(isOpen) }, element("summary", {}, `All ${criteria.length} criteria`), table(criteria));
+  all.dataset.allCriteria = "";
+  return [head, ...(unchecked.length ? [notChecked(unchecked)] : []), all];
+}
+
+function governs(criterion) {
+  const made = element("p", { className: "governing" }, tag(criterion), " governing: ", element("strong", {}, link(criterion)), ` ${compared(criterion)}`);
+  const used = share(criterion.utilisation), left = margin(criterion), off = error(criterion);
+  if (used) made.append(" ", element("span", { className: "used" }, bar(criterion), ` ${used} used`));
+  made.append(left && `; margin ${left}`, off && `; error ${off}`);
+  return made;
+}
+
+function notChecked(unchecked) {
+  const made = element("p", { className: "unchecked" }, "Not checked: ");
+  unchecked.slice(0, MOST_UNCHECKED).forEach((criterion, place) => made.append(place ? "; " : "", link(criterion), " (", ...give(criterion), ")"));
+  if (unchecked.length > MOST_UNCHECKED) made.append(` and ${unchecked.length - MOST_UNCHECKED} more`);
+  return made;
+}
+
+function give(criterion) {
+  if (!criterion.give?.length) return [isolated(missing(criterion))];
+  const links = criterion.give.flatMap((name, place) => {
+    const made = element("a", { href: "#sheet" }, name.split(".").at(-1).replaceAll("_", " "));
+    made.dataset.give = name;
+    return place ? [", ", made] : [made];
+  });
+  return ["give ", ...links];
+}
+
+function link(criterion) {
+  const words = capital(title(criterion)), step = stepOf(criterion);
+  if (!step) return words;
+  const made = element("a", { href: `#step-${step}` }, words);
+  made.dataset.reveal = "";
+  return made;
+}
+
+const tag = ({ verdict }) => element("span", { className: `tag ${verdict}` }, WORDS[verdict]);
+
+function table(criteria) {
+  const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
+  const made = element("table", { className: "criteria" }, head, element("tbody", {}, ...criteria.map(row)));
+  return element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "All criteria" }, made);
+}
+
+function row(criterion) {
+  const said = remarks(criterion).flatMap((text) => [" ", element("span", { className: "muted remark" }, isolated(text))]);
+  const cells = [
+    element("th", { scope: "row" }, link(criterion)), element("td", {}, tag(criterion)),
+    element("td", {}, `${compared(criterion)} `, ...give(criterion), ...said),
+    element("td", { className: "used" }, share(criterion.utilisation), ...[bar(criterion)].filter(Boolean)),
+    element("td", {}, margin(criterion)), element("td", {}, error(criterion)),
+  ];
+  const made = element("tr", {}, ...cells);
+  made.dataset.criterion = criterion.name;
+  return made;
+}
+
+// The mark is the limit; the whole bar is 150 % of it.
+function bar({ utilisation, verdict }) {
+  if (typeof utilisation !== "number") return "";
+  const made = drawn("svg", { class: `bar ${verdict}`, viewBox: "0 0 150 10", preserveAspectRatio: "none", role: "img", "aria-label": `${share(utilisation)} of the limit` });
+  const used = Math.min(150, Math.max(0, utilisation * 100));
+  made.append(drawn("rect", { class: "track", width: 150, height: 10 }), drawn("rect", { class: "used", width: used, height: 10 }), drawn("path", { class: "mark", d: "M100,0V10" }));
+  return made;
+}
+
+function drawn(name, attributes) {
+  const made = document.createElementNS(SVG, name);
+  for (const [attribute, value] of Object.entries(attributes)) made.setAttribute(attribute, value);
+  return made;
+}
+
+// A link of the verdict opens what it leads to; the page leaves room for the verdict above it.
+export function startVerdict(form) {
+  const measure = () => document.body.style.setProperty("--verdict", `${place.offsetHeight}px`);
+  new ResizeObserver(measure).observe(place);
+  place.addEventListener("click", (event) => {
+    const target = event.target.closest("[data-give], [data-reveal]");
+    if (!target) return;
+    const leadsTo = target.dataset.give ? fieldOf(form, target.dataset.give) : document.getElementById(target.hash.slice(1));
+    if (!leadsTo) return;
+    event.preventDefault();
+    goTo(leadsTo);
+  });
+  rememberFolds(`folds:${form.dataset.design}`);
+}
+
+export function goTo(leadsTo) {
+  reveal(leadsTo);
+  leadsTo.focus();
+  leadsTo.scrollIntoView({ block: leadsTo.matches("input, select") ? "center" : "start" });
+}
+
+// The field of an input, or of a limit of a step.
+export function fieldOf(form, name) {
+  const [block, ...tail] = name.split(".");
+  const limit = `${block}@limits.${tail.join(".")}`;
+  return [...form.elements].find((field) => field.name === name || field.name === limit || field.name === `.${name}`);
+}
+
+// Which steps the user folded or unfolded is kept by the tab of the browser; what was refused stays in view.
+function rememberFolds(key) {
+  const kept = JSON.parse(sessionStorage.getItem(key) ?? "{}");
+  for (const fold of document.querySelectorAll("[data-fold]")) {
+    const name = fold.dataset.fold, isRefused = fold.querySelector("[aria-invalid]") !== null;
+    if (Object.hasOwn(kept, name)) fold.open = kept[name] || isRefused;
+    fold.querySelector("summary").addEventListener("click", () => {
+      kept[name] = !fold.open;
+      sessionStorage.setItem(key, JSON.stringify(kept));
+    });
+  }
+}

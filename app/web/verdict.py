@@ -1,0 +1,88 @@
+"""The verdict as the design page shows it: what governs, what is missing, and the fold line of every step."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from app.presentation.criteria import Line, headline_of, line, sides, tone
+from app.schemas.criteria import Criterion
+from app.schemas.designs import Design, RevisionWorksheet
+from app.schemas.evaluations import Output
+from app.web.blocks import StepBlock
+from app.web.forms import texts
+
+MOST_KEYS = 4  # results in the fold line of a step
+_NAMES = re.compile(r"[A-Za-z]\w*(?:\.[A-Za-z]\w*)*")
+
+
+@dataclass(frozen=True)
+class Banner:
+    """The verdict on top of the page; without `lines`, the headline says why there is none."""
+
+    headline: str
+    tone: str  # green, bad, open or plain: the class of its colour
+    governing: Line | None
+    lines: list[Line]
+    judged: bool
+
+    @property
+    def unchecked(self) -> list[Line]:
+        """What was not checked, with what to give."""
+        return [line for line in self.lines if line.verdict == "not_checked"]
+
+    @property
+    def undecided(self) -> bool:
+        """Whether an exacter calculation might decide."""
+        return any(line.verdict == "undecided" for line in self.lines)
+
+    def of_step(self, step: str) -> Line | None:
+        """The worst criterion of a step."""
+        return next((line for line in self.lines if line.step == step), None)
+
+
+def banner(revision: RevisionWorksheet) -> Banner:
+    """The verdict of a revision; of one that has none, the reason."""
+    verdict = revision.verdict
+    if verdict is None or not revision.criteria:
+        is_judged = revision.criteria is not None
+        return Banner(headline_of(revision.state, is_judged=is_judged), "plain", None, [], judged=is_judged)
+    lines = [line(criterion) for criterion in revision.criteria]
+    governing = next((line for line in lines if line.name == verdict.governing), None)
+    return Banner(verdict.headline, tone(verdict), governing, lines, judged=True)
+
+
+def key_outputs(
+    step: str, outputs: Mapping[str, Output], criteria: Iterable[Criterion], relations: Iterable[str]
+) -> list[str]:
+    """Outputs for the fold line of a step: those judged, those that drive other parts, else the last ones."""
+    single = [name for name, output in outputs.items() if not isinstance(output.value, list)]
+    judged = [
+        tail for criterion in criteria for tail in _tails(step, sides(criterion.require)[0], criterion.name)
+    ]
+    driving = [tail for text in relations for tail in _tails(step, text, "")]
+    wanted = [name for name in dict.fromkeys([*judged, *driving]) if name in outputs]
+    return (wanted or single[-3:])[:MOST_KEYS]
+
+
+def _tails(step: str, text: str, name: str) -> list[str]:
+    """The names of a step in a text, without it; bare ones too, in a criterion of the step's template."""
+    own = name.startswith(f"{step}.")
+    names = _NAMES.findall(text)
+    return [n.removeprefix(f"{step}.") for n in names if n.startswith(f"{step}.") or (own and "." not in n)]
+
+
+def with_keys(steps: Iterable[StepBlock], revision: RevisionWorksheet, design: Design) -> list[StepBlock]:
+    """The steps, each with the outputs of its fold line."""
+    typed = list(texts(design).values())
+    return [
+        replace(step, keys=key_outputs(step.name, step.result.outputs, revision.criteria or [], typed))
+        for step in steps
+    ]
+
+
+def opened(names: Sequence[str], verdict: Banner) -> str | None:
+    """The one step that is unfolded at first: that of the governing criterion, else the first."""
+    governing = verdict.governing.step if verdict.governing else ""
+    return governing if governing in names else next(iter(names), None)

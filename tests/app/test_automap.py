@@ -1,0 +1,80 @@
+"""Auto-map proposes by kind, name and role of a quantity, and applies nothing on its own."""
+
+import pytest
+from serving import API, created
+
+from app.designs.automap import GENERAL
+from app.designs.schemas import PAPER
+
+DESIGNS = f"{API}/designs"
+
+
+def example(http, id, version=1):
+    return http.get(f"{API}/templates/{id}/versions/{version}").json()["example"]
+
+
+def proposed(http, document):
+    """The proposals for a design, by target; the design is as before."""
+    design = created(http, document)
+    place = f"{DESIGNS}/{design['id']}"
+    answer = http.post(f"{place}/auto-map")
+    assert answer.status_code == 200, answer.text
+    assert http.get(place).json()["revision"] == 1
+    return {item["target"]: item["relation"] for item in answer.json()["proposals"]}
+
+
+def step(http, id, version=1):
+    return {"template": id, "version": version, "inputs": example(http, id, version)}
+
+
+def test_the_papers_bearing_is_tied_to_its_film(http):
+    document = {**PAPER, "name": "to map", "model": {"id": "ball_bearing", "version": 1}}
+    assert proposed(http, document) == {
+        "model.inner_diameter": "= film.bearing_diameter",
+        "model.width": "= film.bearing_width",
+    }
+
+
+@pytest.mark.parametrize("engine", ["engine", "bearing_load"])
+def test_the_bore_of_a_cylinder_is_not_that_of_a_shell(http, engine):
+    document = {
+        "name": "bores",
+        "steps": {"engine": step(http, engine)},
+        "models": {"shell": {"id": "plain_bearing"}},
+    }
+    assert proposed(http, document) == {}
+    document["steps"]["film"] = step(http, "oil_film", 2)
+    assert proposed(http, document)["shell.inner_diameter"] == "= film.bearing_diameter"
+
+
+def test_a_step_of_the_same_name_as_the_model_comes_first(http):
+    film = step(http, "oil_film")
+    document = {
+        "name": "two films",
+        "steps": {"front_film": film, "rear_film": film},
+        "models": {"rear": {"id": "plain_bearing"}, "front_shell": {"id": "plain_bearing"}},
+    }
+    relations = proposed(http, document)
+    assert relations["rear.inner_diameter"] == "= rear_film.bearing_diameter"
+    assert relations["front_shell.inner_diameter"] == "= front_film.bearing_diameter"
+
+
+def test_a_crank_is_tied_by_names_that_tell_its_parts(http):
+    document = {
+        "name": "crank",
+        "steps": {"stiffness": step(http, "crank_stiffness")},
+        "models": {"throw": {"id": "crank_throw"}},
+    }
+    relations = proposed(http, document)
+    assert relations["throw.pin_diameter"] == "= stiffness.pin_diameter"
+    assert relations["throw.throw"] == "= stiffness.throw"
+
+
+def test_a_general_name_of_a_parameter_counts_as_it_stands_only(http):
+    document = {
+        "name": "own",
+        "parameters": {"bore": "40 mm", "width": "20 mm"},
+        "models": {"shell": {"id": "plain_bearing"}},
+    }
+    assert {"bore", "width"} <= GENERAL
+    assert proposed(http, document) == {"shell.width": "= width"}

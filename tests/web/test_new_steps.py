@@ -1,0 +1,63 @@
+"""A new design or step begins empty; a mapping is proposed and applied by its user's choice alone."""
+
+from browsing import from_example, settled
+from playwright.sync_api import expect
+from serving import API
+
+FILM = {
+    "Radial load": "25 kN",
+    "Diametral clearance": "0.055 mm",
+    "Bearing diameter": "48 mm",
+    "Bearing width": "18 mm",
+    "Speed": "5000 rpm",
+    "Oil inlet temperature": "80 degC",
+    "Oil outlet temperature": "87.762 degC",
+}
+
+
+def test_a_design_begins_empty_and_its_mapping_is_proposed(watched, http):
+    page = watched.page
+    watched.open("/designs/new?design_name=mine&template=oil_film/1&model=plain_bearing/1")
+    values = page.locator("[data-new-step] input:not([type=hidden])").evaluate_all(
+        "(all) => all.map((one) => one.value)"
+    )
+    assert set(values) == {""}
+    for label, text in FILM.items():
+        page.get_by_label(label, exact=True).fill(text)
+    page.get_by_role("button", name="Create the design").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("mine")
+    place = page.url.removeprefix(watched.url)
+    assert http.get(f"{API}{place}").json()["models"]["model"]["parameters"] == {}
+    proposals = page.locator("[data-proposals] li")
+    expect(proposals).to_have_count(2)
+    expect(proposals.first).to_contain_text("model.inner_diameter = oil_film.bearing_diameter")
+    proposals.nth(1).get_by_role("checkbox").uncheck()
+    page.get_by_role("button", name="Apply the chosen").click()
+    expect(page.locator(".page-head")).to_contain_text("revision 2")
+    parameters = settled(http, place)["models"]["model"]["parameters"]
+    assert parameters == {"inner_diameter": "= oil_film.bearing_diameter"}
+    assert watched.faults() == []
+
+
+def test_a_further_step_begins_empty_and_says_what_is_missing(http):
+    place = from_example(http, "oil_film/1")
+    chosen = {"add": "template", "template": "journal_friction/1", "revision": "1"}
+    form = http.post(f"{place}/blocks", data=chosen).headers["location"]
+    assert form.startswith(f"{place}/steps/new?")
+    assert http.get(f"{API}{place}").json()["revision"] == 1
+    page = http.get(form).text
+    assert 'name="journal_friction.speed"' in page
+    typed = {**chosen, "journal_friction.speed": "= oil_film.speed"}
+    refused = http.post(f"{place}/blocks", data=typed)
+    assert refused.status_code == 422
+    assert 'value="= oil_film.speed"' in refused.text
+    assert 'aria-describedby="journal_friction-journal_diameter-error"' in refused.text
+    inputs = {
+        "journal_diameter": "= oil_film.journal_diameter",
+        "bearing_width": "18 mm",
+        "radial_clearance": "27 um",
+        "dynamic_viscosity": "= oil_film.dynamic_viscosity",
+    }
+    whole = {**typed, **{f"journal_friction.{name}": text for name, text in inputs.items()}}
+    assert http.post(f"{place}/blocks", data=whole).headers["location"] == place
+    assert http.get(f"{API}{place}").json()["steps"]["journal_friction"]["inputs"]["bearing_width"] == "18 mm"

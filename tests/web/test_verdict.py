@@ -1,0 +1,195 @@
+"""The design page leads with the verdict: what it says, where it stands, how long the page is."""
+
+import re
+
+import pytest
+from browsing import settled
+from judging import CRITERIA, MET, UNCHECKED, UNDECIDED, WORST, verdict
+from playwright.sync_api import expect
+from serving import API
+
+from app.presentation.criteria import compared, line, margin, step_of, title, tone
+from app.schemas.criteria import Criterion, Verdict
+from app.web.rendering import jinja
+from app.web.verdict import banner, key_outputs
+
+LONGEST = 3000  # pixels of a page with two steps, 1440 wide
+
+
+def criterion(plain, **changes):
+    return Criterion.model_validate({**plain, **changes})
+
+
+def judged(*criteria):
+    """What a page asks of a revision."""
+    summary = Verdict.model_validate(verdict(*criteria))
+
+    class Revision:
+        verdict, state = summary, "current"
+
+    Revision.criteria = [criterion(one) for one in criteria]
+    return Revision
+
+
+def html_of(shown):
+    module = jinja.get_template("verdict.html").module
+    return str(module.banner(shown))
+
+
+def text_of(html):
+    return " ".join(re.sub(r"<[^>]+>", " ", html.replace("&lt;", "<").replace("&gt;", ">")).split())
+
+
+@pytest.fixture
+def two_steps(http):
+    """A design whose film takes the largest load of an engine's cycle, with a shell."""
+    inputs = {
+        name: http.get(f"{API}/templates/{name}/versions/{version}").json()["example"]
+        for name, version in (("bearing_load", 1), ("oil_film", 2))
+    }
+    document = {
+        "name": "two steps",
+        "steps": {
+            "load": {"template": "bearing_load", "version": 1, "inputs": inputs["bearing_load"]},
+            "film": {
+                "template": "oil_film",
+                "version": 2,
+                "inputs": {**inputs["oil_film"], "radial_load": "= load.main_load_max"},
+            },
+        },
+        "model": {
+            "id": "plain_bearing",
+            "version": 1,
+            "parameters": {"inner_diameter": "= film.bearing_diameter"},
+        },
+    }
+    made = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"}).json()
+    place = f"/designs/{made['id']}"
+    settled(http, place)
+    return place
+
+
+def test_a_violated_limit_is_worded_as_violated():
+    assert compared(criterion(WORST)) == "1.53 µm < smallest permissible film 2 µm"
+    assert margin(criterion(WORST)) == "−0.47 µm (−0.52 … −0.42)"
+    above = criterion(MET, verdict="not_met", value={"value": 120.0, "unit": "degC"})
+    assert compared(above) == "120 °C > 110 °C"
+    assert title(above) == "film temperature"
+
+
+def test_a_criterion_belongs_to_the_step_whose_value_it_judges():
+    assert [step_of(criterion(one)) for one in CRITERIA] == ["film"] * 4
+    assert step_of(criterion(UNDECIDED, require="scale >= 1")) == ""
+
+
+def test_what_was_not_checked_says_what_to_give():
+    assert line(criterion(UNCHECKED)).missing == "give permissible pressure"
+    assert "the error of the calculation is not stated" in line(criterion(UNCHECKED)).remarks
+    assert line(criterion(UNDECIDED)).missing == "needs an error below 1.9 %"
+
+
+@pytest.mark.parametrize(
+    ("criteria", "expected"),
+    [
+        ([WORST, MET], "bad"),
+        ([UNDECIDED], "open"),
+        ([UNCHECKED], "open"),
+        ([MET], "plain"),  # met, but with an error that is not stated
+        ([{**UNDECIDED, "verdict": "met"}], "green"),
+    ],
+)
+def test_only_a_green_verdict_is_green(criteria, expected):
+    shown = banner(judged(*criteria))
+    assert (shown.tone, tone(judged(*criteria).verdict)) == (expected, expected)
+    assert ("green" in html_of(shown)) is False  # the colour comes with the tone alone
+
+
+def test_a_revision_without_a_verdict_says_so():
+    class Old:
+        verdict, criteria, state = None, [], "current"
+
+    assert "save to judge" in text_of(html_of(banner(Old)))
+
+
+def test_the_fold_line_shows_what_is_judged_or_drives_a_part():
+    class Output:
+        value = 1.0
+
+    outputs = dict.fromkeys(["minimum_film_thickness", "density", "bearing_diameter", "power_loss"], Output)
+    criteria = [criterion(WORST)]
+    keys = key_outputs("film", outputs, criteria, ["= film.bearing_diameter + 1 mm"])
+    assert keys == ["minimum_film_thickness", "bearing_diameter"]
+    assert key_outputs("other", outputs, [], []) == ["density", "bearing_diameter", "power_loss"]
+
+
+def test_the_browser_writes_the_verdict_as_the_server_does(watched, paper):
+    watched.open(paper)
+    expect(watched.page.locator("[data-state]")).to_be_attached()
+    for criteria in (CRITERIA, [MET], [UNCHECKED, {**UNCHECKED, "name": "film.b"}]):
+        payload = {"criteria": criteria, "verdict": verdict(*criteria)}
+        script = "async (payload) => (await import('/static/verdict.js')).showVerdict(payload)"
+        watched.page.evaluate(script, payload)
+        inside = watched.page.locator("[data-verdict-inside]").inner_html()
+        expected = html_of(banner(judged(*criteria)))
+        assert text_of(inside) == text_of(expected)
+        links = re.compile(r'data-give="([^"]+)"|href="(#step-[^"]+)"|class="tag (\w+)"')
+        assert links.findall(inside) == links.findall(expected)
+    assert watched.faults() == []
+
+
+def in_view(page, selector):
+    return page.evaluate(
+        "(selector) => { const box = document.querySelector(selector).getBoundingClientRect();"
+        " return box.height > 0 && box.top >= 0 && box.top < innerHeight / 2 && box.bottom > 0; }",
+        selector,
+    )
+
+
+def test_two_steps_are_short_and_verdict_and_part_stay_in_view(watched, two_steps):
+    page = watched.page
+    watched.open(two_steps)
+    expect(page.locator(".solid .js-plotly-plot")).to_be_visible(timeout=60_000)
+    expect(page.locator("[data-picture] .js-plotly-plot").first).to_be_attached()
+    assert page.evaluate("document.documentElement.scrollHeight") < LONGEST
+    page.evaluate("scrollTo(0, 1000)")
+    page.wait_for_function("scrollY === 1000")
+    assert in_view(page, "[data-verdict] .headline")
+    assert in_view(page, ".aside .solid")
+    assert watched.faults() == []
+
+
+def test_a_link_of_the_verdict_unfolds_its_step_and_the_fold_is_kept(watched, two_steps):
+    page = watched.page
+    watched.open(two_steps)
+    criteria = [{**WORST, "name": "load.load"}, UNCHECKED]
+    payload = {"criteria": criteria, "verdict": verdict(*criteria)}
+    page.locator('[data-fold="load"]').evaluate("(fold) => { fold.open = false; }")
+    page.evaluate("async (payload) => (await import('/static/verdict.js')).showVerdict(payload)", payload)
+    page.locator('[data-verdict] a[href="#step-load"]').first.click()
+    expect(page.locator('[data-fold="load"]')).to_have_attribute("open", "")
+    film = page.locator('[data-fold="film"]')
+    before = film.get_attribute("open")
+    film.locator("summary h2").first.click()
+    after = film.get_attribute("open")
+    assert after != before
+    page.reload()
+    expect(page.locator("[data-decided], [data-verdict]").first).to_be_visible()
+    page.wait_for_function(
+        f"document.querySelector('[data-fold=film]').open === {str(after is not None).lower()}"
+    )
+
+
+@pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
+def test_the_governing_criterion_stands_on_the_first_screen(browser, served, two_steps, size):
+    width, height = size
+    context = browser.new_context(viewport={"width": width, "height": height})
+    page = context.new_page()
+    page.goto(served.url + two_steps)
+    payload = {"criteria": CRITERIA, "verdict": verdict(*CRITERIA)}
+    page.evaluate("async (payload) => (await import('/static/verdict.js')).showVerdict(payload)", payload)
+    box = page.locator(".governing").bounding_box()
+    assert box["y"] + box["height"] < height
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    page.locator("[data-all-criteria] summary").click()
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    context.close()
