@@ -20,7 +20,7 @@ LAYERS: tuple[frozenset[str], ...] = tuple(
     for names in (
         "__main__",
         "cli",
-        "main demo server",
+        "main demo server downloads",
         "assembly",
         "web",
         "api",
