@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from app.plain import JsonObject
-from templates.core.judging.judgement import Judgement
+from templates.core.judging.judgement import Judgement, Place
 from templates.core.judging.summary import summarised
 
 
@@ -27,20 +27,21 @@ def rendered(ordered: Sequence[Judgement]) -> JsonObject:
 
 def criterion(judgement: Judgement) -> JsonObject:
     """One criterion; what does not apply is left out."""
+    unit, value, limit, margin = judgement.unit, judgement.value, judgement.limit, judgement.margin
     parts = {
-        "value": _quantity(judgement.value, judgement.unit),
-        "limit": _quantity(judgement.limit, judgement.unit),
-        "band": _band(judgement),
+        "value": None if value is None else _quantity(value, unit),
+        "limit": None if limit is None else _quantity(limit, unit),
+        "band": None if judgement.band is None else _band(judgement.band, unit),
         "relative_error": judgement.relative_error,
         "error_stated": judgement.is_stated,
         "utilisation": judgement.utilisation,
-        "margin": _quantity(judgement.margin, judgement.margin_unit),
+        "margin": None if margin is None else _quantity(margin, judgement.margin_unit),
         "needs": judgement.needs,
         "give": list(judgement.give) or None,
         "reason": judgement.reason,
         "level": judgement.level,
         "truth": judgement.truth,
-        "where": {p.name: {"value": p.value, "unit": p.unit} for p in judgement.where} or None,
+        "where": _where(judgement.where) if judgement.where else None,
         "points": judgement.points,
         "counts": dict(judgement.counts) if judgement.counts else None,
         "source": judgement.source,
@@ -52,14 +53,13 @@ def criterion(judgement: Judgement) -> JsonObject:
     return {**names, "verdict": judgement.verdict, **known}
 
 
-def _quantity(value: float | None, unit: str) -> JsonObject | None:
-    if value is None or not math.isfinite(value):
-        return None
-    return {"value": value, "unit": unit}
+def _quantity(value: float, unit: str) -> JsonObject | None:
+    return {"value": value, "unit": unit} if math.isfinite(value) else None
 
 
-def _band(judgement: Judgement) -> JsonObject | None:
-    if judgement.band is None:
-        return None
-    ends = [end if math.isfinite(end) else None for end in judgement.band]
-    return {"value": ends, "unit": judgement.unit}
+def _band(band: tuple[float, float], unit: str) -> JsonObject:
+    return {"value": [end if math.isfinite(end) else None for end in band], "unit": unit}
+
+
+def _where(places: Sequence[Place]) -> JsonObject:
+    return {place.name: {"value": place.value, "unit": place.unit} for place in places}

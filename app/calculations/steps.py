@@ -114,7 +114,7 @@ def evaluated_step(
     level: str | None,
     tolerance: float | None,
 ) -> Evaluation:
-    """The evaluation of a step; blocks.
+    """The evaluation of a step; blocks. Its design judges it, for criteria may follow from several steps.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def evaluated_step(
     """
     caller = _caller.get()
     if caller is None or estimated_seconds(cls, raw, level, tolerance, outputs) <= EXPENSIVE:
-        return evaluate(cls, raw, outputs=outputs, level=level, tolerance=tolerance)
+        return evaluate(cls, raw, outputs=outputs, level=level, tolerance=tolerance, judge=False)
     return caller.evaluation(cls, dict(raw), outputs, level, tolerance)
 
 
@@ -145,7 +145,7 @@ def _evaluated(
     tolerance: float | None,
 ) -> Evaluation:
     """The evaluation, with all that the template has computed: in a calculation process."""
-    return evaluate(loaded(source), raw, outputs=outputs, level=level, tolerance=tolerance)
+    return evaluate(loaded(source), raw, outputs=outputs, level=level, tolerance=tolerance, judge=False)
 
 
 @contextmanager

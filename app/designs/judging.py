@@ -64,7 +64,7 @@ class _Judging:
             absent = dict.fromkeys(criterion.names, Absent((), f"{block.name} waits for its calculation"))
             yield _named(judge(criterion, {}, absent), block, demand)
             return
-        if not is_due(evaluated.template, criterion, evaluated.answers):
+        if not is_due(evaluated, criterion):
             return
         estimates, absent = estimates_of(evaluated, criterion)
         limits = {limit.name for limit in criterion.limits}

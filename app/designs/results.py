@@ -80,22 +80,20 @@ def _step(calculation: Calculation, block: Block, criteria: Sequence[Judgement])
     evaluation = calculation.evaluations[block.name]
     answer = rendering.evaluation(evaluation)
     remember(answer, evaluation)
-    for name in ("seconds", "criteria", "verdict"):  # equal revisions are equal
-        answer.pop(name, None)
+    del answer["seconds"]  # equal revisions are equal
     answer["warnings"] = _warnings(evaluation, block, criteria)
     return {**answer, "relations": relations, "record": vars(record(evaluation.template))}
 
 
 def _warnings(evaluation: Evaluation, block: Block, criteria: Sequence[Judgement]) -> list[JsonObject]:
     """The warnings of a step, those of criteria as they were judged in the design."""
-    alone = set(warned(block.cls, evaluation.criteria))
     prefix = f"{block.name}."
     own = [
         replace(judgement, name=judgement.name.removeprefix(prefix))
         for judgement in criteria
         if judgement.name.startswith(prefix)
     ]
-    notices = [w for w in evaluation.warnings if w not in alone] + list(warned(block.cls, own))
+    notices = [*evaluation.warnings, *warned(block.cls, own)]
     return [{"code": w.code, "name": w.name, "detail": w.detail} for w in notices]
 
 

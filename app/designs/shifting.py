@@ -100,7 +100,7 @@ class Shifting:
         if reference in graph.assumed:
             return self._of_model(reference.block)
         if cell := graph.cell(reference):
-            return _joined(self._of(used) for used in cell.uses.values())
+            return _joined(self._of(used) for used in cell.uses.values()) if cell.uses else NOTHING
         block = graph.blocks.get(reference.block)
         if block is None:
             return NOTHING
@@ -132,8 +132,9 @@ class Shifting:
             beneath = self.calculation.instance(block.name).depends_on(declared.attribute)
         except KeyError:
             return NOTHING  # it waits
-        used = [cell for cell in block.cells.values() if cell.declared and cell.declared.attribute in beneath]
-        upstream = _joined(self.beneath(cell.reference) for cell in used)
+        related = [cell for cell in block.cells.values() if cell.relations and cell.declared]
+        used = [cell for cell in related if cell.declared and cell.declared.attribute in beneath]
+        upstream = _joined(self.beneath(cell.reference) for cell in used) if used else NOTHING
         return upstream.stopped() if upstream != NOTHING and self._is_expensive(block) else upstream
 
     def _of_model(self, name: str) -> Upstream:

@@ -56,7 +56,7 @@ def compare(
     """
     axes = max(estimates[name].axes for name in criterion.names) if criterion.names else 0
     fitted = aligned(estimates, axes)
-    value, limit = _side(criterion.value, fitted), _side(criterion.limit, fitted)
+    value, limit = side_of(criterion.value, fitted), side_of(criterion.limit, fitted)
     moved = [(_spread(low, estimates, axes), _spread(high, estimates, axes)) for low, high in shifts]
     value_bounds = bounds_of(criterion.value, fitted, moved)
     limit_bounds = bounds_of(criterion.limit, fitted, moved)
@@ -73,7 +73,8 @@ def _spread(values: Mapping[str, Value], estimates: Mapping[str, Estimate], axes
     return {name: v if estimates[name].axes else spread(v, axes) for name, v in values.items()}
 
 
-def _side(side: Relation, estimates: Mapping[str, Estimate]) -> Value:
+def side_of(side: Relation, estimates: Mapping[str, Estimate]) -> Value:
+    """The value of a side [SI]."""
     if name := plain_name(side):
         return estimates[name].value
     return side.value({name: estimates[name].value for name in side.names})

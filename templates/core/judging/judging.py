@@ -11,7 +11,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText
 from templates.core.judging.bands import Estimate, Shift, relative_width
-from templates.core.judging.comparison import NOT_CHECKED, WORST_FIRST, Codes, Compared, compare
+from templates.core.judging.comparison import NOT_CHECKED, WORST_FIRST, Codes, Compared, compare, side_of
 from templates.core.judging.criterion import Criterion
 from templates.core.judging.judgement import Judgement, Place
 from templates.core.judging.worst import Worst, worst_of
@@ -89,24 +89,18 @@ def judge(
 
 def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: list[Absent]) -> Parts:
     """A criterion of which names have no value; the side that has one is reported if it is a single value."""
-    sides = {"value": criterion.value, "limit": criterion.limit}
-    there = {side: r for side, r in sides.items() if r.names <= estimates.keys()}
-    values = {side: r.value({n: estimates[n].value for n in r.names}) for side, r in there.items()}
-    shown = {side: _shown(criterion, si) for side, si in values.items()}
-    return {
-        "verdict": "not_checked",
-        **{side: value for side, value in shown.items() if value is not None},
-        "is_stated": all(estimate.is_stated for estimate in estimates.values()),
-        "give": tuple(dict.fromkeys(name for why in absent for name in why.give)),
-        "reason": "; ".join(dict.fromkeys(why.reason for why in absent if why.reason)) or None,
-    }
-
-
-def _shown(criterion: Criterion, si: Value) -> float | None:
-    """A single value [SI] as it is shown; None of an array, and of what does not exist."""
-    if np.ndim(si) or not math.isfinite(si):
-        return None
-    return float(criterion.scale.from_si(float(si)))
+    parts: Parts = {"verdict": "not_checked"}
+    for name, side in (("value", criterion.value), ("limit", criterion.limit)):
+        if side.names <= estimates.keys():
+            si = side_of(side, estimates)
+            if not np.ndim(si) and math.isfinite(si):
+                parts[name] = float(criterion.scale.from_si(float(si)))
+    give, reasons = dict[str, None](), dict[str, None]()
+    for why in absent:
+        give.update(dict.fromkeys(why.give))
+        reasons.update({why.reason: None} if why.reason else {})
+    parts["is_stated"] = False not in [estimate.is_stated for estimate in estimates.values()]
+    return {**parts, "give": tuple(give), "reason": "; ".join(reasons) or None}
 
 
 def _compared(

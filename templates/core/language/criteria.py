@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -89,6 +90,12 @@ class Evaluated:
     level: Any = None
     is_joined: bool = False
 
+    @cached_property
+    def computed(self) -> frozenset[str]:
+        """The names of outputs that have to be computed here: not those that were given."""
+        handed = self.template.ledger.handed
+        return frozenset(n for n, f in self.template.formulas.items() if f.attribute not in handed)
+
     def value(self, name: str) -> Value:
         """The SI value of an output that exists; NaN in an array where there is none."""
         answer, formula = self.answers[name], self.template.formulas[name]
@@ -103,19 +110,12 @@ class Evaluated:
 def judged(evaluated: Evaluated) -> list[Judgement]:
     """The criteria of a template whose outputs were evaluated, worst first."""
     template = evaluated.template
-    due = (c for c in template.declared_criteria if is_due(template, c, evaluated.answers))
-    return worst_first(_judged(evaluated, criterion) for criterion in due)
+    return worst_first(_judged(evaluated, c) for c in template.declared_criteria if is_due(evaluated, c))
 
 
-def is_due(template: Template, criterion: Criterion, evaluated: Container[str]) -> bool:
+def is_due(evaluated: Evaluated, criterion: Criterion) -> bool:
     """Whether judging computes no output beyond those evaluated."""
-    return all(name in evaluated for name in criterion.names if _is_output(template, name))
-
-
-def _is_output(template: Template, name: str) -> bool:
-    """Whether a name has to be computed here."""
-    formula = template.formulas.get(name)
-    return formula is not None and formula.attribute not in template.ledger.handed
+    return evaluated.computed.intersection(criterion.names) <= evaluated.answers.keys()
 
 
 def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
@@ -133,9 +133,8 @@ def notes(evaluated: Evaluated, criterion: Criterion) -> dict[str, str | None]:
 
 def level_and_truth(evaluated: Evaluated, output: str | None) -> dict[str, str | None]:
     """The level of an evaluation, and the solution against which the error of an output was measured."""
-    level = evaluated.level if isinstance(evaluated.level, str) else None
-    table = evaluated.measured if output else None
-    return {"level": level, "truth": table.truth(level or "", output or "") if table else None}
+    level, table = evaluated.level if isinstance(evaluated.level, str) else None, evaluated.measured
+    return {"level": level, "truth": table.truth(level or "", output) if table and output else None}
 
 
 def estimates_of(evaluated: Evaluated, criterion: Criterion) -> tuple[dict[str, Estimate], dict[str, Absent]]:
@@ -157,17 +156,17 @@ def estimates_of(evaluated: Evaluated, criterion: Criterion) -> tuple[dict[str, 
 
 def _source(evaluated: Evaluated, criterion: Criterion) -> str | None:
     """The source of the criterion, and those of the limits that a library gave."""
-    if not criterion.limits:
+    if not evaluated.limits:
         return criterion.source
-    given = (evaluated.limits.get(limit.name) for limit in criterion.limits)
-    sources = [criterion.source, *(limit.source for limit in given if limit)]
-    return "; ".join(dict.fromkeys(source for source in sources if source)) or None
+    given = [evaluated.limits[limit.name] for limit in criterion.limits if limit.name in evaluated.limits]
+    sources = [criterion.source, *(limit.source for limit in given)]
+    return "; ".join(dict.fromkeys(filter(None, sources))) or None
 
 
 def estimate_of(evaluated: Evaluated, name: str) -> Estimate | Absent:
     """The value of an input or output with its error, or why there is none."""
     template = evaluated.template
-    if _is_output(template, name):
+    if name in evaluated.computed:
         return _estimate_of_output(evaluated, name)
     declared = template.inputs[name]
     with np.errstate(all="ignore"):
@@ -253,24 +252,18 @@ def _error(evaluated: Evaluated, name: str) -> tuple[Any, bool]:
 
 def _is_measured(measured: Accuracy | None, name: str) -> bool:
     """Whether a table of errors names the output at all."""
-    return measured is not None and any(name in outputs for outputs in measured.errors.values())
+    return measured is not None and name in measured.outputs
 
 
 def along_of(template: Template, names: Iterable[str]) -> Along | None:
     """The places of the first curve among some names, if there is one."""
     for name in names:
-        declared = template.formulas.get(name) or template.inputs.get(name)
-        axis = _axis(template, declared) if declared else None
-        if axis is not None:
-            return _places(template, axis)
+        curve = template.formulas.get(name)
+        if isinstance(curve, Profile) and curve.axes == 1:
+            axis = template.inputs.get(curve.along) or template.formulas.get(curve.along)
+            if axis is not None:
+                return _places(template, axis)
     return None
-
-
-def _axis(template: Template, declared: Declaration) -> Declaration | None:
-    """The input or output that says where the places of a curve are."""
-    if not isinstance(declared, Profile) or declared.axes != 1:
-        return None
-    return template.inputs.get(declared.along) or template.formulas.get(declared.along)
 
 
 def _places(template: Template, axis: Declaration) -> Along | None:

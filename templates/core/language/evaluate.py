@@ -80,12 +80,13 @@ def evaluate(
     tolerance: float | None = None,
     limits: Mapping[str, Any] | None = None,
     per_point: bool = False,
+    judge: bool = True,
 ) -> Evaluation:
     """Evaluate the outputs named (all, if None) for inputs as a user types them.
 
     `units` names other units for outputs. Arrays of inputs give arrays of outputs. With a `tolerance` one
     level serves all points, unless `per_point` asks for the cheapest level at each. `limits` are those
-    that the template's criteria take from their user.
+    that the template's criteria take from their user; no criterion is judged unless `judge`.
 
     Raises
     ------
@@ -104,7 +105,7 @@ def evaluate(
             for name, declared in cls.inputs.items()
             if name in template.ledger.typed or is_reported(template, declared)
         }
-        criteria = _judged(rungs, whole, shown_in, request.limits) if cls.declared_criteria else []
+        criteria = _judged(rungs, whole, shown_in, request.limits) if judge and cls.declared_criteria else []
     notices = [*_standing(cls, raw), *_noticed(rungs)]
     if tolerance is not None:
         values = {name: answer.value for name, answer in whole.answers.items()}

@@ -64,6 +64,11 @@ class Accuracy:
     ]  # by level and output: the largest measured in each cell, NaN unmeasured
     content: dict[str, Any]  # the whole file, as it is served
 
+    @cached_property
+    def outputs(self) -> frozenset[str]:
+        """The outputs of which errors were measured at any level."""
+        return frozenset(output for table in self.errors.values() for output in table)
+
     def of(self, template: Template, outputs: Iterable[str]) -> dict[str, Any]:
         """What `evaluate` reports: none of a text, 0 where the level does not matter, else the estimate.
 

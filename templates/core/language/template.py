@@ -90,6 +90,7 @@ class Template:
     level: str
 
     _ancestry: ClassVar[dict[str, frozenset[str]]] = {}
+    _dependencies: ClassVar[dict[str, frozenset[str]]] = {}
     ledger: Ledger
 
     def __init_subclass__(cls) -> None:
@@ -100,7 +101,7 @@ class Template:
         if reserved := sorted(name for name in declared if name in cls._own_words()):
             names = ", ".join(reserved)
             raise TypeError(f"{cls.__name__}: {names} has a meaning in every template; name it otherwise")
-        cls.declarations, cls._ancestry = declared, {}
+        cls.declarations, cls._ancestry, cls._dependencies = declared, {}, {}
         named = by_name(declared)
         cls.inputs = {name: v for name, v in named.items() if isinstance(v, (Given, Choice, Derived))}
         cls.formulas = {n: v for n, v in named.items() if n not in cls.inputs or getattr(v, "shown", False)}
@@ -248,8 +249,11 @@ class Template:
 
         Formulas beneath an input's default may read the input as given: this is no order of evaluation.
         """
-        ancestors = cls.ancestors(attribute)
-        return ancestors.union(*(getattr(cls._node(name), "uses_as_given", ()) for name in ancestors))
+        if attribute not in cls._dependencies:
+            ancestors = cls.ancestors(attribute)
+            as_given = (getattr(cls._node(name), "uses_as_given", ()) for name in ancestors)
+            cls._dependencies[attribute] = ancestors.union(*as_given)
+        return cls._dependencies[attribute]
 
     def depends_on(self, attribute: str) -> frozenset[str]:
         """The dependencies of an attribute here: an input read as given counts only where it was given."""

@@ -9,12 +9,14 @@ from templates.core.language.ledger import Notice
 from templates.core.units.quantity import TOLERANCES, Typed
 
 UNUSED = "tolerance_unused"
+_SIMPLE = (str, int, float)  # values without a place for a tolerance
 DETAIL = "its tolerance is kept and shown, but not used: the results are those of the value alone"
 
 
 def unused(given: Mapping[str, Any]) -> Iterator[Notice]:
     """A warning for every quantity, as typed or as read, that has `plus` or `minus`."""
-    return (Notice(UNUSED, name, DETAIL) for name, value in given.items() if has_tolerance(value))
+    compound = {name: value for name, value in given.items() if not isinstance(value, _SIMPLE)}
+    return (Notice(UNUSED, name, DETAIL) for name, value in compound.items() if has_tolerance(value))
 
 
 def has_tolerance(value: Any) -> bool:
