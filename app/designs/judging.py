@@ -109,10 +109,12 @@ class Judging:
         if not is_due(evaluated, criterion):
             return
         estimates, absent = estimates_of(evaluated, criterion)
-        limits = {limit.name for limit in criterion.limits}
-        references = {n: Reference(block.name, None, n) for n in estimates if n not in limits}
-        along = along_of(evaluated.template, criterion.names)
         more = notes(evaluated, criterion)
+        if absent:
+            yield _named(judge(criterion, estimates, absent, noted=more), block, demand)
+            return
+        references = {n: Reference(block.name, None, n) for n in estimates.keys() - criterion.limits_by_name}
+        along = along_of(evaluated.template, criterion.names)
         yield _named(self._judged(criterion, references, estimates, absent, along, more), block, demand)
 
     def _of_design(self, criterion: Criterion, demand: Demand) -> Judgement:
@@ -254,7 +256,7 @@ def _named(judgement: Judgement, block: Block, demand: Demand | None) -> Judgeme
     return replace(
         judgement,
         name=f"{block.name}.{judgement.name}",
-        give=tuple(f"{block.name}.{name}" for name in judgement.give),
+        give=tuple(map(f"{block.name}.".__add__, judgement.give)),
         words=(written and written.words) or judgement.words,
         source=(written and written.source) or judgement.source,
         waived=written.waived if written else None,

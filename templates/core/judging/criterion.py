@@ -92,6 +92,11 @@ class Criterion:
     absent: Mapping[str, Missing] = field(default_factory=dict)
 
     @cached_property
+    def limits_by_name(self) -> dict[str, Limit]:
+        """The limits that it declares."""
+        return {limit.name: limit for limit in self.limits}
+
+    @cached_property
     def scale(self) -> Unit:
         """The unit in which value and limit are shown."""
         return unit(self.unit)

@@ -141,14 +141,15 @@ def estimates_of(evaluated: Evaluated, criterion: Criterion) -> tuple[dict[str, 
     """The values of the names of a criterion with their errors, and why some have none."""
     estimates: dict[str, Estimate] = {}
     absent: dict[str, Absent] = {}
-    limits = {limit.name: limit for limit in criterion.limits}
+    limits = criterion.limits_by_name
     for name in sorted(criterion.names, key=limits.__contains__):  # a limit has to fit the other values
         if name in limits:
             one = _limit(evaluated, limits[name], estimates)
         else:
             one = estimate_of(evaluated, name)
         if isinstance(one, Absent):
-            absent[name] = _known_reason(evaluated, criterion.absent.get(name)) or one
+            missing = criterion.absent.get(name)
+            absent[name] = (missing and _known_reason(evaluated, missing)) or one
         else:
             estimates[name] = one
     return estimates, absent
@@ -180,7 +181,7 @@ def _limit(evaluated: Evaluated, limit: Limit, others: Mapping[str, Estimate]) -
     """A limit of the user: one for all, one for each point, or a curve beside a curve."""
     given = evaluated.limits.get(limit.name)
     if given is None:
-        return _default(evaluated, limit)
+        return _default(evaluated, limit) if limit.default else Absent((limit.name,), limit.remedy)
     shape, points = np.shape(given.value), evaluated.template.shape_of_points()
     if not shape or _fits(shape, points):
         return Estimate(given.value)
@@ -203,10 +204,10 @@ def _default(evaluated: Evaluated, limit: Limit) -> Estimate | Absent:
     return Absent((limit.name,), limit.remedy)
 
 
-def _known_reason(evaluated: Evaluated, missing: Missing | None) -> Absent | None:
+def _known_reason(evaluated: Evaluated, missing: Missing) -> Absent | None:
     """Why an output has no value, where the criterion says so and the output beside it has one."""
-    beside = evaluated.answers.get(missing.beside) if missing else None
-    return Absent((), missing.reason) if missing and beside and beside.value is not None else None
+    beside = evaluated.answers.get(missing.beside)
+    return Absent((), missing.reason) if beside and beside.value is not None else None
 
 
 def _fits(shape: tuple[int, ...], wanted: tuple[int, ...]) -> bool:

@@ -15,8 +15,11 @@ DETAIL = "its tolerance is kept and shown, but not used: the results are those o
 
 def unused(given: Mapping[str, Any]) -> Iterator[Notice]:
     """A warning for every quantity, as typed or as read, that has `plus` or `minus`."""
-    compound = {name: value for name, value in given.items() if not isinstance(value, _SIMPLE)}
-    return (Notice(UNUSED, name, DETAIL) for name, value in compound.items() if has_tolerance(value))
+    return (
+        Notice(UNUSED, name, DETAIL)
+        for name, value in given.items()
+        if not isinstance(value, _SIMPLE) and has_tolerance(value)
+    )
 
 
 def has_tolerance(value: Any) -> bool:
