@@ -50,7 +50,7 @@ def seen_whole(watched, path):
     watched.open(path, wait_until="load")
     page = watched.page
     page.evaluate(SCROLL)
-    page.wait_for_load_state("networkidle")
+    page.wait_for_load_state("networkidle", timeout=60_000)
     expect(page.locator("[aria-busy]")).to_have_count(0, timeout=60_000)
 
 
