@@ -93,7 +93,7 @@ Found = dict[str, float]
 
 def found_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Found:
     """Outputs on one mesh: stiffnesses [N·m/rad], frequency [Hz]."""
-    outputs: Found = {}
+    computed: Found = {}
     few = FREQUENCY not in outputs
     for load in KINDS:
         asked = {name: end for name, (kind, end) in ASKED.items() if kind == load and name in outputs}
@@ -102,10 +102,10 @@ def found_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = OU
         system = System(grid, order, shaft.material, load, few_forces=few)
         for name, boundary in asked.items():
             response = respond(system, boundary)
-            outputs[name] = 1e-3 / response.compliance
+            computed[name] = 1e-3 / response.compliance
             if name == "stiffness" and not few:
-                outputs[FREQUENCY] = torsional_mode(response).frequency
-    return outputs
+                computed[FREQUENCY] = torsional_mode(response).frequency
+    return computed
 
 
 def truth(step: bytes, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Found:

@@ -217,14 +217,14 @@ class BodyLimit:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        message = f"a body may have at most {self.limit / 2**20:g} MiB"
+        detail = f"a body may have at most {self.limit / 2**20:g} MiB"
         length = dict(scope["headers"]).get(b"content-length", b"0")
         if not length.isdigit() or int(length) > self.limit:
-            await self.refuse(message)(scope, receive, send)
+            await self.refuse(detail)(scope, receive, send)
             return
-        await self.app(scope, self._counted(receive, message) if length == b"0" else receive, send)
+        await self.app(scope, self._counted(receive, detail) if length == b"0" else receive, send)
 
-    def _counted(self, receive: Receive, message: str) -> Callable[[], Awaitable[Message]]:
+    def _counted(self, receive: Receive, detail: str) -> Callable[[], Awaitable[Message]]:
         """For a body of unknown length: raise once it grows beyond the limit."""
         size = 0
 
@@ -233,7 +233,7 @@ class BodyLimit:
             message = await receive()
             size += len(message.get("body", b""))
             if size > self.limit:
-                raise BodyTooLarge(message)
+                raise BodyTooLarge(detail)
             return message
 
         return counted

@@ -6,10 +6,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-import httpx
 import pytest
 from click.testing import CliRunner
-from serving import API, PATIENCE, ServerProcess
+from serving import PATIENCE
 
 from app.calculations.schemas import OIL_FILM
 from app.cli import main
@@ -113,23 +112,6 @@ class TestTemplates:
 
 
 class TestServe:
-    def test_a_folder_with_other_files_is_left_as_it_is(self, tmp_path):
-        data = tmp_path / "data"
-        (data / "artifacts").mkdir(parents=True)
-        (data / "notes.txt").write_text("mine")
-        (data / "artifacts" / "also mine").write_bytes(b"\x00")
-        server = ServerProcess(data)
-        with server, httpx.Client(base_url=server.url, trust_env=False) as http:
-            assert http.get(f"{API}/designs").json()["items"] == []
-            assert http.post("/api/v1/designs", json={"name": "kept"}).status_code == 201
-            refused = run("serve", "--data", str(data))
-        assert (data / "notes.txt").read_text() == "mine"
-        assert (data / "artifacts" / "also mine").read_bytes() == b"\x00"
-        assert refused.exit_code == 1
-        assert f"process {server.process.pid}" in refused.output
-        assert str(data) in refused.output
-        assert f"{server.port}/docs" in server.log.read_text()
-
     def test_a_second_server_on_one_folder_is_refused(self, served):
         refused = run("serve", "--data", str(served.app.state.services.settings.data))
         assert refused.exit_code == 1

@@ -189,18 +189,20 @@ def own_server(place):
             yield server, http, folder
 
 
-@pytest.fixture
-def own(tmp_path):
-    """For one test, which changes a model or the whole database."""
-    with own_server(tmp_path) as server:
-        yield server
-
-
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory):
-    """For tests that change rows of their own builds."""
+    """For tests that change rows of their own builds, a model, and at last the whole database."""
     with own_server(tmp_path_factory.mktemp("shared")) as server:
         yield server
+
+
+@pytest.fixture
+def restored():
+    """Have files as they were when the test has ended."""
+    texts = {}
+    yield lambda file: (texts.setdefault(file, file.read_text()), file)[1]
+    for file, text in texts.items():
+        file.write_text(text)
 
 
 class TestAnotherMaker:
@@ -229,11 +231,11 @@ class TestAnotherMaker:
             events.read()
         assert http.get(refusal["build"]).json()["measurements"]["mass"]
 
-    def test_a_model_that_changed_makes_nothing_under_the_old_hash(self, own, monkeypatch):
-        served, http, folder = own
+    def test_a_model_that_changed_makes_nothing_under_the_old_hash(self, shared, restored):
+        served, http, folder = shared
         design = created(http, moody("13 mm"))
         sha = files(http, design)["step"]
-        file = folder / "own" / "moody_v1.py"
+        file = restored(folder / "own" / "moody_v1.py")
         file.write_text(
             file.read_text().replace('Part("block"', 'Part("brick"').replace('seen["block"]', 'seen["brick"]')
         )
@@ -284,8 +286,9 @@ class TestAnotherMaker:
         assert refusal["analysis"] == f"{API}/analyses/{found['id']}"
 
 
-def test_damage_while_serving_is_503_and_not_ready(own):
-    served, http, _ = own
+def test_damage_while_serving_is_503_and_not_ready(shared):
+    """The last test of that server."""
+    served, http, _ = shared
     design = created(http, {"name": "bare"})
     until(lambda: http.get("/readyz").status_code == 200)  # the job processes have imported the kernel
     served.app.state.services.database.write(

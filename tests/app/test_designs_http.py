@@ -1,6 +1,7 @@
 """The rules of HTTP that designs and their jobs keep: preconditions, repeats, waiting, full queues."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from itertools import count as count_up
 from threading import Barrier
 from uuid import uuid4
@@ -270,7 +271,9 @@ class TestJobs:
 
 
 class TestWhileAJobLoops:
-    def test_the_service_answers_and_the_deadline_ends_it(self, http, served):
+    def test_the_service_answers_and_the_deadline_ends_it(self, http, served, monkeypatch):
+        dispatcher = served.jobs._dispatcher
+        monkeypatch.setattr(dispatcher, "_limits", replace(dispatcher._limits, deadline=3.0))
         design, job = looping(http)
         until(http, job, "running")
         for _ in range(40):
@@ -281,10 +284,10 @@ class TestWhileAJobLoops:
             json={"inputs": paper()["steps"]["film"]["inputs"] | {"bearing_diameter": "48 mm"}},
         )
         assert answer.status_code == 200
-        content = settled(http, design["id"], served.jobs.settings.job_deadline + 20)
+        content = settled(http, design["id"], 23)
         assert content["state"] == "failed"
         assert content["problem"]["type"] == "/problems/deadline"
-        assert f"{served.jobs.settings.job_deadline:g} s" in content["problem"]["detail"]
+        assert "3 s" in content["problem"]["detail"]
         assert content["problem"]["changed"] == ["model.mood", "model.size"]
         assert until(http, job, "failed")["problem"]["detail"] == content["problem"]["detail"]
         assert revision(http, content)["problem"] == content["problem"]

@@ -162,8 +162,8 @@ def test_curves_scale_in_relations(http):
     }  # fmt: skip
     document = {"name": "twice", "parameters": CHAIN["parameters"], "steps": steps}
     design = created(http, document)
-    steps = revision(http, design)["steps"]
-    single, twice = (np.array(steps[s]["outputs" if s == "load" else "inputs"][n]["value"])
+    results = revision(http, design)["steps"]
+    single, twice = (np.array(results[s]["outputs" if s == "load" else "inputs"][n]["value"])
                      for s, n in (("load", "crankpin_load_x"), ("film", "load_x")))  # fmt: skip
     assert twice == pytest.approx(-2 * single, rel=1e-12)
     wrong = {**steps["film"], "inputs": {**steps["film"]["inputs"], "load_x": "= load.torque"}}

@@ -9,24 +9,36 @@ import time
 
 import httpx
 import pytest
+from click.testing import CliRunner
 from prometheus_client.parser import text_string_to_metric_families
 from serving import API, PATIENCE, ServerProcess, created, moody
 
 from app.api.gate.observing import Observed
+from app.cli import main
 from app.observation import logs, metrics
 from app.observation.metrics import REGISTRY
 
 DESIGNS = f"{API}/designs"
+OTHERS = {"notes.txt": b"mine", "artifacts/also mine": b"\x00"}
 HARMLESS = re.compile(r"[A-Za-z0-9._-]{1,64}")
 
 
 @pytest.fixture(scope="module")
 def logged(tmp_path_factory):
-    """A server in a process that logs JSON; requests to it, and the lines it has left when it has ended."""
+    """A server in a process that logs JSON; requests to it, and the lines it has left when it has ended.
+
+    Its folder holds files of somebody else, and a second server tries to use it; last come
+    the folder, the server, and what the second one answered.
+    """
     data = tmp_path_factory.mktemp("logs") / "data"
+    (data / "artifacts").mkdir(parents=True)
+    for name, content in OTHERS.items():
+        (data / name).write_bytes(content)
     with ServerProcess(data, CRANKWRIGHT_LOG_LEVEL="info", CRANKWRIGHT_LOG_FORMAT="json") as server:
         with httpx.Client(base_url=server.url, timeout=PATIENCE, trust_env=False) as http:
             answers = {
+                "empty": http.get(DESIGNS),
+                "kept": http.post(DESIGNS, json={"name": "kept"}),
                 "problem": http.get(f"{DESIGNS}/nope?secret=hunter2", headers={"X-Request-ID": "mine.1"}),
                 "control": http.get("/api/v1/designs/%1b%5b31m%0aforged"),
                 "created": http.post(
@@ -41,16 +53,28 @@ def logged(tmp_path_factory):
                 ),
                 "page": http.get("/", headers={"Accept": "text/html"}),
             }
+        second = CliRunner().invoke(main, ["serve", "--data", str(data)])
         server.stop()
     text = server.log.read_text()
     lines = [json.loads(line) for line in text.splitlines() if line.startswith("{")]
-    return answers, lines, text
+    return answers, lines, text, (data, server, second)
 
 
 def lines_of(logged, name):
-    answers, lines, _ = logged
+    answers, lines, *_ = logged
     id = answers[name].headers["x-request-id"]
     return [line for line in lines if line.get("request_id") == id]
+
+
+def test_a_folder_with_other_files_is_left_as_it_is(logged):
+    answers, _, text, (data, server, second) = logged
+    assert answers["empty"].json()["items"] == []
+    assert answers["kept"].status_code == 201
+    assert {name: (data / name).read_bytes() for name in OTHERS} == OTHERS
+    assert second.exit_code == 1
+    assert f"process {server.process.pid}" in second.output
+    assert str(data) in second.output
+    assert f"{server.port}/docs" in text
 
 
 def test_one_id_in_header_problem_and_line(logged):

@@ -92,8 +92,8 @@ def test_every_example_runs(http, document, operations, example):
         for media, body in operation.get("requestBody", {}).get("content", {}).items():
             for sent in examples(document, body["schema"]):
                 headers = {"Content-Type": media, "Prefer": "wait=60", "If-Match": "*"}
-                body = {"json": sent} if media.endswith("json") else {"content": sent}
-                answer = http.request(method, filled(path, operation, example), headers=headers, **body)
+                payload = {"json": sent} if media.endswith("json") else {"content": sent}
+                answer = http.request(method, filled(path, operation, example), headers=headers, **payload)
                 assert answer.is_success, (name, sent, answer.text)
                 ran.append(name)
     assert len(ran) >= 6, ran

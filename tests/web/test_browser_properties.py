@@ -35,15 +35,22 @@ def kinds(paths):
     return [*paths[:5], "/templates/oil_film/1", "/models/plain_bearing/1"]
 
 
+SCROLL = """async () => {
+    const shown = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    for (let place = 0; place < document.documentElement.scrollHeight; place += 600) {
+        scrollTo(0, place);
+        await shown();
+    }
+}"""
+"""Scroll to the end; two frames at each place, in which the browser reports what has come into sight."""
+
+
 def seen_whole(watched, path):
     """Open a page and look at all of it, so that everything that waits to be seen is drawn."""
     watched.open(path, wait_until="load")
     page = watched.page
-    height = page.evaluate("document.documentElement.scrollHeight")
-    for place in range(0, height, 600):
-        page.evaluate(f"scrollTo(0, {place})")
-        page.wait_for_timeout(40)
-    page.wait_for_load_state("networkidle")
+    page.evaluate(SCROLL)
+    page.wait_for_load_state("networkidle", timeout=60_000)
     expect(page.locator("[aria-busy]")).to_have_count(0, timeout=60_000)
 
 

@@ -81,8 +81,7 @@ def test_results_of_before_are_marked_until_the_input_is_possible_again(watched,
         expect(page.locator("main")).to_have_class("outdated")
         expect(page.locator("[data-state]")).to_contain_text("those of before")
         expect(value).to_have_css("color", "rgb(81, 96, 111)")
-        serious = [v for v in Axe().run(page).response["violations"] if v["id"] == "color-contrast"]
-        assert serious == []
+        assert Axe().run(page, options={"runOnly": ["color-contrast"]}).response["violations"] == []
         page.get_by_label("Radial load").fill("26 kN")
         expect(page.locator("main")).not_to_have_class("outdated")
         expect(page.locator("[data-state]")).not_to_contain_text("those of before")
