@@ -64,7 +64,7 @@ def test_the_smallest_gap_of_a_marched_orbit_is_where_its_node_is_in_the_cycle_o
 @pytest.mark.parametrize("ratio", [0.3, 1.0])
 @pytest.mark.parametrize("eps", [(0.0, 0.0), (0.3, -0.4)])
 def test_shear_and_side_flow_of_a_full_film_of_even_pressure(ratio, eps):
-    """The shear of Sommerfeld's film; and (1 + 3/2 ε²) times the flow of a centred journal out of both ends."""
+    """Shear as of Sommerfeld's film; 1 + 3 ε²/2 times the flow of a centred journal out of both ends."""
     journal = transient_mesh(ratio, 128, 4)
     even = np.ones((128, 4))
     state = State(np.array(eps), 3 * even, 0 * even, even)
