@@ -37,6 +37,11 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "--only", nargs="+", default=[""], help="of the sample, those whose file and line begin so"
     )
+    parser.add_argument(
+        "--tests",
+        nargs="+",
+        help="try these test files instead of the related ones, and record what they kill",
+    )
     parser.add_argument("--named", action="store_true", help="try the named mutants instead of random ones")
     parser.add_argument("--record", type=Path, help="file of results, one JSON object a line; is appended to")
     parser.add_argument(
@@ -84,12 +89,14 @@ def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[
     lock = Lock()
     with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
         kept = options.record and options.record.resolve().with_name("observations")
-        copies = Copies(Path(folder), options.limit, options.nearest, kept)
-        for at_once in (True, False):  # most are killed by the nearest tests: these figures come first
+        copies = Copies(Path(folder), options.limit, options.nearest, kept, tuple(options.tests or ()))
+        for at_once in (
+            (True,) if options.tests else (True, False)
+        ):  # the nearest tests kill most: they come first
             attempt = partial(tried, copies, options.record, lock, at_once)
             results = filter(None, threads.map(attempt, [one for one in ahead if one.key not in rows]))
             rows |= {str(result["key"]): result for result in results}
-    return [rows[mutant.key] for mutant in chosen]
+    return [rows[mutant.key] for mutant in chosen if mutant.key in rows]
 
 
 def tried(

@@ -52,8 +52,11 @@ class Run:
 class Copy:
     """A copy of the repository on which one mutant at a time is tried."""
 
-    def __init__(self, folder: Path, limit: float, nearest: int, kept: Path) -> None:
+    def __init__(
+        self, folder: Path, limit: float, nearest: int, kept: Path, instead: tuple[str, ...] = ()
+    ) -> None:
         self.folder = folder
+        self.instead = instead  # test files to run at once instead of the nearest one
         self.limit = limit
         self.nearest = nearest
         self._passing: set[tuple[str, ...]] = set()
@@ -84,7 +87,9 @@ class Copy:
 
     def _nearest(self, mutant: Mutant, tests: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], float]]:
         """Yield the nearest file, or its single tests that run the line if it was observed."""
-        if not self.observations.has(tests[0], mutant.file):
+        if self.instead:
+            yield self.instead, self.limit
+        elif not self.observations.has(tests[0], mutant.file):
             yield tests[:1], STARTING
         elif single := tuple(self.observations.quickest(mutant.file, mutant.line, tests[:1])):
             yield single, STARTING
@@ -219,8 +224,15 @@ def fingerprint(files: tuple[str, ...]) -> str:
 class Copies:
     """Copies for as many threads as ask for one."""
 
-    def __init__(self, folder: Path, limit: float, nearest: int, kept: Path | None = None) -> None:
-        self._folder, self._limit, self._nearest = folder, limit, nearest
+    def __init__(
+        self,
+        folder: Path,
+        limit: float,
+        nearest: int,
+        kept: Path | None = None,
+        instead: tuple[str, ...] = (),
+    ) -> None:
+        self._folder, self._limit, self._nearest, self._instead = folder, limit, nearest, instead
         self._kept = kept or folder / "observations"
         self._idle: list[Copy] = []
         self._number = 0
@@ -237,4 +249,5 @@ class Copies:
             self._idle.append(copy)
 
     def _copy(self) -> Copy:
-        return Copy(self._folder / str(self._number), self._limit, self._nearest, self._kept)
+        folder = self._folder / str(self._number)
+        return Copy(folder, self._limit, self._nearest, self._kept, self._instead)

@@ -9,6 +9,7 @@ from templates.physics.journals.heat_balance import Running
 from templates.physics.orbits.cyclic_film import cycle_of
 from templates.physics.orbits.film_mobility import film_mobility
 from templates.physics.orbits.short_mobility import mobility_Booker_1971, short_film_under_load
+from templates.physics.pads.pad_mesh import grading
 from templates.physics.pads.slider_film import finite_pad
 
 
@@ -75,3 +76,14 @@ def test_oil_too_thin_for_the_map_loses_the_power_of_the_thinnest_film_on_it():
     assert power[0] > 0
     inside = Running(F=np.array([1.0]), **given).power_and_flow(np.asarray(320.0))[0]
     assert inside < power[0]
+
+
+@pytest.mark.parametrize("a", [1.5, 10.0, 200.0])
+@pytest.mark.parametrize("width", [0.02, 0.1])
+def test_the_ends_of_a_narrow_pad_are_as_fine_as_their_layers(a, width):
+    """Pressure decays within b/pi of each end; from there on each decade of x gets its share of the nodes."""
+    layer = width / np.pi
+    along = np.log(a) / np.array([1 - 1 / a, a - 1])  # dx/ds at inlet and outlet, h falling as exp(−s ln a)
+    graded = grading(np.array([a]), np.array([width]))
+    assert graded.slope(np.array([0.0, 1.0]))[0] == pytest.approx(layer * np.arcsinh(along / layer), rel=1e-9)
+    assert np.sinh(graded.stretch) / graded.stretch > 1

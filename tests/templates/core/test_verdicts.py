@@ -153,3 +153,31 @@ def test_of_many_points_the_worst_counts():
     ]
     assert (bad.holds, bad.broken, bad.points) == (False, 1, 3)
     assert bad.numbers == ""
+
+
+class Cube(Template):
+    """A cube that has to fit, by rules with a function that paper does not know."""
+
+    a: Array = given("m", "edge", gt=0)
+    V: Array = given("m**3", "space", gt=0)
+
+    @require("edge", "space", remedy="make it smaller")
+    def fits(self) -> Truth:
+        """The edge is no longer than that of the space."""
+        return self.a <= np.cbrt(self.V)
+
+    @require("edge", "space", remedy="make it smaller")
+    def is_held(self) -> Truth:
+        """The edge of the space is no shorter than the cube's."""
+        return np.cbrt(self.V) >= self.a
+
+    @formula("m", "same edge")
+    def same(self) -> Array:
+        return self.a
+
+
+def test_a_side_that_cannot_be_written_leaves_the_sentence_alone():
+    evaluation = evaluate(Cube, {"edge": "1 m", "space": "8 m**3"})
+    rules = [check for check in checks(evaluation.template) if check.kind == "rule"]
+    assert [(rule.demand, rule.holds) for rule in rules] == [("", True), ("", True)]
+    assert [rule.used for rule in rules] == pytest.approx([0.5, 0.5])
