@@ -49,15 +49,20 @@ Values = Mapping[str, Any]
 """Quantities by name: `"25 kN"`, `{"value": 25, "unit": "kN"}`, or a quantity of another answer."""
 
 
-class Options(TypedDict, total=False):
-    """How a template is evaluated."""
+class SolveOptions(TypedDict, total=False):
+    """How a template is evaluated at a solution."""
 
     outputs: list[str]
     level: str
     tolerance: float
-    per_point: bool
     units: dict[str, str]
     limits: Mapping[str, Any]
+
+
+class Options(SolveOptions, total=False):
+    """How a template is evaluated."""
+
+    per_point: bool
 
 
 class AnalysisOptions(TypedDict, total=False):
@@ -103,10 +108,19 @@ def worksheet(id: str, version: int, inputs: Values, **options: Unpack[Options])
 
 
 def solve(
-    id: str, version: int, inputs: Values, unknown: str, bounds: tuple[Any, Any], target: Values
+    id: str,
+    version: int,
+    inputs: Values,
+    unknown: str,
+    bounds: tuple[Any, Any],
+    target: Values,
+    **options: Unpack[SolveOptions],
 ) -> Exchange[Solution]:
-    """Find the input that gives a wanted output, between bounds."""
-    body = {"inputs": inputs, "unknown": unknown, "bounds": bounds, "target": target}
+    """Find the inputs that give a wanted output, between bounds.
+
+    Options are `outputs`, `level`, `tolerance`, `units`.
+    """
+    body = {"inputs": inputs, "unknown": unknown, "bounds": bounds, "target": target, **options}
     return calculated(Solution, post(f"/templates/{id}/versions/{version}/solve", body))
 
 

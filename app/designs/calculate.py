@@ -26,7 +26,16 @@ from templates.core.units.quantity import Typed, read, read_any
 from templates.core.units.relation import is_relation, parse
 from templates.core.units.units import Value
 
-__all__ = ["Analysed", "Calculation", "Measured", "Measures", "Outputs", "calculate", "resume"]
+__all__ = [
+    "Analysed",
+    "Calculation",
+    "Measured",
+    "Measures",
+    "Outputs",
+    "calculate",
+    "recalculated",
+    "resume",
+]
 
 
 def calculate(
@@ -66,6 +75,42 @@ def resume(before: Calculation, measured: Measured, analysed: Analysed) -> Calcu
     )
     nodes = [node for node in before.graph.order if node in before.pending]
     _calculate(result, nodes, measured, analysed)
+    return result
+
+
+def recalculated(
+    before: Calculation, changed: Mapping[Reference, Value], levels: Mapping[str, str | None]
+) -> Calculation:
+    """What follows from outputs of steps if these have other values [SI]; solids stay as they are.
+
+    Steps are calculated at the `levels` given by their names, so that no other level makes a difference.
+    """
+    result = replace(
+        before,
+        changed=changed,
+        values=dict(before.values),
+        typed=dict(before.typed),
+        evaluations=dict(before.evaluations),
+        pending=set(),
+        broken=set(),
+        deferred=set(),
+        missing={},
+        faults=[],
+        operations=0,
+    )
+    moved = set[Node]()
+    for node in before.graph.order:
+        if isinstance(node, Cell) and not (
+            moved.isdisjoint(before.graph.sources[node]) and changed.keys().isdisjoint(node.uses.values())
+        ):
+            moved.add(node)
+            result.values.pop(node.name, None)
+            _cell(result, node)
+        elif isinstance(node, Block) and not node.is_model and not moved.isdisjoint(node.cells.values()):
+            moved.add(node)
+            result.evaluations.pop(node.name, None)
+            _block(result, replace(node, level=levels.get(node.name), tolerance=None))
+            result.broken |= {node} if node.name not in result.evaluations else set()
     return result
 
 
@@ -129,7 +174,7 @@ def _related(result: Calculation, cell: Cell) -> Typed:
 
 def _joined(result: Calculation, cell: Cell) -> Value:
     """The value of a relation, or of a list that mixes relations and quantities."""
-    values = {} if result.assumed else result.values
+    values = {} if result.assumed or result.changed else result.values
     names = {n: values[n] if n in values else result.value(reference) for n, reference in cell.uses.items()}
     if any(map(np.ndim, names.values())):  # single values are few: the text of all relations is limited
         limit_values(count := spanned(map(np.shape, names.values())))

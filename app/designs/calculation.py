@@ -31,6 +31,7 @@ class Calculation:
 
     graph: Graph
     assumed: Mapping[Reference, float] = field(default_factory=dict)  # with which iterations begin a round
+    changed: Mapping[Reference, Value] = field(default_factory=dict)  # outputs of steps that are shifted
     values: dict[str, Value] = field(default_factory=dict)  # of cells
     typed: dict[str, Typed] = field(default_factory=dict)  # cells of blocks as the templates take them
     evaluations: dict[str, Evaluation] = field(default_factory=dict)  # of steps
@@ -48,6 +49,8 @@ class Calculation:
         """The value [SI] of a name, once its node is calculated."""
         if reference in self.assumed:
             return self.assumed[reference]
+        if reference in self.changed:
+            return self.changed[reference]
         if cell := self.graph.cell(reference):
             if cell.name in self.values:
                 return self.values[cell.name]

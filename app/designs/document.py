@@ -21,7 +21,7 @@ from pydantic import (
 
 from app.plain import Json, JsonObject, Raw
 from app.schemas.bounded import Bounded, at_most
-from app.schemas.values import Given
+from app.schemas.values import Given, Limits
 from app.solids.questions import Options
 
 WORD = r"^[A-Za-z][A-Za-z0-9_]{0,63}$"
@@ -30,6 +30,11 @@ NAME = r"^[^\x00-\x1f\x7f]+$"  # no control characters
 Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=NAME)]
 Version = Annotated[int, Field(ge=1, le=10**6)] | Literal["latest"] | None
 Values = Annotated[dict[Word, Given], Field(max_length=500), at_most(500)]
+CRITERION = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63})?$"
+CriterionName = Annotated[str, StringConstraints(pattern=CRITERION)]
+"""A criterion of the design, or with a step before it that of a template: `film`, `film.pressure`."""
+Sentence = Annotated[str, StringConstraints(min_length=1, max_length=500, pattern=NAME)]
+MOST_CRITERIA = 100
 MOST_VALUES = 10_000  # that all steps and models of a design set together
 
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
@@ -48,6 +53,12 @@ class Step(Bounded):
     outputs: Annotated[list[Word], Field(max_length=200)] | None = Field(
         None, description="compute these only; all, if not given"
     )
+    limits: Limits = {}
+
+    @model_serializer(mode="wrap")
+    def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
+        """No limits are not mentioned: a document of before there were any is the same document."""
+        return _without_nothing(plain(self), "limits")
 
 
 class Model(Bounded):
@@ -65,8 +76,7 @@ class Model(Bounded):
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
         """No analyses are not mentioned: a document of before there were any is the same document."""
-        document: JsonObject = plain(self)
-        return {name: value for name, value in document.items() if name != "analyses" or value}
+        return _without_nothing(plain(self), "analyses")
 
 
 class Iteration(Bounded):
@@ -82,6 +92,28 @@ class Iteration(Bounded):
     limit: int = Field(20, ge=1, le=100, description="rounds")
 
 
+class Criterion(Bounded):
+    """What a design demands, or what it says of a criterion of one of its templates."""
+
+    model_config = _STRICT
+
+    require: str | None = Field(
+        None,
+        min_length=1,
+        max_length=2000,
+        description="two sides and one `>=` or `<=`, such as `film.minimum_film_thickness >= 3 um`; "
+        "not needed for a criterion of a template",
+    )
+    words: Sentence | None = Field(None, description="what it means")
+    source: Sentence | None = Field(None, description="of the limit or of the rule")
+    waived: Sentence | None = Field(None, description="why it does not count; it is judged all the same")
+
+    @model_serializer(mode="wrap")
+    def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
+        """What is not said is not mentioned."""
+        return _without_nothing(plain(self), *type(self).model_fields)
+
+
 class Document(Bounded):
     """All that a revision keeps of its user's words."""
 
@@ -92,6 +124,14 @@ class Document(Bounded):
     steps: Annotated[dict[Word, Step], Field(max_length=100), at_most(100)] = {}
     models: Annotated[dict[Word, Model], Field(max_length=20), at_most(20)] = {}
     iterations: Annotated[list[Iteration], Field(max_length=10)] = []
+    criteria: Annotated[
+        dict[CriterionName, Criterion], Field(max_length=MOST_CRITERIA), at_most(MOST_CRITERIA)
+    ] = Field({}, description="what the design demands; `step.name` overrides or waives one of a template")
+
+    @model_serializer(mode="wrap")
+    def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
+        """No criteria are not mentioned: a document of before there were any is the same document."""
+        return _without_nothing(plain(self), "criteria")
 
     @model_validator(mode="before")
     @classmethod
@@ -116,9 +156,14 @@ class Document(Bounded):
         return self
 
 
+def _without_nothing(plain: JsonObject, *names: str) -> JsonObject:
+    """An object without those of the names that hold nothing."""
+    return {name: value for name, value in plain.items() if value or name not in names}
+
+
 def _values_set(raw: Mapping[str, Raw]) -> int:
     """How many values the steps and models of a document set, as far as it has the shape of one."""
-    places = (("steps", "inputs"), ("models", "parameters"))
+    places = (("steps", "inputs"), ("steps", "limits"), ("models", "parameters"))
     blocks = [
         (block, part)
         for group, part in places
@@ -157,9 +202,9 @@ def _merged(old: Json, patch: Json, path: tuple[str, ...]) -> Json:
 def _is_container(path: tuple[str, ...]) -> bool:
     """Whether a patch goes on inside: in the document, its groups, its steps and models, and their parts."""
     match path:
-        case () | ("parameters" | "steps" | "models",) | ("steps" | "models", _):
+        case () | ("parameters" | "steps" | "models" | "criteria",) | ("steps" | "models", _):
             return True
-        case ("steps", _, "inputs") | ("models", _, "parameters" | "analyses"):
+        case ("steps", _, "inputs" | "limits") | ("models", _, "parameters" | "analyses"):
             return True
         case ("models", _, "analyses", _):
             return True

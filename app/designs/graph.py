@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from app.designs.analyses import is_measured, questions, remedy
+from app.designs.demands import checked_demands, read_demands, unknown_names_in
 from app.designs.document import Document, Model, Step, Version
 from app.designs.kinds import checked_kinds
 from app.designs.network import Block, Cell, Graph, Network, Node
@@ -20,9 +21,12 @@ from app.plain import Raw
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_names
+from templates.core.judging.limits import GivenLimit, read_limits
 from templates.core.language.intake import Input
 from templates.core.language.template import Template
 from templates.core.units.relation import Relation, is_relation, parse
+
+NO_RELATION = "a limit is a quantity; write a criterion of the design where it follows from other values"
 
 T = TypeVar("T", bound=Template)
 
@@ -46,18 +50,19 @@ def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list
         return Graph({}, {}, frozenset()), faults
     network, faults = _network(document, catalogues)
     links = {cell: _links(network, cell) for cell in network.cells() if cell.uses}
-    if faults := [*faults, *_unknown(network, links)]:
+    if faults := [*faults, *_unknown(network, links), *unknown_names_in(network)]:
         return _graph(network), faults
     sources = _sources(network, links)
     order, faults = ordered(network, sources)
     if faults:
         return _graph(network, sources), faults
     kinds, faults = checked_kinds(network, (node for node in order if isinstance(node, Cell)))
-    return _graph(network, sources, order, kinds), faults
+    demands, wrong = checked_demands(network, kinds)
+    return _graph(replace(network, demands=demands), sources, order, kinds), [*faults, *wrong]
 
 
 def _graph(network: Network, *checked: Any) -> Graph:
-    return Graph(network.parameters, network.blocks, network.assumed, *checked)
+    return Graph(network.parameters, network.blocks, network.assumed, network.demands, *checked)
 
 
 def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[Fault]]:
@@ -72,7 +77,8 @@ def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[
         blocks |= {block.name: block} if block else {}
         faults += wrong
     assumed = frozenset(Reference.parse(iteration.through) for iteration in document.iterations)
-    return Network(parameters, blocks, assumed), faults
+    demands, wrong = read_demands(document, blocks)
+    return Network(parameters, blocks, assumed, demands), [*faults, *wrong]
 
 
 def _cell(
@@ -108,7 +114,19 @@ def _step(name: str, step: Step, templates: Catalogue[Template]) -> tuple[Block 
         return None, faults
     cells, faults = _cells(name, step.inputs, cls)
     outputs = None if step.outputs is None else tuple(step.outputs)
-    return Block(name, cls, cells, step.level, step.tolerance, outputs), faults
+    limits, wrong = _limits(name, step, cls)
+    return Block(name, cls, cells, step.level, step.tolerance, outputs, limits), [*faults, *wrong]
+
+
+def _limits(name: str, step: Step, cls: type[Template]) -> tuple[dict[str, GivenLimit], list[Fault]]:
+    """The limits that a step gives for the criteria of its template."""
+    related = [n for n, raw in step.limits.items() if is_relation(raw)]
+    faults = [Fault(f"{name}.limits.{n}", "relation", NO_RELATION) for n in related]
+    try:
+        literal = {n: raw for n, raw in step.limits.items() if n not in related}
+        return read_limits(cls.declared_criteria, literal), faults
+    except InvalidInputs as error:
+        return {}, [*faults, *(fault.within(name) for fault in error.faults)]
 
 
 def _model(name: str, model: Model, models: Catalogue[CadModel]) -> tuple[Block | None, list[Fault]]:

@@ -13,10 +13,13 @@ from functools import cached_property
 from typing import Any
 
 from app.designs.analyses import is_measured, measured_names, measured_unit, used
+from app.designs.document import Criterion
 from app.designs.reference import Reference
 from app.plain import Raw
 from app.solids.questions import Question
 from cad.model import CadModel
+from templates.core.judging.criterion import Criterion as Judged
+from templates.core.judging.limits import GivenLimit
 from templates.core.language.intake import Input
 from templates.core.language.spec import Choice, Declaration, Formula
 from templates.core.language.template import Template
@@ -49,6 +52,7 @@ class Block:
     level: str | None = None
     tolerance: float | None = None
     outputs: tuple[str, ...] | None = None
+    limits: Mapping[str, GivenLimit] = field(default_factory=dict)
     analyses: Mapping[str, Question] = field(default_factory=dict)
 
     @cached_property
@@ -82,6 +86,19 @@ class SolidAnalysis:
     kind: str
 
 
+@dataclass(frozen=True, eq=False)
+class Demand:
+    """A criterion as a design writes it; without a `criterion`, words about one of a template.
+
+    `criterion` is checked once the kinds of all parameters are known.
+    """
+
+    name: str
+    written: Criterion
+    uses: Mapping[str, Reference] = field(default_factory=dict)
+    criterion: Judged | None = None
+
+
 Node = Cell | Block | Solid | SolidAnalysis
 
 
@@ -92,6 +109,7 @@ class Network:
     parameters: dict[str, Cell]
     blocks: dict[str, Block]
     assumed: frozenset[Reference]  # the measures through which a declared iteration runs
+    demands: Mapping[str, Demand] = field(default_factory=dict)  # criteria that the design writes itself
 
     def cells(self) -> Iterator[Cell]:
         """Every cell of the design."""
@@ -128,10 +146,12 @@ class Network:
 
     @cached_property
     def used(self) -> Mapping[str, tuple[Reference, ...]]:
-        """What relations and iterations use of each block, in the order of the names."""
+        """What relations, iterations and criteria use of each block, in the order of the names."""
         names = {str(reference): reference for reference in self.assumed}
         for cell in self.cells():
             names.update(cell.uses)
+        for demand in self.demands.values():
+            names.update(demand.uses)
         blocks: dict[str, list[Reference]] = {}
         for name in sorted(names):
             blocks.setdefault(names[name].block, []).append(names[name])

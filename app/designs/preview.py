@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from app.calculations.criteria import rendered
 from app.designs import repository, results
 from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
 from app.designs.graph import Catalogues, build_graph, raise_if
+from app.designs.judging import judged
 from app.designs.service import analysed, built, read_document, resolved, starts
 from app.designs.worksheet import previewed
 from app.plain import Raw
@@ -23,6 +25,7 @@ from app.solids import measures
 from app.solids.analysis_views import output as analysis_output
 from app.storage.database import Database
 from templates.core.errors import Fault
+from templates.core.judging.judgement import Judgement
 
 
 @dataclass(frozen=True)
@@ -64,9 +67,11 @@ def preview(
     new, mismatched = _calculated(database, catalogues, changed)
     raise_if(new.faults)  # not those of the old one: the change may be to correct it
     old, _ = _calculated(database, catalogues, Document.model_validate(head.document))
-    steps = _steps(new)
+    criteria = judged(new)
+    steps = _steps(new, criteria)
     content = Preview(
         revision=head.number,
+        **rendered(criteria),
         outputs={
             **_compared(_outputs(_steps(old)), _outputs(steps)),
             **_compared(_analysed(old), _analysed(new)),
@@ -100,8 +105,9 @@ def _compared(old: Outputs, new: Outputs) -> dict[str, Change]:
     return {name: Change(old=old.get(name), new=new.get(name)) for name in names}
 
 
-def _steps(calculation: Calculation) -> dict[str, RevisionStep]:
-    return {name: RevisionStep.model_validate(step) for name, step in results.steps(calculation).items()}
+def _steps(calculation: Calculation, criteria: Sequence[Judgement] = ()) -> dict[str, RevisionStep]:
+    steps = results.steps(calculation, criteria)
+    return {name: RevisionStep.model_validate(step) for name, step in steps.items()}
 
 
 def _outputs(steps: Mapping[str, RevisionStep]) -> dict[str, Output]:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from app.calculations import rendering
+from app.calculations.criteria import rendered
 from app.designs.calculate import Calculation
+from app.designs.judging import judged
 from app.designs.network import Block
 from app.designs.worksheet import remember
 from app.plain import JsonObject, Raw
 from app.solids import measures
 from app.solids.analysis_views import in_design
 from cad.regenerate import build_key
+from templates.core.judging.judgement import Judgement
+from templates.core.language.criteria import warned
+from templates.core.language.evaluate import Evaluation
 
 
 @dataclass(frozen=True)
@@ -29,7 +35,13 @@ class ModelState:
 
 def stored(calculation: Calculation, rounds: list[JsonObject]) -> JsonObject:
     """All that a revision keeps of a calculation beside its models."""
-    return {"steps": steps(calculation), "iterations": rounds, "analyses": analyses(calculation)}
+    criteria = judged(calculation)
+    return {
+        "steps": steps(calculation, criteria),
+        "iterations": rounds,
+        "analyses": analyses(calculation),
+        **rendered(criteria),
+    }
 
 
 def analyses(calculation: Calculation) -> dict[str, JsonObject]:
@@ -48,24 +60,42 @@ def analyses(calculation: Calculation) -> dict[str, JsonObject]:
     }
 
 
-def steps(calculation: Calculation) -> dict[str, JsonObject]:
-    """Every step: its evaluation, or that it waits for a solid or for its job."""
+def steps(calculation: Calculation, criteria: Sequence[Judgement]) -> dict[str, JsonObject]:
+    """Every step: its evaluation, or that it waits for a solid or for its job.
+
+    Its criteria stand with those of the design; it keeps the warnings of those that are not met.
+    """
     return {
-        name: _step(calculation, block)
+        name: _step(calculation, block, criteria)
         for name, block in calculation.graph.blocks.items()
         if not block.is_model
     }
 
 
-def _step(calculation: Calculation, block: Block) -> JsonObject:
+def _step(calculation: Calculation, block: Block, criteria: Sequence[Judgement]) -> JsonObject:
     relations = {n: cell.raw for n, cell in block.cells.items() if cell.relations}
     if block.name not in calculation.evaluations:
         return {"template": rendering.identity(block.cls), "relations": relations, "state": "pending"}
     evaluation = calculation.evaluations[block.name]
     answer = rendering.evaluation(evaluation)
     remember(answer, evaluation)
-    del answer["seconds"]  # equal revisions are equal
+    for name in ("seconds", "criteria", "verdict"):  # equal revisions are equal
+        answer.pop(name, None)
+    answer["warnings"] = _warnings(evaluation, block, criteria)
     return {**answer, "relations": relations}
+
+
+def _warnings(evaluation: Evaluation, block: Block, criteria: Sequence[Judgement]) -> list[JsonObject]:
+    """The warnings of a step, those of criteria as they were judged in the design."""
+    alone = set(warned(block.cls, evaluation.criteria))
+    prefix = f"{block.name}."
+    own = [
+        replace(judgement, name=judgement.name.removeprefix(prefix))
+        for judgement in criteria
+        if judgement.name.startswith(prefix)
+    ]
+    notices = [w for w in evaluation.warnings if w not in alone] + list(warned(block.cls, own))
+    return [{"code": w.code, "name": w.name, "detail": w.detail} for w in notices]
 
 
 def models(calculation: Calculation) -> list[ModelState]:

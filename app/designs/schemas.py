@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from app.calculations.schemas import OIL_FILM
-from app.designs.document import NAME, WORD, Document, Iteration, Model, Name, Step
+from app.designs.document import CRITERION, NAME, WORD, Criterion, Document, Iteration, Model, Name, Step
 from app.schemas.bounded import Bounded
 from app.schemas.values import GIVEN
 
@@ -84,6 +84,11 @@ PATCH: dict[str, Any] = {
         "steps": _named(_part(Step)),
         "model": {**_part(Model), "description": "short for `models` with one entry named `model`"},
         "models": _named(_part(Model)),
+        "criteria": {
+            "type": ["object", "null"],
+            "propertyNames": {"pattern": CRITERION},
+            "additionalProperties": _part(Criterion),
+        },
         "iterations": {"type": ["array", "null"], "maxItems": 10, "items": _part(Iteration)},
         "note": {"type": ["string", "null"], "maxLength": LONGEST_NOTE},
     },

@@ -20,13 +20,13 @@ MOST_OPERATIONS = 20_000_000  # on single values, of all relations of a design
 def too_many_relations(document: Document) -> Iterator[Fault]:
     """A fault if the relations of a design are longer together than is read."""
     texts = [item for item in _items(document) if isinstance(item, str)]
-    if sum(map(len, texts)) <= MOST_RELATION_TEXT:
+    required = sum(len(criterion.require or "") for criterion in document.criteria.values())
+    if required + sum(map(len, texts)) <= MOST_RELATION_TEXT:
         return
-    length = sum(len(text) for text in texts if is_relation(text))
+    length = required + sum(len(text) for text in texts if is_relation(text))
     if length > MOST_RELATION_TEXT:
-        message = (
-            f"the relations of a design have at most {MOST_RELATION_TEXT} characters together, not {length}"
-        )
+        most = f"at most {MOST_RELATION_TEXT} characters together, not {length}"
+        message = f"the relations and criteria of a design have {most}"
         yield Fault("design", "too_long", message)
 
 

@@ -28,6 +28,7 @@ def design(row: DesignRow, revision: RevisionRow) -> Design:
             "steps": document["steps"],
             "models": document["models"],
             "iterations": document["iterations"],
+            **{name: document[name] for name in ("criteria",) if name in document},
             "problem": revision.problem,
             "created": row.created,
             "changed": revision.created,
@@ -67,6 +68,7 @@ def revision(session: Session, row: RevisionRow) -> Revision:
                 for model in models
             },
             "iterations": results["iterations"],
+            **{name: results[name] for name in ("criteria", "verdict") if name in results},
         }
     )
 

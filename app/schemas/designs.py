@@ -8,6 +8,7 @@ from pydantic import ConfigDict, Field
 
 from app.schemas.analyses import AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Answer, Page, Shown, Version, Warning
+from app.schemas.criteria import Criterion, Verdict
 from app.schemas.evaluations import CalculatedBy, Error, Level, Output, UsedInput, WorkedFormula
 from app.schemas.problems import Problem
 from app.schemas.solids import Measurements
@@ -26,6 +27,7 @@ class DesignStep(Answer):
     tolerance: float | None = None
     inputs: dict[str, Given]
     outputs: list[str] | None = Field(None, description="only these are computed; null for all")
+    limits: dict[str, Given] = Field({}, description="of criteria; absent where none are given")
 
 
 class AnalysisOptions(Answer):
@@ -56,6 +58,15 @@ class DesignIteration(Answer):
     limit: int = Field(description="rounds")
 
 
+class DesignCriterion(Answer):
+    """What a design demands, or what it says of a criterion of one of its templates."""
+
+    require: str | None = Field(None, description="absent where that of the template holds")
+    words: str | None = None
+    source: str | None = None
+    waived: str | None = Field(None, description="why it does not count")
+
+
 class DesignSummary(Answer):
     """A design in a list."""
 
@@ -82,6 +93,7 @@ class Design(Answer):
     steps: dict[str, DesignStep]
     models: dict[str, DesignModel]
     iterations: list[DesignIteration]
+    criteria: dict[str, DesignCriterion] = Field({}, description="absent where there are none")
     problem: Problem | None = Field(description="why the regeneration failed")
     created: str
     changed: str
@@ -161,6 +173,11 @@ class Revision(Answer):
     steps: dict[str, RevisionStep]
     models: dict[str, RevisionModel]
     iterations: list[Round]
+    criteria: list[Criterion] | None = Field(
+        None,
+        description="as judged when it was calculated, worst first; absent in revisions of older programs",
+    )
+    verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
 
 
 class RevisionList(Page[Revision]):
@@ -219,6 +236,8 @@ class Preview(Answer):
     model_parameters: dict[str, ParameterChange]
     steps: dict[str, PreviewedStep] | None = None
     parameters: dict[str, Shown] | None = Field(None, description="values of the design's own parameters")
+    criteria: list[Criterion] | None = Field(None, description="worst first; absent where there are none")
+    verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
 
 
 class Explanation(Answer):

@@ -7,7 +7,7 @@ is NaN, and decides nothing.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,6 +20,9 @@ from templates.core.units.units import Value
 
 Bounds = tuple[Value, Value]
 """The least and the largest truth."""
+
+Shift = tuple[Mapping[str, Value], Mapping[str, Value]]
+"""The values of all names [SI], with something from which they follow shifted to either end of its band."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,35 +131,43 @@ def band_relative_to(value: Value, error: Value, scale: Value) -> Bounds:
         return value - half, value + half
 
 
-def bounds_of(side: Relation, estimates: Mapping[str, Estimate]) -> Bounds:
+def bounds_of(side: Relation, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()) -> Bounds:
     """The band of a side of a comparison.
 
-    Each uncertain name is shifted to both ends of its band, the others kept, and the changes are added.
+    Each uncertain name is shifted to both ends of its band, the others kept, and the changes are added; so
+    are those of `shifts`, by which values from which the names follow were shifted.
 
     Raises
     ------
     FaultyText
         With code `shape`, where arrays of different lengths meet.
     """
-    if name := plain_name(side):
+    name = plain_name(side)
+    if name and not shifts:
         return estimates[name].bounds()
-    uncertain = [name for name in sorted(side.names) if not estimates[name].is_exact]
     values = {name: estimates[name].value for name in side.names}
     middle = side.value(values)
-    low, high = middle, middle
-    for name in uncertain:
-        less, more = _changes(side, values, name, estimates[name], middle)
+    low, high = estimates[name].bounds() if name else (middle, middle)
+    for shift in (*(() if name else _own_shifts(side, estimates, values)), *shifts):
+        less, more = _changes(side, middle, *shift)
         low, high = low + less, high + more
     return low, high
 
 
-def _changes(
-    side: Relation, values: Mapping[str, Value], name: str, estimate: Estimate, middle: Value
-) -> Bounds:
-    """How far down and how far up a side moves while one name runs through its band; NaN if unknown."""
-    ends = [side.value({**values, name: end}) for end in estimate.bounds()]
+def _own_shifts(
+    side: Relation, estimates: Mapping[str, Estimate], values: Mapping[str, Value]
+) -> Iterator[Shift]:
+    """Each uncertain name of a side at both ends of its band, the others kept."""
+    for name in sorted(side.names):
+        if not estimates[name].is_exact:
+            low, high = estimates[name].bounds()
+            yield {**values, name: low}, {**values, name: high}
+
+
+def _changes(side: Relation, middle: Value, low: Mapping[str, Value], high: Mapping[str, Value]) -> Bounds:
+    """How far down and how far up a side moves between two sets of values; NaN if that is not known."""
     with np.errstate(all="ignore"):
-        one, other = (np.asarray(end) - middle for end in ends)
+        one, other = (np.asarray(side.value(end)) - middle for end in (low, high))
         less, more = np.minimum(np.minimum(one, other), 0.0), np.maximum(np.maximum(one, other), 0.0)
     return less[()], more[()]
 

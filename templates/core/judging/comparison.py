@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.errors import FaultyText
-from templates.core.judging.bands import Bounds, Estimate, aligned, bounds_of
+from templates.core.judging.bands import Bounds, Estimate, Shift, aligned, bounds_of, spread
 from templates.core.judging.criterion import Criterion, Sign, plain_name
 from templates.core.units.relation import Relation
 from templates.core.units.units import Value
@@ -42,8 +42,12 @@ class Compared:
         return worst if worst.ndim else int(worst)
 
 
-def compare(criterion: Criterion, estimates: Mapping[str, Estimate]) -> Compared:
+def compare(
+    criterion: Criterion, estimates: Mapping[str, Estimate], shifts: Sequence[Shift] = ()
+) -> Compared:
     """Compare the sides of a criterion whose names all have estimates; NaN is not checked.
+
+    `shifts` are the values of all names, with something upstream shifted to either end of its band.
 
     Raises
     ------
@@ -53,13 +57,20 @@ def compare(criterion: Criterion, estimates: Mapping[str, Estimate]) -> Compared
     axes = max(estimates[name].axes for name in criterion.names) if criterion.names else 0
     fitted = aligned(estimates, axes)
     value, limit = _side(criterion.value, fitted), _side(criterion.limit, fitted)
-    value_bounds, limit_bounds = bounds_of(criterion.value, fitted), bounds_of(criterion.limit, fitted)
+    moved = [(_spread(low, estimates, axes), _spread(high, estimates, axes)) for low, high in shifts]
+    value_bounds = bounds_of(criterion.value, fitted, moved)
+    limit_bounds = bounds_of(criterion.limit, fitted, moved)
     try:
         codes = verdicts(criterion.sign, value, limit, value_bounds, limit_bounds)
     except ValueError:
         message = f"{criterion.require!r} compares arrays of different lengths"
         raise FaultyText("shape", message) from None
     return Compared(value, limit, value_bounds, limit_bounds, codes, axes)
+
+
+def _spread(values: Mapping[str, Value], estimates: Mapping[str, Estimate], axes: int) -> Mapping[str, Value]:
+    """Shifted values, those of points alone as arrays that go with a curve."""
+    return {name: v if estimates[name].axes else spread(v, axes) for name, v in values.items()}
 
 
 def _side(side: Relation, estimates: Mapping[str, Estimate]) -> Value:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from templates.core.errors import FaultyText
-from templates.core.judging.bands import Estimate, relative_width
+from templates.core.judging.bands import Estimate, Shift, relative_width
 from templates.core.judging.comparison import NOT_CHECKED, WORST_FIRST, Codes, Compared, compare
 from templates.core.judging.criterion import Criterion
 from templates.core.judging.judgement import Judgement, Place
@@ -44,7 +44,8 @@ def judge(
     absent: Mapping[str, Absent] | None = None,
     along: Along | None = None,
     unit_name: str | None = None,
-    **noted: Any,
+    shifts: Sequence[Shift] = (),
+    noted: Mapping[str, Any] | None = None,
 ) -> Judgement:
     """Judge a criterion.
 
@@ -60,7 +61,9 @@ def judge(
         The places, if a curve is judged.
     unit_name
         The unit in which to report, if not the criterion's.
-    **noted
+    shifts
+        The values of all names, with something upstream shifted to either end of its band.
+    noted
         Further fields of the judgement, such as `level` and `truth`.
     """
     shown = criterion if unit_name is None else replace(criterion, unit=unit_name)
@@ -69,7 +72,8 @@ def judge(
         parts = _missing(shown, estimates, [(absent or {}).get(name, Absent()) for name in missing])
     else:
         try:
-            parts = _compared(shown, compare(criterion, estimates), estimates, along)
+            compared = compare(criterion, estimates, shifts)
+            parts = _compared(shown, compared, estimates, along, bool(shifts))
         except FaultyText as error:
             parts = {"verdict": "not_checked", "reason": str(error)}
     return Judgement(
@@ -79,7 +83,7 @@ def judge(
         unit=shown.unit,
         unverified=criterion.unverified,
         warning=criterion.warning,
-        **{"source": criterion.source, **noted, **parts},
+        **{"source": criterion.source, **(noted or {}), **parts},
     )
 
 
@@ -106,7 +110,11 @@ def _shown(criterion: Criterion, si: Value) -> float | None:
 
 
 def _compared(
-    criterion: Criterion, compared: Compared, estimates: Mapping[str, Estimate], along: Along | None
+    criterion: Criterion,
+    compared: Compared,
+    estimates: Mapping[str, Estimate],
+    along: Along | None,
+    is_shifted: bool,
 ) -> Parts:
     """What a judgement says of both sides, at the worst place."""
     worst = worst_of(criterion, compared)
@@ -121,7 +129,10 @@ def _compared(
     }
     if worst.code == NOT_CHECKED:
         return {**parts, "reason": _no_value(used, worst.index[: len(worst.index) - compared.axes])}
-    return {**parts, **_numbers(criterion, parts, worst, estimates)}
+    numbers = _numbers(criterion, parts, worst, estimates)
+    if is_shifted and worst.is_known:  # more than the error of the name that is judged
+        numbers["relative_error"] = relative_width(worst.value, worst.low, worst.high)
+    return {**parts, **numbers}
 
 
 def _where(index: tuple[int, ...], axes: int, along: Along | None) -> tuple[Place, ...]:

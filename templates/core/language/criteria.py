@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -103,11 +103,11 @@ class Evaluated:
 def judged(evaluated: Evaluated) -> list[Judgement]:
     """The criteria of a template whose outputs were evaluated, worst first."""
     template = evaluated.template
-    due = (c for c in template.declared_criteria if _is_due(template, c, evaluated.answers))
+    due = (c for c in template.declared_criteria if is_due(template, c, evaluated.answers))
     return worst_first(_judged(evaluated, criterion) for criterion in due)
 
 
-def _is_due(template: Template, criterion: Criterion, evaluated: Container[str]) -> bool:
+def is_due(template: Template, criterion: Criterion, evaluated: Container[str]) -> bool:
     """Whether judging computes no output beyond those evaluated."""
     return all(name in evaluated for name in criterion.names if _is_output(template, name))
 
@@ -119,7 +119,27 @@ def _is_output(template: Template, name: str) -> bool:
 
 
 def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
-    template = evaluated.template
+    estimates, absent = estimates_of(evaluated, criterion)
+    subject = criterion.subject or ""
+    shown = evaluated.shown_in[subject].text if subject in evaluated.shown_in else None
+    along = along_of(evaluated.template, criterion.names)
+    return judge(criterion, estimates, absent, along, shown, noted=notes(evaluated, criterion))
+
+
+def notes(evaluated: Evaluated, criterion: Criterion) -> dict[str, str | None]:
+    """What a judgement says of its level, of the truth of its error, and of its sources."""
+    return {**level_and_truth(evaluated, criterion.subject), "source": _source(evaluated, criterion)}
+
+
+def level_and_truth(evaluated: Evaluated, output: str | None) -> dict[str, str | None]:
+    """The level of an evaluation, and the solution against which the error of an output was measured."""
+    level = evaluated.level if isinstance(evaluated.level, str) else None
+    table = evaluated.measured if output else None
+    return {"level": level, "truth": table.truth(level or "", output or "") if table else None}
+
+
+def estimates_of(evaluated: Evaluated, criterion: Criterion) -> tuple[dict[str, Estimate], dict[str, Absent]]:
+    """The values of the names of a criterion with their errors, and why some have none."""
     estimates: dict[str, Estimate] = {}
     absent: dict[str, Absent] = {}
     limits = {limit.name: limit for limit in criterion.limits}
@@ -127,34 +147,24 @@ def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
         if name in limits:
             one = _limit(evaluated, limits[name], estimates)
         else:
-            one = _estimate(evaluated, name)
+            one = estimate_of(evaluated, name)
         if isinstance(one, Absent):
             absent[name] = _known_reason(evaluated, criterion.absent.get(name)) or one
         else:
             estimates[name] = one
-    subject = criterion.subject or ""
-    shown = evaluated.shown_in[subject].text if subject in evaluated.shown_in else None
-    level = evaluated.level if isinstance(evaluated.level, str) else None
-    return judge(
-        criterion,
-        estimates,
-        absent,
-        _along(template, criterion),
-        shown,
-        level=level,
-        truth=evaluated.measured.truth(level or "", subject) if evaluated.measured else None,
-        source=_source(evaluated, criterion) if criterion.limits else criterion.source,
-    )
+    return estimates, absent
 
 
 def _source(evaluated: Evaluated, criterion: Criterion) -> str | None:
     """The source of the criterion, and those of the limits that a library gave."""
+    if not criterion.limits:
+        return criterion.source
     given = (evaluated.limits.get(limit.name) for limit in criterion.limits)
     sources = [criterion.source, *(limit.source for limit in given if limit)]
     return "; ".join(dict.fromkeys(source for source in sources if source)) or None
 
 
-def _estimate(evaluated: Evaluated, name: str) -> Estimate | Absent:
+def estimate_of(evaluated: Evaluated, name: str) -> Estimate | Absent:
     """The value of an input or output with its error, or why there is none."""
     template = evaluated.template
     if _is_output(template, name):
@@ -246,9 +256,9 @@ def _is_measured(measured: Accuracy | None, name: str) -> bool:
     return measured is not None and any(name in outputs for outputs in measured.errors.values())
 
 
-def _along(template: Template, criterion: Criterion) -> Along | None:
-    """The places of the curve that is judged, if there is one."""
-    for name in criterion.names:
+def along_of(template: Template, names: Iterable[str]) -> Along | None:
+    """The places of the first curve among some names, if there is one."""
+    for name in names:
         declared = template.formulas.get(name) or template.inputs.get(name)
         axis = _axis(template, declared) if declared else None
         if axis is not None:

@@ -1,0 +1,123 @@
+"""The criteria that a design writes: its own, and what it says of those of its templates.
+
+A name without a dot is a criterion of the design, which needs `require`. `film.pressure` is the criterion
+`pressure` of the template of step `film`: the design may replace its comparison, words or source, or waive
+it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from app.designs.document import Criterion, Document
+from app.designs.network import Block, Demand, Network
+from app.designs.reference import Reference
+from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
+from templates.core.judging.criterion import Criterion as Checked
+from templates.core.judging.criterion import Known, read_comparison, read_criterion
+from templates.core.language.spec import Table, Text
+from templates.core.units.operations import Kind
+from templates.core.units.quantity import read_any
+
+
+def read_demands(document: Document, blocks: Mapping[str, Block]) -> tuple[dict[str, Demand], list[Fault]]:
+    """The criteria of a document with the names that they use, and what of them cannot be read."""
+    demands: dict[str, Demand] = {}
+    faults: list[Fault] = []
+    for name, written in document.criteria.items():
+        try:
+            _require_subject(name, written, blocks)
+            demands[name] = Demand(name, written, _uses(written.require))
+        except FaultyText as error:
+            faults.append(fault_of(name, error))
+    return demands, faults
+
+
+def _require_subject(name: str, written: Criterion, blocks: Mapping[str, Block]) -> None:
+    """Refuse a criterion of no template, and one of the design that demands nothing."""
+    step, dot, inside = name.partition(".")
+    if not dot:
+        if written.require is None:
+            form = "give `require`, such as film.minimum_film_thickness >= 3 um"
+            raise FaultyText("missing", f"a criterion of the design compares two values: {form}")
+        return
+    block = blocks.get(step)
+    names = [criterion.name for criterion in block.cls.declared_criteria] if block else []
+    if inside not in names:
+        there = [f"{b.name}.{c.name}" for b in blocks.values() for c in b.cls.declared_criteria]
+        detail = unknown_name(name, there, "criterion").detail if there else "no template here has criteria"
+        raise FaultyText("unknown_name", f"{detail}; a criterion of the design has no dot in its name")
+
+
+def _uses(require: str | None) -> dict[str, Reference]:
+    if require is None:
+        return {}
+    value, _, limit = read_comparison(require)
+    return {name: Reference.parse(name) for name in sorted(value.names | limit.names)}
+
+
+def unknown_names_in(network: Network) -> list[Fault]:
+    """A fault for every name in a criterion of the design that means no number."""
+    unknown = [
+        (demand.name, used)
+        for demand in network.demands.values()
+        for used, reference in demand.uses.items()
+        if not _is_value(network, reference)
+    ]
+    if not unknown:
+        return []
+    faults = unknown_names((used for _, used in unknown), network.names(), "name")
+    return [replace(f, name=f"criteria.{name}") for (name, _), f in zip(unknown, faults, strict=True)]
+
+
+def checked_demands(network: Network, kinds: Mapping[str, Kind]) -> tuple[dict[str, Demand], list[Fault]]:
+    """The criteria of a network with their units checked, from the kinds of its parameters."""
+    demands: dict[str, Demand] = {}
+    faults: list[Fault] = []
+    for name, demand in network.demands.items():
+        if demand.written.require is None or not _parameters(network, demand) <= kinds.keys():
+            demands[name] = demand  # a parameter whose kind is not known is a fault already
+            continue
+        try:
+            demands[name] = replace(demand, criterion=_checked(network, kinds, demand))
+        except FaultyText as error:
+            faults.append(fault_of(name, error))
+    return demands, faults
+
+
+def _is_value(network: Network, reference: Reference) -> bool:
+    """Whether a name means a number: no word, and no table."""
+    if reference in network.assumed:
+        return True
+    if network.node(reference) is None:
+        return False
+    block = network.blocks.get(reference.block)
+    declared = block and (block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member))
+    return not isinstance(declared, (Text, Table))
+
+
+def _parameters(network: Network, demand: Demand) -> set[str]:
+    return {name for name in demand.uses if name in network.parameters}
+
+
+def _checked(network: Network, kinds: Mapping[str, Kind], demand: Demand) -> Checked:
+    known = {name: _known(network, kinds, name, reference) for name, reference in demand.uses.items()}
+    written = demand.written
+    parts = {"require": written.require, "words": written.words, "source": written.source}
+    return read_criterion(demand.name, {key: part for key, part in parts.items() if part}, known)
+
+
+def _known(network: Network, kinds: Mapping[str, Kind], name: str, reference: Reference) -> Known:
+    """The unit in which a value is shown, and its words."""
+    if cell := network.parameters.get(name):
+        typed = None if cell.relations else read_any(cell.raw).unit
+        return Known(typed or f"{kinds[name].base:~C}" or "1", name.replace("_", " "))
+    block = network.blocks[reference.block]
+    declared = block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member)
+    return Known(network.unit_of(reference), declared.meaning.words if declared else name)
+
+
+def fault_of(name: str, error: FaultyText) -> Fault:
+    """What is wrong with a criterion, by its place in the document."""
+    return error.fault(f"criteria.{name}")

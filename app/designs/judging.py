@@ -1,0 +1,219 @@
+"""The criteria of a calculated design: those of its templates and its own, with errors carried downstream."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property, reduce
+from operator import or_
+
+import numpy as np
+
+from app.calculations.size import spanned
+from app.designs.calculation import Calculation
+from app.designs.network import Block, Demand
+from app.designs.reference import Reference
+from app.designs.shifting import NOTHING, Shifting, Upstream
+from app.designs.size import limit_operations, limit_values
+from templates.core.errors import FaultyText, listed
+from templates.core.judging.bands import Estimate
+from templates.core.judging.criterion import Criterion
+from templates.core.judging.judgement import Judgement
+from templates.core.judging.judging import Absent, Along, judge
+from templates.core.judging.summary import worst_first
+from templates.core.language.criteria import (
+    Evaluated,
+    along_of,
+    estimate_of,
+    estimates_of,
+    is_due,
+    level_and_truth,
+    notes,
+)
+from templates.core.language.levels import accuracy
+
+
+def judged(calculation: Calculation) -> list[Judgement]:
+    """Every criterion of a design, worst first; what waits for a solid or a step is not checked."""
+    return worst_first(_Judging(calculation).all())
+
+
+@dataclass
+class _Judging:
+    """One calculated design, judged."""
+
+    calculation: Calculation
+    _steps: dict[str, Evaluated | None] = field(default_factory=dict)
+
+    def all(self) -> Iterator[Judgement]:
+        """Every criterion, in no order."""
+        graph = self.calculation.graph
+        for block in graph.blocks.values():
+            for criterion in block.cls.declared_criteria:
+                demand = graph.demands.get(f"{block.name}.{criterion.name}")
+                if demand is None or demand.criterion is None:
+                    yield from self._of_template(block, criterion, demand)
+        for demand in graph.demands.values():
+            if demand.criterion is not None:
+                yield self._of_design(demand.criterion, demand)
+
+    def _of_template(self, block: Block, criterion: Criterion, demand: Demand | None) -> Iterator[Judgement]:
+        """A criterion of a step's template, unless the step leaves out outputs that it needs."""
+        evaluated = self._evaluated(block.name)
+        if evaluated is None:
+            absent = dict.fromkeys(criterion.names, Absent((), f"{block.name} waits for its calculation"))
+            yield _named(judge(criterion, {}, absent), block, demand)
+            return
+        if not is_due(evaluated.template, criterion, evaluated.answers):
+            return
+        estimates, absent = estimates_of(evaluated, criterion)
+        limits = {limit.name for limit in criterion.limits}
+        references = {n: Reference(block.name, None, n) for n in estimates if n not in limits}
+        along = along_of(evaluated.template, criterion.names)
+        more = notes(evaluated, criterion)
+        yield _named(self._judged(criterion, references, estimates, absent, along, more), block, demand)
+
+    def _of_design(self, criterion: Criterion, demand: Demand) -> Judgement:
+        """A criterion that the design writes itself."""
+        estimates: dict[str, Estimate] = {}
+        absent: dict[str, Absent] = {}
+        for name, reference in demand.uses.items():
+            one = self._estimate(reference)
+            if isinstance(one, Absent):
+                absent[name] = one
+            else:
+                estimates[name] = one
+        references = {name: demand.uses[name] for name in estimates}
+        more = {"source": criterion.source, "waived": demand.written.waived, **self._stated_by(demand)}
+        return self._judged(criterion, references, estimates, absent, self._along(demand), more)
+
+    def _stated_by(self, demand: Demand) -> dict[str, str | None]:
+        """Level and truth, where an output of a step is judged alone."""
+        subject = demand.criterion.subject if demand.criterion else None
+        reference = demand.uses[subject] if subject else None
+        evaluated = self._evaluated(reference.block) if reference and reference.output else None
+        return level_and_truth(evaluated, reference.output) if reference and evaluated else {}
+
+    def _along(self, demand: Demand) -> Along | None:
+        """The places of the first curve that a criterion uses."""
+        for reference in demand.uses.values():
+            evaluated = self._evaluated(reference.block) if reference.output else None
+            along = along_of(evaluated.template, [reference.member]) if evaluated else None
+            if along is not None:
+                return along
+        return None
+
+    def _judged(
+        self,
+        criterion: Criterion,
+        references: Mapping[str, Reference],
+        estimates: Mapping[str, Estimate],
+        absent: Mapping[str, Absent],
+        along: Along | None,
+        more: Mapping[str, str | None],
+    ) -> Judgement:
+        """A criterion with the errors that reach its values from upstream."""
+        if absent:
+            return judge(criterion, estimates, absent, along, noted=more)
+        upstream = reduce(or_, (self._shifting.beneath(r) for r in references.values()), NOTHING)
+        constant = {name: estimate.value for name, estimate in estimates.items() if name not in references}
+        try:
+            limit_operations(self.calculation.operations + _operations(criterion, estimates, upstream))
+            moved, left_out = self._shifting.shifts(references, upstream)
+        except FaultyText as error:
+            return judge(
+                criterion, estimates, dict.fromkeys(criterion.names, Absent((), str(error))), noted=more
+            )
+        shifts = [({**low, **constant}, {**high, **constant}) for low, high in moved]
+        unstated = upstream.unstated | left_out
+        tainted = _tainted(estimates, references, upstream, unstated=bool(unstated))
+        result = judge(criterion, tainted, absent, along, shifts=shifts, noted=more)
+        return _explained(result, upstream.unknown, unstated)
+
+    @cached_property
+    def _shifting(self) -> Shifting:
+        return Shifting(self.calculation, self._estimate)
+
+    def _estimate(self, reference: Reference) -> Estimate | Absent:
+        """The value of a name with the error of its own step, or why there is none."""
+        evaluated = self._evaluated(reference.block) if reference.output and not reference.analysis else None
+        if evaluated is not None:
+            declared = evaluated.template.inputs.keys() | evaluated.answers.keys()
+            waits = Absent((), f"{reference} is not computed; name it in the outputs of the step")
+            return estimate_of(evaluated, reference.member) if reference.member in declared else waits
+        try:
+            return Estimate(self.calculation.value(reference))
+        except FaultyText as error:
+            return Absent((), str(error))
+        except (KeyError, AttributeError):
+            return Absent((), f"{reference} waits for a solid or for its calculation")
+
+    def _evaluated(self, step: str) -> Evaluated | None:
+        """A step as its criteria see it; None of a model, and while it waits."""
+        if step not in self._steps:
+            evaluation = self.calculation.evaluations.get(step)
+            block = self.calculation.graph.blocks.get(step)
+            self._steps[step] = None
+            if evaluation is not None and block is not None:
+                self._steps[step] = Evaluated(
+                    evaluation.template,
+                    evaluation.outputs,
+                    evaluation.error,
+                    accuracy(block.cls),
+                    block.limits,
+                    level=evaluation.level,
+                )
+        return self._steps[step]
+
+
+def _tainted(
+    estimates: Mapping[str, Estimate],
+    references: Mapping[str, Reference],
+    upstream: Upstream,
+    *,
+    unstated: bool,
+) -> dict[str, Estimate]:
+    """Values whose errors upstream are not known, or not stated, marked as such."""
+    tainted = dict(estimates)
+    for name in references:
+        if upstream.unknown:
+            tainted[name] = replace(tainted[name], error=float("nan"), is_stated=False)
+        elif unstated:
+            tainted[name] = replace(tainted[name], is_stated=False)
+    return tainted
+
+
+def _explained(result: Judgement, unknown: frozenset[Reference], unstated: frozenset[Reference]) -> Judgement:
+    """A judgement that names where upstream its error is lost."""
+    if unknown and result.verdict == "undecided":
+        return replace(result, reason=f"it follows from {_listed(unknown)}, whose error is not known here")
+    if unstated and result.verdict in ("met", "not_met"):
+        return replace(
+            result, reason=f"the error of {_listed(unstated)}, from which it follows, is not stated"
+        )
+    return result
+
+
+def _listed(references: frozenset[Reference]) -> str:
+    return listed(sorted(map(str, references)))
+
+
+def _operations(criterion: Criterion, estimates: Mapping[str, Estimate], upstream: Upstream) -> int:
+    """How many operations on single values a criterion takes, its shifted sides included."""
+    points = spanned(np.shape(estimate.value) for estimate in estimates.values())
+    limit_values(points)
+    times = 1 + 2 * (len(estimates) + len(upstream.uncertain))
+    return points * times * (criterion.value.parts + criterion.limit.parts)
+
+
+def _named(judgement: Judgement, block: Block, demand: Demand | None) -> Judgement:
+    """A criterion of a template by its name in the design, with what the design says of it."""
+    written = demand.written if demand else None
+    return replace(
+        judgement,
+        name=f"{block.name}.{judgement.name}",
+        give=tuple(f"{block.name}.{name}" for name in judgement.give),
+        words=(written and written.words) or judgement.words,
+        source=(written and written.source) or judgement.source,
+        waived=written.waived if written else None,
+    )

@@ -1,0 +1,189 @@
+"""How errors of steps reach what follows from them: each uncertain output is shifted to both ends.
+
+The error of a step leaves out that of its inputs. So whatever follows from an uncertain output is calculated
+again with that output at the lower and at the upper end of its band. What cannot be calculated again at once
+(solids, expensive steps) is named, and the error of what follows is then not stated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import reduce
+from operator import or_
+
+import numpy as np
+
+from app.calculations.cost import EXPENSIVE, estimated_seconds
+from app.designs.calculate import recalculated
+from app.designs.calculation import Calculation
+from app.designs.network import Block
+from app.designs.reference import Reference
+from templates.core.errors import TemplateError
+from templates.core.judging.bands import Estimate, Shift
+from templates.core.judging.judging import Absent
+from templates.core.units.units import Value
+
+MOST_SHIFTED = 12
+"""Uncertain outputs of a design that are shifted; each takes two calculations of what follows from it."""
+
+
+@dataclass(frozen=True)
+class Upstream:
+    """Outputs of steps from which a value follows, by what is known of their errors.
+
+    Attributes
+    ----------
+    uncertain
+        Of a stated error, which can be carried on.
+    unknown
+        Of an error that was measured, but not here.
+    unstated
+        Of an error that nobody measured, or that is not carried on.
+    """
+
+    uncertain: frozenset[Reference] = frozenset()
+    unknown: frozenset[Reference] = frozenset()
+    unstated: frozenset[Reference] = frozenset()
+
+    def __or__(self, other: Upstream) -> Upstream:
+        return Upstream(
+            self.uncertain | other.uncertain, self.unknown | other.unknown, self.unstated | other.unstated
+        )
+
+    def stopped(self) -> Upstream:
+        """The same, behind something through which no error is carried."""
+        return Upstream(unstated=self.uncertain | self.unknown | self.unstated)
+
+
+NOTHING = Upstream()
+
+EstimateOf = Callable[[Reference], Estimate | Absent]
+
+
+@dataclass
+class Shifting:
+    """The errors of one calculated design.
+
+    Attributes
+    ----------
+    calculation
+        The design as calculated.
+    estimate
+        Returns the value of a name with the error of its own step.
+    """
+
+    calculation: Calculation
+    estimate: EstimateOf
+    _beneath: dict[Reference, Upstream] = field(default_factory=dict)
+    _ends: dict[Reference, tuple[_End, _End]] = field(default_factory=dict)
+
+    def beneath(self, reference: Reference) -> Upstream:
+        """What a value follows from, without the error of its own step."""
+        if reference not in self._beneath:
+            self._beneath[reference] = NOTHING  # an iteration comes back to where it began
+            self._beneath[reference] = self._upstream(reference)
+        return self._beneath[reference]
+
+    def shifts(
+        self, references: Mapping[str, Reference], upstream: Upstream
+    ) -> tuple[Sequence[Shift], frozenset[Reference]]:
+        """The values of some names with each uncertain origin at either end, and the origins left out."""
+        origins = sorted(upstream.uncertain, key=str)
+        carried = [o for o in origins if o in self._ends or len(self._ends) < MOST_SHIFTED]
+        both = [(origin, self._at_ends(origin)) for origin in carried]
+        shifts = [(self._values(low, references), self._values(high, references)) for _, (low, high) in both]
+        return shifts, frozenset(origins[len(carried) :])
+
+    def _upstream(self, reference: Reference) -> Upstream:
+        graph = self.calculation.graph
+        if reference in graph.assumed:
+            return self._of_model(reference.block)
+        if cell := graph.cell(reference):
+            return _joined(self._of(used) for used in cell.uses.values())
+        block = graph.blocks.get(reference.block)
+        if block is None:
+            return NOTHING
+        if reference.analysis or not (block.cls.inputs.keys() | block.cls.formulas.keys()) & {
+            reference.member
+        }:
+            return self._of_model(block.name)
+        return self._of_block(block, reference.member)
+
+    def _of(self, reference: Reference) -> Upstream:
+        """What follows for somebody who uses a value: its own error, and those beneath it."""
+        return self.beneath(reference) | self._own(reference)
+
+    def _own(self, reference: Reference) -> Upstream:
+        estimate = self.estimate(reference)
+        if isinstance(estimate, Absent):
+            return NOTHING
+        here = frozenset({reference})
+        if np.isnan(estimate.error).any():
+            return Upstream(unknown=here)
+        if not estimate.is_stated:
+            return Upstream(unstated=here)
+        return NOTHING if estimate.is_exact else Upstream(uncertain=here)
+
+    def _of_block(self, block: Block, member: str) -> Upstream:
+        """What an input or output of a block follows from: the cells on which it depends here."""
+        declared = block.cls.inputs.get(member) or block.cls.formulas[member]
+        try:
+            beneath = self.calculation.instance(block.name).depends_on(declared.attribute)
+        except KeyError:
+            return NOTHING  # it waits
+        used = [cell for cell in block.cells.values() if cell.declared and cell.declared.attribute in beneath]
+        upstream = _joined(self.beneath(cell.reference) for cell in used)
+        return upstream.stopped() if upstream != NOTHING and self._is_expensive(block) else upstream
+
+    def _of_model(self, name: str) -> Upstream:
+        """What is measured on a solid follows from all its parameters; no error is carried through it."""
+        cells = self.calculation.graph.blocks[name].cells.values()
+        return _joined(self.beneath(cell.reference) for cell in cells).stopped()
+
+    def _is_expensive(self, block: Block) -> bool:
+        """Whether a step takes too long to be calculated again and again; by its estimate, not by a clock."""
+        if block.is_model:
+            return False
+        raw = {name: self.calculation.typed.get(cell.name, cell.raw) for name, cell in block.cells.items()}
+        level = self._levels()[block.name]
+        outputs = list(self.calculation.evaluations[block.name].outputs)
+        return estimated_seconds(block.cls, raw, level, None, outputs) > EXPENSIVE
+
+    def _levels(self) -> dict[str, str | None]:
+        levels = {name: evaluation.level for name, evaluation in self.calculation.evaluations.items()}
+        return {name: level if isinstance(level, str) else None for name, level in levels.items()}
+
+    def _at_ends(self, origin: Reference) -> tuple[_End, _End]:
+        if origin not in self._ends:
+            estimate = self.estimate(origin)
+            assert isinstance(estimate, Estimate)
+            low, high = (
+                _End(origin, recalculated(self.calculation, {origin: end}, self._levels()))
+                for end in estimate.bounds()
+            )
+            self._ends[origin] = low, high
+        return self._ends[origin]
+
+    def _values(self, end: _End, references: Mapping[str, Reference]) -> dict[str, Value]:
+        """Values of names at one end; the origin keeps its value: its own band is counted elsewhere."""
+        return {name: self._value(end, reference) for name, reference in references.items()}
+
+    def _value(self, end: _End, reference: Reference) -> Value:
+        calculation = self.calculation if reference == end.origin else end.calculation
+        try:
+            return calculation.value(reference)
+        except (KeyError, AttributeError, TemplateError):  # refused at this end, so it is not known there
+            return np.float64(np.nan)
+
+
+@dataclass(frozen=True)
+class _End:
+    """A design calculated with one output at one end of its band."""
+
+    origin: Reference
+    calculation: Calculation
+
+
+def _joined(parts: Iterable[Upstream]) -> Upstream:
+    return reduce(or_, parts, NOTHING)
