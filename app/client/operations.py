@@ -30,6 +30,7 @@ from app.client.files import File
 from app.client.problem import checked
 from app.schemas.analyses import Analysis, Surface
 from app.schemas.curves import Curves
+from app.schemas.decisions import Decision
 from app.schemas.designs import (
     Design,
     DesignList,
@@ -217,6 +218,14 @@ def preview(id: str, patch: Mapping[str, object], *, worksheet: bool = False) ->
     """What a change would do; nothing is saved. `worksheet` adds every step, its formulas written out."""
     asked = "?worksheet=true" if worksheet else ""
     return calculated(Preview, post(f"/designs/{id}/preview{asked}", patch))
+
+
+def decide(
+    id: str, criteria: list[str] | None = None, budget: str = "30 s", *, on_progress: Progress | None = None
+) -> Exchange[Decision]:
+    """Decide criteria that are undecided, all if none are named: finer levels where they are needed."""
+    body = {"criteria": criteria, "budget": budget}
+    return calculated(Decision, post(f"/designs/{id}/decide", body), on_progress)
 
 
 def auto_map(id: str) -> Exchange[list[Proposal]]:

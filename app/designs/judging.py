@@ -75,6 +75,10 @@ class Judging:
             elif subject.demand is not None:
                 yield self._of_design(subject.criterion, subject.demand)
 
+    def names(self) -> list[str]:
+        """The names of all criteria."""
+        return list(self._subjects)
+
     def references(self, name: str) -> Mapping[str, Reference]:
         """The values that a criterion names, without limits."""
         return self._subjects[name].references

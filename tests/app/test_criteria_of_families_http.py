@@ -120,3 +120,27 @@ def test_the_description_lists_criteria_and_limits(http):
         }
     ]
     assert http.get(f"{API}/models/plain_bearing/versions/1").json()["criteria"] == []
+
+
+def test_steps_of_a_design_are_judged_with_a_row_and_with_the_ends_of_a_list(http):
+    chain = {
+        "inertias": {"value": [0.012, 0.0046, 0.35, 0.1], "unit": "kg*m**2"},
+        "stiffnesses": {"value": [60, 188.2, 20], "unit": "kN*m/rad"},
+        "engine_orders": [2, 4, 6],
+        "speed_range": {"value": [1000, 4000], "unit": "rpm"},
+    }
+    steps = {
+        "film": {
+            "template": "oil_film", "version": 2, "inputs": BEARING,
+            "limits": {"bearing_material": "tin_bronze"},
+        },
+        "chain": {"template": "torsional_vibration", "version": 1, "inputs": chain},
+    }  # fmt: skip
+    design = http.post(f"{API}/designs", json={"name": "row", "steps": steps}, headers={"Prefer": "wait=30"})
+    assert design.status_code == 201, design.text
+    judged = criteria(http.get(f"{API}/designs/{design.json()['id']}/revisions/1").json())
+    assert judged["film.specific_load"]["verdict"] == "met"
+    assert "Carvill" in judged["film.specific_load"]["source"]
+    separation = judged["chain.separation"]
+    assert separation["verdict"] == "not_met"
+    assert separation["limit"] == {"value": pytest.approx((1.1 * 4000 - 0.9 * 1000) / 2), "unit": "rpm"}

@@ -50,9 +50,17 @@ def declared_criteria(
     for called, text in raw.items():
         try:
             criteria.append(read_criterion(called, text, known))
+            _check_defaults(criteria[-1], inputs)
         except FaultyText as error:
             raise TypeError(f"{name}: criterion {called!r}: {error}") from None
     return tuple(criteria)
+
+
+def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
+    """A limit that nobody gives follows from an input that is a list, not from a result."""
+    for limit in criterion.limits:
+        if limit.default is not None and not isinstance(inputs.get(limit.default[1]), Curve):
+            raise FaultyText("syntax", f"the default of {limit.name} is of an input that is a list")
 
 
 def known_names(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]) -> dict[str, Known]:

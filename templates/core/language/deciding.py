@@ -125,6 +125,7 @@ class _Rows:
         self.codes: Codes = np.full(shape, NOT_CHECKED, dtype=np.int8)
         self.levels = np.full(shape, None, dtype=object)
         self.errors = np.full(shape, np.inf)
+        self.valueless = np.ones(shape, dtype=bool)  # where no level so far gave the outputs a value
         self.expected: dict[str, Array] = {}  # what each level states for the rows, where they lie now
         self.measured = accuracy(type(self.template))
 
@@ -144,15 +145,11 @@ class _Rows:
                 stopped = "budget"
                 break
             trials.append(self._asked(rung, due))
-            left = (self.codes == UNDECIDED) | ((self.codes == NOT_CHECKED) & self._may_have_a_value())
+            left = (self.codes == UNDECIDED) | ((self.codes == NOT_CHECKED) & self.valueless)
             if not left.any():
                 break
         stopped = "decided" if not (self.codes == UNDECIDED).any() else stopped
         return Decided(self.codes, self.levels, tuple(trials), dict(self.skipped), stopped)
-
-    def _may_have_a_value(self) -> bool:
-        """Whether another level could give a row a value: not if a limit or an input is missing."""
-        return all(limit.name in self.limits or limit.default for limit in self.criterion.limits)
 
     def _is_worth(self, level: str, finest: str) -> Mask:
         """The rows for which a level has the truth of the finest one, and a smaller error than so far."""
@@ -166,7 +163,7 @@ class _Rows:
                 return ~everywhere
         if level not in self.expected:
             return everywhere  # nothing was asked yet
-        smaller: Mask = self.expected[level] < self.errors
+        smaller: Mask = (self.expected[level] < self.errors) | self.valueless
         if not smaller.any():
             self.skipped[level] = "its stated error is nowhere smaller"
         return smaller
@@ -196,8 +193,8 @@ class _Rows:
             codes, errors = self._judged(template, rows)
         except InvalidInputs:  # a level that refuses its rows decides nothing about them
             return
-        better = (errors <= self.errors[rows]) | (codes != UNDECIDED)
-        self.codes[rows] = np.where(better & (codes != NOT_CHECKED), codes, self.codes[rows])
+        better = (codes != NOT_CHECKED) & ((errors <= self.errors[rows]) | (codes != UNDECIDED))
+        self.codes[rows[better]] = codes[better]
         self.levels[rows[better]] = level or None
         self.errors[rows] = np.fmin(errors, self.errors[rows])
         self._expect(template, rows)
@@ -218,6 +215,8 @@ class _Rows:
         evaluated = Evaluated(template, answers, errors, self.measured, limits, level=template.level)
         estimates, absent = estimates_of(evaluated, self.criterion)
         codes = np.broadcast_to(judge(self.criterion, estimates, absent).rows, rows.shape)
+        values = [estimates[n].value if n in estimates else np.nan for n in self._outputs()]
+        self.valueless[rows] = np.isnan(np.sum(np.broadcast_arrays(*values, np.zeros(rows.shape)), axis=0))
         return codes.astype(np.int8), _largest(errors, self._outputs(), rows)
 
 

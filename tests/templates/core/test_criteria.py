@@ -231,6 +231,10 @@ BAD = {
     "a text": "remark >= 1",
     "no comparison": "stress < 3 MPa",
     "another key": {"require": "stress <= 3 MPa", "remark": "x"},
+    "a default that is a result": {
+        "require": "stress <= most",
+        "limits": {"most": {"unit": "MPa", "default": "max(stress)"}},
+    },
 }
 
 
