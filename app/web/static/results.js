@@ -32,7 +32,8 @@ function showOutput(name, quantity, error) {
   if (!line) return;
   for (const old of line.querySelectorAll("td.value, td.unit")) old.remove();
   line.querySelector(".symbol").after(...cells(quantity));
-  line.querySelector(".band").textContent = typeof error !== "number" ? "" : error === 0 ? "same at all levels" : `± ${percent(error)}`;
+  const band = line.querySelector(".band");
+  band.textContent = typeof error !== "number" ? "" : error === 0 ? "same at all levels" : `± ${percent(error)}${band.dataset.of ?? ""}`;
 }
 
 export function cells(quantity) {
