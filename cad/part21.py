@@ -11,16 +11,20 @@ from collections.abc import Iterator
 
 _BLANK, _WORD = re.compile(r"\s+"), re.compile(r"[A-Za-z0-9_]+")
 _ESCAPED = re.compile(r"''|\\\\|\\X(2|4)\\((?:[0-9A-F]{4})*)\\X0\\")
+_ENDING = re.compile(r"'(?=\s*[,)])")
+_QUOTE = "\\X2\\0027\\X0\\"
 _NOT_PLAIN = re.compile(r"[^ -~\U00010000-\U0010ffff]+|[\U00010000-\U0010ffff]+")
 
 
 def quoted(text: str) -> str:
     r"""A text as a string of Part 21: quotes and backslashes doubled, other than ASCII as `\X2\…\X0\`.
 
-    What lies beyond the basic plane, such as a pictogram, is written as `\X4\…\X0\`.
+    What lies beyond the basic plane, such as a pictogram, is written as `\X4\…\X0\`. Open CASCADE takes
+    a quote before a comma or bracket for the end of the string, even a doubled one: its number is written.
     """
-    doubled = text.replace("\\", "\\\\").replace("'", "''")
-    return f"'{_NOT_PLAIN.sub(_escaped, doubled)}'"
+    parts = _ENDING.split(text)
+    doubled = (part.replace("\\", "\\\\").replace("'", "''") for part in parts)
+    return "'" + _QUOTE.join(_NOT_PLAIN.sub(_escaped, part) for part in doubled) + "'"
 
 
 def _escaped(signs: re.Match[str]) -> str:

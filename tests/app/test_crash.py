@@ -17,6 +17,8 @@ from patience import until
 from seeds import seeded
 from serving import API, PATIENCE, ServerProcess, alive, folder_of_models, moody, pages, settled
 
+from cad.stamp import is_copy
+
 DESIGNS = f"{API}/designs"
 WRITERS = 4
 
@@ -144,8 +146,9 @@ def each_revision_is_whole(http, one: dict) -> None:
         return
     assert one["state"] == "current", one["problem"]
     sha = one["models"]["model"]["artifacts"]["step"]
-    for link in (f"{API}/artifacts/{sha}", f"{place}/model.step"):
-        assert hashlib.sha256(http.get(link).content).hexdigest() == sha
+    stored = http.get(f"{API}/artifacts/{sha}").content
+    assert hashlib.sha256(stored).hexdigest() == sha
+    assert is_copy(http.get(f"{place}/model.step").content, stored)
 
 
 def nothing_is_half_done(http, data) -> None:

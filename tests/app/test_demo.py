@@ -8,9 +8,10 @@ from pathlib import Path
 import click
 import pytest
 from cadquery import importers
+from click.testing import CliRunner
 from patience import patient
 
-from app import demo
+from app import cli, demo
 
 ROOT = Path(__file__).parents[2]
 
@@ -58,6 +59,29 @@ def test_the_step_file_lies_where_it_says(shown):
     cylinders = importers.importStep(str(file)).faces("%CYLINDER").vals()
     bore = 2 * min(face._geomAdaptor().Cylinder().Radius() for face in cylinders)
     assert bore == pytest.approx(48, abs=1e-6)
+
+
+def test_it_names_the_command_that_shows_its_design(shown):
+    text, data = shown
+    assert f"crankwright serve --data {data}`" in text
+    assert re.search(r"open http://127\.0\.0\.1:8000/designs/[0-9a-f]{24}\n", text)
+
+
+@pytest.mark.parametrize("folder", ["crankwright-data", "elsewhere"])
+def test_its_data_are_where_serve_looks(monkeypatch, folder):
+    """`crankwright demo`, then `crankwright serve`, without options: the same folder."""
+    if folder != "crankwright-data":
+        monkeypatch.setenv("CRANKWRIGHT_DATA", folder)
+    shown_in, served_from = [], []
+    monkeypatch.setattr(cli, "demonstrate", shown_in.append)
+    monkeypatch.setattr(cli, "DataFolder", lambda data: served_from.append(data) or stop())
+    for command in ("demo", "serve"):
+        CliRunner().invoke(cli.main, [command])
+    assert shown_in == served_from == [Path(folder)]
+
+
+def stop():
+    raise OSError(0, "enough")
 
 
 class Service:

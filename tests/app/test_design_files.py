@@ -6,10 +6,16 @@ import re
 from urllib.parse import quote
 
 import ezdxf
+import httpx
 import pytest
-from serving import API, created, paper, patched, revision
+from click.testing import CliRunner
+from serving import API, created, paper, patched, problem, revision
 
+from app.cli import main
+from app.client import File
+from app.storage.tables import ArtifactRow, BuildRow, RevisionModelRow
 from cad.part21 import plain
+from cad.stamp import is_copy
 from cad.step import read_step
 
 DESIGNS = f"{API}/designs"
@@ -147,6 +153,101 @@ def test_a_file_that_is_not_made_yet_has_no_name(http):
     assert answer.headers["content-type"] == "application/json"
     assert "content-disposition" not in answer.headers
     assert get(http, design, "models/shell/model.dxf").content.startswith(b"  0\nSECTION")
+
+
+def test_the_client_saves_a_file_under_its_name_and_waits_for_it(client, design, tmp_path):
+    heard = []
+    file = client.download(
+        design["id"], "glb", model="shell", revision=1, on_progress=lambda *a: heard.append(a)
+    )
+    assert file.save(tmp_path) == tmp_path / f"{WIDE}.glb"
+    assert (tmp_path / f"{WIDE}.glb").read_bytes().startswith(b"glTF")
+    assert [path.name for path in tmp_path.iterdir()] == [f"{WIDE}.glb"]
+
+
+def test_the_command_line_saves_a_file_under_its_name(served, design, tmp_path):
+    place = ["--url", served.url, "--folder", str(tmp_path)]
+    done = CliRunner().invoke(main, ["download", design["id"], "dxf", *place])
+    assert done.exit_code == 0, done.output
+    assert done.stdout.strip() == str(tmp_path / f"{WIDE}.dxf")
+    assert (tmp_path / f"{WIDE}.dxf").read_text().startswith("  0\nSECTION")
+    refused = CliRunner().invoke(main, ["download", design["id"], "exe", *place])
+    assert (refused.exit_code, "there is no model.exe" in refused.output) == (1, True)
+
+
+@pytest.mark.parametrize(
+    ("header", "name"),
+    [
+        ("attachment; filename=\"a.step\"; filename*=UTF-8''K%C3%A4fig.step", "Käfig.step"),
+        ('attachment; filename="a.step"', "a.step"),
+        ("attachment; filename*=UTF-8''..%2F..%2Fpasswd", "passwd"),
+        ("", "model.step"),
+    ],
+)
+def test_a_file_is_saved_in_its_folder_whatever_it_is_called(header, name):
+    headers = {"Content-Disposition": header} if header else {}
+    request = httpx.Request("GET", "http://x/designs/1/model.step")
+    assert File.of(httpx.Response(200, headers=headers, content=b"", request=request)).name == name
+
+
+def aged(served, design, kind, content):
+    """The design's model as an older program left it: another build, with this file of that kind."""
+    services = served.app.state.services
+    sha = services.store.put(content)
+
+    def age(session):
+        model = session.get(RevisionModelRow, (design["id"], 1, "shell"))
+        new = session.get(BuildRow, model.build_key)
+        old = {c.name: getattr(new, c.name) for c in BuildRow.__table__.columns}
+        old["measurements"] = {n: v for n, v in old["measurements"].items() if n != "materials"}
+        key = hashlib.sha256(sha.encode()).hexdigest()
+        session.merge(BuildRow(**{**old, "key": key, "made_by": "Old Kernel 1, recipe 2"}))
+        session.flush()
+        for artifact in new.artifacts:
+            named = sha if artifact.kind == kind else artifact.sha256
+            row = {"kind": artifact.kind, "sha256": named, "size": 1, "created": artifact.created}
+            session.merge(ArtifactRow(build_key=key, **row))
+        model.build_key = key
+        return key
+
+    return services.database.write(age)
+
+
+def test_a_build_of_an_older_recipe_is_stamped_and_verified(served, http, design):
+    """An assembly of one, whose header names a build that this program would not make."""
+    older = created(http, {"name": "older", "models": {"shell": SHELL}})
+    stored = http.get(
+        f"{API}/artifacts/{revision(http, older)['models']['shell']['artifacts']['step']}"
+    ).content
+    assembly = stored.replace(b"PRODUCT('shell','shell',''", b"PRODUCT('plain_bearing','plain_bearing',''")
+    key = aged(served, older, "step", assembly)
+    step = get(http, older).content
+    assert products(step)[0][0] == "older_shell_r1"
+    assert "steel (7850 kg/m³)" in products(step)[0][2]
+    # Its header names the build that it was copied from; the row of that build has the other file.
+    assert is_copy(step, assembly)
+    assert http.get(f"{API}/builds/{key}").json()["artifacts"]["step"] == hashlib.sha256(assembly).hexdigest()
+
+
+def test_a_drawing_of_an_older_program_is_drawn_again(served, http):
+    older = created(http, {"name": "drawn", "models": {"shell": SHELL}})
+    drawing = get(http, older, "models/shell/model.dxf").text
+    unmarked = drawing.replace("stamp:", "other:").encode()
+    key = aged(served, older, "dxf", unmarked)
+    assert "design: drawn" in get(http, older, "models/shell/model.dxf").text
+    assert http.get(f"{API}/builds/{key}").json()["artifacts"]["dxf"] != hashlib.sha256(unmarked).hexdigest()
+
+
+def test_a_stamped_file_is_compared_with_a_stored_one_that_was_lost(served, http, design):
+    step = get(http, design).content
+    sha = revision(http, design)["models"]["shell"]["artifacts"]["step"]
+    served.app.state.services.store.delete(sha)
+    lost = http.post(
+        f"{API}/verify", content=step, headers={"Content-Type": "model/step", "Prefer": "respond-async"}
+    )
+    problem(lost, 503, "rebuilding")
+    answer = http.post(f"{API}/verify", content=step, headers={"Content-Type": "model/step", **WAIT})
+    assert answer.json()["intact"] is True
 
 
 def test_single_part_models_are_one_part(http, design):

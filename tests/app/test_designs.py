@@ -6,6 +6,8 @@ import pytest
 from cadquery import importers
 from serving import API, created, faults, moody, pages, paper, patched, problem, revision, settled
 
+from cad.stamp import is_copy
+
 DESIGNS = f"{API}/designs"
 
 
@@ -508,7 +510,7 @@ class TestRevisions:
         sha = revision(http, tied)["models"]["model"]["artifacts"]["step"]
         answer = http.get(f"{API}/artifacts/{sha}")
         assert hashlib.sha256(answer.content).hexdigest() == sha
-        assert answer.content == http.get(f"{DESIGNS}/{tied['id']}/revisions/2/model.step").content
+        assert is_copy(http.get(f"{DESIGNS}/{tied['id']}/revisions/2/model.step").content, answer.content)
 
     def test_restore_makes_a_revision_equal_to_the_old_one(self, http, tied):
         copy = created_by(http.post(f"{DESIGNS}/{tied['id']}/copy"))

@@ -120,9 +120,9 @@ class TestContents:
 
     def test_hashes_are_those_of_the_files(self, http, bearing):
         text = on_screen(http, bearing).text
+        files = http.get(f"{DESIGNS}/{bearing['id']}/revisions/2").json()["models"]["model"]["artifacts"]
         for kind in ("step", "png", "drawing.svg"):
-            file = http.get(f"{DESIGNS}/{bearing['id']}/revisions/2/model.{kind}")
-            assert hashlib.sha256(file.content).hexdigest() in text
+            assert hashlib.sha256(http.get(f"{API}/artifacts/{files[kind]}").content).hexdigest() in text
 
     def test_formulas_are_mathml_with_brackets_that_stretch(self, http, bearing):
         text = read(http, bearing).text

@@ -169,6 +169,19 @@ def units(
     return mark
 
 
+def on_paper(words: str | Mapping[str, str]) -> Callable[[F], F]:
+    """Say how a physics function makes what no formula writes, for reports: `solved numerically by …`.
+
+    Where that depends on the level, `words` are by level.
+    """
+
+    def mark(function: F) -> F:
+        function.on_paper = words  # type: ignore[attr-defined]
+        return function
+
+    return mark
+
+
 def by_name(declarations: Mapping[str, Any]) -> dict[str, Any]:
     """Declarations by API name instead of by attribute.
 

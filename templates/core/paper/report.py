@@ -10,6 +10,7 @@ import numpy as np
 from templates.core.language.spec import Choice
 from templates.core.language.template import Template
 from templates.core.paper.mathml import amount, expression, mathml, symbol, symbols
+from templates.core.paper.methods import right_side
 from templates.core.units.units import unit
 
 
@@ -50,12 +51,13 @@ def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator
     result = {a: shown(template, a, shown_in, absolute=True) for a in cls.declarations}
     for formula in cls.formulas.values():
         if formula.attribute in vars(template):
-            complete = all(values.get(used) not in (None, "", NONE) for used in formula.uses)
+            side, is_words = right_side(cls, formula, names, template.level)
+            complete = not is_words and all(values.get(used) not in (None, "", NONE) for used in formula.uses)
             yield Row(
                 name=formula.name,
                 words=formula.meaning.words,
                 symbol=symbol(formula),
-                expression=expression(formula, names),
+                expression=side,
                 numbers=expression(formula, values, r"\cdot ") if complete and formula.latex is None else "",
                 result=result[formula.attribute],
                 source=formula.meaning.source,

@@ -24,6 +24,7 @@ from templates.core.language.spec import (
 from templates.core.language.template import Template
 from templates.core.paper.demands import described_criteria
 from templates.core.paper.mathml import expression, mathml, symbol, symbols
+from templates.core.paper.methods import right_side
 
 _KEYWORDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
 
@@ -147,7 +148,7 @@ def _quantity_out(formula: Formula[Any]) -> dict[str, Any]:
 
 def formula_on_paper(cls: type[Template], formula: Formula[Any]) -> dict[str, Any]:
     """One formula as text, LaTeX and MathML, with its source."""
-    latex = f"{symbol(formula)}={expression(formula, symbols(cls))}"
+    latex = f"{symbol(formula)}={right_side(cls, formula, symbols(cls))[0]}"
     return {
         "name": formula.name,
         "text": f"{formula.meaning.words}: {inspect.cleandoc(formula.__doc__ or latex)}",

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from templates.core.arrays import Array
-from templates.core.language.declare import units
+from templates.core.language.declare import on_paper, units
 from templates.physics.engine.slider_crank import Motion, travel_integral
 
 
@@ -70,6 +70,7 @@ class Tabulated(GasCycle):
         return -np.sum(slopes * volumes, axis=-1)
 
 
+@on_paper("read from the gas cycle at each crank angle")
 @units(None, None, returns="Pa")
 def pressure_at(gas: GasCycle, motion: Motion) -> Array:
     """The pressure in the cylinder [Pa] at the angles of a motion, (…, K)."""

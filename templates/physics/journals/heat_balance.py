@@ -20,6 +20,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from templates.core.arrays import Array, Mask
+from templates.core.language.declare import on_paper
 from templates.physics.films.film_map import NARROWEST, WIDEST, mapped_load
 from templates.physics.journals.oil import density, vogel, walther
 from templates.physics.journals.static_journal import static_film_at
@@ -133,6 +134,7 @@ class HeatBalance:
     """What is not accounted for, over the largest of power and what oil or air carry off [-]."""
 
 
+@on_paper("solved numerically by bracketing the film temperature in the heat balance of ISO 7902-1")
 def heat_balance(running: Running) -> HeatBalance:
     """Find the film temperature of every point that has a supply, or air to cool it."""
     names = [field.name for field in fields(running)]

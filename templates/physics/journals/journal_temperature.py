@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from templates.core.arrays import Array, Mask
-from templates.core.language.declare import units
+from templates.core.language.declare import on_paper, units
 from templates.physics.journals.heat_balance import HeatBalance, asked_for
 
 
@@ -15,7 +15,8 @@ def film_temperature(T_mean: Array, balance: HeatBalance) -> Array:
     return np.where(np.isnan(balance.T), T_mean, balance.T)[()]
 
 
-@units(None, returns="K", latex=r"T_\mathrm{{out}}")
+@on_paper("solved numerically by bracketing the film temperature in the heat balance of ISO 7902-1")
+@units(None, returns="K")
 def outlet_temperature(balance: HeatBalance) -> Array:
     """Temperature of the oil that leaves, by the heat balance; NaN without one or without a supply [K]."""
     return balance.T_out

@@ -7,7 +7,7 @@ over the whole circle as in DIN 31652 and ISO 7902.
 import numpy as np
 
 from templates.core.arrays import Array
-from templates.core.language.declare import units
+from templates.core.language.declare import on_paper, units
 from templates.physics.films.film_map import NARROWEST, WIDEST, mapped_film
 from templates.physics.films.film_map_inverse import mapped_eccentricity
 from templates.physics.journals.petrov import friction_number_Petrov_1883
@@ -37,6 +37,7 @@ def load_number(load: Array, psi: Array, eta: Array, omega: Array, width: Array,
     return load * psi**2 / (width * diameter * eta * np.where(omega > 0, omega, np.nan))
 
 
+@on_paper("solved numerically by splines in a map of solutions of the Reynolds equation")
 @units("1", "1", returns="1")
 def eccentricity_of_load(So: Array, ratio: Array) -> Array:
     """Relative eccentricity at a load; NaN where So is, and beyond the film map (B/D 0.01 … 100) [-].
@@ -53,6 +54,7 @@ def eccentricity_of_load(So: Array, ratio: Array) -> Array:
     return np.where(valid, eps, np.nan)[()]
 
 
+@on_paper("solved numerically by splines in a map of solutions of the Reynolds equation")
 @units("1", "1", returns="1")
 def friction_over_Petrov(eps: Array, ratio: Array) -> Array:
     """Friction on the journal in the loaded film over Petrov's, 1 or more; NaN where eps is [-].

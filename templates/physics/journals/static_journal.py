@@ -18,6 +18,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from templates.core.arrays import Array, Mask
+from templates.core.language.declare import on_paper
 from templates.physics.cavities.fed_film import Feed, fed_film
 from templates.physics.films.film_fit import attitude_ISO_7902, load_ISO_7902
 from templates.physics.films.film_fit_flow import side_flow_ISO_7902
@@ -102,6 +103,15 @@ class JournalFilm:
         return replace(self, **{field.name: change(getattr(self, field.name)) for field in fields(self)})
 
 
+@on_paper(
+    {
+        "short_bearing": "solved numerically by bracketing the eccentricity of Ocvirk's short bearing",
+        "fit": "solved numerically by bracketing the eccentricity in the fit of ISO 7902",
+        "map": "solved numerically by splines in a map of solutions of the Reynolds equation",
+        "reynolds": "solved numerically by finite volumes of the Reynolds equation, extrapolated",
+        "mass_conserving": "solved numerically by finite volumes with mass-conserving cavities, extrapolated",
+    }
+)
 def static_film_at(
     level: str,
     So: Array,

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from templates.core.arrays import Array
-from templates.core.language.declare import units
+from templates.core.language.declare import on_paper, units
 from templates.physics.numerics.arrays import largest_load as largest_load
 from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit, periodic_orbit
 from templates.physics.orbits.mobility_law import MapLaw, MobilityLaw, ShortLaw
@@ -124,6 +124,13 @@ class CycleFilm:
     """Oil that leaves at both ends, Q/(B D c Omega), c the radial clearance, mean over the cycle, (...)."""
 
 
+@on_paper(
+    {
+        "mobility_short": "solved numerically by Newton's method, by Booker's mobility of the short bearing",
+        "mobility": "solved numerically by Newton's method, by a map of the mobility of finite bearings",
+        "transient": "solved numerically by marching a film with mass-conserving cavities until it repeats",
+    }
+)
 def cycle_orbit(level: str, duty: Duty, marching: Marching = MARCHING) -> CycleOrbit:
     """The periodic orbit of each point, at a level of fidelity; marching counts at level transient."""
     cases = _cases(level, duty)
@@ -136,6 +143,13 @@ def cycle_orbit(level: str, duty: Duty, marching: Marching = MARCHING) -> CycleO
     return _shaped(_sampled(marched, cases.load), cases.points, marched)
 
 
+@on_paper(
+    {
+        "mobility_short": "solved numerically by Booker's film of the short bearing along the orbit",
+        "mobility": "solved numerically by a map of films of finite bearings along the orbit",
+        "transient": "solved numerically by marching a film with mass-conserving cavities until it repeats",
+    }
+)
 def cycle_film(level: str, duty: Duty, orbit: CycleOrbit) -> CycleFilm:
     """Pressure, loss and flow along an orbit."""
     cases = _cases(level, duty)
@@ -192,7 +206,7 @@ def cycle_of(angle: Array) -> float:
     return float("nan")
 
 
-@units("rad", returns="rad", latex=r"T\left({0}\right)")
+@units("rad", returns="rad", latex=r"\text{{the whole cycle that the angles cover}}")
 def cycle_length(angle: Array) -> Array:
     """The same as a number for a formula."""
     return np.asarray(cycle_of(angle))[()]

@@ -27,10 +27,20 @@ from templates.core.language.declare import units
 
 GOODMAN, GERBER, MORROW, NONE = "goodman", "gerber", "morrow", "none"
 
+_SHARES = (
+    r"\frac{{{1}}}{{{2}}}\ \text{{(Goodman),}}\ "
+    r"\left(\frac{{{1}}}{{{2}}}\right)^{{2}}\ \text{{(Gerber) or}}\ "
+    r"\frac{{{1}}}{{{3}}}\ \text{{(Morrow)}}"
+)
+_SAFETY = (
+    r"\left(\frac{{{1}}}{{{2}}}+{3}\right)^{{-1}}\ \text{{(Gerber: from}}\ "
+    r"\frac{{n\,{1}}}{{{2}}}+n^{{2}}\,{3}=1\text{{)}}"
+)
+
 _LONGEST = np.log(1e300)  # of a life that is reported as a number
 
 
-@units(None, "Pa", "Pa", "Pa", returns="1", latex=r"c_{{m}}\left({1},{2},{3}\right)")
+@units(None, "Pa", "Pa", "Pa", returns="1", latex=_SHARES)
 def mean_share(correction: str, mean: Array, ultimate: Array, coefficient: Array) -> Array:
     """What a mean stress [Pa] takes from the amplitude that is borne [1]; 1 takes all of it.
 
@@ -63,7 +73,7 @@ def allowable_amplitude(endurance: Array, coefficient: Array, exponent: Array, l
     return np.fmax(coefficient * (2 * life) ** exponent, endurance)
 
 
-@units(None, "Pa", "Pa", "1", returns="1", latex=r"n\left(\frac{{{1}}}{{{2}}},{3}\right)")
+@units(None, "Pa", "Pa", "1", returns="1", latex=_SAFETY)
 def load_safety_factor(correction: str, amplitude: Array, allowable: Array, share: Array) -> Array:
     """By how much amplitude [Pa] and mean stress, with its share [1], may grow together; NaN if without end.
 

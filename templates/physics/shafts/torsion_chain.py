@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array
-from templates.core.language.declare import units
+from templates.core.language.declare import on_paper, units
 
 FREE, FIXED = "free_free", "fixed_free"
 MOST_INERTIAS, MOST_ENTRIES = 500, 1_000_000  # of a chain; of the mode shapes of all chains
@@ -64,6 +64,7 @@ def manageable(J: Array, k: Array, orders: Array) -> bool:
     return longest <= MOST_INERTIAS and np.prod(chains, dtype=float) * longest**2 <= MOST_ENTRIES
 
 
+@on_paper("solved numerically by singular values of the chain's bidiagonal matrix")
 @units("kg*m**2", "N*m/rad", None, returns="rad/s", latex=r"\sqrt{{\lambda_m\left({1},{0}\right)}}")
 def angular_frequencies(J: Array, k: Array, ends: str) -> Array:
     """Natural angular frequencies [rad/s], ascending [..., mode], of a chain of J [kg m²] and k [N m/rad].
@@ -75,6 +76,7 @@ def angular_frequencies(J: Array, k: Array, ends: str) -> Array:
     return _with_rigid(elastic, 0.0, axis=-1) if ends == FREE else elastic
 
 
+@on_paper("solved numerically by singular values of the chain's bidiagonal matrix")
 @units("kg*m**2", "N*m/rad", None, returns="1", latex=r"\varphi_m\left({1},{0}\right)")
 def mode_shapes(J: Array, k: Array, ends: str) -> Array:
     """Mode shapes [..., mode, inertia] in the order of the frequencies, each with 1 as its largest entry."""

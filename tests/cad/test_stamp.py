@@ -1,0 +1,133 @@
+"""Stamps on finished files: escaped, read back by the kernel, and recognised by `is_copy`."""
+
+import io
+import re
+
+import ezdxf
+import pytest
+from cadquery import Location, func
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cad.export import derive
+from cad.header import Header
+from cad.model import Part
+from cad.naming import plain_name, stem, wide_stem
+from cad.part21 import end_of_string, plain, quoted
+from cad.regenerate import regenerate
+from cad.stamp import Stamp, is_copy, stamped, takes_stamp
+from cad.step import read_step, write_step
+
+NAMES = [
+    "435 cc main bearing",
+    "it's '' a \\X2\\ trap\\X0\\",
+    "Größe 1,5 µm; (#7) = PRODUCT('x','y','z',(#8));",
+    "轴承",
+    "🔩" * 200,
+    "ENDSEC; DATA;",
+    "a\u202eb",
+    "/* no comment */",
+]
+NAME = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_size=60)
+
+
+@pytest.fixture(scope="module")
+def shell():
+    return regenerate("plain_bearing", 1, {"inner_diameter": 0.05}).step
+
+
+def moved_box():
+    return Part("block", func.box(1, 2, 3), 6.0, places=(Location((10, 0, 0)),))
+
+
+def stamp(design):
+    return Stamp(design, "shell", 3, "2026-11-22T05:47:46", {"shell": "CuSn8 (8800 kg/m³)"})
+
+
+@pytest.mark.parametrize("design", NAMES)
+def test_the_kernel_reads_the_product_back(shell, design):
+    step = stamped(shell, "step", stamp(design))
+    assert step.isascii()
+    (body,) = read_step(step)
+    assert body.name == wide_stem(design, "shell", 3)
+    assert body.shape.isValid()
+    text = step.decode()
+    start = text.index("'design ")
+    assert plain(text[start : end_of_string(text, start)]).startswith(f"design {design}, model shell")
+    assert is_copy(step, shell)
+    assert not is_copy(shell, step.replace(b"PRODUCT(", b"PRODUKT(", 1))
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.text("ab'\\,;)(# X204µ轴/*🔩", min_size=1, max_size=30))
+def test_property_the_kernel_reads_odd_names(shell, design):
+    (body,) = read_step(stamped(shell, "step", stamp(design)))
+    assert body.name == wide_stem(design, "shell", 3)
+    assert plain(quoted(design)) == design
+
+
+@settings(max_examples=60, deadline=None)
+@given(NAME)
+def test_property_a_stamp_changes_nothing_else(shell, design):
+    step = stamped(shell, "step", stamp(design))
+    assert is_copy(step, shell)
+    assert stamped(step, "step", stamp("other")) == stamped(shell, "step", stamp("other"))
+    assert stamped(shell, "step", stamp(design)) == step
+    assert plain(quoted(design)) == design
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.data())
+def test_property_a_change_of_one_byte_outside_the_stamp_is_noticed(shell, data):
+    step = stamped(shell, "step", stamp("x"))
+    place = data.draw(st.integers(0, len(step) - 1))
+    changed = step[:place] + bytes([step[place] ^ 1]) + step[place + 1 :]
+    strings = [match.span() for match in re.finditer(rb"'(?:[^']|'')*'", step)]
+    is_in_a_string = any(start <= place < end for start, end in strings)
+    assert is_in_a_string or not is_copy(changed, shell)
+
+
+@pytest.mark.parametrize("design", NAMES)
+@pytest.mark.parametrize("kind", ["dxf", "drawing.svg"])
+def test_a_drawing_stays_sound(shell, drawings, kind, design):
+    file = stamped(drawings[kind], kind, stamp(design)).decode()
+    assert "CuSn8" in file
+    if kind == "dxf":
+        drawing = ezdxf.read(io.StringIO(file))
+        assert not drawing.audit().errors
+        (line,) = [e.dxf.text for e in drawing.modelspace().query("TEXT") if e.dxf.text.startswith("design:")]
+        assert len(line) <= 44
+    assert takes_stamp(drawings[kind], kind)
+    assert not takes_stamp(b"0\nSECTION", kind)
+
+
+@pytest.fixture(scope="module")
+def drawings(shell):
+    return {kind: derive(shell, kind) for kind in ("dxf", "drawing.svg")}
+
+
+@settings(max_examples=200, deadline=None)
+@given(NAME)
+def test_property_names_of_files_are_safe(design):
+    for name in (stem(design, "model", 1), wide_stem(design, "model", 1)):
+        assert len(f"{name}.drawing.svg.part".encode()) <= 255
+        assert not set(name) & set('/\\\0"*?<>|:\r\n')
+        assert not name.startswith((".", "-"))
+    assert stem(design, "model", 1).isascii()
+    assert plain_name(plain_name(design)) == plain_name(design)
+
+
+def test_a_single_part_at_a_place_of_its_own_is_one_product_there():
+    part = moved_box()
+    step = write_step([part], Header("box", 1, {}, ""))
+    assert step.count(b"= PRODUCT(") == 1
+    (body,) = read_step(step)
+    assert body.name == part.name
+    placed = body.shape.moved(body.places[0])
+    assert placed.Center().toTuple() == pytest.approx((10, 0, 1.5))
+
+
+def test_several_places_are_an_assembly():
+    part = moved_box()
+    twice = Part(part.name, part.shape, part.volume, places=(*part.places, *part.places))
+    assert write_step([twice], Header("box", 1, {}, "")).count(b"NEXT_ASSEMBLY_USAGE_OCCURRENCE") == 2
