@@ -17,7 +17,7 @@ from app.api.reading import fingerprint
 from app.api.services import Services
 from app.api.threads import Threads
 from app.calculations.steps import Caller, call_as
-from app.designs.graph import Catalogues
+from app.catalogue.catalogues import Catalogues
 from app.designs.previewing import Previews
 from app.designs.service import Designs
 from app.jobs.service import Jobs

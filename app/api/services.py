@@ -10,7 +10,7 @@ from app.api.readiness import Readiness
 from app.api.threads import Threads
 from app.calculations.pool import CalculationPool
 from app.calculations.steps import Steps
-from app.designs.graph import Catalogues
+from app.catalogue.catalogues import Catalogues
 from app.designs.previewing import Previews
 from app.designs.service import Designs
 from app.jobs.service import Jobs

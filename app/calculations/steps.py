@@ -19,7 +19,7 @@ from app.calculations.begun import Begun, fingerprint
 from app.calculations.cost import EXPENSIVE, estimated_seconds
 from app.calculations.errors import StepDeferred
 from app.calculations.pool import Calculation, CalculationPool, Lane
-from app.calculations.sources import Source, loaded
+from app.calculations.sources import Source, loaded, source_of
 from app.jobs.service import Job, JobContext
 from app.plain import Raw
 from app.workers.errors import JobCancelled
@@ -35,7 +35,6 @@ class Steps:
     """Where expensive steps are evaluated, and how long an answer waits for them [s]."""
 
     pool: CalculationPool
-    sources: Mapping[type[Template], Source]
     deadline: float
     left: dict[str, Begun] = field(default_factory=dict)  # calculations that wait for their job, by job
 
@@ -77,7 +76,7 @@ class Caller:
             It has not ended in time; it goes on if it may.
         """
         key = (cls, outputs, level, tolerance, fingerprint(raw))
-        question = self.steps.sources[cls], raw, outputs, level, tolerance
+        question = source_of(cls), raw, outputs, level, tolerance
         calculation = self.begun.take(key) or self._submitted(*question)
         if self.report is not None:
             calculation.listen(self.report)

@@ -6,9 +6,10 @@ Every check returns what it finds; nothing is changed on the way.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, TypeVar
 
+from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import is_measured, questions, remedy
 from app.designs.document import Document, Model, Step, Version
 from app.designs.kinds import checked_kinds
@@ -27,14 +28,6 @@ from templates.core.units.relation import Relation, is_relation, parse
 T = TypeVar("T", bound=Template)
 
 __all__ = ["Block", "Catalogues", "Cell", "Graph", "build_graph", "raise_if"]
-
-
-@dataclass(frozen=True)
-class Catalogues:
-    """What a design can be made of."""
-
-    templates: Catalogue[Template]
-    models: Catalogue[CadModel]
 
 
 def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list[Fault]]:
@@ -126,7 +119,7 @@ def _class(
     try:
         cls = catalogue.get(id, version) if isinstance(version, int) else catalogue.latest(id)
     except UnknownTemplate as error:
-        return None, [Fault(place, "unknown_name", str(error))]
+        return None, [Fault(place, error.code, str(error))]
     return cls, []
 
 

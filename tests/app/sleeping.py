@@ -16,7 +16,7 @@ import numpy as np
 
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.progress import report
-from templates.core.template import Array, Template, choice, formula, given
+from templates.core.template import Array, Template, choice, formula, given, units
 
 
 class Sleeper(Template):
@@ -32,6 +32,7 @@ class Sleeper(Template):
         return slept(self.t, self.mood)
 
 
+@units("s", None, returns="1")
 def slept(seconds, mood):
     """The process that slept so long; it notes that it began."""
     with Path(os.environ.get("SLEEPER_LOG", os.devnull)).open("a") as log:
