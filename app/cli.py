@@ -1,4 +1,4 @@
-"""The command line: `crankwright serve | demo | evaluate | template | check-template | freeze | check | backup | …`."""
+"""The command line: `crankwright serve | demo | evaluate | template | check-template | freeze | …`."""
 
 from __future__ import annotations
 

@@ -24,6 +24,7 @@ from app.api.routes import health
 from app.api.routes.analyses import router as analyses
 from app.api.routes.calculations import router as calculations
 from app.api.routes.calculations import worksheets
+from app.api.routes.catalogue import router as faults
 from app.api.routes.curves import router as curves
 from app.api.routes.design_events import router as design_events
 from app.api.routes.design_files import router as design_files
@@ -83,6 +84,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         film_pressure,
         curves,
         catalogue,
+        faults,
         designs,
         design_files,
         reports,

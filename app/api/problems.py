@@ -68,6 +68,9 @@ TABLE: dict[type[Exception], Kind] = {
     templates.InvalidInputs: INVALID,
     RequestValidationError: INVALID,
     InvalidBody: INVALID,
+    templates.QuarantinedTemplate: Kind(
+        "quarantined", 404, "The version is quarantined", "correct its file: GET /api/v1/catalogue/faults"
+    ),
     templates.UnknownTemplate: Kind("unknown-template", 404, "No such version", "GET the list of versions"),
     templates.Unreachable: Kind("unreachable", 422, "The target is out of reach", "see `reachable`"),
     templates.TemplateError: Kind("refused", 422, "The calculation refuses", "see `detail`"),

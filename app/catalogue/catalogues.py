@@ -1,4 +1,4 @@
-"""What a design can be made of: the built-in templates and models, and a team's, read again when they change."""
+"""What a design can be made of: built-in templates and models, and a team's, read again when they change."""
 
 from __future__ import annotations
 

@@ -63,7 +63,12 @@ def check_content(path: str, content: bytes) -> list[FileFault]:
     """Every fault of a file: of its import, then of what it declares; runs in a process of its own."""
     place = Path(path)
     cls = loaded_or_faulty(place, content)
-    return [cls] if isinstance(cls, FileFault) else faults_of(cls, place)
+    if isinstance(cls, FileFault):
+        return [cls]
+    try:
+        return faults_of(cls, place)
+    except BaseException as error:  # as SystemExit, which nobody wants in the server
+        return [_import_fault(error, place)]
 
 
 def loaded_or_faulty(path: Path, content: bytes, digest: str = "") -> type[Template] | FileFault:
@@ -72,7 +77,7 @@ def loaded_or_faulty(path: Path, content: bytes, digest: str = "") -> type[Templ
         cls = declared_in(load(path, content, digest), path)
     except UnusableFile as error:
         return FileFault("declares", str(error).removeprefix(f"{path}: "), DECLARE)
-    except (Exception, SystemExit) as error:
+    except BaseException as error:  # whatever a file raises: SystemExit, KeyboardInterrupt
         return _import_fault(error, path)
     if issubclass(cls, CadModel) or cls.formulas:
         return cls
@@ -90,6 +95,6 @@ def _import_fault(error: BaseException, path: Path) -> FileFault:
             remedy = "correct the name, or install what is missing where the service runs"
             return FileFault("import", f"{type(error).__name__}: {error}", remedy, line)
         case MemoryError():
-            return FileFault("memory", "it takes too much memory", "keep large tables in a file beside it", line)
+            return FileFault("memory", "it takes too much memory", "keep tables in a file beside it", line)
     remedy = "correct the declaration" if isinstance(error, TypeError) else "let the import only declare"
     return FileFault("raises", f"{type(error).__name__}: {error}", remedy, line)

@@ -21,7 +21,7 @@ Signature = tuple[tuple[int, int, int] | None, ...]
 Key = tuple[str, int]
 """Id and version."""
 
-_MEANT = re.compile(r".+_[vV][0-9][^/]*")  # a name that somebody may have meant as that of a version
+_MEANT = re.compile(r".+_[vV][0-9]+")  # a name that somebody may have meant as that of a version
 NAME = "name it <id>_v<version>.py, in small letters, such as bush_duty_v1.py"
 
 

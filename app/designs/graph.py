@@ -5,7 +5,7 @@ Every check returns what it finds; nothing is changed on the way.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -38,7 +38,8 @@ def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list
     if faults := list(too_many_relations(document)):
         return Graph({}, {}, frozenset()), faults
     network, faults = _network(document, catalogues)
-    links = {cell: _links(network, cell) for cell in network.cells() if cell.uses}
+    unread = {*document.steps, *document.models} - network.blocks.keys()  # what uses them has no fault
+    links = {cell: _links(network, cell, unread) for cell in network.cells() if cell.uses}
     if faults := [*faults, *_unknown(network, links)]:
         return _graph(network), faults
     sources = _sources(network, links)
@@ -135,10 +136,10 @@ def _cells(block: str, values: Mapping[str, Raw], cls: type[Template]) -> tuple[
     return cells, faults
 
 
-def _links(network: Network, cell: Cell) -> dict[Reference, Node | None]:
+def _links(network: Network, cell: Cell, unread: Set[str]) -> dict[Reference, Node | None]:
     """The node behind each name that a cell uses, None if there is none; an assumed value needs none."""
     uses = (reference for reference in cell.uses.values() if reference not in network.assumed)
-    return {reference: network.node(reference) for reference in uses}
+    return {reference: network.node(reference) for reference in uses if reference.block not in unread}
 
 
 Links = Mapping[Cell, Mapping[Reference, Node | None]]

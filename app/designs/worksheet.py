@@ -9,6 +9,7 @@ from app.calculations.begun import fingerprint
 from app.calculations.cache import results as kept
 from app.calculations.cost import EXPENSIVE
 from app.calculations.errors import StepDeferred
+from app.calculations.rendering import identity
 from app.calculations.steps import evaluated_step
 from app.calculations.worksheet import formulas
 from app.designs.calculate import Calculation
@@ -17,6 +18,7 @@ from app.presentation.units import System
 from app.schemas.designs import PreviewedStep, Revision, RevisionStep, RevisionWorksheet
 from app.schemas.evaluations import UsedInput, WorkedFormula
 from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.loading import is_outside
 from templates.core.errors import TemplateError
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.template import Template
@@ -67,11 +69,18 @@ def _worked(step: RevisionStep, catalogue: Catalogue[Template], system: System) 
     if not step.outputs:
         return _Worked([], [])
     try:
-        return _written_out(catalogue.get(step.template.id, step.template.version), step, system)
+        cls = catalogue.get(step.template.id, step.template.version)
+        return _Worked([], []) if _is_edited(cls, step) else _written_out(cls, step, system)
     except TemplateError:  # the file of this version was taken away, or changed: its results stay
         return _Worked([], [])
     except StepDeferred:
         return _Worked([], [])
+
+
+def _is_edited(cls: type[Template], step: RevisionStep) -> bool:
+    """Whether a team has edited its file since it calculated a step: it would calculate something else now."""
+    calculated_by = step.template.content_digest
+    return is_outside(cls) and calculated_by not in (None, identity(cls)["content_digest"])
 
 
 def _retyped(used: UsedInput) -> Raw:

@@ -8,14 +8,16 @@ from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
+from app.schemas.catalogue import FaultList
 from app.schemas.designs import Design, DesignList, Explanation, ModelMeasurements, State
 from app.schemas.templates import TemplateList, TemplateVersions
 from app.web import plotly
-from app.web.api import Api, TheApi
+from app.web.api import Api, Refused, TheApi
 from app.web.design_page import design_page, revision_page
 from app.web.gallery import offered
 from app.web.model_page import model_page
 from app.web.rendering import go, show, units_of
+from app.web.stored_page import is_unusable, stored_page
 from app.web.template_page import template_page
 
 router = APIRouter(include_in_schema=False)
@@ -29,10 +31,11 @@ ON_HOME = 4  # designs, with pictures: the first page is light
 @router.get("/")
 async def home(request: Request, api: TheApi) -> Response:
     """Designs, templates, models, and where to start."""
-    designs, templates, models = await asyncio.gather(
+    designs, templates, models, faulty = await asyncio.gather(
         api.get("/designs", DesignList, limit=ON_HOME),
         api.get("/templates", TemplateList, limit=500),
         api.get("/models", TemplateList, limit=500),
+        api.get("/catalogue/faults", FaultList, limit=500),
     )
     latest = [item for item in templates.items if item.latest]
     return show(
@@ -44,6 +47,7 @@ async def home(request: Request, api: TheApi) -> Response:
         latest=latest,
         models=[item for item in models.items if item.latest],
         gallery=offered(templates.items, models.items),
+        faulty=faulty.items,
     )
 
 
@@ -69,6 +73,13 @@ async def designs(
         states=get_args(State),
         older=urlencode({**wanted, "cursor": page.next}) if page.next else None,
     )
+
+
+@router.get("/templates/faults")
+async def faults(request: Request, api: TheApi, cursor: Text = "") -> Response:
+    """The files of a team that have faults."""
+    place = {"cursor": cursor} if cursor else {}
+    return show(request, "faults.html", faulty=await api.get("/catalogue/faults", FaultList, **place))
 
 
 @router.get("/templates/{id}")
@@ -97,8 +108,13 @@ async def model(id: Id, version: Number, request: Request, api: TheApi) -> Respo
 
 @router.get("/designs/{id}")
 async def design(id: Id, request: Request, api: TheApi) -> Response:
-    """A design at its newest revision, to be changed."""
-    return await design_page(request, api, id)
+    """A design at its newest revision, to be changed; only to be read while its template is quarantined."""
+    try:
+        return await design_page(request, api, id)
+    except Refused as refused:
+        if not is_unusable(refused):
+            raise
+        return await stored_page(request, api, id, None, refused.problem.detail)
 
 
 @router.get("/designs/{id}/revisions/{number}")
@@ -110,7 +126,12 @@ async def revision(
     other: Annotated[int | None, Query(alias="with", ge=1, le=10**9)] = None,
 ) -> Response:
     """A revision, and what differs from another."""
-    return await revision_page(request, api, id, number, other)
+    try:
+        return await revision_page(request, api, id, number, other)
+    except Refused as refused:
+        if not is_unusable(refused):
+            raise
+        return await stored_page(request, api, id, number, refused.problem.detail)
 
 
 @router.get("/designs/{id}/explain/{parameter}")

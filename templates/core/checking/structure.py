@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
+import textwrap
 from collections.abc import Callable, Iterator
 from graphlib import CycleError, TopologicalSorter
 from types import FunctionType
 from typing import Any
 
 from templates.core.checking.faults import FileFault
+from templates.core.errors import FaultyText
 from templates.core.language.spec import Derived, Formula, Requirement, Shared
 from templates.core.language.syntax import lines_of_attributes, returned
 from templates.core.language.template import Template
@@ -21,6 +24,7 @@ def faults_of_structure(cls: type[Template]) -> Iterator[FileFault]:
     """Every fault of the text; if there is one, to calculate the template would only repeat it."""
     yield from _docstring(cls)
     yield from _formulas(cls)
+    yield from _units(cls)
     unknown = list(_unknown_attributes(cls))
     yield from unknown
     if not unknown:
@@ -59,6 +63,29 @@ def _docstring(cls: type[Template]) -> Iterator[FileFault]:
             "say in a first sentence what it calculates, and in its section Limits where it is valid",
             inspect.getsourcelines(cls)[1],
         )
+
+
+def _units(cls: type[Template]) -> Iterator[FileFault]:
+    """Declared units that nobody knows."""
+    for declared in cls.declarations.values():
+        try:
+            _ = declared.meaning.scale
+        except FaultyText as error:
+            what = f"{declared.name} is declared in {declared.meaning.unit!r}: {error}"
+            line = _lines_of_declarations(cls).get(declared.attribute)
+            yield FileFault("unit", what, "write a unit such as mm, kN, MPa, mPa*s, rpm, degC, or 1", line)
+
+
+def _lines_of_declarations(cls: type[Template]) -> dict[str, int]:
+    """The line of the file in which the class sets each of its attributes."""
+    text, first = inspect.getsourcelines(cls)
+    tree = ast.parse(textwrap.dedent("".join(text))).body[0]
+    lines: dict[str, int] = {}
+    for node in getattr(tree, "body", ()):
+        targets = getattr(node, "targets", [getattr(node, "target", node)])
+        names = (getattr(target, "id", getattr(target, "name", None)) for target in targets)
+        lines.update({name: first + node.lineno - 1 for name in names if name})
+    return lines
 
 
 def _formulas(cls: type[Template]) -> Iterator[FileFault]:
