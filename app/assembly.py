@@ -15,6 +15,7 @@ from app.calculations.jobs import CALCULATION, PREVIEW
 from app.catalogue.catalogues import Catalogues, TeamCatalogues
 from app.catalogue.checking import CheckInProcess
 from app.catalogue.finding import find_templates
+from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.recent import Recent
 from app.designs.regeneration import Regeneration
@@ -63,6 +64,7 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     jobs.start(calculations.lanes)
     stack.callback(jobs.stop)
     models = Models(database, store, jobs, catalogues)
+    designs = Designs(database, jobs, catalogues, recent)
     analyses = Analyses(database, store, jobs)
     return Services(
         settings=settings,
@@ -74,7 +76,8 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         steps=calculations.steps,
         threads=Threads(),
         answering=Answering(calculations.pool, calculations.jobs, settings.calculation_deadline),
-        designs=Designs(database, jobs, catalogues, recent),
+        designs=designs,
+        labelling=Labelling(designs),
         previews=previews,
         models=models,
         analyses=analyses,

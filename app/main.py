@@ -32,6 +32,7 @@ from app.api.routes.designs import router as designs
 from app.api.routes.evaluations import router as answers
 from app.api.routes.film_pressure import router as film_pressure
 from app.api.routes.jobs import router as jobs
+from app.api.routes.labels import router as labels
 from app.api.routes.models import router as models
 from app.api.routes.reports import router as reports
 from app.api.routes.templates import router as catalogue
@@ -86,6 +87,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         catalogue,
         faults,
         designs,
+        labels,
         design_files,
         reports,
         design_events,

@@ -12,7 +12,6 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -181,10 +180,14 @@ def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:
     return hashlib.sha256(json.dumps(identity).encode()).hexdigest()
 
 
-@cache
 def _code(cls: type[CadModel]) -> tuple[str, ...]:
     """The digest of a team's file, which may change while the service runs; nothing of a built-in model."""
-    return (content_digest(cls),) if is_outside(cls) else ()
+    if cls not in _codes:
+        _codes[cls] = (content_digest(cls),) if is_outside(cls) else ()
+    return _codes[cls]
+
+
+_codes: dict[type[CadModel], tuple[str, ...]] = {}
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from app.api.threads import Threads
 from app.calculations.pool import CalculationPool
 from app.calculations.steps import Steps
 from app.catalogue.catalogues import Catalogues
+from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.service import Designs
 from app.jobs.service import Jobs
@@ -38,6 +39,7 @@ class Services:
     threads: Threads
     answering: Answering
     designs: Designs
+    labelling: Labelling
     previews: Previews
     models: Models
     analyses: Analyses

@@ -78,7 +78,7 @@ def _worked(step: RevisionStep, catalogue: Catalogue[Template], system: System) 
 
 
 def _is_edited(cls: type[Template], step: RevisionStep) -> bool:
-    """Whether a team has edited its file since it calculated a step: it would calculate something else now."""
+    """Whether a team has edited its file since it calculated a step."""
     calculated_by = step.template.content_digest
     return is_outside(cls) and calculated_by not in (None, identity(cls)["content_digest"])
 

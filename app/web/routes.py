@@ -10,6 +10,7 @@ from fastapi import APIRouter, Path, Query, Request, Response
 
 from app.schemas.catalogue import FaultList
 from app.schemas.designs import Design, DesignList, Explanation, ModelMeasurements, State
+from app.schemas.labels import TagList
 from app.schemas.templates import TemplateList, TemplateVersions
 from app.web import plotly
 from app.web.api import Api, Refused, TheApi
@@ -26,13 +27,15 @@ Id = Annotated[str, Path(max_length=64, pattern=r"^[A-Za-z0-9_]+$")]
 Number = Annotated[int, Path(ge=1, le=10**9)]
 Text = Annotated[str, Query(max_length=200)]
 ON_HOME = 4  # designs, with pictures: the first page is light
+TAGS_ON_HOME = 30
 
 
 @router.get("/")
 async def home(request: Request, api: TheApi) -> Response:
     """Designs, templates, models, and where to start."""
-    designs, templates, models, faulty = await asyncio.gather(
+    designs, tags, templates, models, faulty = await asyncio.gather(
         api.get("/designs", DesignList, limit=ON_HOME),
+        api.get("/tags", TagList),
         api.get("/templates", TemplateList, limit=500),
         api.get("/models", TemplateList, limit=500),
         api.get("/catalogue/faults", FaultList, limit=500),
@@ -42,6 +45,8 @@ async def home(request: Request, api: TheApi) -> Response:
         request,
         "home.html",
         designs=designs,
+        tags=tags.items[:TAGS_ON_HOME],
+        back="/",
         pictures=dict(await asyncio.gather(*(_picture(api, item.id) for item in designs.items))),
         templates=templates.items,
         latest=latest,
@@ -59,18 +64,30 @@ async def designs(
     name: Text = "",
     state: Text = "",
     template: Text = "",
+    tag: Text = "",
+    archived: Text = "",
 ) -> Response:
     """Designs, page by page: all, or those that fit what was typed into the filter."""
-    typed = {"name": name, "state": state, "template": template.strip()}
+    typed = {
+        "name": name,
+        "state": state,
+        "template": template.strip(),
+        "tag": tag.strip(),
+        "archived": archived,
+    }
     wanted = {key: text for key, text in typed.items() if text}  # a form sends empty fields too
     place = {"cursor": cursor} if cursor else {}
-    page = await api.get("/designs", DesignList, limit=50, **wanted, **place)
+    page, tags = await asyncio.gather(
+        api.get("/designs", DesignList, limit=50, **wanted, **place), api.get("/tags", TagList)
+    )
     return show(
         request,
         "designs.html",
         designs=page,
         wanted=wanted,
         states=get_args(State),
+        tags=tags.items,
+        back=f"/designs?{urlencode(wanted)}" if wanted else "/designs",
         older=urlencode({**wanted, "cursor": page.next}) if page.next else None,
     )
 
@@ -156,6 +173,8 @@ async def report(id: Id, request: Request) -> Response:
 @router.get("/designs/{id}/auto-map")
 @router.get("/designs/{id}/copy")
 @router.get("/designs/{id}/delete")
+@router.get("/designs/{id}/rename")
+@router.get("/designs/{id}/labels")
 @router.get("/designs/{id}/revisions/{_}/restore")
 @router.get("/designs/{id}/jobs/{_}/cancel")
 async def after_a_form(id: Id, request: Request) -> Response:
