@@ -25,6 +25,7 @@ from app.api.routes.analyses import router as analyses
 from app.api.routes.calculations import router as calculations
 from app.api.routes.calculations import worksheets
 from app.api.routes.catalogue import router as faults
+from app.api.routes.comparisons import router as comparisons
 from app.api.routes.curves import router as curves
 from app.api.routes.design_events import router as design_events
 from app.api.routes.design_files import router as design_files
@@ -88,6 +89,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         faults,
         designs,
         labels,
+        comparisons,
         design_files,
         reports,
         design_events,

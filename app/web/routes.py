@@ -14,6 +14,7 @@ from app.schemas.labels import TagList
 from app.schemas.templates import TemplateList, TemplateVersions
 from app.web import plotly
 from app.web.api import Api, Refused, TheApi
+from app.web.compare_page import Asked, compare_page
 from app.web.design_page import design_page, revision_page
 from app.web.gallery import offered
 from app.web.model_page import model_page
@@ -149,6 +150,20 @@ async def revision(
         if not is_unusable(refused):
             raise
         return await stored_page(request, api, id, number, refused.problem.detail)
+
+
+@router.get("/designs/{id}/compare")
+async def compared(
+    id: Id,
+    request: Request,
+    api: TheApi,
+    revision: Text = "",
+    number: Annotated[str, Query(alias="with", max_length=200)] = "",
+    design: Text = "",
+    of: Text = "",
+) -> Response:
+    """Two revisions, of this design or of this and another one."""
+    return await compare_page(request, api, id, Asked(revision, number, design, of))
 
 
 @router.get("/designs/{id}/explain/{parameter}")
