@@ -148,6 +148,7 @@ class Client(_Connection):
             return response
 
     templates = _Method(operations.templates)
+    faults = _Method(operations.faults)
     template = _Method(operations.template)
     evaluate = _Method(operations.evaluate)
     worksheet = _Method(operations.worksheet)
@@ -162,6 +163,10 @@ class Client(_Connection):
     copy = _Method(operations.copy)
     restore = _Method(operations.restore)
     delete = _Method(operations.delete)
+    labels = _Method(operations.labels)
+    label = _Method(operations.label)
+    tags = _Method(operations.tags)
+    compare = _Method(operations.compare)
     preview = _Method(operations.preview)
     auto_map = _Method(operations.auto_map)
     explain = _Method(operations.explain)
@@ -226,6 +231,7 @@ class AsyncClient(_Connection):
             return response
 
     templates = _AsyncMethod(operations.templates)
+    faults = _AsyncMethod(operations.faults)
     template = _AsyncMethod(operations.template)
     evaluate = _AsyncMethod(operations.evaluate)
     worksheet = _AsyncMethod(operations.worksheet)
@@ -240,6 +246,10 @@ class AsyncClient(_Connection):
     copy = _AsyncMethod(operations.copy)
     restore = _AsyncMethod(operations.restore)
     delete = _AsyncMethod(operations.delete)
+    labels = _AsyncMethod(operations.labels)
+    label = _AsyncMethod(operations.label)
+    tags = _AsyncMethod(operations.tags)
+    compare = _AsyncMethod(operations.compare)
     preview = _AsyncMethod(operations.preview)
     auto_map = _AsyncMethod(operations.auto_map)
     explain = _AsyncMethod(operations.explain)
