@@ -88,7 +88,8 @@ def _import_fault(error: BaseException, path: Path) -> FileFault:
     line = failing_line(error, path)
     match error:
         case SyntaxError():
-            return FileFault("syntax", f"{type(error).__name__}: {error.msg}", "correct this line", line)
+            remedy = "correct this line" if line else "save the file as UTF-8"
+            return FileFault("syntax", f"{type(error).__name__}: {error.msg}", remedy, line)
         case UnicodeError():
             return FileFault("syntax", f"it is no text in UTF-8: {error}", "save the file as UTF-8", line)
         case ImportError():

@@ -130,7 +130,7 @@ def list_designs(
 ) -> DesignList:
     """Designs, newest first: all, or those that fit every filter given."""
     tags = tuple(dict.fromkeys(map(key_of, tag)))
-    wanted = DesignFilter(name=name, state=state, tags=tags, archived=archived, template=template)
+    wanted = DesignFilter(name, state, tags, archived, template)
     with database.read() as session:
         rows = repository.designs(session, limit, cursor, wanted)
         labels = tags_of(session, [row.id for row in rows])
