@@ -47,7 +47,7 @@ def key_of(tag: str) -> str:
 
 def clean(tag: str) -> str:
     """A tag as it is kept: composed letters, single blanks."""
-    return " ".join(unicodedata.normalize("NFC", tag).split())
+    return " ".join(filter(None, unicodedata.normalize("NFC", tag).split(" ")))
 
 
 class Labelling:

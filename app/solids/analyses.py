@@ -175,11 +175,10 @@ class ModelAnalysis:
             With the problem, for anything that the model itself brings about.
         """
         asked = job.payload
-        shape = self.catalogues.models.get(asked["model"], asked["version"]).from_quantities(
-            asked["parameters"]
-        )
         question = Question(**asked["question"])
         try:
+            cls = self.catalogues.models.get(asked["model"], asked["version"])
+            shape = cls.from_quantities(asked["parameters"])
             self.builds.make(shape, context)
             self.analysing.find(shape, question, tuple(asked["outputs"]), context)
         except (*FAILURES, AnalysisError) as error:

@@ -154,11 +154,10 @@ class ModelBuild:
         asked = job.payload
         if "build" in asked:
             return self._derived(asked["build"], asked["kinds"], context)
-        shape = self.catalogues.models.get(asked["model"], asked["version"]).from_quantities(
-            asked["parameters"]
-        )
-        key = build_key(shape)
         try:
+            cls = self.catalogues.models.get(asked["model"], asked["version"])
+            shape = cls.from_quantities(asked["parameters"])
+            key = build_key(shape)
             self.builds.make(shape, context)
         except FAILURES as error:
             raise JobFailed(error) from error

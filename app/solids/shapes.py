@@ -31,8 +31,8 @@ def shape_of(session: Session, catalogue: Catalogue[CadModel], key: str) -> CadM
     name = f"model {row.model} version {row.version}, which made build {key},"
     try:
         return catalogue.get(row.model, row.version).from_quantities(given)
-    except UnknownTemplate:
-        detail = f"{name} is not in the catalogue; put its file back and start the service again"
+    except UnknownTemplate as error:
+        detail = f"{name} cannot be used: {error}. Put its file back, or correct it"
         raise CannotRebuild("model_gone", detail) from None
     except TemplateError as error:
         detail = f"{name} has been changed and refuses its parameters now: {error}"

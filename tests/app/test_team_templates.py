@@ -5,6 +5,7 @@ import os
 import threading
 from contextlib import contextmanager
 from textwrap import dedent
+from types import SimpleNamespace
 
 import httpx
 import pytest
@@ -13,8 +14,11 @@ from patience import patient, until
 from serving import API, DOUBLE, MOODY, created, faults, moody, patched, problem, revision, serving
 from sleeping import folder_of_sleeper
 
+from app.catalogue.catalogues import loaded
 from app.cli import main
+from app.jobs.service import JobFailed
 from app.settings import Settings
+from app.solids.models import ModelBuild
 
 TWICE, ENDLESS = dedent(DOUBLE).lstrip(), "import time\ntime.sleep(3600)\n"
 BROKEN = TWICE.replace("return 2 * self.a", "return 2 * self.c")
@@ -162,6 +166,39 @@ class TestDesigns:
         until(lambda: value(http) == 6)
         assert patched(http, design, change)["state"] == "current"
         assert "cannot be calculated" not in http.get(f"/designs/{design['id']}").text
+
+    def test_a_design_of_a_quarantined_model_is_read_and_its_jobs_say_why(self, http, own):
+        file = own / "moody_v1.py"
+        text = file.read_text()
+        design = created(http, moody("9 mm"))
+        body = {"parameters": {"size": "5 mm"}}
+        build = f"{API}/models/moody/versions/1/build"
+        file.write_text(f"{text}\n)")
+        try:
+            until(lambda: http.get(f"{API}/models/moody").status_code == 404)
+            place = f"{API}/designs/{design['id']}"
+            for path in ("", "/revisions/1", "/report.html", "/worksheet.json", "/model.step", "/model.png"):
+                answer = http.get(f"{place}{path}", headers={"Prefer": "wait=60"})
+                assert answer.status_code == 200, path
+            page = http.get(f"/designs/{design['id']}", headers={"Accept": "text/html"})
+            assert (page.status_code, "cannot be calculated now" in page.text) == (200, True)
+            problem(http.post(build, json=body), 404, "quarantined")
+            change = {"models": {"model": {"parameters": {"size": "6 mm"}}}}
+            refused = http.patch(place, json=change, headers={"If-Match": '"1"'})
+            assert faults(refused) == {"models.model": "quarantined"}
+        finally:
+            file.write_text(text)
+        until(lambda: http.get(f"{API}/models/moody").status_code == 200)
+        assert patched(http, design, change)["state"] == "current"
+
+    def test_a_job_whose_model_was_quarantined_meanwhile_says_so(self, tmp_path):
+        """As after a restart: the row names a version that cannot be used any more."""
+        (tmp_path / "slab_v1.py").write_text("def (")
+        catalogues = loaded((tmp_path,))
+        job = SimpleNamespace(payload={"model": "slab", "version": 1, "parameters": {}, "kinds": []})
+        with pytest.raises(JobFailed) as failure:
+            ModelBuild(None, catalogues)(job, None)
+        assert "slab version 1 is quarantined" in str(failure.value.__cause__)
 
 
 class TestReload:
