@@ -12,9 +12,11 @@ from app.api.threads import Threads
 from app.calculations.assembly import Calculations, assemble_calculations
 from app.calculations.cache import results
 from app.calculations.jobs import CALCULATION, DECISION, PREVIEW
+from app.catalogue.catalogues import Catalogues, TeamCatalogues
+from app.catalogue.checking import CheckInProcess
 from app.catalogue.finding import find_templates
 from app.designs.decisions import Decisions
-from app.designs.graph import Catalogues
+from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.recent import Recent
 from app.designs.regeneration import Regeneration
@@ -35,7 +37,7 @@ from app.storage.database import Database
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.storage.migrations import migrate
-from app.workers.base import Limits
+from app.workers.base import Limits, Worker
 from app.workers.local import LocalProcesses
 from cad.catalogue import models as find_models
 
@@ -50,13 +52,12 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     retention = Retention(database, store, settings)
     retention.start()
     stack.callback(retention.stop)
-    catalogues = Catalogues(
-        find_templates(settings.template_folders), find_models(*settings.template_folders)
-    )
     worker = LocalProcesses()
     stack.callback(worker.close)
+    catalogues = find_catalogues(settings, worker)
+    stack.callback(catalogues.close)
     jobs = Jobs(database, worker, settings, problems.describe)
-    calculations = assemble_calculations(settings, stack, catalogues.templates, database, store, jobs)
+    calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs)
     recent = Recent()
     register_jobs(settings, jobs, database, store, catalogues, calculations, recent)
     previews = Previews(database, catalogues, store, jobs, calculations.steps)
@@ -65,7 +66,8 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     jobs.register(DECISION, decisions, decisions.failed, lane=CALCULATION)
     jobs.start(calculations.lanes)
     stack.callback(jobs.stop)
-    models = Models(database, store, jobs, catalogues.models)
+    models = Models(database, store, jobs, catalogues)
+    designs = Designs(database, jobs, catalogues, recent)
     analyses = Analyses(database, store, jobs)
     return Services(
         settings=settings,
@@ -77,7 +79,8 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         steps=calculations.steps,
         threads=Threads(),
         answering=Answering(calculations.pool, calculations.jobs, settings.calculation_deadline),
-        designs=Designs(database, jobs, catalogues, recent),
+        designs=designs,
+        labelling=Labelling(designs),
         previews=previews,
         decisions=decisions,
         models=models,
@@ -95,6 +98,14 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
             }
         ),
     )
+
+
+def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
+    """What there is; every file of a team is checked in a process of the worker before it is loaded."""
+    if not settings.template_folders:
+        return Catalogues(find_templates(()), find_models())
+    limits = Limits(settings.template_seconds, settings.job_memory_mb)
+    return TeamCatalogues(settings.template_folders, CheckInProcess(worker, limits))
 
 
 def opened_database(settings: Settings, folder: DataFolder, stack: ExitStack) -> Database:
@@ -117,11 +128,11 @@ def register_jobs(
     recent: Recent,
 ) -> None:
     """Say what carries out each kind of job."""
-    builds = Builds(database, store, settings.template_folders)
+    builds = Builds(database, store)
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
     regeneration = Regeneration(database, builds, analysing, catalogues, calculations.steps, recent)
     jobs.register(REGENERATE, regeneration, regeneration.failed)
     jobs.register(REGENERATE_SLOWLY, regeneration, regeneration.failed, is_slow=True)
     jobs.register(CALCULATE, regeneration, regeneration.failed, lane=CALCULATION)
-    jobs.register(BUILD, ModelBuild(builds, catalogues.models))
-    jobs.register(ANALYSIS, ModelAnalysis(builds, analysing, catalogues.models), is_slow=True)
+    jobs.register(BUILD, ModelBuild(builds, catalogues))
+    jobs.register(ANALYSIS, ModelAnalysis(builds, analysing, catalogues), is_slow=True)

@@ -1,4 +1,4 @@
-"""The command line: `crankwright serve | demo | download | evaluate | template | freeze | check | …`."""
+"""The command line: `crankwright serve | demo | download | evaluate | template | check-template | …`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from pydantic_settings import SettingsError
 from app import server
 from app.calculations import rendering
 from app.calculations.arguments import argument
-from app.catalogue.finding import find_templates
+from app.catalogue.catalogues import loaded
+from app.catalogue.commands import check_template_command
 from app.demo import demonstrate
 from app.downloads import download_command
 from app.hosts import is_loopback
@@ -25,7 +26,6 @@ from app.settings import Settings
 from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
-from cad.catalogue import models as find_models
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.catalogue.golden import freeze as freeze_template
@@ -88,7 +88,6 @@ def serve(host: str | None, port: int | None, data: Path | None, insecure: bool)
     except OSError as error:
         message = f"{settings.data.absolute()} cannot hold the data: {error.strerror}"
         raise click.ClickException(f"{message}; name another folder by --data") from None
-    _catalogue(), find_models(*settings.template_folders)  # reports a broken file before it serves
     place = f"[{settings.host}]" if ":" in settings.host else settings.host
     click.echo(
         f"Crankwright at http://{place}:{settings.port}/docs, data in {settings.data.absolute()}", err=True
@@ -119,6 +118,7 @@ main.add_command(check_command)
 main.add_command(download_command)
 main.add_command(backup_command)
 main.add_command(restore_command)
+main.add_command(check_template_command)
 
 
 @main.command()
@@ -224,7 +224,7 @@ def _shown(default: Json) -> str:
 @click.option("--folder", type=click.Path(path_type=Path), default=GOLDEN, show_default=True)
 def freeze(id: str, version: int, folder: Path) -> None:
     """Write the golden record of a template or model about to be released; never over an existing one."""
-    catalogue: Catalogue[CadModel] = find_models(*Settings().template_folders)
+    catalogue: Catalogue[CadModel] = loaded(Settings().template_folders).models
     try:
         cls = catalogue.get(id, version) if id in catalogue.ids else _find(id, version)
         click.echo(f"written: {freeze_template(cls, folder)}")
@@ -233,7 +233,12 @@ def freeze(id: str, version: int, folder: Path) -> None:
 
 
 def _catalogue() -> Catalogue[Template]:
-    return find_templates(Settings().template_folders)
+    """The templates; a file that cannot be used is reported, and the others are there."""
+    snapshot = loaded(Settings().template_folders)
+    for file in snapshot.files:
+        for fault in file.faults:
+            click.secho(f"{file.path} is not used: {fault.sentence}", fg="yellow", err=True)
+    return snapshot.templates
 
 
 def _find(id: str, version: int | None) -> type[Template]:

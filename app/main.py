@@ -24,6 +24,8 @@ from app.api.routes import health
 from app.api.routes.analyses import router as analyses
 from app.api.routes.calculations import router as calculations
 from app.api.routes.calculations import worksheets
+from app.api.routes.catalogue import router as faults
+from app.api.routes.comparisons import router as comparisons
 from app.api.routes.curves import router as curves
 from app.api.routes.decisions import router as decisions
 from app.api.routes.design_events import router as design_events
@@ -32,6 +34,7 @@ from app.api.routes.designs import router as designs
 from app.api.routes.evaluations import router as answers
 from app.api.routes.film_pressure import router as film_pressure
 from app.api.routes.jobs import router as jobs
+from app.api.routes.labels import router as labels
 from app.api.routes.library import router as library
 from app.api.routes.models import router as models
 from app.api.routes.reports import router as reports
@@ -85,9 +88,12 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         film_pressure,
         curves,
         catalogue,
+        faults,
         library,
         designs,
         decisions,
+        labels,
+        comparisons,
         design_files,
         reports,
         design_events,

@@ -28,6 +28,9 @@ class Settings(BaseSettings):
     )
     body_limit: int = Field(16 * 2**20, gt=0, description="largest request body [bytes]")
     template_folders: tuple[Path, ...] = Field((), description="folders of a team's own templates")
+    template_seconds: float = Field(
+        30.0, gt=0, description="longest time in which a team's file is loaded and checked [s]"
+    )
     wait_seconds: float = Field(2.0, ge=0, description="how long an answer waits for its job [s]")
     queue_limit: int = Field(1000, gt=0, description="jobs that may be queued before new ones are refused")
     client_queue_limit: int = Field(50, gt=0, description="jobs of one client that may be queued")

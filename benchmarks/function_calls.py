@@ -19,6 +19,7 @@ import threading
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from inspect import signature
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import CodeType, FrameType
@@ -94,7 +95,7 @@ class Bench:
         stack.callback(self.database.close)
         catalogues = Catalogues(find_templates(()), models())
         self.jobs = Jobs(self.database, Inline(), Settings(data=folder), problems.describe)
-        builds = Builds(self.database, store, ())
+        builds = Builds(self.database, store, *_folders(Builds))
         analysing = Analysing(self.database, store, Limits())
         self.designs = Designs(self.database, self.jobs, catalogues)
         self.regeneration = Regeneration(
@@ -125,6 +126,11 @@ class Bench:
     def is_current(self, design: str) -> bool:
         """Whether the design is regenerated."""
         return bool(self.designs.state(design)["state"] == "current")
+
+
+def _folders(builds: type) -> list[tuple[()]]:
+    """The folders of a team's models, which older programs hand to the builds."""
+    return [()] if "folders" in signature(builds).parameters else []
 
 
 def _recent(designs: Any) -> dict[str, Any]:

@@ -23,8 +23,13 @@ from cad.inspect import bounding_box, look_at, measure, summarise
 from cad.model import CadModel
 from cad.step import read_step, write_step
 from cad.step_text import KERNEL
+from templates.core.catalogue.digests import content_digest
+from templates.core.catalogue.loading import is_outside
 
-__all__ = ["Build", "as_quantities", "as_text", "build_key", "regenerate", "regenerate_from_text"]
+__all__ = [
+    "Build", "as_quantities", "as_text", "build_key", "made_by", "regenerate", "regenerate_class",
+    "regenerate_from_text",
+]  # fmt: skip
 
 Report = Callable[[float, str], None]
 
@@ -33,6 +38,11 @@ RECIPE = 3
 
 MADE_BY = f"{KERNEL}, recipe {RECIPE}"
 """What a build's key holds beside its model and parameters, for people."""
+
+
+def made_by(cls: type[CadModel]) -> str:
+    """What a build's key holds beside model and parameters, for people; of a team's model its code too."""
+    return ", code ".join([MADE_BY, *(code[:12] for code in _code(cls))])
 
 
 @dataclass(frozen=True)
@@ -126,7 +136,11 @@ def regenerate_from_text(
     report: Report = ignore,
 ) -> Build:
     """Build a model from its parameters as `as_text` writes them; raises as `regenerate` does."""
-    cls = models(*folders).get(model_id, version)
+    return regenerate_class(models(*folders).get(model_id, version), texts, report=report)
+
+
+def regenerate_class(cls: type[CadModel], texts: Mapping[str, str], *, report: Report = ignore) -> Build:
+    """Build a model of a class from its parameters as `as_text` writes them; raises as `regenerate` does."""
     model, key = cls.from_quantities(texts), _key(cls, texts)
     with _kernel(model):
         report(0.0, "building")
@@ -164,8 +178,18 @@ def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, float 
 
 
 def _key(cls: type[CadModel], texts: Mapping[str, str]) -> str:
-    identity = [cls.id, cls.version, sorted(texts.items()), KERNEL, RECIPE]
+    identity = [cls.id, cls.version, sorted(texts.items()), KERNEL, RECIPE, *_code(cls)]
     return hashlib.sha256(json.dumps(identity).encode()).hexdigest()
+
+
+def _code(cls: type[CadModel]) -> tuple[str, ...]:
+    """The digest of a team's file, which may change while the service runs; nothing of a built-in model."""
+    if cls not in _codes:
+        _codes[cls] = (content_digest(cls),) if is_outside(cls) else ()
+    return _codes[cls]
+
+
+_codes: dict[type[CadModel], tuple[str, ...]] = {}
 
 
 @contextmanager

@@ -16,6 +16,7 @@ from app.calculations.errors import TooManyCalculations
 from app.calculations.jobs import CalculationJobs
 from app.calculations.operations import LARGE, Question, answered, check, checked
 from app.calculations.pool import Calculation, CalculationPool
+from app.calculations.sources import source_of
 from app.workers.errors import JobCancelled
 from templates.core.language.template import Template
 
@@ -58,7 +59,7 @@ class Answering:
         if seconds <= 0:
             await self._check(request, cls, client, question)
             return accepted(await run_in_threadpool(self.jobs.create, question, client))
-        calculation = self.pool.submit(client, answered, self.jobs.sources[cls], question)
+        calculation = self.pool.submit(client, answered, source_of(cls), question)
         try:
             ended = await self._ends(request, calculation, seconds)
         except BaseException:
@@ -82,7 +83,7 @@ class Answering:
             await run_in_threadpool(check, cls, question)
             return
         with suppress(TooManyCalculations):
-            checking = self.pool.submit(client, checked, self.jobs.sources[cls], question)
+            checking = self.pool.submit(client, checked, source_of(cls), question)
             try:
                 if await self._ends(request, checking, self.jobs.jobs.wait_seconds):
                     checking.future.result()

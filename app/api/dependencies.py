@@ -17,8 +17,9 @@ from app.api.reading import fingerprint
 from app.api.services import Services
 from app.api.threads import Threads
 from app.calculations.steps import Caller, call_as
+from app.catalogue.catalogues import Catalogues
 from app.designs.decisions import Decisions
-from app.designs.graph import Catalogues
+from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.service import Designs
 from app.jobs.service import Jobs
@@ -55,6 +56,7 @@ TheJobs = Annotated[Jobs, Depends(_part("jobs"))]
 TheThreads = Annotated[Threads, Depends(_part("threads"))]
 TheAnswering = Annotated[Answering, Depends(_part("answering"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
+TheLabelling = Annotated[Labelling, Depends(_part("labelling"))]
 ThePreviews = Annotated[Previews, Depends(_part("previews"))]
 TheDecisions = Annotated[Decisions, Depends(_part("decisions"))]
 TheModels = Annotated[Models, Depends(_part("models"))]

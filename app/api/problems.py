@@ -70,6 +70,9 @@ TABLE: dict[type[Exception], Kind] = {
     templates.InvalidInputs: INVALID,
     RequestValidationError: INVALID,
     InvalidBody: INVALID,
+    templates.QuarantinedTemplate: Kind(
+        "quarantined", 404, "The version is quarantined", "correct its file: GET /api/v1/catalogue/faults"
+    ),
     templates.UnknownTemplate: Kind("unknown-template", 404, "No such version", "GET the list of versions"),
     UnknownTable: Kind("unknown-table", 404, "No such table", "GET /api/v1/library lists them"),
     templates.Unreachable: Kind("unreachable", 422, "The target is out of reach", "see `reachable`"),

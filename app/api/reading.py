@@ -131,6 +131,7 @@ class StrictRoute(APIRoute):
         is_patch = "PATCH" in (self.methods or ())
 
         async def strict(request: Request) -> Response:
+            await _refreshed(request)
             if is_patch and "if-match" not in request.headers:
                 raise PreconditionRequired('send If-Match with the ETag of the design you read, such as "3"')
             strictly = StrictRequest(request.scope, request.receive)
@@ -156,6 +157,13 @@ class StrictRoute(APIRoute):
     async def shortcut(self, request: StrictRequest) -> Response | None:
         """An answer past FastAPI's general machinery, where a route can read a plain request by itself."""
         return None
+
+
+async def _refreshed(request: Request) -> None:
+    """Take notice of a team's files that have changed."""
+    services = getattr(request.app.state, "services", None)
+    if services is not None:
+        await services.catalogues.refresh()
 
 
 def check_type(request: Request, allowed: set[str], error: type[HttpError] = NotJson) -> None:

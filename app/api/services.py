@@ -10,8 +10,9 @@ from app.api.readiness import Readiness
 from app.api.threads import Threads
 from app.calculations.pool import CalculationPool
 from app.calculations.steps import Steps
+from app.catalogue.catalogues import Catalogues
 from app.designs.decisions import Decisions
-from app.designs.graph import Catalogues
+from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.service import Designs
 from app.jobs.service import Jobs
@@ -39,6 +40,7 @@ class Services:
     threads: Threads
     answering: Answering
     designs: Designs
+    labelling: Labelling
     previews: Previews
     decisions: Decisions
     models: Models

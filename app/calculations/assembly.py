@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from app.calculations.jobs import CALCULATION, CalculationJobs
 from app.calculations.pool import CalculationPool
-from app.calculations.sources import source_of
 from app.calculations.steps import Steps
+from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Jobs
 from app.observation import metrics
 from app.settings import Settings
@@ -17,8 +17,6 @@ from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.workers.base import Limits
 from app.workers.pool import WarmProcesses
-from templates.core.catalogue.finding import Catalogue
-from templates.core.language.template import Template
 
 PRELOAD = ("app.calculations.warm",)
 
@@ -44,7 +42,7 @@ class Calculations:
 def assemble_calculations(
     settings: Settings,
     stack: ExitStack,
-    catalogue: Catalogue[Template],
+    catalogues: Catalogues,
     database: Database,
     store: ArtifactStore,
     jobs: Jobs,
@@ -57,7 +55,6 @@ def assemble_calculations(
     pool = CalculationPool(processes, size, settings.calculation_waiting, limits)
     stack.callback(pool.close)
     stack.callback(metrics.watch("calculations", pool.occupancy))
-    sources = {cls: source_of(cls) for cls in catalogue}
-    handler = CalculationJobs(pool, catalogue, sources, database, store, jobs)
+    handler = CalculationJobs(pool, catalogues, database, store, jobs)
     jobs.register(CALCULATION, handler, handler.failed, lane=CALCULATION)
-    return Calculations(pool, Steps(pool, sources, settings.calculation_deadline), handler)
+    return Calculations(pool, Steps(pool, settings.calculation_deadline), handler)

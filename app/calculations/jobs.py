@@ -14,7 +14,8 @@ from sqlalchemy.orm import Session
 from app.calculations.errors import InvalidBody, TooManyValues
 from app.calculations.operations import Question, answered
 from app.calculations.pool import Calculation, CalculationPool
-from app.calculations.sources import Source
+from app.calculations.sources import source_of
+from app.catalogue.catalogues import Catalogues
 from app.jobs import repository
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.plain import Json, JsonObject
@@ -51,15 +52,19 @@ class CalculationJobs:
     def __init__(
         self,
         pool: CalculationPool,
-        catalogue: Catalogue[Template],
-        sources: dict[type[Template], Source],
+        catalogues: Catalogues,
         database: Database,
         store: ArtifactStore,
         jobs: Jobs,
     ) -> None:
-        self.pool, self.catalogue, self.sources = pool, catalogue, sources
+        self.pool, self.catalogues = pool, catalogues
         self.database, self.store, self.jobs = database, store, jobs
         self._adopted: dict[str, Calculation] = {}  # by job
+
+    @property
+    def catalogue(self) -> Catalogue[Template]:
+        """The templates, as they are now."""
+        return self.catalogues.templates
 
     def create(self, question: Question, client: str, running: Calculation | None = None) -> str:
         """Queue a job for a question, which adopts the calculation that runs already, if there is one.
@@ -142,7 +147,7 @@ class CalculationJobs:
         except (ArtifactMissing, ArtifactDamaged) as error:
             raise _lost(job) from error
         cls = self.catalogue.get(question.template, question.version)
-        return self.pool.submit(f"job:{job.id}", answered, self.sources[cls], question, lane="jobs")
+        return self.pool.submit(f"job:{job.id}", answered, source_of(cls), question, lane="jobs")
 
     def _outcome(self, calculation: Calculation, context: JobContext) -> Pieces:
         while not wait([calculation.future], GLANCE).done:

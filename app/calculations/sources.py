@@ -3,49 +3,41 @@
 from __future__ import annotations
 
 import inspect
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
-from templates.core.catalogue.finding import declared_in_file
-from templates.core.errors import UnusableFile
+from templates.core.catalogue.finding import declared_in, declared_in_file
+from templates.core.catalogue.loading import load, origin
 from templates.core.language.template import Template
-
-BUILT_IN = "templates."
 
 
 @dataclass(frozen=True)
 class Source:
-    """The file of a template; a built-in one is part of the program, and `state` is empty."""
+    """The file of a template; the content of a team's file goes with it, of a built-in one nothing."""
 
     path: str
-    state: tuple[int, int] | None  # time of change [ns] and size [bytes]
+    digest: str = ""
+    content: bytes = field(default=b"", compare=False)
 
 
 def source_of(cls: type[Template]) -> Source:
-    """The source of a template that has just been read."""
-    path = Path(inspect.getfile(cls))
-    return Source(str(path), None if cls.__module__.startswith(BUILT_IN) else _state(path))
+    """The source of a template, with the code that this process calculates by."""
+    module, path = inspect.getmodule(cls), inspect.getfile(cls)
+    made = origin(module) if module else None
+    return Source(path, made[1], made[0]) if made else Source(path)
 
 
 @lru_cache(maxsize=1024)
 def loaded(source: Source) -> type[Template]:
-    """The template in this process.
+    """The template in this process, by the code that the server sent.
 
     Raises
     ------
     UnusableFile
-        If its file is no longer the one that the server read.
+        If it cannot be imported here.
     """
     path = Path(source.path)
-    if source.state is not None and source.state != _state(path):
-        raise UnusableFile(source.path, "it has changed since the server read it; start the server again")
-    return declared_in_file(path)
-
-
-def _state(path: Path) -> tuple[int, int] | None:
-    try:
-        status = path.stat()
-    except OSError:
-        return None
-    return status.st_mtime_ns, status.st_size
+    if not source.digest:
+        return declared_in_file(path)
+    return declared_in(load(path, source.content, source.digest), path)

@@ -18,7 +18,7 @@ from app.calculations.begun import Begun, fingerprint
 from app.calculations.cost import EXPENSIVE, estimated_seconds
 from app.calculations.errors import StepDeferred
 from app.calculations.pool import Calculation, CalculationPool, Lane
-from app.calculations.sources import Source, loaded
+from app.calculations.sources import Source, loaded, source_of
 from app.jobs.service import Job, JobContext
 from app.plain import Raw
 from app.workers.errors import JobCancelled
@@ -34,7 +34,6 @@ class Steps:
     """Where expensive steps are evaluated, and how long an answer waits for them [s]."""
 
     pool: CalculationPool
-    sources: Mapping[type[Template], Source]
     deadline: float
     left: dict[str, Begun] = field(default_factory=dict)  # calculations that wait for their job, by job
 
@@ -80,7 +79,7 @@ class Caller:
             It has not ended in time; it goes on if it may.
         """
         key = (cls, outputs, level, tolerance, fingerprint(raw))
-        question: _Question = self.steps.sources[cls], raw, outputs, level, tolerance
+        question: _Question = source_of(cls), raw, outputs, level, tolerance
         calculation = self.begun.take(key) or self._submitted(question)
         if self.report is not None:
             calculation.listen(self.report)

@@ -9,7 +9,7 @@ from typing import Generic, ParamSpec, Self, TypedDict, TypeVar, overload
 import httpx
 
 from app.client import operations
-from app.client.exchange import Exchange, Request
+from app.client.exchange import Exchange, Query, Request
 from app.client.names import CLIENT_HEADER, checked_name
 
 _RETRIES = 3  # of the transport, for a connection that is refused
@@ -75,7 +75,7 @@ class _Message(TypedDict):
     method: str
     url: str
     content: bytes | None
-    params: Mapping[str, str] | None
+    params: Query | None
     headers: Mapping[str, str]
 
 
@@ -167,6 +167,7 @@ class Client(_Connection):
             return response
 
     templates = _Method(operations.templates)
+    faults = _Method(operations.faults)
     template = _Method(operations.template)
     library = _Method(operations.library)
     library_table = _Method(operations.library_table)
@@ -183,6 +184,10 @@ class Client(_Connection):
     copy = _Method(operations.copy)
     restore = _Method(operations.restore)
     delete = _Method(operations.delete)
+    labels = _Method(operations.labels)
+    label = _Method(operations.label)
+    tags = _Method(operations.tags)
+    compare = _Method(operations.compare)
     preview = _Method(operations.preview)
     decide = _Method(operations.decide)
     auto_map = _Method(operations.auto_map)
@@ -249,6 +254,7 @@ class AsyncClient(_Connection):
             return response
 
     templates = _AsyncMethod(operations.templates)
+    faults = _AsyncMethod(operations.faults)
     template = _AsyncMethod(operations.template)
     library = _AsyncMethod(operations.library)
     library_table = _AsyncMethod(operations.library_table)
@@ -265,6 +271,10 @@ class AsyncClient(_Connection):
     copy = _AsyncMethod(operations.copy)
     restore = _AsyncMethod(operations.restore)
     delete = _AsyncMethod(operations.delete)
+    labels = _AsyncMethod(operations.labels)
+    label = _AsyncMethod(operations.label)
+    tags = _AsyncMethod(operations.tags)
+    compare = _AsyncMethod(operations.compare)
     preview = _AsyncMethod(operations.preview)
     decide = _AsyncMethod(operations.decide)
     auto_map = _AsyncMethod(operations.auto_map)

@@ -7,7 +7,7 @@ of sockets, so that `Client` and `AsyncClient` run the same exchanges.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
@@ -32,6 +32,10 @@ Result = TypeVar("Result")
 Item = TypeVar("Item")
 
 
+Query = Mapping[str, str] | Sequence[tuple[str, str]]
+"""The query of a request; as pairs, a name may stand several times."""
+
+
 @dataclass(frozen=True)
 class Request:
     """A request; `listen` receives every line of a stream, which has no time-out."""
@@ -39,7 +43,7 @@ class Request:
     method: str
     path: str
     content: bytes | None = None
-    params: Mapping[str, str] = field(default_factory=dict)
+    params: Query = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
     listen: Callable[[str], None] | None = None
 
@@ -47,7 +51,7 @@ class Request:
 Exchange = Generator[Request, httpx.Response, Result]
 
 
-def get(path: str, params: Mapping[str, str] | None = None) -> Request:
+def get(path: str, params: Query | None = None) -> Request:
     """Ask for what is at a path below `BASE`."""
     return Request("GET", BASE + path, params=params or {})
 
@@ -84,12 +88,12 @@ def answered(model: type[Model], request: Request) -> Exchange[Model]:
     return read(model, (yield request))
 
 
-def listed(page: type[Page[Item]], path: str) -> Exchange[list[Item]]:
+def listed(page: type[Page[Item]], path: str, query: Sequence[tuple[str, str]] = ()) -> Exchange[list[Item]]:
     """The items of all pages."""
     items: list[Item] = []
     cursor: str | None = ""
     while cursor is not None:
-        one = yield from answered(page, get(path, {"cursor": cursor} if cursor else {}))
+        one = yield from answered(page, get(path, [*query, *([("cursor", cursor)] if cursor else [])]))
         items += one.items
         cursor = one.next
     return items

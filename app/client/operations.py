@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TypedDict, Unpack
+from typing import Literal, TypedDict, Unpack
 
 import httpx
 
@@ -29,6 +29,8 @@ from app.client.exchange import (
 from app.client.files import File
 from app.client.problem import checked
 from app.schemas.analyses import Analysis, Surface
+from app.schemas.catalogue import FaultList, FaultyFile
+from app.schemas.comparisons import Comparison
 from app.schemas.curves import Curves
 from app.schemas.decisions import Decision
 from app.schemas.designs import (
@@ -43,9 +45,11 @@ from app.schemas.designs import (
     Revision,
     RevisionList,
     RevisionWorksheet,
+    State,
 )
 from app.schemas.evaluations import Evaluation, Solution, Worksheet
 from app.schemas.jobs import Job
+from app.schemas.labels import Labels, TagList, TagUse
 from app.schemas.library import LibraryTable, LibraryTables, LibraryTableSummary
 from app.schemas.solids import Build, Verification
 from app.schemas.templates import Template, TemplateList, TemplateSummary
@@ -70,6 +74,16 @@ class Options(SolveOptions, total=False):
     per_point: bool
 
 
+class Wanted(TypedDict, total=False):
+    """Which designs are listed."""
+
+    name: str
+    state: State
+    template: str
+    tag: str | Sequence[str]
+    archived: Literal["false", "true", "any"]
+
+
 class AnalysisOptions(TypedDict, total=False):
     """How a solid is analysed."""
 
@@ -83,6 +97,11 @@ class AnalysisOptions(TypedDict, total=False):
 def templates() -> Exchange[list[TemplateSummary]]:
     """Every version of every template."""
     return listed(TemplateList, "/templates")
+
+
+def faults() -> Exchange[list[FaultyFile]]:
+    """Every file of a team's templates and models that has faults."""
+    return listed(FaultList, "/catalogue/faults")
 
 
 def template(id: str, version: int) -> Exchange[Template]:
@@ -156,9 +175,9 @@ def surface(analysis: str) -> Exchange[Surface]:
     return read(Surface, (yield from awaited(get(f"/analyses/{analysis}/surface"))))
 
 
-def designs() -> Exchange[list[DesignSummary]]:
-    """All designs, newest first."""
-    return listed(DesignList, "/designs")
+def designs(**wanted: Unpack[Wanted]) -> Exchange[list[DesignSummary]]:
+    """Designs that are not archived, newest first; those that fit every filter given."""
+    return listed(DesignList, "/designs", [*_filters(wanted)])
 
 
 def design(id: str) -> Exchange[Design]:
@@ -212,6 +231,36 @@ def restore(
 def delete(id: str) -> Exchange[None]:
     """Take a design from the lists; its revisions are kept."""
     checked((yield Request("DELETE", f"{BASE}/designs/{id}")))
+
+
+def labels(id: str) -> Exchange[Labels]:
+    """The tags of a design, and whether it is archived."""
+    return answered(Labels, get(f"/designs/{id}/labels"))
+
+
+def label(
+    id: str, *, add_tags: Sequence[str] = (), remove_tags: Sequence[str] = (), archived: bool | None = None
+) -> Exchange[Labels]:
+    """Add and remove tags of a design, archive it or fetch it back; this makes no revision."""
+    change = {"add_tags": [*add_tags], "remove_tags": [*remove_tags], "archived": archived}
+    return answered(Labels, post(f"/designs/{id}/labels", change))
+
+
+def tags() -> Exchange[list[TagUse]]:
+    """The tags of designs that are not archived, the most used first."""
+    return (yield from answered(TagList, get("/tags"))).items
+
+
+def compare(
+    id: str, revision: int | None = None, other: int | None = None, *, design: str | None = None
+) -> Exchange[Comparison]:
+    """What differs from a revision to another one, of the same design or of another.
+
+    Without numbers: the newest revision with the one before, or the newest ones of both designs.
+    """
+    chosen = {"revision": revision, "with": other, "design": design}
+    query = {name: str(value) for name, value in chosen.items() if value is not None}
+    return answered(Comparison, get(f"/designs/{id}/compare", query))
 
 
 def preview(id: str, patch: Mapping[str, object], *, worksheet: bool = False) -> Exchange[Preview]:
@@ -332,6 +381,14 @@ def _awaited(path: str, on_progress: Progress | None) -> Exchange[httpx.Response
     """The answer with a file once it has been made, its job followed from the start if progress is wanted."""
     headers = {"Prefer": "respond-async"} if on_progress else {}
     return awaited(replace(get(path), headers=headers), on_progress)
+
+
+def _filters(wanted: Wanted) -> Iterator[tuple[str, str]]:
+    """The filters as a query, in which a tag may stand several times."""
+    for name, value in wanted.items():
+        texts = [value] if isinstance(value, str) else value
+        assert isinstance(texts, Sequence), "filters are texts"
+        yield from ((name, text) for text in texts)
 
 
 def _match(design: Design) -> dict[str, str]:

@@ -7,7 +7,7 @@ it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import replace
 
 from app.designs.document import Criterion, Document
@@ -27,11 +27,18 @@ def read_demands(document: Document, blocks: Mapping[str, Block]) -> tuple[dict[
     faults: list[Fault] = []
     for name, written in document.criteria.items():
         try:
-            _require_subject(name, written, blocks)
+            if not _is_unread(name, document, blocks):
+                _require_subject(name, written, blocks)
             demands[name] = Demand(name, written, _uses(written.require))
         except FaultyText as error:
             faults.append(fault_of(name, error))
     return demands, faults
+
+
+def _is_unread(name: str, document: Document, blocks: Mapping[str, Block]) -> bool:
+    """Whether a criterion is one of a step whose template is not known, which is a fault of its own."""
+    step, dot, _ = name.partition(".")
+    return bool(dot) and step in document.steps and step not in blocks
 
 
 def _require_subject(name: str, written: Criterion, blocks: Mapping[str, Block]) -> None:
@@ -57,13 +64,16 @@ def _uses(require: str | None) -> dict[str, Reference]:
     return {name: Reference.parse(name) for name in sorted(value.names | limit.names)}
 
 
-def unknown_names_in(network: Network) -> list[Fault]:
-    """A fault for every name in a criterion of the design that means no number."""
+def unknown_names_in(network: Network, unread: Set[str] = frozenset()) -> list[Fault]:
+    """A fault for every name in a criterion of the design that means no number.
+
+    `unread` are blocks whose template is not known, which is a fault of its own.
+    """
     unknown = [
         (demand.name, used)
         for demand in network.demands.values()
         for used, reference in demand.uses.items()
-        if not _is_value(network, reference)
+        if reference.block not in unread and not _is_value(network, reference)
     ]
     if not unknown:
         return []

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from sqlalchemy import JSON, ColumnElement, cast, column, exists, func, or_, select, type_coerce
 from sqlalchemy.orm import Session
 
-from app.storage.tables import DesignRow, RevisionModelRow, RevisionRow
+from app.storage.tables import DesignRow, DesignTagRow, RevisionModelRow, RevisionRow
 from templates.core.errors import Fault, InvalidInputs
 
 TEMPLATE = r"^[A-Za-z0-9_]{1,100}(/[1-9][0-9]{0,8})?$"
@@ -26,6 +26,8 @@ class DesignFilter:
 
     name: str | None = None  # part of the design's name, in upper or lower case
     state: str | None = None  # of the newest revision
+    tags: tuple[str, ...] = ()  # keys of tags, all of which the design has
+    archived: str = "false"  # true: archived ones alone; any: those as well
     template: str | None = None  # of a step or a model of the newest revision, see TEMPLATE
 
     def __post_init__(self) -> None:
@@ -45,6 +47,12 @@ def conditions(session: Session, wanted: DesignFilter) -> Iterator[ColumnElement
     """The conditions of a filter on a design."""
     if wanted.name is not None:
         yield DesignRow.name.icontains(wanted.name, autoescape=True)
+    if wanted.archived != "any":
+        is_archived = DesignRow.archived.is_not(None)
+        yield is_archived if wanted.archived == "true" else ~is_archived
+    for key in wanted.tags:
+        is_own = (DesignTagRow.design_id == DesignRow.id) & (DesignTagRow.key == key)
+        yield exists(select(1).where(is_own).correlate(DesignRow))
     if of_newest := list(_of_newest(session, wanted)):
         # No join: SQLite would begin with all revisions, and sort them.
         is_newest = (RevisionRow.design_id == DesignRow.id) & (RevisionRow.number == DesignRow.head)

@@ -5,10 +5,11 @@ Every check returns what it finds; nothing is changed on the way.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import replace
 from typing import TypeVar
 
+from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import is_measured, questions, remedy
 from app.designs.demands import checked_demands, read_demands, unknown_names_in
 from app.designs.document import Document, Model, Step, Version
@@ -33,14 +34,6 @@ T = TypeVar("T", bound=Template)
 __all__ = ["Block", "Catalogues", "Cell", "Graph", "build_graph", "raise_if"]
 
 
-@dataclass(frozen=True)
-class Catalogues:
-    """What a design can be made of."""
-
-    templates: Catalogue[Template]
-    models: Catalogue[CadModel]
-
-
 def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list[Fault]]:
     """The network of a document, and everything that is wrong with it before any value is known.
 
@@ -49,8 +42,9 @@ def build_graph(document: Document, catalogues: Catalogues) -> tuple[Graph, list
     if faults := list(too_many_relations(document)):
         return Graph({}, {}, frozenset()), faults
     network, faults = _network(document, catalogues)
-    links = {cell: _links(network, cell) for cell in network.cells() if cell.uses}
-    if faults := [*faults, *_unknown(network, links), *unknown_names_in(network)]:
+    unread = {*document.steps, *document.models} - network.blocks.keys()  # what uses them has no fault
+    links = {cell: _links(network, cell, unread) for cell in network.cells() if cell.uses}
+    if faults := [*faults, *_unknown(network, links), *unknown_names_in(network, unread)]:
         return _graph(network), faults
     sources = _sources(network, links)
     order, faults = ordered(network, sources)
@@ -157,7 +151,7 @@ def _class(
     try:
         cls = catalogue.get(id, version) if isinstance(version, int) else catalogue.latest(id)
     except UnknownTemplate as error:
-        return None, [Fault(place, "unknown_name", str(error))]
+        return None, [Fault(place, error.code, str(error))]
     return cls, []
 
 
@@ -173,10 +167,10 @@ def _cells(block: str, values: Mapping[str, Raw], cls: type[Template]) -> tuple[
     return cells, faults
 
 
-def _links(network: Network, cell: Cell) -> dict[Reference, Node | None]:
+def _links(network: Network, cell: Cell, unread: Set[str]) -> dict[Reference, Node | None]:
     """The node behind each name that a cell uses, None if there is none; an assumed value needs none."""
     uses = (reference for reference in cell.uses.values() if reference not in network.assumed)
-    return {reference: network.node(reference) for reference in uses}
+    return {reference: network.node(reference) for reference in uses if reference.block not in unread}
 
 
 Links = Mapping[Cell, Mapping[Reference, Node | None]]

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.calculations.criteria import rendered
+from app.catalogue.catalogues import Catalogues
 from app.designs import repository, results, tolerances
 from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
-from app.designs.graph import Catalogues, build_graph, raise_if
+from app.designs.graph import build_graph, raise_if
 from app.designs.judging import judged
 from app.designs.service import analysed, built, read_document, resolved, starts
 from app.designs.worksheet import previewed

@@ -10,8 +10,8 @@ from sqlalchemy.orm import Session
 from app.calculations.begun import Begun
 from app.calculations.jobs import PREVIEW, place_of_answer
 from app.calculations.steps import Steps, begun_steps, calling
+from app.catalogue.catalogues import Catalogues
 from app.designs.errors import DesignError
-from app.designs.graph import Catalogues
 from app.designs.preview import preview
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.plain import JsonObject

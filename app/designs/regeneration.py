@@ -9,12 +9,13 @@ from sqlalchemy.orm import Session
 
 from app.calculations.pool import Lane
 from app.calculations.steps import Steps, calling
+from app.catalogue.catalogues import Catalogues
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
 from app.designs.calculate import Calculation, calculate, resume
 from app.designs.document import Document, Iteration
 from app.designs.errors import NotConverged
-from app.designs.graph import Catalogues, Graph, build_graph, raise_if
+from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.recent import Prepared, Recent
 from app.designs.reference import Reference
 from app.designs.service import REGENERATE, analysed, built, starts

@@ -10,13 +10,14 @@ from sqlalchemy.orm import Session
 
 from app.calculations.begun import Begun
 from app.calculations.steps import begun_steps
+from app.catalogue.catalogues import Catalogues
 from app.designs import repository, results
 from app.designs.analyses import measured_unit
 from app.designs.automap import proposals
 from app.designs.calculate import Analysed, Calculation, Measured, Measures, Outputs, calculate
 from app.designs.document import Document, merge
 from app.designs.errors import StaleRevision
-from app.designs.graph import Catalogues, Graph, build_graph, raise_if
+from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.recent import Prepared, Recent
 from app.designs.reference import Reference
 from app.designs.repository import Written

@@ -36,7 +36,7 @@ def design(row: DesignRow, revision: RevisionRow) -> Design:
     )
 
 
-def listed(row: DesignRow, revision: RevisionRow) -> DesignSummary:
+def listed(row: DesignRow, revision: RevisionRow, tags: list[str]) -> DesignSummary:
     """A design in a list."""
     return DesignSummary(
         id=row.id,
@@ -45,6 +45,8 @@ def listed(row: DesignRow, revision: RevisionRow) -> DesignSummary:
         state=revision.state,
         created=row.created,
         changed=revision.created,
+        tags=tags,
+        archived=row.archived is not None,
     )
 
 

@@ -18,6 +18,7 @@ from app.presentation.units import System
 from app.schemas.designs import PreviewedStep, Revision, RevisionStep, RevisionWorksheet
 from app.schemas.evaluations import UsedInput, WorkedFormula
 from templates.core.catalogue.finding import Catalogue
+from templates.core.catalogue.loading import is_outside
 from templates.core.errors import TemplateError
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.record import restored
@@ -82,9 +83,15 @@ def _calculated(
         if step.record and identity(cls)["content_digest"] == step.template.content_digest:
             if not (with_arrays and step.record.has_arrays):
                 return restored(cls, step.record, step.level if isinstance(step.level, str) else None)
-        return _evaluated(cls, step).template
+        return None if _is_edited(cls, step) else _evaluated(cls, step).template
     except (TemplateError, StepDeferred):
         return None
+
+
+def _is_edited(cls: type[Template], step: RevisionStep) -> bool:
+    """Whether a team has edited its file since it calculated a step."""
+    calculated_by = step.template.content_digest
+    return is_outside(cls) and calculated_by not in (None, identity(cls)["content_digest"])
 
 
 def _retyped(used: UsedInput) -> Raw:

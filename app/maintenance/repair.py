@@ -12,7 +12,7 @@ from app.calculations.errors import InvalidBody, TooManyValues
 from app.calculations.jobs import CALCULATION, place_of_answer, question_of
 from app.calculations.operations import answered
 from app.calculations.sources import source_of
-from app.catalogue.finding import find_templates
+from app.catalogue.catalogues import loaded
 from app.jobs import repository as jobs
 from app.maintenance.check import Findings, Say
 from app.maintenance.rows import Named
@@ -28,7 +28,6 @@ from app.workers.base import Limits
 from app.workers.errors import WorkerError
 from app.workers.local import LocalProcesses
 from cad.analysis.kinds import SURFACE
-from cad.catalogue import models as find_models
 from cad.errors import AnalysisError, GeometryError
 from cad.export import DERIVED
 from cad.regenerate import build_key
@@ -68,11 +67,10 @@ class Repair:
         self, database: Database, store: ArtifactStore, settings: Settings, worker: LocalProcesses
     ) -> None:
         self.database, self.store = database, store
-        self.catalogue = find_models(*settings.template_folders)
-        self.builds = Builds(database, store, settings.template_folders)
+        self.catalogues = loaded(settings.template_folders)
+        self.builds = Builds(database, store)
         longest = Limits(settings.analysis_deadline, settings.analysis_memory_mb)
         self.analysing = Analysing(database, store, longest)
-        self.templates = find_templates(settings.template_folders)
         self.calculation = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
         self.runner = Direct(worker, Limits(settings.job_deadline, settings.job_memory_mb))
 
@@ -86,7 +84,7 @@ class Repair:
             elif row.kind == SURFACE:
                 self._surface(row.owner)
             else:
-                self.builds.restore(row.owner, self.catalogue, self.runner)
+                self.builds.restore(row.owner, self.catalogues.models, self.runner)
                 if row.kind in DERIVED:
                     self.builds.derive(row.owner, row.kind, self.runner)
         except FAILURES as error:
@@ -103,7 +101,7 @@ class Repair:
         if job.kind != CALCULATION:
             raise CannotRebuild("answer_lost", f"job {job.id} is no calculation; send its request again")
         question = question_of(job.payload, self.store)
-        source = source_of(self.templates.get(question.template, question.version))
+        source = source_of(self.catalogues.templates.get(question.template, question.version))
         sha = self.store.put(*self.runner.run(answered, source, question, limits=self.calculation))
         link = place_of_answer(job.id, sha)
         self.database.write(lambda session: jobs.set_result(session, job.id, link))
@@ -111,7 +109,7 @@ class Repair:
     def _surface(self, key: str) -> None:
         with self.database.read() as session:
             build, question, _ = analyses.asked(session, key)
-            shape = shape_of(session, self.catalogue, build)
+            shape = shape_of(session, self.catalogues.models, build)
         if question.key(build_key(shape)) != key:
             raise CannotRebuild("other_recipe", "another version of kernel, solver or recipe computed it")
         self.builds.make(shape, self.runner)

@@ -14,8 +14,8 @@ from importlib.metadata import version
 from pydantic_core import to_json
 from sqlalchemy.orm import Session
 
+from app.catalogue.catalogues import Catalogues
 from app.designs import repository, stamps, views
-from app.designs.graph import Catalogues
 from app.designs.worksheet import worksheet
 from app.presentation.units import System
 from app.reports.cells import Cell, cell, clean, typed

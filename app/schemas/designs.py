@@ -78,6 +78,8 @@ class DesignSummary(Answer):
     state: State
     created: str
     changed: str
+    tags: list[str] = Field([], description="in alphabetical order")
+    archived: bool = Field(False, description="whether lists leave it out unless they name `archived`")
 
 
 class DesignList(Page[DesignSummary]):

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from sqlalchemy.orm import Session
 
+from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.schemas.analyses import Analysis
 from app.schemas.answers import Version
@@ -162,8 +163,8 @@ def _model_of(session: Session, build: str) -> Version:
 class ModelAnalysis:
     """The handler of jobs of the kind `analysis`: build the model, then find what was asked."""
 
-    def __init__(self, builds: Builds, analysing: Analysing, catalogue: Catalogue[CadModel]) -> None:
-        self.builds, self.analysing, self.catalogue = builds, analysing, catalogue
+    def __init__(self, builds: Builds, analysing: Analysing, catalogues: Catalogues) -> None:
+        self.builds, self.analysing, self.catalogues = builds, analysing, catalogues
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Build and analyse.
@@ -174,9 +175,10 @@ class ModelAnalysis:
             With the problem, for anything that the model itself brings about.
         """
         asked = job.payload
-        shape = self.catalogue.get(asked["model"], asked["version"]).from_quantities(asked["parameters"])
         question = Question(**asked["question"])
         try:
+            cls = self.catalogues.models.get(asked["model"], asked["version"])
+            shape = cls.from_quantities(asked["parameters"])
             self.builds.make(shape, context)
             self.analysing.find(shape, question, tuple(asked["outputs"]), context)
         except (*FAILURES, AnalysisError) as error:

@@ -9,10 +9,10 @@ from __future__ import annotations
 import hashlib
 import logging
 from collections.abc import Callable, Iterable, Mapping
-from pathlib import Path
 
 from sqlalchemy.orm import Session
 
+from app.calculations.sources import Source, loaded, source_of
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.shapes import made_otherwise, shape_of
@@ -24,12 +24,12 @@ from app.workers.base import Runner
 from cad.export import DRAWINGS, derive
 from cad.model import CadModel
 from cad.regenerate import (
-    MADE_BY,
     Build,
     as_text,
     build_key,
+    made_by,
     regenerate,
-    regenerate_from_text,
+    regenerate_class,
 )
 from cad.stamp import takes_stamp
 from templates.core.catalogue.finding import Catalogue
@@ -43,8 +43,8 @@ STEP = "step"
 class Builds:
     """Makes builds in a worker process and records them with their STEP files."""
 
-    def __init__(self, database: Database, store: ArtifactStore, folders: tuple[Path, ...]) -> None:
-        self.database, self.store, self.folders = database, store, folders
+    def __init__(self, database: Database, store: ArtifactStore) -> None:
+        self.database, self.store = database, store
 
     def make(self, shape: CadModel, context: Runner) -> None:
         """Build a model unless it is built already and its STEP file is good.
@@ -61,7 +61,7 @@ class Builds:
         row = self._row(build_key(shape), STEP)
         if row and self.store.exists(row.sha256) and self.keep([shape]):
             return
-        build = context.run(build_in_worker, shape.id, shape.version, as_text(shape), self.folders)
+        build = context.run(build_in_worker, source_of(type(shape)), as_text(shape))
         if row and hashlib.sha256(build.step).hexdigest() != row.sha256:
             raise _changed(shape, row)
         sha = self.store.put(build.step)
@@ -122,7 +122,9 @@ class Builds:
         units = {name: declared.meaning.unit for name, declared in shape.inputs.items()}
         dimensions = {n: {"value": value, "unit": units[n]} for n, value in build.dimensions.items()}
         measured = {"measures": build.measures, "dimensions": dimensions, "materials": build.materials}
-        rows.add_build(session, build.key, build.model, build.version, parameters, measured, MADE_BY)
+        rows.add_build(
+            session, build.key, build.model, build.version, parameters, measured, made_by(type(shape))
+        )
         rows.add_artifact(session, build.key, STEP, sha, len(build.step))
 
 
@@ -135,9 +137,11 @@ def _changed(shape: CadModel, row: ArtifactRow) -> CannotRebuild:
     return CannotRebuild("model_changed", detail)
 
 
-def build_in_worker(id: str, version: int, texts: Mapping[str, str], folders: tuple[Path, ...]) -> Build:
-    """`cad.regenerate.regenerate_from_text`, reporting progress to the job; runs in the worker's process."""
-    return regenerate_from_text(id, version, texts, folders=folders, report=report)
+def build_in_worker(source: Source, texts: Mapping[str, str]) -> Build:
+    """`cad.regenerate.regenerate_class`, reporting progress to the job; runs in the worker's process."""
+    cls = loaded(source)
+    assert issubclass(cls, CadModel), "the source is that of a model"
+    return regenerate_class(cls, texts, report=report)
 
 
 def rehearse(called: Callable[[], bool]) -> None:

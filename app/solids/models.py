@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from sqlalchemy.orm import Session
 
+from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.schemas.answers import Shown, Version
 from app.schemas.solids import Build, BuildUse, Verification
@@ -43,10 +44,13 @@ class File:
 class Models:
     """Builds outside of any design, and files of builds inside and outside."""
 
-    def __init__(
-        self, database: Database, store: ArtifactStore, jobs: Jobs, catalogue: Catalogue[CadModel]
-    ) -> None:
-        self.database, self.store, self.jobs, self.catalogue = database, store, jobs, catalogue
+    def __init__(self, database: Database, store: ArtifactStore, jobs: Jobs, catalogues: Catalogues) -> None:
+        self.database, self.store, self.jobs, self.catalogues = database, store, jobs, catalogues
+
+    @property
+    def catalogue(self) -> Catalogue[CadModel]:
+        """The models, as they are now."""
+        return self.catalogues.models
 
     def request(self, shape: CadModel, kinds: tuple[str, ...], client: str = "") -> str | None:
         """The job that makes a build and its files, or None if all are there."""
@@ -145,8 +149,8 @@ class Models:
 class ModelBuild:
     """The handler of jobs of the kind `build`: a build and the files of it that are asked for."""
 
-    def __init__(self, builds: Builds, catalogue: Catalogue[CadModel]) -> None:
-        self.builds, self.catalogue = builds, catalogue
+    def __init__(self, builds: Builds, catalogues: Catalogues) -> None:
+        self.builds, self.catalogues = builds, catalogues
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Build, then derive.
@@ -159,9 +163,10 @@ class ModelBuild:
         asked = job.payload
         if "build" in asked:
             return self._derived(asked["build"], asked["kinds"], context)
-        shape = self.catalogue.get(asked["model"], asked["version"]).from_quantities(asked["parameters"])
-        key = build_key(shape)
         try:
+            cls = self.catalogues.models.get(asked["model"], asked["version"])
+            shape = cls.from_quantities(asked["parameters"])
+            key = build_key(shape)
             self.builds.make(shape, context)
         except FAILURES as error:
             raise JobFailed(error) from error
@@ -169,7 +174,7 @@ class ModelBuild:
 
     def _derived(self, key: str, kinds: Iterable[str], context: JobContext) -> Completion:
         try:
-            self.builds.restore(key, self.catalogue, context)
+            self.builds.restore(key, self.catalogues.models, context)
             for kind in kinds:
                 if kind in DERIVED:
                     self.builds.derive(key, kind, context)

@@ -7,7 +7,7 @@ from sqlalchemy.orm import Session
 from app.solids import rows
 from app.storage.errors import CannotRebuild, NotFound
 from cad.model import CadModel
-from cad.regenerate import MADE_BY, build_key
+from cad.regenerate import MADE_BY, build_key, made_by
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError, UnknownTemplate
 
@@ -31,8 +31,8 @@ def shape_of(session: Session, catalogue: Catalogue[CadModel], key: str) -> CadM
     name = f"model {row.model} version {row.version}, which made build {key},"
     try:
         return catalogue.get(row.model, row.version).from_quantities(given)
-    except UnknownTemplate:
-        detail = f"{name} is not in the catalogue; put its file back and start the service again"
+    except UnknownTemplate as error:
+        detail = f"{name} cannot be used: {error}. Put its file back, or correct it"
         raise CannotRebuild("model_gone", detail) from None
     except TemplateError as error:
         detail = f"{name} has been changed and refuses its parameters now: {error}"
@@ -42,9 +42,15 @@ def shape_of(session: Session, catalogue: Catalogue[CadModel], key: str) -> CadM
 def made_otherwise(session: Session, key: str, shape: CadModel) -> CannotRebuild:
     """Why a build cannot be made again by this program; the link leads to the build that it makes instead."""
     row = rows.build(session, key)
-    maker = (row.made_by if row else "") or OLDER
+    maker, now = (row.made_by if row else "") or OLDER, made_by(type(shape))
+    if maker.startswith(f"{MADE_BY}, code "):
+        detail = (
+            f"model {shape.id} version {shape.version} has been changed since it made build {key} "
+            f"({maker}). Put its old file back, or restore the build's file from a backup"
+        )
+        return CannotRebuild("model_changed", detail, {"build": f"/api/v1/builds/{build_key(shape)}"})
     detail = (
-        f"build {key} was made by {maker}; this program ({MADE_BY}) makes another build of the same "
+        f"build {key} was made by {maker}; this program ({now}) makes another build of the same "
         "parameters. Restore the file from a backup, or take the new build"
     )
     return CannotRebuild("other_recipe", detail, {"build": f"/api/v1/builds/{build_key(shape)}"})

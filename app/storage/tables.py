@@ -80,8 +80,19 @@ class DesignRow(Base):
     created: Mapped[str]
     deleted: Mapped[str | None]
     head: Mapped[int]  # the number of the newest revision
+    archived: Mapped[str | None] = mapped_column(default=None)  # since when lists leave it out
 
     revisions: Mapped[list["RevisionRow"]] = relationship(order_by="RevisionRow.number")
+
+
+class DesignTagRow(Base):
+    """A tag of a design. It belongs to no revision: to set it makes nothing old."""
+
+    __tablename__ = "design_tag"
+
+    design_id: Mapped[str] = mapped_column(ForeignKey("design.id"), primary_key=True)
+    key: Mapped[str] = mapped_column(primary_key=True, index=True)  # the same for every spelling
+    tag: Mapped[str]  # as its user wrote it
 
 
 class RevisionRow(Base):

@@ -12,7 +12,7 @@ from starlette.middleware.gzip import GZipMiddleware
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.web import actions, problems, routes
+from app.web import actions, organising, problems, routes
 
 STATIC = Path(__file__).with_name("static")
 SMALLEST, LEVEL = 1000, 6  # of what is compressed [bytes], and how hard
@@ -62,6 +62,7 @@ def _is_plain(path: str) -> bool:
 def install(app: FastAPI) -> None:
     """Add the pages; call it after the interface is complete."""
     app.include_router(routes.router)
+    app.include_router(organising.router)
     app.include_router(actions.router)
     app.mount("/static", Files(directory=STATIC), name="static")
     problems.install(app)

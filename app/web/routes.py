@@ -8,15 +8,19 @@ from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
+from app.schemas.catalogue import FaultList
 from app.schemas.designs import Design, DesignList, Explanation, ModelMeasurements, State
+from app.schemas.labels import TagList
 from app.schemas.templates import TemplateList, TemplateVersions
 from app.web import plotly
-from app.web.api import Api, TheApi
+from app.web.api import Api, Refused, TheApi
+from app.web.compare_page import Asked, compare_page
 from app.web.design_page import design_page, revision_page
 from app.web.gallery import offered
 from app.web.model_page import model_page
 from app.web.new_step import beside, new_step, step_page
 from app.web.rendering import go, show, units_of
+from app.web.stored_page import is_unusable, stored_page
 from app.web.template_page import template_page
 
 router = APIRouter(include_in_schema=False)
@@ -25,26 +29,32 @@ Id = Annotated[str, Path(max_length=64, pattern=r"^[A-Za-z0-9_]+$")]
 Number = Annotated[int, Path(ge=1, le=10**9)]
 Text = Annotated[str, Query(max_length=200)]
 ON_HOME = 4  # designs, with pictures: the first page is light
+TAGS_ON_HOME = 30
 
 
 @router.get("/")
 async def home(request: Request, api: TheApi) -> Response:
     """Designs, templates, models, and where to start."""
-    designs, templates, models = await asyncio.gather(
+    designs, tags, templates, models, faulty = await asyncio.gather(
         api.get("/designs", DesignList, limit=ON_HOME),
+        api.get("/tags", TagList),
         api.get("/templates", TemplateList, limit=500),
         api.get("/models", TemplateList, limit=500),
+        api.get("/catalogue/faults", FaultList, limit=500),
     )
     latest = [item for item in templates.items if item.latest]
     return show(
         request,
         "home.html",
         designs=designs,
+        tags=tags.items[:TAGS_ON_HOME],
+        back="/",
         pictures=dict(await asyncio.gather(*(_picture(api, item.id) for item in designs.items))),
         templates=templates.items,
         latest=latest,
         models=[item for item in models.items if item.latest],
         gallery=offered(templates.items, models.items),
+        faulty=faulty.items,
     )
 
 
@@ -56,20 +66,39 @@ async def designs(
     name: Text = "",
     state: Text = "",
     template: Text = "",
+    tag: Text = "",
+    archived: Text = "",
 ) -> Response:
     """Designs, page by page: all, or those that fit what was typed into the filter."""
-    typed = {"name": name, "state": state, "template": template.strip()}
+    typed = {
+        "name": name,
+        "state": state,
+        "template": template.strip(),
+        "tag": tag.strip(),
+        "archived": archived,
+    }
     wanted = {key: text for key, text in typed.items() if text}  # a form sends empty fields too
     place = {"cursor": cursor} if cursor else {}
-    page = await api.get("/designs", DesignList, limit=50, **wanted, **place)
+    page, tags = await asyncio.gather(
+        api.get("/designs", DesignList, limit=50, **wanted, **place), api.get("/tags", TagList)
+    )
     return show(
         request,
         "designs.html",
         designs=page,
         wanted=wanted,
         states=get_args(State),
+        tags=tags.items,
+        back=f"/designs?{urlencode(wanted)}" if wanted else "/designs",
         older=urlencode({**wanted, "cursor": page.next}) if page.next else None,
     )
+
+
+@router.get("/templates/faults")
+async def faults(request: Request, api: TheApi, cursor: Text = "") -> Response:
+    """The files of a team that have faults."""
+    place = {"cursor": cursor} if cursor else {}
+    return show(request, "faults.html", faulty=await api.get("/catalogue/faults", FaultList, **place))
 
 
 @router.get("/templates/{id}")
@@ -116,8 +145,13 @@ async def another_step(id: Id, request: Request, api: TheApi) -> Response:
 
 @router.get("/designs/{id}")
 async def design(id: Id, request: Request, api: TheApi) -> Response:
-    """A design at its newest revision, to be changed."""
-    return await design_page(request, api, id)
+    """A design at its newest revision, to be changed; only to be read while its template is quarantined."""
+    try:
+        return await design_page(request, api, id)
+    except Refused as refused:
+        if not is_unusable(refused):
+            raise
+        return await stored_page(request, api, id, None, refused.problem.detail)
 
 
 @router.get("/designs/{id}/revisions/{number}")
@@ -129,7 +163,26 @@ async def revision(
     other: Annotated[int | None, Query(alias="with", ge=1, le=10**9)] = None,
 ) -> Response:
     """A revision, and what differs from another."""
-    return await revision_page(request, api, id, number, other)
+    try:
+        return await revision_page(request, api, id, number, other)
+    except Refused as refused:
+        if not is_unusable(refused):
+            raise
+        return await stored_page(request, api, id, number, refused.problem.detail)
+
+
+@router.get("/designs/{id}/compare")
+async def compared(
+    id: Id,
+    request: Request,
+    api: TheApi,
+    revision: Text = "",
+    number: Annotated[str, Query(alias="with", max_length=200)] = "",
+    design: Text = "",
+    of: Text = "",
+) -> Response:
+    """Two revisions, of this design or of this and another one."""
+    return await compare_page(request, api, id, Asked(revision, number, design, of))
 
 
 @router.get("/designs/{id}/explain/{parameter}")
@@ -154,6 +207,8 @@ async def report(id: Id, request: Request) -> Response:
 @router.get("/designs/{id}/auto-map")
 @router.get("/designs/{id}/copy")
 @router.get("/designs/{id}/delete")
+@router.get("/designs/{id}/rename")
+@router.get("/designs/{id}/labels")
 @router.get("/designs/{id}/revisions/{_}/restore")
 @router.get("/designs/{id}/jobs/{_}/cancel")
 async def after_a_form(id: Id, request: Request) -> Response:

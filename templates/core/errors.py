@@ -3,6 +3,7 @@
 TemplateError
     InvalidInputs       wrong inputs, all of them at once, each a `Fault`
     UnknownTemplate     no such template or version in the catalogue
+        QuarantinedTemplate     its file has faults
     UnusableFile        a file in a folder of templates or models is broken
     Unreachable         `solve` cannot reach the target within the bounds
     FaultyText          a text that is no quantity, unit or relation
@@ -72,9 +73,17 @@ class InvalidInputs(TemplateError):
 class UnknownTemplate(TemplateError):
     """No such template or version in the catalogue."""
 
+    code = "unknown_name"
+
     def __init__(self, name: str, detail: str) -> None:
         self.name = name
         super().__init__(detail)
+
+
+class QuarantinedTemplate(UnknownTemplate):
+    """The file of this version has faults, so that nothing is calculated by it."""
+
+    code = "quarantined"
 
 
 class UnusableFile(TemplateError):

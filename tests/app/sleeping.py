@@ -16,13 +16,13 @@ import numpy as np
 
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.progress import report
-from templates.core.template import Array, Template, choice, formula, given
+from templates.core.template import Array, Template, choice, formula, given, units
 
 
 class Sleeper(Template):
     """Sleeps, or worse, in the process that calculates."""
 
-    example = {"duration": "1 ms"}
+    example = {"duration": "0 s"}
 
     t: Array = given("s", "duration", ge=0)
     mood: str = choice("good", "dies", "eats", "refuses", words="mood", default="good")
@@ -32,10 +32,11 @@ class Sleeper(Template):
         return slept(self.t, self.mood)
 
 
+@units("s", None, returns="1")
 def slept(seconds, mood):
-    """The process that slept so long; it notes that it began."""
+    """The process that slept so long; it notes that it began, unless the example is checked."""
     with Path(os.environ.get("SLEEPER_LOG", os.devnull)).open("a") as log:
-        log.write(f"{os.getpid()}\\n")
+        log.write(f"{os.getpid()}\\n" if np.max(seconds) > 0 else "")
     if mood == "dies":
         ctypes.string_at(0)
     if mood == "refuses":

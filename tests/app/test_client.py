@@ -253,3 +253,24 @@ def test_the_name_is_sent_as_the_service_reads_it(served, monkeypatch):
 def test_a_service_that_is_not_there():
     with Client(f"http://127.0.0.1:{free_port()}", timeout=1) as client:
         assert not client.healthy()
+
+
+def test_labels_filters_and_comparisons(client):
+    design = client.create({"name": "labelled by the client"})
+    labels = client.label(design.id, add_tags=["from a client", "V8"])
+    assert labels == client.labels(design.id)
+    assert labels.tags == ["from a client", "V8"]
+    (listed,) = client.designs(tag=["V8", "from a client"], name="labelled")
+    assert (listed.id, listed.tags) == (design.id, labels.tags)
+    assert client.label(design.id, archived=True).archived
+    assert client.designs(tag="from a client") == []
+    assert [one.id for one in client.designs(tag="from a client", archived="true")] == [design.id]
+    client.label(design.id, archived=False, remove_tags=["V8"])
+    assert "from a client" in {one.tag for one in client.tags()}
+    changed = client.change(design, {"parameters": {"scale": "2"}})
+    (parameter,) = client.compare(changed.id).parameters
+    assert (parameter.name, parameter.old, parameter.new) == ("scale", None, "2")
+    other = client.create({"name": "other", "parameters": {"scale": "3"}})
+    (parameter,) = client.compare(changed.id, 2, 1, design=other.id).parameters
+    assert (parameter.old, parameter.new) == ("2", "3")
+    assert isinstance(client.faults(), list)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Body, Header, Path, Query, Request, Response
 from pydantic import WithJsonSchema
@@ -17,6 +17,7 @@ from app.api.dependencies import (
     TheDatabase,
     TheDesigns,
     TheJobs,
+    TheLabelling,
     TheOnce,
     ThePreviews,
     TheThreads,
@@ -29,6 +30,7 @@ from app.api.waiting import LONGEST, accepted, finished, later, patience, writte
 from app.designs import repository, views
 from app.designs.explain import explain
 from app.designs.filtering import TEMPLATE, DesignFilter
+from app.designs.labels import key_of, tags_of
 from app.designs.previewing import Change
 from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn, RestoreIn
 from app.designs.service import Designs, Saved
@@ -47,6 +49,7 @@ from app.schemas.designs import (
     RevisionList,
     State,
 )
+from app.schemas.labels import MOST_TAGS, Tag
 from app.schemas.problems import refusals
 from templates.core.errors import Fault, InvalidInputs
 
@@ -69,6 +72,13 @@ NamePart = Annotated[
     Query(max_length=200, pattern=PRINTABLE, description="part of the name, in upper or lower case"),
 ]
 InState = Annotated[State | None, Query(description="state of the newest revision")]
+WithTags = Annotated[
+    list[Tag], Query(alias="tag", max_length=MOST_TAGS, description="a tag that it has; repeat it for more")
+]
+Archived = Annotated[
+    Literal["false", "true", "any"],
+    Query(description="`false`: without archived designs; `true`: these alone; `any`: these as well"),
+]
 UsedTemplate = Annotated[
     str | None,
     Query(
@@ -114,17 +124,21 @@ def list_designs(
     cursor: Cursor = None,
     name: NamePart = None,
     state: InState = None,
+    tag: WithTags = [],  # noqa: B006 - FastAPI copies it
+    archived: Archived = "false",
     template: UsedTemplate = None,
 ) -> DesignList:
     """Designs, newest first: all, or those that fit every filter given."""
-    wanted = DesignFilter(name=name, state=state, template=template)
+    tags = tuple(dict.fromkeys(map(key_of, tag)))
+    wanted = DesignFilter(name, state, tags, archived, template)
     with database.read() as session:
         rows = repository.designs(session, limit, cursor, wanted)
+        labels = tags_of(session, [row.id for row in rows])
         return page(
             DesignList,
             rows,
             limit,
-            lambda row: views.listed(row, repository.revision(session, row.id, row.head)),
+            lambda row: views.listed(row, repository.revision(session, row.id, row.head), labels[row.id]),
             lambda row: row.id,
         )
 
@@ -140,6 +154,7 @@ async def change_design(
     id: Id,
     body: Patch,
     designs: TheDesigns,
+    labelling: TheLabelling,
     threads: TheThreads,
     jobs: TheJobs,
     once: TheOnce,
@@ -147,10 +162,13 @@ async def change_design(
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
-    """A new revision; models are rebuilt only where one of their parameters changed."""
+    """A new revision; models are rebuilt only where one of their parameters changed.
+
+    A new name alone keeps all results: nothing is calculated.
+    """
     patch, note = _noted(body)
     saved = await threads.run_within(
-        _seconds(prefer), request, designs.change, id, patch, note, if_match, once
+        _seconds(prefer), request, labelling.change, id, patch, note, if_match, once
     )
     return await _answer(designs, jobs, saved, prefer)
 

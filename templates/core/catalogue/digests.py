@@ -23,6 +23,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
+from templates.core.catalogue.loading import text_of
 from templates.core.language.spec import Declaration, Requirement, Shared
 from templates.core.language.template import Template
 
@@ -90,7 +91,7 @@ def _sources(cls: type[Template]) -> Iterator[str]:
         if base is cls or _declares(base):
             module = inspect.getmodule(base)
             assert module is not None
-            yield inspect.getsource(module)
+            yield text_of(module) or inspect.getsource(module)
 
 
 def _declares(base: type) -> bool:

@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib
-import importlib.util
-import sys
-import traceback
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
 from typing import Generic, TypeVar
 
-from templates.core.errors import UnknownTemplate, UnusableFile, plain
+from templates.core.catalogue.loading import failing_line, load
+from templates.core.errors import QuarantinedTemplate, UnknownTemplate, UnusableFile, plain
 from templates.core.language.template import VERSIONED, Template
 
 T = TypeVar("T", bound=Template)
 
-OUTSIDE = "_outside"
-"""The package to which files belong that are in none."""
-
 
 @dataclass(frozen=True)
 class Catalogue(Generic[T]):
-    """All versions of all templates (or models) in the folders; `kind` names them in messages."""
+    """All versions of all templates (or models) in the folders; `kind` names them in messages.
+
+    `quarantined` says why a version cannot be used whose file has faults.
+    """
 
     versions: dict[tuple[str, int], type[T]]
     kind: str = "template"
+    quarantined: Mapping[tuple[str, int], str] = field(default_factory=dict)
 
     @cached_property
     def ids(self) -> tuple[str, ...]:
@@ -45,6 +43,7 @@ class Catalogue(Generic[T]):
         """
         classes = {version: cls for (name, version), cls in sorted(self.versions.items()) if name == id}
         if not classes:
+            self._refuse_quarantined(id, max((n for name, n in self.quarantined if name == id), default=0))
             raise UnknownTemplate(
                 id, f"there is no {self.kind} {plain(id)!r}; there are {', '.join(self.ids)}"
             )
@@ -59,9 +58,21 @@ class Catalogue(Generic[T]):
             If there is none.
         """
         if (version_class := self.versions.get((id, version))) is None:
+            self._refuse_quarantined(id, version)
             listing = ", ".join(map(str, self.of(id)))
             raise UnknownTemplate(id, f"{self.kind} {id} has no version {version}; it has {listing}")
         return version_class
+
+    def _refuse_quarantined(self, id: str, version: int) -> None:
+        """Say why a version is quarantined, if it is.
+
+        Raises
+        ------
+        QuarantinedTemplate
+            If its file has faults.
+        """
+        if reason := self.quarantined.get((id, version)):
+            raise QuarantinedTemplate(id, f"{self.kind} {id} version {version} is quarantined: {reason}")
 
     def latest(self, id: str) -> type[T]:
         """The newest version that is not withdrawn, else the newest."""
@@ -84,7 +95,7 @@ def find(folders: Iterable[Path], base: type[T], kind: str = "template") -> Cata
     for path in sorted(file for folder in folders for file in folder.rglob("*_v*.py")):
         if not VERSIONED.match(path.stem):
             continue
-        cls = _declared_in(_usable(path), path)
+        cls = declared_in(_usable(path), path)
         if not issubclass(cls, base):
             continue  # a calculation beside models
         if (cls.id, cls.version) in versions:
@@ -101,35 +112,21 @@ def declared_in_file(path: Path) -> type[Template]:
     UnusableFile
         If it cannot be imported, or declares none or several.
     """
-    return _declared_in(_usable(path), path)
+    return declared_in(_usable(path), path)
 
 
 def _imported(path: Path) -> ModuleType:
-    """The module of a file: by its package's name where it has one, else by its path."""
-    package = _package(path.parent)
-    if package:
+    """The module of a file: by its package's name where it has one, else from its content."""
+    if package := package_of(path.parent):
         return importlib.import_module(f"{package}.{path.stem}")
-    path = path.resolve()
-    sys.modules.setdefault(OUTSIDE, ModuleType(OUTSIDE))  # else nothing of such a file could be pickled
-    name = f"{OUTSIDE}.{hashlib.sha256(bytes(path.parent)).hexdigest()[:12]}.{path.stem}"
-    if name in sys.modules:
-        return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"{path} cannot be imported")
-    module = sys.modules[name] = importlib.util.module_from_spec(spec)
-    try:
-        spec.loader.exec_module(module)
-    except BaseException:
-        del sys.modules[name]
-        raise
-    return module
+    return load(path, path.read_bytes())
 
 
-def _package(folder: Path) -> str:
+def package_of(folder: Path) -> str:
+    """The name of the package that a folder is; empty if it is none."""
     if not (folder / "__init__.py").exists():
         return ""
-    parent = _package(folder.parent)
+    parent = package_of(folder.parent)
     return f"{parent}.{folder.name}" if parent else folder.name
 
 
@@ -138,16 +135,20 @@ def _usable(path: Path) -> ModuleType:
     try:
         return _imported(path)
     except Exception as error:
-        lines = [
-            frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)
-        ]
-        if isinstance(error, SyntaxError):
-            lines.append(error.lineno)
-        where = f"line {lines[-1]}: " if lines else ""
-        raise UnusableFile(str(path), f"{where}{type(error).__name__}: {error}") from error
+        line = failing_line(error, path)
+        where = f"line {line}: " if line else ""
+        text = error.msg if isinstance(error, SyntaxError) else str(error)
+        raise UnusableFile(str(path), f"{where}{type(error).__name__}: {text}") from error
 
 
-def _declared_in(module: ModuleType, path: Path) -> type[Template]:
+def declared_in(module: ModuleType, path: Path) -> type[Template]:
+    """The template, or model, that the module of a versioned file declares.
+
+    Raises
+    ------
+    UnusableFile
+        If it declares none or several.
+    """
     classes = [
         value
         for value in vars(module).values()

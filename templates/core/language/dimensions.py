@@ -25,18 +25,34 @@ from templates.core.units.units import registry, unit
 LIBRARIES = ("numpy", "scipy", "pint", "math")
 
 
+Checked = Formula[Any] | Requirement
+
+
 def faults(cls: type[Template]) -> list[str]:
     """What is wrong with the dimensions of a template, a sentence for each formula or rule."""
+    return [fault for _, fault in faults_by_part(cls)]
+
+
+def faults_by_part(cls: type[Template]) -> Iterator[tuple[Checked, str]]:
+    """Each formula or rule whose dimensions are wrong, with a sentence that says how."""
     with np.errstate(all="ignore"):
-        return [fault for fault in _faults(cls, cls.from_quantities(cls.example)) if fault]
+        template = cls.from_quantities(cls.example)
+        for part in _checked(cls):
+            if fault := _fault_of(template, part):
+                yield part, fault
 
 
-def _faults(cls: type[Template], template: Template) -> Iterator[str | None]:
+def _checked(cls: type[Template]) -> Iterator[Checked]:
     for declared in cls.declarations.values():
         if isinstance(declared, (Formula, Derived)):
-            yield _fault_of_formula(template, declared)
-    for rule in cls.requirements:
-        yield _fault_of_rule(template, rule)
+            yield declared
+    yield from cls.requirements
+
+
+def _fault_of(template: Template, part: Checked) -> str | None:
+    if isinstance(part, Requirement):
+        return _fault_of_rule(template, part)
+    return _fault_of_formula(template, part)
 
 
 def _fault_of_formula(template: Template, formula: Formula[Any]) -> str | None:

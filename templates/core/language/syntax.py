@@ -67,3 +67,14 @@ def _read_as_given(node: ast.AST) -> str | None:
                 case [ast.Constant(value=str(name))]:
                     return name
     return None
+
+
+def lines_of_attributes(function: Callable[..., Any]) -> dict[str, int]:
+    """The first line of the file in which a method names each attribute x, as `self.x` or by a text."""
+    first = function.__code__.co_firstlineno
+    lines: dict[str, int] = {}
+    for node in ast.walk(syntax(function)):
+        if isinstance(node, (ast.Attribute, ast.Call)) and (name := _used(node) or _read_as_given(node)):
+            line = first + node.lineno - 1
+            lines[name] = min(line, lines.get(name, line))
+    return lines

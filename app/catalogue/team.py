@@ -1,0 +1,209 @@
+"""A team's own files: which there are, which can be used, and what is wrong with the others."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from app.catalogue.checking import Check, loaded_or_faulty
+from cad.model import CadModel
+from templates.core.catalogue.finding import Catalogue
+from templates.core.checking.faults import FileFault
+from templates.core.checking.golden import records
+from templates.core.language.template import VERSIONED, Template
+
+Signature = tuple[tuple[int, int, int] | None, ...]
+"""Times of change [ns] and size [bytes] of a file and of those beside it; None for one that is not there."""
+
+Key = tuple[str, int]
+"""Id and version."""
+
+_MEANT = re.compile(r".+_[vV][0-9]+")  # a name that somebody may have meant as that of a version
+NAME = "name it <id>_v<version>.py, in small letters, such as bush_duty_v1.py"
+
+
+@dataclass(frozen=True)
+class TeamFile:
+    """One file of a team: what it declares if it can be used, and its faults."""
+
+    folder: Path
+    path: Path
+    signature: Signature
+    digest: str
+    cls: type[Template] | None
+    faults: tuple[FileFault, ...]
+
+    @property
+    def key(self) -> Key | None:
+        """Id and version, from the name of the file."""
+        match = VERSIONED.match(self.path.stem)
+        return (match[1], int(match[2])) if match else None
+
+    @property
+    def name(self) -> str:
+        """The file within its folder, as the pages name it: no address of this machine."""
+        return str(Path(self.folder.name) / self.path.relative_to(self.folder))
+
+    @property
+    def is_quarantined(self) -> bool:
+        """Whether the file cannot be used."""
+        return self.cls is None
+
+    def refused(self, fault: FileFault) -> TeamFile:
+        """The same file with one more fault, which quarantines it."""
+        return replace(self, cls=None, faults=(*self.faults, fault))
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """What can be calculated and drawn at one time, and the files of teams."""
+
+    templates: Catalogue[Template]
+    models: Catalogue[CadModel]
+    files: tuple[TeamFile, ...] = ()
+
+
+class TeamFiles:
+    """The files of a team's folders; `examine` looks again at those that have changed.
+
+    Not safe for threads.
+    """
+
+    def __init__(self, folders: Sequence[Path], check: Check) -> None:
+        self.folders, self._check = tuple(folders), check
+        self._files: dict[Path, TeamFile] = {}
+
+    def examine(self) -> bool:
+        """Take notice of changes; whether there were any."""
+        present = dict(_scanned(self.folders))
+        old = self._files
+        self._files = {path: self._current(*place, path) for path, place in present.items()}
+        return {path: file.digest for path, file in old.items()} != {
+            path: file.digest for path, file in self._files.items()
+        }
+
+    @classmethod
+    def of_file(cls, path: Path, check: Check) -> TeamFile:
+        """One file, examined by itself."""
+        return cls((), check)._current(path.parent, _signature(path), path)
+
+    @property
+    def files(self) -> list[TeamFile]:
+        """Every file, in the order of the folders and of their names."""
+        return list(self._files.values())
+
+    def _current(self, folder: Path, signature: Signature, path: Path) -> TeamFile:
+        """What is known of a file, if its content is the same; else it is checked and loaded."""
+        known = self._files.get(path)
+        if known is not None and known.signature == signature:
+            return known
+        try:
+            content = path.read_bytes() if path.is_file() else None
+        except OSError as error:
+            fault = FileFault(
+                "unreadable", f"it cannot be read: {error.strerror}", "grant the service access"
+            )
+            return TeamFile(folder, path, signature, "", None, (fault,))
+        if content is None:
+            fault = FileFault("folder", "there is no such folder", "make it, or correct the setting")
+            return TeamFile(folder, path, signature, "", None, (fault,))
+        digest = _digest(path, content)
+        if known is not None and known.digest == digest:
+            return replace(known, signature=signature)
+        return self._checked(TeamFile(folder, path, signature, digest, None, ()), content)
+
+    def _checked(self, file: TeamFile, content: bytes) -> TeamFile:
+        if file.key is None:
+            what = f"{file.path.name} is no name of a version"
+            return replace(file, faults=(FileFault("file_name", what, NAME),))
+        faults = self._check(file.path, content)
+        if any(fault.quarantines for fault in faults):
+            return replace(file, faults=tuple(faults))
+        cls = loaded_or_faulty(file.path, content, file.digest)
+        if isinstance(cls, FileFault):
+            return replace(file, faults=(*faults, cls))
+        return replace(file, cls=cls, faults=tuple(faults))
+
+
+def _scanned(folders: Iterable[Path]) -> Iterator[tuple[Path, tuple[Path, Signature]]]:
+    """Every file that is, or looks meant as, a version, with its signature; a missing folder itself."""
+    for folder in folders:
+        if not folder.is_dir():
+            yield folder, (folder.parent, (None,))
+            continue
+        for path in sorted(folder.rglob("*.py")):
+            if (VERSIONED.match(path.stem) or _MEANT.fullmatch(path.stem)) and not path.is_dir():
+                yield path, (folder, _signature(path))
+
+
+def _signature(path: Path) -> Signature:
+    return tuple(_state(file) for file in (path, *_beside(path)))
+
+
+def _beside(path: Path) -> tuple[Path, ...]:
+    """The files beside a template that say more of it: measured errors, digests of its release, results."""
+    named = (path.with_name(f"{path.stem}.{kind}.json") for kind in ("accuracy", "release"))
+    return (*named, *records(path))
+
+
+def _state(path: Path) -> tuple[int, int, int] | None:
+    try:
+        status = path.stat()
+    except OSError:
+        return None
+    return status.st_mtime_ns, status.st_ctime_ns, status.st_size
+
+
+def _digest(path: Path, content: bytes) -> str:
+    """SHA-256 over a file and those beside it."""
+    digest = hashlib.sha256(content)
+    for file in _beside(path):
+        if file.is_file():
+            digest.update(b"\0" + file.name.encode() + b"\0" + file.read_bytes())
+    return digest.hexdigest()
+
+
+def merged(
+    templates: Catalogue[Template], models: Catalogue[CadModel], files: Iterable[TeamFile]
+) -> Snapshot:
+    """The built-in versions and those of a team; a version that is taken already is quarantined."""
+    own_templates, own_models = dict(templates.versions), dict(models.versions)
+    owners: dict[tuple[bool, Key], TeamFile] = {}
+    settled: list[TeamFile] = []
+    for file in files:
+        if (cls := file.cls) is None or (key := file.key) is None:
+            settled.append(file)
+            continue
+        is_model = issubclass(cls, CadModel)
+        if key in (own_models if is_model else own_templates):
+            settled.append(file.refused(_taken(key, owners.get((is_model, key)))))
+            continue
+        if issubclass(cls, CadModel):
+            own_models[key] = cls
+        else:
+            own_templates[key] = cls
+        owners[is_model, key] = file
+        settled.append(file)
+    reasons = {file.key: _reason(file) for file in settled if file.is_quarantined and file.key}
+    return Snapshot(
+        Catalogue(dict(sorted(own_templates.items())), templates.kind, reasons),
+        Catalogue(dict(sorted(own_models.items())), models.kind, reasons),
+        tuple(settled),
+    )
+
+
+def _taken(key: Key, by: TeamFile | None) -> FileFault:
+    id, version = key
+    what = f"{id} version {version} is that of {by.name if by else 'this program'} already"
+    return FileFault("duplicate" if by else "shipped", what, "give it another id, or the next free version")
+
+
+def _reason(file: TeamFile) -> str:
+    """Why a file cannot be used, in one sentence."""
+    first = next(fault for fault in file.faults if fault.quarantines)
+    more = len(file.faults) - 1
+    others = f", and {more} more" if more else ""
+    return f"its file {file.name} has faults: {first.sentence}{others}. See /templates/faults"

@@ -1,0 +1,170 @@
+"""Labels of designs in the database, and renaming: neither calculates anything, nor makes a result old."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Iterable, Mapping, Sequence
+
+from pydantic import ConfigDict, Field
+from sqlalchemy import delete, func, select
+from sqlalchemy.orm import Session
+
+from app.designs import repository
+from app.designs.document import merge
+from app.designs.errors import StaleRevision
+from app.designs.repository import Written
+from app.designs.results import ModelState
+from app.designs.service import Designs, Saved, read_document
+from app.plain import JsonObject, Raw
+from app.schemas.bounded import Bounded
+from app.schemas.labels import MOST_TAGS, Labels, Tag, TagUse
+from app.storage.idempotency import Once
+from app.storage.identity import now
+from app.storage.tables import DesignRow, DesignTagRow, RevisionRow
+from templates.core.errors import Fault, InvalidInputs
+
+MOST_LISTED = 500
+
+
+class LabelsIn(Bounded):
+    """A change of labels; what it does not name stays. To send it twice does no harm."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={"examples": [{"add_tags": ["V8", "main bearing"], "archived": False}]},
+    )
+
+    add_tags: list[Tag] = Field([], max_length=MOST_TAGS)
+    remove_tags: list[Tag] = Field([], max_length=MOST_TAGS, description="those it does not have are ignored")
+    archived: bool | None = Field(None, description="true: lists leave it out, unless they name `archived`")
+
+
+def key_of(tag: str) -> str:
+    """What two spellings of one tag have in common: `Main  bearing` and `main bearing` are one."""
+    return clean(tag).casefold()
+
+
+def clean(tag: str) -> str:
+    """A tag as it is kept: composed letters, single blanks."""
+    return " ".join(filter(None, unicodedata.normalize("NFC", tag).split(" ")))
+
+
+class Labelling:
+    """Changes of labels and names, which leave results as they are."""
+
+    def __init__(self, designs: Designs) -> None:
+        self.designs, self.database = designs, designs.database
+
+    def labels(self, id: str) -> Labels:
+        """The labels of a design."""
+        with self.database.read() as session:
+            return _labels(session, repository.design(session, id))
+
+    def label(self, id: str, change: LabelsIn) -> Labels:
+        """Change the labels of a design.
+
+        Raises
+        ------
+        InvalidInputs
+            If it would have too many tags.
+        """
+
+        def unit(session: Session) -> Labels:
+            row = repository.design(session, id)
+            _apply(session, row, change)
+            return _labels(session, row)
+
+        return self.database.write(unit)
+
+    def change(
+        self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
+    ) -> Saved:
+        """As `Designs.change`; but a new name alone keeps the results, and calculates nothing."""
+        if set(patch) == {"name"}:
+            saved = self._renamed(id, patch, note, expected, once)
+            if saved is not None:
+                return saved
+        return self.designs.change(id, patch, note, expected, once)
+
+    def _renamed(
+        self, id: str, patch: Mapping[str, Raw], note: str | None, expected: str | None, once: Once
+    ) -> Saved | None:
+        """A revision with another name and the same results; None where the usual way has to do it."""
+
+        def unit(session: Session) -> Saved | None:
+            if once.key and once.find(session):
+                return None
+            head = repository.head(session, id)
+            document = merge(head.document, patch)
+            if head.state != "current" or document == head.document:
+                return None
+            if expected is not None and expected.strip() not in ("*", f'"{head.number}"'):
+                raise StaleRevision(expected, head.number)
+            name = read_document(document).name
+            number = repository.append(session, repository.design(session, id), _carried(head, name, note))
+            saved = Saved(id, number, None, created=False)
+            once.keep(session, 200, vars(saved))
+            return saved
+
+        saved = self.database.write(unit)
+        if saved is not None:
+            for event in ("revision", "current"):
+                topic = f"design:{id}"
+                self.designs.jobs.events.publish(topic, {"event": event, "revision": saved.revision})
+        return saved
+
+
+def _carried(head: RevisionRow, name: str, note: str | None) -> Written:
+    """What a revision holds, under another name."""
+    models = [
+        ModelState(m.name, m.model, m.model_version, m.parameters, m.relations, (), m.build_key)
+        for m in head.models
+    ]
+    document: JsonObject = {**head.document, "name": name}
+    return Written(document, head.results, models, head.state, note or f"renamed from {_former(head)}")
+
+
+def _former(head: RevisionRow) -> str:
+    return str(head.document["name"])
+
+
+def _apply(session: Session, row: DesignRow, change: LabelsIn) -> None:
+    removed = {key_of(tag) for tag in change.remove_tags}
+    if removed:
+        of_design = DesignTagRow.design_id == row.id
+        session.execute(delete(DesignTagRow).where(of_design, DesignTagRow.key.in_(removed)))
+    for tag in change.add_tags:
+        session.merge(DesignTagRow(design_id=row.id, key=key_of(tag), tag=clean(tag)))
+    session.flush()
+    if len(tags_of(session, [row.id])[row.id]) > MOST_TAGS:
+        raise InvalidInputs([Fault("add_tags", "too_many", f"a design has at most {MOST_TAGS} tags")])
+    if change.archived is not None and change.archived != (row.archived is not None):
+        row.archived = now() if change.archived else None
+
+
+def _labels(session: Session, row: DesignRow) -> Labels:
+    return Labels(tags=tags_of(session, [row.id])[row.id], archived=row.archived is not None)
+
+
+def tags_of(session: Session, ids: Sequence[str]) -> dict[str, list[str]]:
+    """The tags of designs, by design, in alphabetical order."""
+    tags: dict[str, list[str]] = {id: [] for id in ids}
+    query = select(DesignTagRow.design_id, DesignTagRow.tag).where(DesignTagRow.design_id.in_(ids))
+    for id, tag in session.execute(query.order_by(DesignTagRow.key)):
+        tags[id].append(tag)
+    return tags
+
+
+def all_tags(session: Session) -> Iterable[TagUse]:
+    """The tags of designs that are listed, the most used first."""
+    count = func.count()
+    query = (
+        select(func.min(DesignTagRow.tag), count)
+        .join(DesignRow, DesignRow.id == DesignTagRow.design_id)
+        .where(DesignRow.deleted.is_(None), DesignRow.archived.is_(None))
+        .group_by(DesignTagRow.key)
+        .order_by(count.desc(), DesignTagRow.key)
+        .limit(MOST_LISTED)
+    )
+    return [TagUse(tag=tag, designs=number) for tag, number in session.execute(query)]

@@ -1,0 +1,35 @@
+"""Labels of designs: tags, and whether a design is archived. They belong to no revision."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from app.schemas.answers import Answer
+
+MOST_TAGS = 20
+TAG = r"^[^\x00-\x1f\x7f,]*[^\x00-\x20\x7f,][^\x00-\x1f\x7f,]*$"
+"""A word or several, without a comma: lists of tags are typed with commas."""
+
+Tag = Annotated[str, Field(min_length=1, max_length=40, pattern=TAG, examples=["V8"])]
+
+
+class Labels(Answer):
+    """The labels of a design."""
+
+    tags: list[str] = Field(description="in alphabetical order")
+    archived: bool = Field(description="whether lists leave it out")
+
+
+class TagUse(Answer):
+    """A tag, and how many designs have it."""
+
+    tag: str
+    designs: int = Field(description="designs with this tag that are not archived")
+
+
+class TagList(Answer):
+    """Every tag in use, the most used first."""
+
+    items: list[TagUse]

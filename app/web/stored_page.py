@@ -1,0 +1,33 @@
+"""A design whose template or model cannot be used now: what is stored of it, and why that is all."""
+
+from __future__ import annotations
+
+from fastapi import Request, Response
+
+from app.schemas.designs import Design, Revision
+from app.web.api import Api, Refused
+from app.web.rendering import show
+from cad.export import MEDIA_TYPES
+
+REASONS = ("/problems/quarantined", "/problems/unknown-template")
+
+
+def is_unusable(refused: Refused) -> bool:
+    """Whether the interface refused because a version is quarantined, or its file was taken away."""
+    return refused.problem.type in REASONS
+
+
+async def stored_page(request: Request, api: Api, id: str, number: int | None, reason: str) -> Response:
+    """One revision, the newest if none is named, as it is stored."""
+    design = await api.get(f"/designs/{id}", Design)
+    shown = number or design.revision
+    revision = await api.get(f"/designs/{id}/revisions/{shown}", Revision)
+    return show(
+        request,
+        "stored.html",
+        design=design,
+        revision=revision,
+        reason=reason,
+        kinds=list(MEDIA_TYPES),
+        base=f"/api/v1/designs/{id}/revisions/{shown}",
+    )

@@ -1,0 +1,99 @@
+"""Modules of files outside the packages of this program, each made from its bytes.
+
+The name of such a module holds a digest of the file's content. So an edited file makes a new module beside
+the old one: a calculation that runs keeps the code with which it began, and what another process returns is
+unpickled as what it was there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import linecache
+import sys
+import traceback
+from importlib.util import decode_source
+from pathlib import Path
+from types import ModuleType
+
+OUTSIDE = "_outside"
+"""The package to which files belong that are in none."""
+
+_CONTENT, _DIGEST = "__content__", "__digest__"  # attributes of such a module
+
+
+class _Text:
+    """The loader of such a module, from which `inspect` and tracebacks read the text that was compiled."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+    def get_source(self, name: str) -> str:
+        """The text of the module."""
+        return self.text
+
+
+def load(path: Path, content: bytes, digest: str = "") -> ModuleType:
+    """The module that the content of a file makes; made once for each digest, by default that of the content.
+
+    Raises
+    ------
+    Exception
+        Whatever the file raises: SyntaxError, ImportError, …
+    """
+    digest = digest or hashlib.sha256(content).hexdigest()
+    name = _name(path, digest)
+    if name in sys.modules:
+        return sys.modules[name]
+    sys.modules.setdefault(OUTSIDE, ModuleType(OUTSIDE))  # else nothing of such a file could be pickled
+    text = decode_source(content)
+    place = f"{path}@{digest[:12]}"  # two contents of one file have two texts
+    module = ModuleType(name)
+    vars(module).update(
+        __file__=str(path),
+        __package__="",
+        __spec__=None,
+        __loader__=_Text(text),
+        **{_CONTENT: content, _DIGEST: digest},
+    )
+    linecache.cache[place] = len(text), None, text.splitlines(keepends=True), place
+    sys.modules[name] = module
+    try:
+        exec(compile(text, place, "exec", dont_inherit=True), vars(module))
+    except BaseException:
+        del sys.modules[name]
+        raise
+    return module
+
+
+def origin(module: ModuleType) -> tuple[bytes, str] | None:
+    """The content from which a module was made, and its digest; None if `load` did not make it."""
+    parts = vars(module)
+    return (parts[_CONTENT], parts[_DIGEST]) if _CONTENT in parts else None
+
+
+def text_of(module: ModuleType) -> str | None:
+    """The text from which a module was made, if `load` made it."""
+    return decode_source(made[0]) if (made := origin(module)) else None
+
+
+def is_outside(cls: type) -> bool:
+    """Whether a class comes from a file outside the packages of this program."""
+    return cls.__module__.partition(".")[0] == OUTSIDE
+
+
+def failing_line(error: BaseException, path: Path) -> int | None:
+    """The last line of a file that had a part in an error."""
+    if isinstance(error, SyntaxError) and _is_in(error.filename or "", path):
+        return error.lineno
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [frame.lineno for frame in frames if _is_in(frame.filename, path)]
+    return lines[-1] if lines else None
+
+
+def _is_in(filename: str, path: Path) -> bool:
+    return filename == str(path) or filename.startswith(f"{path}@")
+
+
+def _name(path: Path, digest: str) -> str:
+    folder = hashlib.sha256(bytes(path.resolve().parent)).hexdigest()[:12]
+    return f"{OUTSIDE}.{folder}.{digest[:12]}.{path.stem}"

@@ -1,0 +1,20 @@
+"""Everything that is checked of a class, in an order in which one cause makes one fault."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from templates.core.checking.behaviour import faults_of_behaviour, faults_of_example
+from templates.core.checking.faults import FileFault
+from templates.core.checking.golden import faults_of_release
+from templates.core.checking.structure import faults_of_structure
+from templates.core.language.template import Template
+
+
+def faults_of(cls: type[Template], path: Path) -> list[FileFault]:
+    """Every fault of a template or model that the file at `path` declares."""
+    if faults := list(faults_of_structure(cls)):
+        return faults
+    if faults := list(faults_of_example(cls)):
+        return faults
+    return [*faults_of_behaviour(cls), *faults_of_release(cls, path)]

@@ -1,0 +1,202 @@
+"""Two revisions, or two designs, side by side: what differs, by how much, in which unit."""
+
+from copy import deepcopy
+
+import pytest
+from serving import API, created, faults, moody, paper, patched, problem
+
+from app.designs.differences import MOST_SHOWN, differing
+
+DESIGNS = f"{API}/designs"
+
+
+def compared(http, id, **query):
+    answer = http.get(f"{DESIGNS}/{id}/compare", params=query)
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def by_name(items):
+    return {item["name"]: item for item in items}
+
+
+@pytest.fixture(scope="module")
+def design(http):
+    """Three revisions: scale 1, then 1.05, then 1 with another speed."""
+    made = created(http, paper(name="compared"))
+    made = patched(http, made, {"parameters": {"scale": "1.05"}})
+    speed = {"steps": {"film": {"inputs": {"speed": "6000 rpm"}}}}
+    return patched(http, made, {"parameters": {"scale": "1"}, **speed, "note": "faster"})
+
+
+class TestRevisions:
+    def test_any_two_are_compared(self, http, design):
+        told = compared(http, design["id"], revision=1, **{"with": 3})
+        assert (told["old"]["revision"], told["new"]["revision"]) == (1, 3)
+        assert (told["new"]["note"], told["new"]["design"]) == ("faster", design["id"])
+        (speed,) = told["inputs"]
+        assert (speed["name"], speed["old"], speed["new"]) == (
+            "film.speed",
+            {"value": 5000, "unit": "rpm"},
+            {"value": 6000, "unit": "rpm"},
+        )
+        assert speed["change"] == pytest.approx(0.2)
+        assert speed["difference"] == {"value": pytest.approx(1000), "unit": "rpm"}
+        outputs = by_name(told["outputs"])
+        film = outputs["film.minimum_film_thickness"]
+        assert film["old"]["unit"] == film["new"]["unit"] == "um"
+        change = film["new"]["value"] / film["old"]["value"] - 1
+        assert film["change"] == pytest.approx(change)
+        assert "film.journal_diameter" not in outputs, "it is the same"
+        assert told["parameters"] == told["relations"] == told["model_parameters"] == []
+        assert told["measurements"] == []
+
+    def test_a_size_that_changed_changed_the_solid(self, http, design):
+        told = compared(http, design["id"], revision=1, **{"with": 2})
+        assert told["parameters"] == [{"name": "scale", "old": "1", "new": "1.05"}]
+        bore = by_name(told["model_parameters"])["model.inner_diameter"]
+        assert (bore["old"]["value"], bore["new"]["value"]) == (48, pytest.approx(50.4))
+        measured = by_name(told["measurements"])
+        assert measured["model.mass"]["change"] > 0.05
+        assert measured["model.dimensions.inner_diameter"]["new"]["value"] == pytest.approx(50.4)
+        assert measured["model.bounding_box.high"]["old"]["unit"] == "mm"
+
+    def test_the_newest_is_compared_with_the_one_before(self, http, design):
+        told = compared(http, design["id"])
+        assert (told["old"]["revision"], told["new"]["revision"]) == (2, 3)
+        told = compared(http, design["id"], revision=1)
+        assert (told["old"]["revision"], told["new"]["revision"]) == (1, 3)
+        told = compared(http, design["id"], **{"with": 2})
+        assert (told["old"]["revision"], told["new"]["revision"]) == (1, 2)
+
+    def test_backwards_is_the_opposite(self, http, design):
+        (speed,) = compared(http, design["id"], revision=3, **{"with": 1})["inputs"]
+        assert speed["change"] == pytest.approx(-1 / 6)
+
+    def test_a_revision_equals_itself(self, http, design):
+        told = compared(http, design["id"], revision=2, **{"with": 2})
+        assert all(part == [] for name, part in told.items() if name not in ("old", "new"))
+
+    def test_units_of_display(self, http, design):
+        told = compared(http, design["id"], revision=1, **{"with": 2, "units": "us"})
+        bore = by_name(told["model_parameters"])["model.inner_diameter"]
+        assert bore["old"] == {"value": pytest.approx(48 / 25.4), "unit": "inch"}
+        assert bore["difference"] == {"value": pytest.approx(2.4 / 25.4), "unit": "inch"}
+        assert bore["change"] == pytest.approx(0.05)
+
+    @pytest.mark.parametrize(
+        ("query", "status", "slug"),
+        [
+            ({"revision": 9}, 404, "not-found"),
+            ({"with": 9}, 404, "not-found"),
+            ({"design": "none"}, 404, "not-found"),
+            ({"revision": 0}, 422, "invalid-inputs"),
+            ({"with": "newest"}, 422, "invalid-inputs"),
+            ({"design": "a" * 65}, 422, "invalid-inputs"),
+        ],
+    )
+    def test_what_is_not_there_is_said(self, http, design, query, status, slug):
+        problem(http.get(f"{DESIGNS}/{design['id']}/compare", params=query), status, slug)
+        problem(http.get(f"{DESIGNS}/none/compare"), 404, "not-found")
+
+
+class TestDesigns:
+    def test_two_designs(self, http, design):
+        document = deepcopy(paper(name="other"))
+        document["steps"]["film"]["version"] = 2
+        document["steps"]["film"]["inputs"]["bearing_diameter"] = "48 mm"
+        other = created(http, document)
+        told = compared(http, design["id"], revision=1, design=other["id"])
+        assert (told["old"]["name"], told["new"]["name"]) == ("compared", "other")
+        assert (told["old"]["revision"], told["new"]["revision"]) == (1, 1)
+        assert {change["name"] for change in told["versions"]} == {"film", "film.level"}
+        versions = by_name(told["versions"])["film"]
+        assert versions["old"].startswith("oil_film version 1, code ")
+        assert versions["new"].startswith("oil_film version 2, code ")
+        assert told["relations"] == [{"name": "film.bearing_diameter", "old": "= scale * 48 mm", "new": None}]
+        outputs = by_name(told["outputs"])
+        assert outputs["film.attitude_angle"]["old"] is None
+        assert "change" not in outputs["film.attitude_angle"]
+
+    def test_a_design_of_other_steps(self, http, design):
+        other = created(http, moody("10 mm"))
+        told = compared(http, design["id"], design=other["id"])
+        assert all(item["new"] is None for item in told["inputs"])
+        assert by_name(told["model_parameters"])["model.size"]["old"] is None
+        assert told["old"]["revision"] == 3
+
+
+class TestValues:
+    def differ(self, old, new):
+        return [item.plain() for item in differing({"x": old}, {"x": new})]
+
+    def test_the_same_in_another_unit_is_no_difference(self):
+        assert self.differ({"value": 25, "unit": "kN"}, {"value": 25000.0, "unit": "N"}) == []
+        assert self.differ({"value": 80, "unit": "degC"}, {"value": 353.15, "unit": "K"}) == []
+        assert self.differ({"value": [1, 2], "unit": "mm"}, {"value": [1e3, 2e3], "unit": "um"}) == []
+
+    def test_other_kinds_are_a_difference_without_a_change(self):
+        (item,) = self.differ({"value": 1, "unit": "mm"}, {"value": 1, "unit": "kg"})
+        assert item.keys() == {"name", "old", "new"}
+        (item,) = self.differ({"value": "half"}, {"value": "full"})
+        assert (item["old"], item["new"]) == ({"value": "half"}, {"value": "full"})
+
+    def test_a_temperature_has_a_difference_in_kelvin_and_no_relative_change(self):
+        (item,) = self.differ({"value": 80, "unit": "degC"}, {"value": 90, "unit": "degC"})
+        assert item["difference"] == {"value": pytest.approx(10), "unit": "K"}
+        assert "change" not in item
+
+    def test_from_zero_there_is_no_relative_change(self):
+        (item,) = self.differ({"value": 0, "unit": "mm"}, {"value": 2, "unit": "mm"})
+        assert item["difference"] == {"value": 2, "unit": "mm"}
+        assert "change" not in item
+
+    def test_what_has_no_value_says_why(self):
+        (item,) = self.differ({"value": None, "unit": "mm", "reason": "no load"}, {"value": 2, "unit": "mm"})
+        assert item["old"] == {"value": None, "unit": "mm", "reason": "no load"}
+        assert "change" not in item
+
+    def test_a_long_array_is_shown_by_its_range(self):
+        old = [float(n) for n in range(MOST_SHOWN + 1)]
+        new = [*old[:5], None, *old[6:-1], 40.0]
+        (item,) = self.differ({"value": old, "unit": "mm"}, {"value": new, "unit": "mm"})
+        assert item["old"] == {"unit": "mm", "count": 21, "least": 0, "largest": 20}
+        assert item["new"] == {"unit": "mm", "count": 21, "least": 0, "largest": 40}
+        assert item["change"] == 1, "the largest change by the largest value"
+        (item,) = self.differ({"value": [1.0, 2.0], "unit": "mm"}, {"value": [1.0, 1.0], "unit": "mm"})
+        assert (item["old"]["value"], item["change"]) == ([1, 2], -0.5)
+
+    def test_arrays_of_other_shapes(self):
+        (item,) = self.differ({"value": [1, 2], "unit": "mm"}, {"value": 1, "unit": "mm"})
+        assert "change" not in item
+
+    def test_a_tolerance_counts(self):
+        old = {"value": 1, "unit": "mm"}
+        assert len(self.differ(old, {**old, "plus": "0.1 mm"})) == 1
+        assert self.differ({**old, "from": "given"}, {**old, "from": "default"}) == []
+
+    def test_an_unknown_unit_of_an_old_program_is_shown(self):
+        assert len(self.differ({"value": 1, "unit": "furlongs"}, {"value": 2, "unit": "furlongs"})) == 1
+
+
+def test_verdicts_that_are_stored_are_compared(served, http, design):
+    """As the contract of criteria stores them; a design of before has none."""
+    from app.storage.tables import RevisionRow
+
+    database = served.app.state.services.database
+    id = created(http, paper(name="judged"))["id"]
+    judged = {"name": "film.film", "verdict": "met", "utilisation": 0.9}
+
+    def store(session):
+        row = session.get(RevisionRow, (id, 1))
+        row.results = {**row.results, "criteria": [judged, {**judged, "name": "film.load"}]}
+
+    database.write(store)
+    told = compared(http, design["id"], design=id)
+    assert by_name(told["criteria"])["film.film"] == {
+        "name": "film.film",
+        "old": None,
+        "new": {"verdict": "met", "utilisation": 0.9},
+    }
+    assert compared(http, id, revision=1, **{"with": 1})["criteria"] == []
+    assert faults(http.get(f"{DESIGNS}/{id}/compare", params={"units": "metric"})).keys() == {"units"}
