@@ -41,7 +41,7 @@ class StepBlock:
 
     @property
     def main(self) -> list[str]:
-        """The results that are shown at once: all of a few; of many, those with a value that no other formula uses."""
+        """The results shown at once: all of a few; of many, those with a value that no formula uses."""
         if len(self.outputs) <= MOST_AT_ONCE:
             return self.outputs
         used = {name for formula in self.template.formulas for name in formula.uses}

@@ -12,6 +12,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from app.api.gate.guard import PAGE_POLICY
 from app.presentation.environment import environment
 from app.presentation.units import System
+from app.reports.pictures import axis_of
 from app.web import plotly
 from app.web.session import keep_session
 
@@ -26,6 +27,7 @@ YEAR = 365 * 24 * 3600  # s
 
 jinja = environment(Path(__file__).with_name("pages"))
 jinja.globals["ids_of_styles"] = plotly.ids_of_styles
+jinja.globals["axis_of"] = axis_of
 
 
 def units_of(request: Request) -> System:

@@ -168,6 +168,8 @@ QUANTITIES = (
     {"value": None, "unit": "1", "reason": "no load"},
     {"value": [1.5, 2.5], "unit": "mm"},
     {"value": [float(n) for n in range(9)], "unit": "deg"},
+    {"value": [float((7 * n) % 31) for n in range(31)], "unit": "N"},
+    {"value": [[1.0] * 12, [2.0] * 12], "unit": "1"},
     "= scale * 48 mm",
 )
 
