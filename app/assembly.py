@@ -11,8 +11,9 @@ from app.api.services import Services
 from app.api.threads import Threads
 from app.calculations.assembly import Calculations, assemble_calculations
 from app.calculations.cache import results
-from app.calculations.jobs import CALCULATION, PREVIEW
+from app.calculations.jobs import CALCULATION, DECISION, PREVIEW
 from app.catalogue.finding import find_templates
+from app.designs.decisions import Decisions
 from app.designs.graph import Catalogues
 from app.designs.previewing import Previews
 from app.designs.recent import Recent
@@ -60,6 +61,8 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     register_jobs(settings, jobs, database, store, catalogues, calculations, recent)
     previews = Previews(database, catalogues, store, jobs, calculations.steps)
     jobs.register(PREVIEW, previews, previews.failed, lane=CALCULATION)
+    decisions = Decisions(database, catalogues, store, jobs, calculations.steps)
+    jobs.register(DECISION, decisions, decisions.failed, lane=CALCULATION)
     jobs.start(calculations.lanes)
     stack.callback(jobs.stop)
     models = Models(database, store, jobs, catalogues.models)
@@ -76,6 +79,7 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         answering=Answering(calculations.pool, calculations.jobs, settings.calculation_deadline),
         designs=Designs(database, jobs, catalogues, recent),
         previews=previews,
+        decisions=decisions,
         models=models,
         analyses=analyses,
         healing=Healing(database, store, models, analyses),

@@ -25,6 +25,7 @@ from app.api.routes.analyses import router as analyses
 from app.api.routes.calculations import router as calculations
 from app.api.routes.calculations import worksheets
 from app.api.routes.curves import router as curves
+from app.api.routes.decisions import router as decisions
 from app.api.routes.design_events import router as design_events
 from app.api.routes.design_files import router as design_files
 from app.api.routes.designs import router as designs
@@ -86,6 +87,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         catalogue,
         library,
         designs,
+        decisions,
         design_files,
         reports,
         design_events,

@@ -17,6 +17,7 @@ from app.api.reading import fingerprint
 from app.api.services import Services
 from app.api.threads import Threads
 from app.calculations.steps import Caller, call_as
+from app.designs.decisions import Decisions
 from app.designs.graph import Catalogues
 from app.designs.previewing import Previews
 from app.designs.service import Designs
@@ -55,6 +56,7 @@ TheThreads = Annotated[Threads, Depends(_part("threads"))]
 TheAnswering = Annotated[Answering, Depends(_part("answering"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
 ThePreviews = Annotated[Previews, Depends(_part("previews"))]
+TheDecisions = Annotated[Decisions, Depends(_part("decisions"))]
 TheModels = Annotated[Models, Depends(_part("models"))]
 TheAnalyses = Annotated[Analyses, Depends(_part("analyses"))]
 TheHealing = Annotated[Healing, Depends(_part("healing"))]

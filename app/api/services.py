@@ -10,6 +10,7 @@ from app.api.readiness import Readiness
 from app.api.threads import Threads
 from app.calculations.pool import CalculationPool
 from app.calculations.steps import Steps
+from app.designs.decisions import Decisions
 from app.designs.graph import Catalogues
 from app.designs.previewing import Previews
 from app.designs.service import Designs
@@ -39,6 +40,7 @@ class Services:
     answering: Answering
     designs: Designs
     previews: Previews
+    decisions: Decisions
     models: Models
     analyses: Analyses
     healing: Healing

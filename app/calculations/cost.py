@@ -17,8 +17,9 @@ from app.calculations.size import arrays, spanned
 from app.plain import Raw
 from templates.core.errors import InvalidInputs
 from templates.core.language.climbing import reachable
+from templates.core.language.confirming import POLISHES
 from templates.core.language.levels import SINGLE, accuracy
-from templates.core.language.solve import POLISHES, SAMPLES
+from templates.core.language.scan import SAMPLES
 from templates.core.language.spec import Curve, Table
 from templates.core.language.template import Template
 from templates.core.units.quantity import Typed
@@ -33,8 +34,9 @@ PER_NUMBER = 5e-7  # each number of a request, read and checked [s]
 PER_FORMULA = 3e-4  # written out in a worksheet [s]
 ALLOWANCE = 3.0
 """The tables of the levels leave out stiffness and damping, which take twice as long as all the rest."""
-SCANS, CLOSINGS = 8, 60
+SCANS, CLOSINGS = 8, 120
 """Of `solve`: how often the samples of its scan are evaluated, in all, and single points after that."""
+SOLUTIONS = 2  # that are likely to be calculated again at the level requested
 MOST_POINTS = 10**12  # a request may claim more than a float can hold
 PROBED = 1000  # numbers in a request beyond which only the first of each array is looked at
 
@@ -68,7 +70,8 @@ def solving_seconds(
     cheap = levels if not any(name in cls.most_points for name in levels) else (cls.default_level,)
     scan = _evaluating(cls, cheap, SCANS * SAMPLES, aimed)
     closing = CLOSINGS * _evaluating(cls, cheap, 1, aimed)
-    polishing = 0.0 if cheap == levels else POLISHES * _evaluating(cls, levels, 1, aimed)
+    again = SOLUTIONS * POLISHES
+    polishing = 0.0 if cheap == levels else again * _evaluating(cls, levels, 1, aimed)
     return scan + closing + polishing + _evaluating(cls, levels, 1, outputs)
 
 

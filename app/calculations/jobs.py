@@ -26,7 +26,7 @@ from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.language.template import Template
 
-CALCULATION, PREVIEW = "calculation", "preview"
+CALCULATION, PREVIEW, DECISION = "calculation", "preview", "decision"
 """Kinds of jobs whose result is an answer: what a request asked for, and nobody waited for."""
 GLANCE = 0.1  # how often a thread looks whether its job was cancelled [s]
 AGAIN = "again"  # in a payload: the job whose lost answer is calculated again

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,8 @@ from app.calculations import criteria
 from app.plain import Json, JsonObject
 from templates.core.catalogue.digests import content_digest, digest
 from templates.core.language.evaluate import Answer, Echo, Evaluation
+from templates.core.language.ledger import Notice
+from templates.core.language.solve import Jump, Root, Solution, TracedCurve
 from templates.core.language.template import Template
 
 _identities: dict[type[Template], JsonObject] = {}
@@ -84,7 +86,46 @@ def evaluation(result: Evaluation) -> JsonObject:
         "outputs": {name: answer(output) for name, output in result.outputs.items()},
         "level": _plain(result.level),
         "error": _errors(result.error),
-        "warnings": [{"code": w.code, "name": w.name, "detail": w.detail} for w in result.warnings],
+        "warnings": _warnings(result.warnings),
         **criteria.rendered(result.criteria),
         "seconds": result.seconds,
+    }
+
+
+def _warnings(notices: Iterable[Notice]) -> list[JsonObject]:
+    return [{"code": w.code, "name": w.name, "detail": w.detail} for w in notices]
+
+
+def solution(result: Solution) -> JsonObject:
+    """The whole answer to `solve`."""
+    return {
+        "unknown": quantity(result.unknown, result.unit),
+        "warnings": _warnings(result.warnings),
+        "roots": [_root(root, result.unit) for root in result.roots],
+        "touching": [_root(root, result.unit) for root in result.touching],
+        "jumps": [_jump(jump, result) for jump in result.jumps],
+        "curve": _curve(result.curve, result),
+        "evaluation": evaluation(result.evaluation),
+    }
+
+
+def _root(root: Root, unit: str) -> JsonObject:
+    about = {"slope": root.slope, "level": root.level, "error": root.error, "confirmed": root.confirmed}
+    return {**quantity(root.value, unit), **about}
+
+
+def _jump(jump: Jump, result: Solution) -> JsonObject:
+    sides = {
+        "before": quantity(jump.before, result.target_unit),
+        "after": quantity(jump.after, result.target_unit),
+    }
+    return {**quantity(jump.value, result.unit), **sides}
+
+
+def _curve(curve: TracedCurve, result: Solution) -> JsonObject:
+    return {
+        "x": quantity(curve.x.tolist(), result.unit),
+        "y": quantity(_plain(curve.y), result.target_unit),
+        "reasons": curve.reasons.tolist(),
+        "level": curve.level,
     }

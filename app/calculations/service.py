@@ -10,8 +10,9 @@ from app.calculations.schemas import EvaluateIn, SolveIn
 from app.calculations.size import points
 from app.plain import JsonObject
 from templates.core.language.evaluate import Evaluation, evaluate
+from templates.core.language.question import read_question
 from templates.core.language.request import read_request, require_points
-from templates.core.language.solve import read_question, solve
+from templates.core.language.solve import solve
 from templates.core.language.template import Template
 
 MOST_VALUES = 2_000_000  # in one answer: some 40 MB of JSON
@@ -115,6 +116,4 @@ def run_solve(cls: type[Template], body: SolveIn) -> JsonObject:
         level=body.level,
         tolerance=body.tolerance,
     )
-    warnings = [{"code": w.code, "name": w.name, "detail": w.detail} for w in solution.warnings]
-    answer = {"unknown": rendering.quantity(solution.unknown, solution.unit), "warnings": warnings}
-    return {**answer, "evaluation": rendering.evaluation(solution.evaluation)}
+    return rendering.solution(solution)

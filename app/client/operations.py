@@ -26,6 +26,7 @@ from app.client.exchange import (
 from app.client.problem import checked
 from app.schemas.analyses import Analysis, Surface
 from app.schemas.curves import Curves
+from app.schemas.decisions import Decision
 from app.schemas.designs import (
     Design,
     DesignList,
@@ -49,15 +50,20 @@ Values = Mapping[str, Any]
 """Quantities by name: `"25 kN"`, `{"value": 25, "unit": "kN"}`, or a quantity of another answer."""
 
 
-class Options(TypedDict, total=False):
-    """How a template is evaluated."""
+class SolveOptions(TypedDict, total=False):
+    """How a template is evaluated at a solution."""
 
     outputs: list[str]
     level: str
     tolerance: float
-    per_point: bool
     units: dict[str, str]
     limits: Mapping[str, Any]
+
+
+class Options(SolveOptions, total=False):
+    """How a template is evaluated."""
+
+    per_point: bool
 
 
 class AnalysisOptions(TypedDict, total=False):
@@ -103,10 +109,19 @@ def worksheet(id: str, version: int, inputs: Values, **options: Unpack[Options])
 
 
 def solve(
-    id: str, version: int, inputs: Values, unknown: str, bounds: tuple[Any, Any], target: Values
+    id: str,
+    version: int,
+    inputs: Values,
+    unknown: str,
+    bounds: tuple[Any, Any],
+    target: Values,
+    **options: Unpack[SolveOptions],
 ) -> Exchange[Solution]:
-    """Find the input that gives a wanted output, between bounds."""
-    body = {"inputs": inputs, "unknown": unknown, "bounds": bounds, "target": target}
+    """Find the inputs that give a wanted output, between bounds.
+
+    Options are `outputs`, `level`, `tolerance`, `units`.
+    """
+    body = {"inputs": inputs, "unknown": unknown, "bounds": bounds, "target": target, **options}
     return calculated(Solution, post(f"/templates/{id}/versions/{version}/solve", body))
 
 
@@ -195,6 +210,14 @@ def preview(id: str, patch: Mapping[str, Any], *, worksheet: bool = False) -> Ex
     """What a change would do; nothing is saved. `worksheet` adds every step, its formulas written out."""
     asked = "?worksheet=true" if worksheet else ""
     return calculated(Preview, post(f"/designs/{id}/preview{asked}", patch))
+
+
+def decide(
+    id: str, criteria: list[str] | None = None, budget: str = "30 s", *, on_progress: Progress | None = None
+) -> Exchange[Decision]:
+    """Decide criteria that are undecided, all if none are named: finer levels where they are needed."""
+    body = {"criteria": criteria, "budget": budget}
+    return calculated(Decision, post(f"/designs/{id}/decide", body), on_progress)
 
 
 def auto_map(id: str) -> Exchange[list[Proposal]]:

@@ -5,7 +5,7 @@ Nothing stops at the first fault, so that a user sees all of them at once.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -79,11 +79,16 @@ def resume(before: Calculation, measured: Measured, analysed: Analysed) -> Calcu
 
 
 def recalculated(
-    before: Calculation, changed: Mapping[Reference, Value], levels: Mapping[str, str | None]
+    before: Calculation,
+    changed: Mapping[Reference, Value],
+    levels: Mapping[str, str | None],
+    again: Collection[str] = (),
+    outputs: Mapping[str, tuple[str, ...]] | None = None,
 ) -> Calculation:
     """What follows from outputs of steps if these have other values [SI]; solids stay as they are.
 
     Steps are calculated at the `levels` given by their names, so that no other level makes a difference.
+    Those to calculate `again` are calculated whatever they follow from, and compute the `outputs` named.
     """
     result = replace(
         before,
@@ -106,10 +111,16 @@ def recalculated(
             moved.add(node)
             result.values.pop(node.name, None)
             _cell(result, node)
-        elif isinstance(node, Block) and not node.is_model and not moved.isdisjoint(node.cells.values()):
+        elif (
+            isinstance(node, Block)
+            and not node.is_model
+            and (node.name in again or not moved.isdisjoint(node.cells.values()))
+        ):
             moved.add(node)
             result.evaluations.pop(node.name, None)
-            _block(result, replace(node, level=levels.get(node.name), tolerance=None))
+            pinned = replace(node, level=levels.get(node.name), tolerance=None)
+            wanted = (outputs or {}).get(node.name, node.outputs)
+            _block(result, replace(pinned, outputs=wanted))
             result.broken |= {node} if node.name not in result.evaluations else set()
     return result
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, reduce
 from operator import or_
@@ -35,11 +35,28 @@ from templates.core.language.levels import accuracy
 
 def judged(calculation: Calculation) -> list[Judgement]:
     """Every criterion of a design, worst first; what waits for a solid or a step is not checked."""
-    return worst_first(_Judging(calculation).all())
+    return worst_first(Judging(calculation).all())
+
+
+@dataclass(frozen=True)
+class _Subject:
+    """A criterion of a design: that of a step's template, or one that the design writes itself."""
+
+    criterion: Criterion
+    block: Block | None
+    demand: Demand | None
+
+    @cached_property
+    def references(self) -> Mapping[str, Reference]:
+        """The values that it names, without limits."""
+        if self.block is None:
+            return self.demand.uses if self.demand else {}
+        limits = {limit.name for limit in self.criterion.limits}
+        return {n: Reference(self.block.name, None, n) for n in self.criterion.names if n not in limits}
 
 
 @dataclass
-class _Judging:
+class Judging:
     """One calculated design, judged."""
 
     calculation: Calculation
@@ -47,15 +64,44 @@ class _Judging:
 
     def all(self) -> Iterator[Judgement]:
         """Every criterion, in no order."""
+        return self.some(self._subjects)
+
+    def some(self, names: Iterable[str]) -> Iterator[Judgement]:
+        """The criteria of these names."""
+        for name in names:
+            subject = self._subjects[name]
+            if subject.block is not None:
+                yield from self._of_template(subject.block, subject.criterion, subject.demand)
+            elif subject.demand is not None:
+                yield self._of_design(subject.criterion, subject.demand)
+
+    def names(self) -> list[str]:
+        """The names of all criteria."""
+        return list(self._subjects)
+
+    def references(self, name: str) -> Mapping[str, Reference]:
+        """The values that a criterion names, without limits."""
+        return self._subjects[name].references
+
+    def uncertain(self, name: str) -> frozenset[Reference]:
+        """The outputs of steps whose errors, as far as they are stated, make the band of a criterion."""
+        origins = (self._shifting.of(reference).uncertain for reference in self.references(name).values())
+        return reduce(or_, origins, frozenset())
+
+    @cached_property
+    def _subjects(self) -> dict[str, _Subject]:
+        """All criteria by their names."""
         graph = self.calculation.graph
+        subjects: dict[str, _Subject] = {}
         for block in graph.blocks.values():
             for criterion in block.cls.declared_criteria:
-                demand = graph.demands.get(f"{block.name}.{criterion.name}")
-                if demand is None or demand.criterion is None:
-                    yield from self._of_template(block, criterion, demand)
-        for demand in graph.demands.values():
-            if demand.criterion is not None:
-                yield self._of_design(demand.criterion, demand)
+                name = f"{block.name}.{criterion.name}"
+                subjects[name] = _Subject(criterion, block, graph.demands.get(name))
+        own = {name: demand for name, demand in graph.demands.items() if demand.criterion is not None}
+        for name, demand in own.items():
+            assert demand.criterion is not None
+            subjects[name] = _Subject(demand.criterion, None, demand)
+        return subjects
 
     def _of_template(self, block: Block, criterion: Criterion, demand: Demand | None) -> Iterator[Judgement]:
         """A criterion of a step's template, unless the step leaves out outputs that it needs."""

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from app.calculations.schemas import OIL_FILM
-from app.designs.document import CRITERION, NAME, WORD, Criterion, Document, Iteration, Model, Name, Step
+from app.designs.document import (
+    CRITERION,
+    NAME,
+    WORD,
+    Criterion,
+    CriterionName,
+    Document,
+    Iteration,
+    Model,
+    Name,
+    Step,
+)
 from app.schemas.bounded import Bounded
-from app.schemas.values import GIVEN
+from app.schemas.values import GIVEN, Given
 
 PAPER: dict[str, Any] = {
     "name": "435 cc main bearing",
@@ -62,6 +73,20 @@ class CopyIn(Bounded):
 
     model_config = ConfigDict(strict=True, extra="forbid")
     name: Name | None = None
+
+
+class DecideIn(Bounded):
+    """Which criteria to decide, and how long that may take."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={"examples": [{"criteria": ["film.film"], "budget": "30 s"}]},
+    )
+    criteria: Annotated[list[CriterionName], Field(max_length=200)] | None = Field(
+        None, description="by name; all that are undecided, if not given"
+    )
+    budget: Given = Field("30 s", description="after which no further level begins")
 
 
 def _named(values: dict[str, Any]) -> dict[str, Any]:

@@ -100,7 +100,7 @@ class Shifting:
         if reference in graph.assumed:
             return self._of_model(reference.block)
         if cell := graph.cell(reference):
-            return _joined(self._of(used) for used in cell.uses.values())
+            return _joined(self.of(used) for used in cell.uses.values())
         block = graph.blocks.get(reference.block)
         if block is None:
             return NOTHING
@@ -110,7 +110,7 @@ class Shifting:
             return self._of_model(block.name)
         return self._of_block(block, reference.member)
 
-    def _of(self, reference: Reference) -> Upstream:
+    def of(self, reference: Reference) -> Upstream:
         """What follows for somebody who uses a value: its own error, and those beneath it."""
         return self.beneath(reference) | self._own(reference)
 
@@ -146,20 +146,16 @@ class Shifting:
         if block.is_model:
             return False
         raw = {name: self.calculation.typed.get(cell.name, cell.raw) for name, cell in block.cells.items()}
-        level = self._levels()[block.name]
+        level = levels_of(self.calculation)[block.name]
         outputs = list(self.calculation.evaluations[block.name].outputs)
         return estimated_seconds(block.cls, raw, level, None, outputs) > EXPENSIVE
-
-    def _levels(self) -> dict[str, str | None]:
-        levels = {name: evaluation.level for name, evaluation in self.calculation.evaluations.items()}
-        return {name: level if isinstance(level, str) else None for name, level in levels.items()}
 
     def _at_ends(self, origin: Reference) -> tuple[_End, _End]:
         if origin not in self._ends:
             estimate = self.estimate(origin)
             assert isinstance(estimate, Estimate)
             low, high = (
-                _End(origin, recalculated(self.calculation, {origin: end}, self._levels()))
+                _End(origin, recalculated(self.calculation, {origin: end}, levels_of(self.calculation)))
                 for end in estimate.bounds()
             )
             self._ends[origin] = low, high
@@ -183,6 +179,12 @@ class _End:
 
     origin: Reference
     calculation: Calculation
+
+
+def levels_of(calculation: Calculation) -> dict[str, str | None]:
+    """The level at which each step was calculated; None of a step without levels."""
+    levels = {name: evaluation.level for name, evaluation in calculation.evaluations.items()}
+    return {name: level if isinstance(level, str) else None for name, level in levels.items()}
 
 
 def _joined(parts: Iterable[Upstream]) -> Upstream:

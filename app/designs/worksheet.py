@@ -31,6 +31,8 @@ def worksheet(revision: Revision, catalogue: Catalogue[Template], system: System
     }
     models = {name: model.in_units(system) for name, model in revision.models.items()}
     fields = {name: getattr(revision, name) for name in revision.model_fields_set}
+    if revision.criteria is not None:
+        fields["criteria"] = [criterion.in_units(system) for criterion in revision.criteria]
     return RevisionWorksheet.model_validate({**fields, "steps": steps, "models": models})
 
 

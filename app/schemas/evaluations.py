@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, JsonValue, WithJsonSchema
 
-from app.schemas.answers import Answer, Measured, Shown, Value, Version, Warning
+from app.schemas.answers import Answer, Measured, Quantity, Shown, Value, Values, Version, Warning
 from app.schemas.criteria import Criterion, Verdict
 
 
@@ -72,12 +72,43 @@ class Evaluation(Evaluated):
     seconds: float = Field(description="time that the evaluation took, in s")
 
 
-class Solution(Answer):
-    """The input that gives a wanted output."""
+class Root(Quantity):
+    """A value of the unknown that gives the target."""
 
-    unknown: Shown
+    slope: Literal[-1, 0, 1] = Field(description="sign of the output's slope; 0: flat, or it only touches")
+    level: str | None = Field(description="the level at which it was calculated")
+    error: float | None = Field(
+        description="estimated relative error of the output; null where none is stated"
+    )
+    confirmed: bool = Field(description="false: a solution at the level of the curve only")
+
+
+class Jump(Quantity):
+    """A value of the unknown at which the output jumps across the target."""
+
+    before: Quantity = Field(description="the output just below")
+    after: Quantity = Field(description="the output just above")
+
+
+class TracedCurve(Answer):
+    """The output over the unknown, between the bounds."""
+
+    x: Values = Field(description="the unknown, even steps, in the logarithm where the bounds span a decade")
+    y: Shown = Field(description="the output; null where it has no value")
+    reasons: list[str | None] = Field(description="why there is no value; null where there is one")
+    level: str | None = Field(description="the level of fidelity of all points")
+
+
+class Solution(Answer):
+    """The inputs that give a wanted output."""
+
+    unknown: Shown = Field(description="the lowest value that gives the target; see `roots` for the others")
     warnings: list[Warning]
-    evaluation: Evaluation
+    roots: list[Root] = Field([], description="every crossing of the target within the bounds, ascending")
+    touching: list[Root] = Field([], description="extrema that just reach the target, ascending")
+    jumps: list[Jump] = Field([], description="where the output jumps across the target")
+    curve: TracedCurve | None = Field(None, description="absent in answers of earlier program versions")
+    evaluation: Evaluation = Field(description="at `unknown`")
 
 
 class FormulaMathML(Answer):

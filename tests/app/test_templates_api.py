@@ -184,6 +184,30 @@ class TestSolve:
         film = told["evaluation"]["outputs"]["minimum_film_thickness"]
         assert film["value"] == pytest.approx(3.2449, rel=1e-6)
 
+    def test_all_roots_with_the_curve_between_them(self, http):
+        """The paper's film has two clearances; `unknown` stays the lowest, and a warning names the other."""
+        inputs = {name: value for name, value in OIL_FILM.items() if name != "diametral_clearance"}
+        change = {"inputs": inputs, "unknown": "diametral_clearance", "bounds": ["2 um", "0.5 mm"]}
+        answer = self.solve(http, **change).json()
+        assert [root["value"] for root in answer["roots"]] == pytest.approx([0.0471975, 0.0550021], rel=1e-5)
+        assert [(root["unit"], root["slope"]) for root in answer["roots"]] == [("mm", 1), ("mm", -1)]
+        assert all(0 < root["error"] < 1 and root["confirmed"] for root in answer["roots"])
+        assert answer["unknown"] == {"value": answer["roots"][0]["value"], "unit": "mm"}
+        assert "0.0550021 mm give the target too" in answer["warnings"][-1]["detail"]
+        curve = answer["curve"]
+        assert (curve["x"]["unit"], curve["y"]["unit"]) == ("mm", "um")
+        assert len(curve["x"]["value"]) == len(curve["y"]["value"]) == len(curve["reasons"]) == 257
+        assert (answer["touching"], answer["jumps"]) == ([], [])
+
+    def test_points_that_are_refused_have_their_reason_in_the_curve(self, http):
+        inputs = {name: value for name, value in OIL_FILM.items() if name != "diametral_clearance"}
+        change = {"inputs": inputs, "unknown": "diametral_clearance", "bounds": ["-0.1 mm", "0.5 mm"]}
+        answer = self.solve(http, **change).json()
+        values, reasons = answer["curve"]["y"]["value"], answer["curve"]["reasons"]
+        assert [value is None for value in values] == [reason is not None for reason in reasons]
+        assert any("must be > 0" in reason for reason in reasons if reason)
+        assert len(answer["roots"]) == 2
+
     def test_out_of_reach_tells_the_range(self, http):
         told = problem(self.solve(http, target={"minimum_film_thickness": "30 um"}), 422, "unreachable")
         low, high = told["reachable"]

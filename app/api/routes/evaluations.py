@@ -13,10 +13,11 @@ from app.api.gate.clients import TheClient
 from app.api.gate.pacing import PiecesResponse
 from app.api.stored import UNAVAILABLE, rebuilding
 from app.api.waiting import LATER, accepted, finished
-from app.calculations.jobs import CALCULATION, PREVIEW, CalculationJobs
+from app.calculations.jobs import CALCULATION, DECISION, PREVIEW, CalculationJobs
 from app.jobs.errors import JobNotFound
 from app.jobs.job import Job
 from app.jobs.service import Jobs
+from app.schemas.decisions import Decision
 from app.schemas.designs import Preview
 from app.schemas.evaluations import AnyCalculation
 from app.schemas.problems import refusals
@@ -29,7 +30,7 @@ router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
 
 @router.get(
     "/{job}",
-    response_model=AnyCalculation | Preview,
+    response_model=AnyCalculation | Preview | Decision,
     responses={**LATER, **UNAVAILABLE, **refusals(404, 409, 429)},
 )
 async def show_evaluation(
@@ -41,7 +42,7 @@ async def show_evaluation(
     request: Request,
     prefer: Annotated[str | None, Header(description="`wait=5`, for an answer that was lost")] = None,
 ) -> Response:
-    """What `evaluate`, `solve`, `worksheet` or `preview` would have answered; 202 while the job goes on.
+    """What `evaluate`, `solve`, `worksheet`, `preview` or `decide` would answer; 202 while the job goes on.
 
     An answer that was lost is calculated again: the same, but for the time that it took.
     """
@@ -74,7 +75,7 @@ async def _calculated_again(
 def _calculation(jobs: Jobs, id: str) -> Job:
     """The job, if its result is an answer; raises JobNotFound."""
     row = jobs.get(id)
-    if row.kind not in (CALCULATION, PREVIEW):
+    if row.kind not in (CALCULATION, PREVIEW, DECISION):
         raise JobNotFound(id)
     return row
 

@@ -1,0 +1,191 @@
+"""Decisions about criteria: answered at once, or by a job where a level takes long."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from pydantic_core import from_json, to_json
+from sqlalchemy.orm import Session
+
+from app.calculations.begun import Begun
+from app.calculations.criteria import rendered
+from app.calculations.jobs import DECISION, place_of_answer
+from app.calculations.steps import Steps, begun_steps, calling
+from app.designs import deciding, repository
+from app.designs.calculate import calculate
+from app.designs.calculation import Calculation
+from app.designs.deciding import Deciding
+from app.designs.document import Document
+from app.designs.graph import Catalogues, build_graph, raise_if
+from app.designs.judging import Judging
+from app.designs.previewing import FAILURES
+from app.designs.reference import Reference
+from app.designs.service import analysed, built, starts
+from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.plain import JsonObject, Raw
+from app.schemas.answers import Quantity
+from app.schemas.decisions import Decision, Tried
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.storage.tables import RevisionRow
+from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_names
+from templates.core.units.quantity import read
+from templates.core.units.units import unit
+
+LONGEST_BUDGET = 600.0  # s
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Which criteria of a design are to be decided (all, if None), and how long that may take [s]."""
+
+    design: str
+    criteria: list[str] | None
+    budget: float
+    revision: int | None = None
+
+
+def read_budget(raw: Raw) -> float:
+    """A time as typed [s].
+
+    Raises
+    ------
+    InvalidInputs
+        If it is no single time from 0 to `LONGEST_BUDGET`.
+    """
+    try:
+        seconds = read(raw, "s").si
+    except FaultyText as error:
+        raise InvalidInputs([error.fault("budget")]) from None
+    if not isinstance(seconds, float) or not 0 < seconds <= LONGEST_BUDGET:
+        detail = f"the budget is one time above 0 s and up to {LONGEST_BUDGET:g} s, such as 30 s"
+        raise InvalidInputs([Fault("budget", "out_of_range", detail)])
+    return seconds
+
+
+class Decisions:
+    """Decides criteria, makes jobs where that takes long, and is the handler of such jobs."""
+
+    def __init__(
+        self, database: Database, catalogues: Catalogues, store: ArtifactStore, jobs: Jobs, steps: Steps
+    ) -> None:
+        self.database, self.catalogues, self.store = database, catalogues, store
+        self.jobs, self.steps = jobs, steps
+
+    def answer(self, asked: Asked, client: str) -> tuple[Decision, str | None]:
+        """The decision as far as its caller waits for it, and the job that completes it, if any.
+
+        Raises
+        ------
+        InvalidInputs
+            If a criterion is named that the design does not have.
+        QueueFull
+            Too many calculations, or jobs, are waiting.
+        """
+        decision = self._decided(asked)
+        if decision.stopped != "pending":
+            return decision, None
+        payload = {
+            "design": asked.design,
+            "revision": decision.revision,
+            "budget": asked.budget,
+            "body": self.store.put(to_json(asked.criteria)),
+        }
+        return decision, self._queued(payload, client, begun_steps())
+
+    def __call__(self, job: Job, context: JobContext) -> Completion:
+        """Decide, and keep the answer.
+
+        Raises
+        ------
+        JobFailed
+            With the problem, for anything that the design itself brings about.
+        """
+        payload = dict(job.payload)
+        criteria = from_json(self.store.read(payload.pop("body")))
+        try:
+            with calling(self.steps, job, context, f"job:{job.id}", "jobs"):
+                decision = self._decided(Asked(criteria=criteria, **payload))
+        except FAILURES as error:
+            raise JobFailed(error) from error
+        content = decision.model_dump_json(by_alias=True, exclude_unset=True).encode()
+        place = place_of_answer(job.id, self.store.put(content))
+        return lambda session: place
+
+    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
+        """End what was left to a job that was cancelled before it began."""
+        self.steps.drop(job.id)
+
+    def _decided(self, asked: Asked) -> Decision:
+        number, calculation = self._calculated(asked)
+        known = Judging(calculation).names()
+        unknown = (name for name in asked.criteria or () if name not in known)
+        raise_if([fault.within("criteria") for fault in unknown_names(unknown, known, "criterion")])
+        if calculation.deferred:
+            return _shown(number, asked, _pending(calculation))
+        return _shown(number, asked, Deciding(calculation, asked.criteria, asked.budget).decide())
+
+    def _calculated(self, asked: Asked) -> tuple[int, Calculation]:
+        """The revision, the newest if none is named, as it was calculated."""
+        with self.database.read() as session:
+            row = (
+                repository.head(session, asked.design)
+                if asked.revision is None
+                else repository.revision(session, asked.design, asked.revision)
+            )
+        document = Document.model_validate(row.document)
+        graph, faults = build_graph(document, self.catalogues)
+        raise_if(faults)
+        assumed = {**starts(document), **_settled(row)}
+        calculation = calculate(graph, built(self.database), analysed(self.database), assumed)
+        raise_if(calculation.faults)
+        return row.number, calculation
+
+    def _queued(self, payload: JsonObject, client: str, begun: Begun | None) -> str:
+        def unit_of_work(session: Session) -> str:
+            id = self.jobs.enqueue(session, DECISION, payload, client=client)
+            if begun is not None:
+                begun.leave_to(id)
+            return id
+
+        job = self.database.write(unit_of_work)
+        self.jobs.wake()
+        return job
+
+
+def _settled(row: RevisionRow) -> Mapping[Reference, float]:
+    """The values [SI] with which the iterations of a revision ended."""
+    rounds = (row.results or {}).get("iterations", [])
+    values = {one["through"]: (float(one["assumed"]), one["unit"]) for one in rounds}
+    return {Reference.parse(name): float(unit(scale).to_si(value)) for name, (value, scale) in values.items()}
+
+
+def _pending(calculation: Calculation) -> deciding.Decision:
+    """What is known while the design itself is still calculated."""
+    judgements = sorted(Judging(calculation).all(), key=lambda judgement: judgement.name)
+    return deciding.Decision(judgements, (), (), (), "pending")
+
+
+def _shown(number: int, asked: Asked, decision: deciding.Decision) -> Decision:
+    judged = {"criteria": [], **rendered(decision.criteria)}
+    return Decision(
+        revision=number,
+        **judged,
+        asked=list(decision.asked),
+        undecided=decision.undecided,
+        tried=[_tried(trial) for trial in decision.trials],
+        skipped=[_tried(trial) for trial in decision.skipped],
+        seconds=sum(trial.seconds for trial in decision.trials),
+        budget=Quantity(value=asked.budget, unit="s"),
+        stopped=decision.stopped,
+    )
+
+
+def _tried(trial: deciding.Trial) -> Tried:
+    tried: JsonObject = {"step": trial.step, "level": trial.level}
+    if trial.reason is not None:
+        tried["reason"] = trial.reason
+    if trial.rows:
+        tried |= {"rows": trial.rows, "seconds": trial.seconds, "decided": list(trial.decided)}
+    return Tried.model_validate(tried)

@@ -1,0 +1,117 @@
+"""Where a sampled curve meets its target: crossings closed in to rounding, touches, and jumps across it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import brentq
+
+from templates.core.arrays import Array
+from templates.core.language.scan import Samples, TargetCurve
+
+MOST_ROOTS = 50  # crossings that are closed in
+JUMP = (
+    1e-6  # relative miss at a crossing beyond which it is a jump, and at an extremum within which it touches
+)
+
+
+@dataclass(frozen=True)
+class Place:
+    """A value of the unknown [SI] at which the output has its target; slope 1 rises, −1 falls, 0 neither."""
+
+    x: float
+    slope: int
+    touches: bool = False
+
+
+@dataclass(frozen=True)
+class Leap:
+    """A value of the unknown at which the output jumps across its target; the output on both sides [SI]."""
+
+    x: float
+    before: float
+    after: float
+
+
+@dataclass
+class Meetings:
+    """Everything that was found, each in ascending order."""
+
+    roots: list[Place] = field(default_factory=list)
+    touching: list[Place] = field(default_factory=list)
+    leaps: list[Leap] = field(default_factory=list)
+    more: int = 0
+    """Crossings that were not closed in."""
+
+
+def meetings(curve: TargetCurve, samples: Samples) -> Meetings:
+    """Where the curve meets its target."""
+    found = Meetings()
+    if np.isnan(samples.miss).all():
+        return found
+    for place in _exact(samples):
+        (found.touching if place.touches else found.roots).append(place)
+    found.touching += _touching(curve, samples)
+    crossings = samples.crossings()
+    found.more = max(0, crossings.size - MOST_ROOTS)
+    for i in crossings[:MOST_ROOTS]:
+        closed = _closed(curve, samples, i)
+        if isinstance(closed, Leap):
+            found.leaps.append(closed)
+        else:
+            found.roots.append(closed)
+    found.roots.sort(key=lambda place: place.x)
+    found.touching.sort(key=lambda place: place.x)
+    return found
+
+
+def _exact(samples: Samples) -> Iterator[Place]:
+    """Samples that have the target exactly; of neighbours that all do, the first."""
+    zero = np.flatnonzero(samples.miss == 0)
+    for run in np.split(zero, np.flatnonzero(np.diff(zero) > 1) + 1):
+        if run.size:
+            before, after = _sign(samples.miss, run[0] - 1), _sign(samples.miss, run[-1] + 1)
+            slope = 0 if run.size > 1 else int(np.sign(after - before))
+            yield Place(float(samples.x[run[0]]), slope, touches=bool(before * after > 0))
+
+
+def _sign(miss: Array, i: int) -> float:
+    """On which side of the target a sample is; 0 beyond the bounds, or where there is no value."""
+    return float(np.nan_to_num(np.sign(miss[i]))) if 0 <= i < miss.size else 0.0
+
+
+def _touching(curve: TargetCurve, samples: Samples) -> list[Place]:
+    """Extrema that come within rounding of the target without crossing it."""
+    spread = float(np.nanmax(samples.miss) - np.nanmin(samples.miss))
+    size = min(abs(curve.wanted) or spread, spread)
+    near = samples.nearest()
+    near = near[np.abs(samples.miss[near]) <= JUMP * size]
+    crossed = samples.crossings()
+    alone = [i for i in near if not ({i - 1, i} & set(crossed.tolist()))]
+    return [Place(float(samples.x[i]), 0, touches=True) for i in _best_of_neighbours(samples, alone)]
+
+
+def _best_of_neighbours(samples: Samples, near: list[int]) -> list[int]:
+    """Of samples that follow each other, the nearest to the target."""
+    best: list[int] = []
+    for i in near:
+        if best and i - best[-1] <= 2:
+            best[-1] = min(best[-1], i, key=lambda k: abs(float(samples.miss[k])))
+        else:
+            best.append(i)
+    return best
+
+
+def _closed(curve: TargetCurve, samples: Samples, i: int) -> Place | Leap:
+    """The crossing between two samples, closed in to rounding; a leap, if the output has no such value."""
+    low, high = (float(samples.x[k]) for k in (i, i + 1))
+    root = float(brentq(curve.miss, low, high, xtol=1e-300, rtol=4e-15, disp=False))
+    size = max(abs(curve.wanted), float(np.nanmax(np.abs(samples.miss))) * JUMP)
+    if abs(curve.miss(root)) <= JUMP * size:
+        return Place(root, int(np.sign(samples.miss[i + 1])))
+    step = 1e-9 * (high - low)
+    sides = curve.sample(np.array([max(low, root - step), min(high, root + step)])).miss
+    before, after = np.where(np.isfinite(sides), sides, samples.miss[[i, i + 1]]) + curve.wanted
+    return Leap(root, float(before), float(after))

@@ -1,0 +1,185 @@
+"""The target of `solve` as a curve over the unknown: sampled in array calls, finer where something happens.
+
+257 samples between the bounds, all at one level of fidelity, show where the output crosses the target, comes
+near it, or ends. Intervals that do so are divided again and again, so that a jump is told from a crossing,
+two solutions close together are separated, and the end of the reachable range is located.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array
+from templates.core.errors import Unreachable
+from templates.core.language.evaluate import Answer, Evaluation, evaluate
+from templates.core.language.intake import Input
+from templates.core.language.question import typed_values
+from templates.core.language.spec import Curve, Formula
+from templates.core.language.template import Template
+
+SAMPLES = 257  # of the first call
+PARTS, ROUNDS = 16, 7  # into which an interval is divided, and how often
+EDGES, EXTREMA, CROSSINGS = 8, 16, 30  # intervals of each kind that are divided in a round
+CROSSED = 2  # rounds in which intervals at a crossing are divided
+NEAR = 2.0  # an extremum this near, over its step to the next sample, may reach the target
+CELLS = 200_000  # values of a curve input times samples, in one call
+DECADE = 10.0  # bounds farther apart are sampled evenly in the logarithm
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Values of the unknown, ascending, and output minus target there [SI]; NaN where it has no value."""
+
+    x: Array
+    miss: Array
+    reasons: NDArray[np.object_]
+
+    def joined(self, other: Samples) -> Samples:
+        """Both, in ascending order, each value of the unknown once."""
+        x = np.concatenate([self.x, other.x])
+        x, first = np.unique(x, return_index=True)
+        miss, reasons = (np.concatenate([getattr(self, n), getattr(other, n)]) for n in ("miss", "reasons"))
+        return Samples(x, miss[first], reasons[first])
+
+    def crossings(self) -> NDArray[np.intp]:
+        """The samples after which the output crosses the target before the next one."""
+        return np.flatnonzero(np.sign(self.miss[:-1]) * np.sign(self.miss[1:]) < 0)
+
+    def beside(self) -> NDArray[np.intp]:
+        """The samples after which the output is nearer to the target than its step: it may jump there."""
+        near = np.minimum(np.abs(self.miss[:-1]), np.abs(self.miss[1:])) < np.abs(np.diff(self.miss))
+        return np.flatnonzero(near)
+
+    def edges(self) -> NDArray[np.intp]:
+        """The samples after which the output begins or ends to exist."""
+        return np.flatnonzero(np.isnan(self.miss[:-1]) != np.isnan(self.miss[1:]))
+
+    def nearest(self) -> NDArray[np.intp]:
+        """The samples that are nearer to the target than both neighbours on their side of it, in order."""
+        before, here, after = self.miss[:-2], self.miss[1:-1], self.miss[2:]
+        side = np.sign(here)
+        nearer = (side * before >= side * here) & (side * after >= side * here)
+        nearer &= (before != here) | (after != here)
+        return np.flatnonzero((side != 0) & nearer & (np.abs(here) <= NEAR * self._steps())) + 1
+
+    def _steps(self) -> Array:
+        """The larger of the steps to both neighbours."""
+        steps = np.abs(np.diff(self.miss))
+        return np.maximum(steps[:-1], steps[1:])
+
+
+@dataclass(frozen=True)
+class TargetCurve:
+    """The output as a function of the unknown, at one level."""
+
+    cls: type[Template]
+    raw: dict[str, Any]
+    declared: Input
+    formula: Formula[Any]
+    wanted: float
+    """The target [SI]."""
+    fidelity: dict[str, Any]
+
+    def evaluation(self, values: Any) -> Evaluation:
+        """The output at values of the unknown [SI]."""
+        raw = {**self.raw, self.declared.name: typed_values(self.declared, values)}
+        return evaluate(self.cls, raw, outputs=[self.formula.name], **self.fidelity)
+
+    def at_one_level(self, x: Array) -> tuple[TargetCurve, Samples]:
+        """The samples, and the curve at the level at which they were calculated."""
+        first = self.evaluation(x[: self._rows()])
+        fixed = self if first.level is None else replace(self, fidelity={"level": first.level})
+        samples = self._samples(x[: self._rows()], first)
+        return fixed, samples.joined(fixed.sample(x[self._rows() :]))
+
+    def sample(self, x: Array) -> Samples:
+        """The output at these values, in as many calls as its level needs."""
+        samples = Samples(np.empty(0), np.empty(0), np.empty(0, dtype=object))
+        for start in range(0, x.size, self._rows()):
+            part = x[start : start + self._rows()]
+            samples = samples.joined(self._samples(part, self.evaluation(part)))
+        return samples
+
+    def miss(self, value: float) -> float:
+        """Output minus target at one value [SI]; NaN where the template refuses."""
+        return self.miss_of(self.evaluation(np.array([value])))
+
+    def miss_of(self, evaluation: Evaluation) -> float:
+        """The same of an evaluation at one value."""
+        return float(self._samples(np.empty(1), evaluation).miss[0])
+
+    def scan(self, low: float, high: float) -> tuple[TargetCurve, Samples, Samples]:
+        """The curve at its level, the samples between the bounds, and those with all that was divided."""
+        curve, even = self.at_one_level(_grid(low, high))
+        samples = even
+        for turn in range(ROUNDS):
+            intervals = _divided(samples, turn)
+            if not intervals.size:
+                break
+            inner = np.concatenate([_inside(samples.x[i], samples.x[i + 1]) for i in intervals])
+            samples = samples.joined(curve.sample(np.unique(inner)))
+        return curve, even, samples
+
+    def unreachable(self, samples: Samples) -> Unreachable:
+        """The error that says what can be reached between the bounds, and why the target cannot."""
+        meaning, name = self.formula.meaning, self.formula.name
+        if np.isnan(samples.miss).all():
+            detail = f"{name} has no value anywhere between the bounds; give other bounds or inputs"
+            return Unreachable(name, detail, (np.nan, np.nan), meaning.unit)
+        ends = [float(end) + self.wanted for end in (np.nanmin(samples.miss), np.nanmax(samples.miss))]
+        low, high = (float(meaning.scale.from_si(end)) for end in ends)
+        shown, target = " … ".join(map(meaning.with_unit, ends)), meaning.with_unit(self.wanted)
+        if ends[0] < self.wanted < ends[1]:
+            detail = (
+                f"{target} lies in a jump of {name}, or where it has no value: no input gives exactly this"
+            )
+        else:
+            detail = f"{target} is out of reach: between the bounds {name} is {shown}"
+        return Unreachable(name, detail, (low, high), meaning.unit)
+
+    def _samples(self, x: Array, evaluation: Evaluation) -> Samples:
+        answer = evaluation.outputs[self.formula.name]
+        si = self.formula.meaning.scale.to_si(np.asarray(answer.value, dtype=float))
+        return Samples(x, np.broadcast_to(si - self.wanted, x.shape), _reasons(answer, x.size))
+
+    def _rows(self) -> int:
+        """How many samples one call takes."""
+        curves = (n for n, declared in self.cls.inputs.items() if isinstance(declared, Curve))
+        longest = max((np.size(_magnitude(self.raw.get(name))) for name in curves), default=1)
+        most = self.cls.most_points.get(self.fidelity.get("level", ""), CELLS)
+        return max(1, min(most, CELLS // max(1, longest)))
+
+
+def _magnitude(raw: Any) -> Any:
+    return raw.get("value") if isinstance(raw, dict) else raw
+
+
+def _reasons(answer: Answer, count: int) -> NDArray[np.object_]:
+    """Why there is no value at each point; None where there is one."""
+    if answer.reasons is not None:
+        return np.broadcast_to(answer.reasons, (count,))
+    return np.full(count, answer.reason, dtype=object)
+
+
+def _grid(low: float, high: float) -> Array:
+    """Samples between the bounds: even in the logarithm where both are positive and far apart."""
+    if low > 0 and high > DECADE * low:
+        return np.geomspace(low, high, SAMPLES)
+    return np.linspace(low, high, SAMPLES)
+
+
+def _inside(low: float, high: float) -> Array:
+    """What divides an interval, without its ends."""
+    return np.linspace(low, high, PARTS + 1)[1:-1]
+
+
+def _divided(samples: Samples, turn: int) -> NDArray[np.intp]:
+    """The intervals in which something happens, by the sample before each; so many of each kind."""
+    crossed = samples.beside()[:CROSSINGS] if turn < CROSSED else np.empty(0, dtype=np.intp)
+    near = samples.nearest()
+    near = near[np.argsort(np.abs(samples.miss[near]), kind="stable")][:EXTREMA]
+    return np.unique(np.concatenate([samples.edges()[:EDGES], crossed, near - 1, near]))

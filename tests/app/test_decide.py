@@ -1,0 +1,162 @@
+"""`decide`: levels climb only where a criterion is undecided; what was spent, and why it stopped."""
+
+import numpy as np
+import pytest
+from patience import until
+from serving import API, created, faults, problem
+
+from app.designs.calculate import calculate
+from app.designs.deciding import Deciding
+from app.designs.document import Document
+from app.designs.graph import Catalogues, build_graph
+from app.designs.service import resolved
+from cad.catalogue import models
+from templates.core.language.evaluate import evaluate
+from templates.door import built_in
+
+CATALOGUES = Catalogues(built_in(), models())
+OIL_FILM = built_in().get("oil_film", 2)
+FILM = dict(OIL_FILM.example)
+DESIGNS = f"{API}/designs"
+
+
+def document(require, level="short_bearing", **inputs):
+    step = {"template": "oil_film", "version": 2, "level": level, "inputs": {**FILM, **inputs}}
+    return {"name": "decided", "steps": {"film": step}, "criteria": {"own": {"require": require}}}
+
+
+def decided(raw, criteria=("own",), budget=60.0):
+    graph, found = build_graph(resolved(Document.model_validate(raw), CATALOGUES), CATALOGUES)
+    assert not found
+    calculation = calculate(graph, lambda shape: None, lambda *question: None)
+    return Deciding(calculation, criteria, budget).decide()
+
+
+def own(decision):
+    return next(judgement for judgement in decision.criteria if judgement.name == "own")
+
+
+def film_at(level, **inputs):
+    result = evaluate(OIL_FILM, {**FILM, **inputs}, level=level, outputs=["minimum_film_thickness"])
+    return result.outputs["minimum_film_thickness"].value
+
+
+def test_a_cheap_level_that_decides_is_enough():
+    decision = decided(document("film.minimum_film_thickness >= 1.5 um"))
+    assert (decision.asked, decision.trials, decision.stopped) == ((), (), "decided")
+    assert own(decision).verdict == "met"
+
+
+@pytest.mark.parametrize(("limit", "verdict"), [("2.6 um", "met"), ("2.7 um", "not_met")])
+def test_an_undecided_criterion_is_decided_by_a_finer_level(limit, verdict):
+    decision = decided(document(f"film.minimum_film_thickness >= {limit}"))
+    assert (own(decision).verdict, decision.stopped, decision.undecided) == (verdict, "decided", [])
+    assert decision.trials[-1].decided == ("own",)
+    assert own(decision).level == decision.trials[-1].level
+    levels = [trial.level for trial in decision.trials]
+    assert "mass_conserving" not in levels
+    assert own(decision).value == pytest.approx(film_at(levels[-1]))
+
+
+def test_at_the_value_itself_it_stays_undecided_and_says_why():
+    value = film_at("reynolds")
+    decision = decided(document(f"film.minimum_film_thickness >= {value!r} um"))
+    assert (own(decision).verdict, decision.stopped) == ("undecided", "no_finer_level")
+    assert decision.undecided == ["own"]
+    reasons = {trial.level: trial.reason for trial in decision.skipped}
+    assert "is not smaller" in reasons["short_bearing"]
+
+
+def test_levels_of_another_truth_are_left_out():
+    """Level mass_conserving counts shear where oil is, the others all around; theirs has a smaller error."""
+    result = evaluate(OIL_FILM, FILM, level="mass_conserving", outputs=["power_loss"])
+    value, error = result.outputs["power_loss"].value, result.error["power_loss"]
+    assert error > evaluate(OIL_FILM, FILM, level="map", outputs=["power_loss"]).error["power_loss"]
+    decision = decided(document(f"film.power_loss >= {value!r} W", level="mass_conserving"))
+    assert (decision.trials, decision.stopped, decision.undecided) == ((), "no_finer_level", ["own"])
+    reasons = {trial.level: trial.reason for trial in decision.skipped}
+    assert "another truth" in reasons["map"]
+
+
+def test_no_level_begins_beyond_the_budget():
+    decision = decided(document("film.minimum_film_thickness >= 2.6 um"), budget=1e-6)
+    assert (decision.trials, decision.stopped, decision.undecided) == ((), "budget", ["own"])
+    assert all("budget" in trial.reason for trial in decision.skipped)
+
+
+def test_only_criteria_that_are_asked_for_are_decided():
+    raw = document("film.minimum_film_thickness >= 2.6 um")
+    raw["criteria"]["other"] = {"require": "film.minimum_film_thickness >= 2.7 um"}
+    decision = decided(raw, ["other"])
+    assert decision.asked == ("other",)
+    assert own(decision).verdict == "undecided"
+
+
+def test_a_step_upstream_climbs_where_its_error_keeps_another_undecided():
+    raw = document("film.minimum_film_thickness >= 0.1 um", level="fit")
+    clearance = "= film.minimum_film_thickness * 20"
+    inputs = {**FILM, "diametral_clearance": clearance}
+    raw["steps"]["next"] = {"template": "oil_film", "version": 2, "level": "map", "inputs": inputs}
+    exact = film_at("map", diametral_clearance=f"{float(20 * film_at('map'))!r} um")
+    raw["criteria"] = {"own": {"require": f"next.minimum_film_thickness <= {1.002 * exact!r} um"}}
+    decision = decided(raw)
+    assert own(decision).verdict == "met"
+    assert {trial.step for trial in decision.trials} == {"film"}
+
+
+def test_points_beyond_what_a_level_takes_are_said():
+    loads = {"value": np.linspace(24.9, 25.1, 401).tolist(), "unit": "kN"}
+    raw = document(f"film.minimum_film_thickness >= {film_at('map')!r} um", radial_load=loads)
+    decision = decided(raw)
+    assert (decision.trials[0].rows, own(decision).points) == (401, 401)
+    reasons = {trial.level: trial.reason for trial in decision.skipped}
+    assert reasons["reynolds"] == "it takes at most 400 points at once, not 401"
+
+
+def test_a_design_is_decided_over_http_and_nothing_is_saved(http, client):
+    design = created(http, document("film.minimum_film_thickness >= 2.6 um"))
+    answer = http.post(f"{DESIGNS}/{design['id']}/decide", json={"criteria": ["own"], "budget": "20 s"})
+    assert answer.status_code == 200, answer.text
+    body = answer.json()
+    assert (body["asked"], body["undecided"], body["stopped"]) == (["own"], [], "decided")
+    verdicts = {criterion["name"]: criterion["verdict"] for criterion in body["criteria"]}
+    assert verdicts["own"] == "met"
+    assert body["tried"][-1]["decided"] == ["own"]
+    assert body["budget"] == {"value": 20, "unit": "s"}
+    assert body["revision"] == http.get(f"{DESIGNS}/{design['id']}").json()["revision"] == 1
+    assert client.decide(design["id"]).stopped in ("decided", "no_finer_level")
+    assert http.post(f"{DESIGNS}/{design['id']}/decide").status_code == 200
+
+
+def test_an_expensive_level_goes_on_as_a_job(http):
+    value = film_at("map")
+    design = created(http, document(f"film.minimum_film_thickness >= {value!r} um", level="map"))
+    wanted = {"criteria": ["own"], "budget": "60 s"}
+    answer = http.post(f"{DESIGNS}/{design['id']}/decide", json=wanted, headers={"Prefer": "respond-async"})
+    assert answer.status_code == 202, answer.text
+    assert answer.json()["stopped"] == "pending"
+    job = answer.headers["Location"]
+    until(lambda: http.get(job).json()["state"] == "done")
+    body = http.get(http.get(job).json()["result"]).json()
+    assert body["stopped"] in ("decided", "no_finer_level")
+    assert "reynolds" in {trial["level"] for trial in body["tried"]}
+
+
+@pytest.mark.parametrize(
+    ("body", "name"),
+    [
+        ({"criteria": ["owm"]}, "criteria.owm"),
+        ({"budget": "30"}, "budget"),
+        ({"budget": "0 s"}, "budget"),
+        ({"budget": "1 h"}, "budget"),
+        ({"budget": {"value": [1, 2], "unit": "s"}}, "budget"),
+        ({"budget": "3 mm"}, "budget"),
+    ],
+)
+def test_wrong_questions_are_refused(http, body, name):
+    design = created(http, document("film.minimum_film_thickness >= 2.6 um"))
+    assert list(faults(http.post(f"{DESIGNS}/{design['id']}/decide", json=body))) == [name]
+
+
+def test_a_design_that_does_not_exist_is_not_found(http):
+    problem(http.post(f"{DESIGNS}/nowhere/decide", json={}), 404, "not-found")
