@@ -100,7 +100,7 @@ async def design_page(
         notice=notice,
         verdict=verdict,
         opened=opened([step.name for step in steps], verdict),
-        can_decide=verdict.undecided and _has_route(request, DECIDE),
+        can_decide=_has_route(request, DECIDE),
         base=f"/api/v1/designs/{id}",
         painted=painted(steps, parts),
         was=json.dumps(texts(design)),

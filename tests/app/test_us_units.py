@@ -1,4 +1,4 @@
-"""US display converts whatever is measured: no viscosity or stiffness stays metric beside inches and pounds."""
+"""US display converts whatever is measured: no viscosity stays metric beside inches and pounds."""
 
 import pytest
 
