@@ -1,4 +1,4 @@
-"""The report begins with the verdict; ranges and rules are apart from it, and no violated limit prints its opposite."""
+"""The report begins with the verdict; ranges and rules stand apart, and no limit prints its opposite."""
 
 import re
 
