@@ -32,7 +32,7 @@ Result = TypeVar("Result")
 Item = TypeVar("Item")
 
 
-Query = Mapping[str, str] | Sequence[tuple[str, str]]
+Query = Mapping[str, str] | tuple[tuple[str, str], ...]
 """The query of a request; as pairs, a name may stand several times."""
 
 
@@ -93,7 +93,7 @@ def listed(page: type[Page[Item]], path: str, query: Sequence[tuple[str, str]] =
     items: list[Item] = []
     cursor: str | None = ""
     while cursor is not None:
-        one = yield from answered(page, get(path, [*query, *([("cursor", cursor)] if cursor else [])]))
+        one = yield from answered(page, get(path, (*query, *([("cursor", cursor)] if cursor else []))))
         items += one.items
         cursor = one.next
     return items

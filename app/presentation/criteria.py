@@ -146,8 +146,9 @@ def step_of(criterion: Judged) -> str:
 
 
 def title(criterion: Judged) -> str:
-    """What is judged, in words."""
-    return plain_name(sides(criterion.require)[0])
+    """What is judged, in words; of what is calculated within a criterion, its own name."""
+    left = sides(criterion.require)[0]
+    return plain_name(left if _ONE_NAME.fullmatch(left) else criterion.name)
 
 
 def compared(criterion: Judged) -> str:

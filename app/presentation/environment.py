@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from app.presentation import numbers
 from app.presentation.bidi import balanced, bare
+from app.presentation.sparkline import course
 from templates.core.paper.mathml import mathml
 
 PAGES = Path(__file__).with_name("pages")
@@ -56,6 +57,7 @@ def environment(folder: Path) -> Environment:
         "percent": numbers.percent,
         "rough": numbers.rough,
         "told": numbers.told,
+        "course": course,
     }
     jinja.filters.update(filters)
     return jinja

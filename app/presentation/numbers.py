@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple, Protocol, runtime_checkable
 
 from templates.core.paper.mathml import unit_symbol
@@ -87,7 +87,8 @@ def _line(quantity: Mapping[str, object]) -> str:
     if quantity["value"] is None:
         return str(quantity.get("reason") or "none")
     symbol = quantity.get("unit")
-    parts = (_written(quantity["value"]), unit(str(symbol) if symbol else None), _tolerance(quantity))
+    value = quantity["value"]
+    parts = (_written(value), unit(str(symbol) if symbol else None), _tolerance(quantity), _remark(value))
     return " ".join(filter(None, parts))
 
 
@@ -98,10 +99,49 @@ def _written(value: object) -> str:
 
 
 def _list(values: list[object]) -> str:
-    """A short list whole, of a long one the first, the last and how many there are."""
-    few = len(values) <= 6
-    inside = ", ".join(map(_written, values)) if few else f"{_written(values[0])} … {_written(values[-1])}"
-    return f"[{inside}]" if few else f"[{inside}] ({len(values)} values)"
+    """A list whole, up to 20 values; of a longer one the least and the largest."""
+    if size(values) <= FEW:
+        return f"[{', '.join(map(_written, values))}]"
+    ends, flat = extremes(values), list(_flat(values))
+    return " … ".join(_written(flat[place]) for place in ends) if ends else "[…]"
+
+
+def _remark(values: object) -> str:
+    """Of a long list, how many values there are, and where the least and the largest are."""
+    if not isinstance(values, list) or size(values) <= FEW:
+        return ""
+    ends = extremes(values)
+    is_row = ends is not None and size(values) == len(values)
+    where = f"; least no. {ends[0] + 1}, largest no. {ends[1] + 1}" if ends and is_row else ""
+    return f"({counted(values)} values{where})"
+
+
+FEW = 20  # values that are shown whole
+
+
+def size(values: object) -> int:
+    """How many values there are in a list of any depth."""
+    return sum(map(size, values)) if isinstance(values, list) else 1
+
+
+def counted(values: list[object]) -> str:
+    """How many values there are: `720`, or `3 × 24` of a table."""
+    inside = values[0] if values else None
+    return f"{len(values)} × {counted(inside)}" if isinstance(inside, list) else str(len(values))
+
+
+def extremes(values: list[object]) -> tuple[int, int] | None:
+    """The places of the least and the largest number of a list; None without any number."""
+    known = [(value, place) for place, value in enumerate(_flat(values)) if isinstance(value, int | float)]
+    return (min(known)[1], max(known, key=lambda one: (one[0], -one[1]))[1]) if known else None
+
+
+def _flat(values: object) -> Iterator[object]:
+    if isinstance(values, list):
+        for value in values:
+            yield from _flat(value)
+    else:
+        yield values
 
 
 def _tolerance(more: Mapping[str, object]) -> str:

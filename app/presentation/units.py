@@ -17,8 +17,11 @@ US = {
     "kg": "lb", "kg*m": "lb*inch", "kg*mm": "lb*inch", "kg*m**2": "lb*ft**2", "kg*mm**2": "lb*inch**2",
     "kg/m**3": "lb/ft**3", "m/s": "ft/s", "m/s**2": "ft/s**2", "degC": "degF", "W": "hp", "kW": "hp",
     "J": "ft*lbf", "l/min": "gallon/min", "MPa*m/s": "psi*ft/min",
+    "Pa*s": "reyn", "mPa*s": "ureyn", "N*m/rad": "lbf*inch/rad", "kN*m/rad": "lbf*inch/rad",
+    "mm**2/s": "inch**2/s", "MPa/mm": "psi/inch", "cm**2": "inch**2", "cm**3/s": "inch**3/s",
+    "mm**4": "inch**4", "1/mm**3": "1/inch**3", "1/N": "1/lbf",
 }  # fmt: skip
-"""The unit that stands for a declared one; others, such as rpm and mPa*s, are used there as well."""
+"""The unit that stands for a declared one; others, such as rpm, are used there as well."""
 
 
 def shown_unit(declared: str, system: System) -> str:

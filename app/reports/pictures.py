@@ -59,6 +59,17 @@ def pictures(template: Declaring, answer: Evaluated | RevisionStep) -> list[Pict
     return [picture for rule in TABLE for picture in rule(values, declared)]
 
 
+def axis_of(template: Declaring, answer: Evaluated | RevisionStep, name: str) -> str | None:
+    """The name of what a value of an evaluation goes along; None for a single value."""
+    output = answer.outputs.get(name)
+    if output is None or not isinstance(output.value, list):
+        return None
+    used = {name: value for name, value in answer.inputs.items() if isinstance(value, UsedInput)}
+    declared = {**properties(template.inputs), **properties(template.outputs)}
+    axis = _axis({**used, **answer.outputs}, declared, name)
+    return None if axis == name else axis
+
+
 def _have(values: Values, *names: str) -> bool:
     return all(name in values and values[name].value is not None for name in names)
 

@@ -15,6 +15,7 @@ class Declared(BaseModel):
     unit: str | None = None
     along: str | None = None  # of a curve: the name of its axis
     enum: tuple[str, ...] = ()
+    library: str | None = None  # of a limit: the table of the library whose rows may be named
     default: JsonValue = None
     default_formula: str | None = None
     examples: list[JsonValue] = []
@@ -31,7 +32,7 @@ _NAMES = TypeAdapter(frozenset[str])
 
 def properties(schema: Schema) -> dict[str, Declared]:
     """What a schema declares, by name, in its order."""
-    return _PROPERTIES.validate_python(schema["properties"])
+    return _PROPERTIES.validate_python(schema.get("properties", {}))
 
 
 def required(schema: Schema) -> frozenset[str]:

@@ -96,6 +96,7 @@ class Described(Answer):
     references: list[str]
     errata: list[str]
     example: dict[str, JsonValue] = Field(description="inputs that can be sent as they are")
+    given_limits: Schema = Field({}, description="JSON Schema of the object `limits`, which criteria take")
 
 
 class Template(Described):

@@ -36,15 +36,21 @@ class StepBlock:
     pictures: list[Picture]
     fields: list[Field] = field(default_factory=list)
     options: list[Field] = field(default_factory=list)
+    limits: list[Field] = field(default_factory=list)
     keys: list[str] = field(default_factory=list)  # outputs in its fold line
 
     @property
     def main(self) -> list[str]:
-        """The results that are shown at once: all of a few; of many, those that no other formula uses."""
+        """The results shown at once: all of a few; of many, those with a value that no formula uses."""
         if len(self.outputs) <= MOST_AT_ONCE:
             return self.outputs
         used = {name for formula in self.template.formulas for name in formula.uses}
-        return [name for name in self.outputs if name not in used or name in self.keys]
+        return [
+            name for name in self.outputs if name in self.keys or (name not in used and self._has_value(name))
+        ]
+
+    def _has_value(self, name: str) -> bool:
+        return self.result.pending or self.result.outputs[name].value is not None
 
     @property
     def intermediate(self) -> list[str]:
@@ -55,7 +61,7 @@ class StepBlock:
     @property
     def has_faults(self) -> bool:
         """Whether one of its fields holds what was refused."""
-        return any(one.error for one in (*self.fields, *self.options))
+        return any(one.error for one in (*self.fields, *self.options, *self.limits))
 
 
 @dataclass(frozen=True)
@@ -109,8 +115,10 @@ def _with_places(step: PreviewedStep, names: Iterable[str]) -> PreviewedStep:
     return step.model_copy(update={"outputs": dict.fromkeys(names, waiting), "error": dict.fromkeys(names)})
 
 
-def with_fields(block: StepBlock, design: Design, refusal: Refusal) -> StepBlock:
-    """A step of a design with the fields of its form."""
+def with_fields(
+    block: StepBlock, design: Design, refusal: Refusal, rows: Mapping[str, Sequence[str]]
+) -> StepBlock:
+    """A step of a design with the fields of its form; `rows` are the ids of the library by table."""
     step, template, result = design.steps[block.name], block.template, block.result
     used = {} if result.pending or not result.outputs else result.inputs
     typed, faults = refusal.typed, refusal.faults
@@ -119,6 +127,7 @@ def with_fields(block: StepBlock, design: Design, refusal: Refusal) -> StepBlock
         block,
         fields=sheet.of_block(template.inputs, block.name, step.inputs, used, typed, faults),
         options=sheet.of_options(template, block.name, chosen, typed, faults),
+        limits=sheet.of_limits(template, block.name, step.limits, typed, faults, rows),
     )
 
 

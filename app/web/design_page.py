@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from fastapi import Request, Response
 
 from app.schemas.analyses import Analysis
+from app.schemas.declared import properties
 from app.schemas.designs import (
     Design,
     ModelMeasurements,
@@ -18,6 +19,7 @@ from app.schemas.designs import (
     RevisionWorksheet,
 )
 from app.schemas.jobs import Job, JobList
+from app.schemas.library import LibraryTable
 from app.schemas.templates import CadModel as Model
 from app.schemas.templates import Template, TemplateList, TemplateSummary
 from app.web import sheet
@@ -65,7 +67,8 @@ async def design_page(
     preview = await api.post(f"/designs/{id}/preview", Preview, {}, **query)
     before = await _revision(request, api, id, design.revision - 1, within=0) if design.revision > 1 else None
     computed = {name: step.outputs for name, step in design.steps.items()}
-    steps = [with_fields(block, design, refusal) for block in steps_of(revision, templates, computed)]
+    rows = await _library(api, templates.values())
+    steps = [with_fields(block, design, refusal, rows) for block in steps_of(revision, templates, computed)]
     parts = [
         with_changes(block, design, refusal, before, preview.model_parameters)
         for block in models_of(revision, models)
@@ -97,7 +100,7 @@ async def design_page(
         notice=notice,
         verdict=verdict,
         opened=opened([step.name for step in steps], verdict),
-        can_decide=verdict.undecided and _has_route(request, DECIDE),
+        can_decide=_has_route(request, DECIDE),
         base=f"/api/v1/designs/{id}",
         painted=painted(steps, parts),
         was=json.dumps(texts(design)),
@@ -163,6 +166,16 @@ async def _models(api: Api, design: Design | RevisionWorksheet) -> dict[str, Mod
     }
 
 
+async def _library(api: Api, templates: Iterable[Template]) -> dict[str, list[str]]:
+    """The ids of the rows of every table of the library that a limit may name."""
+    declared = [one for template in templates for one in properties(template.given_limits).values()]
+    tables = {one.library for one in declared if one.library}
+    return {
+        table: [row.id for row in (await api.get(f"/library/{table}", LibraryTable)).rows]
+        for table in sorted(tables)
+    }
+
+
 async def _analyses(
     request: Request, api: Api, measured: Mapping[str, ModelMeasurements], models: Mapping[str, Model]
 ) -> dict[str, list[Analysis]]:
@@ -176,7 +189,7 @@ async def _analyses(
 def _fields(steps: list[StepBlock], models: list[ModelBlock]) -> list[sheet.Field]:
     """Every field of the blocks."""
     of_models = [field for block in models for field in block.fields]
-    return of_models + [field for block in steps for field in (*block.fields, *block.options)]
+    return of_models + [field for block in steps for field in (*block.fields, *block.options, *block.limits)]
 
 
 async def _job(api: Api, design: Design) -> Job | None:

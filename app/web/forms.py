@@ -1,8 +1,8 @@
 """Fields of a form and the JSON of the interface: typed text becomes a value, a value becomes text.
 
 A control is called `.scale` for a design's own parameter, `film.radial_load` for an input of a step or a
-parameter of a model, `film@level` for an option of a step: no two are called alike, and none like a field of
-the form itself (`note`) or a property of HTML's forms (`length`).
+parameter of a model, `film@level` for an option of a step, `film@limits.permissible_film` for a limit: no two
+are called alike, and none like a field of the form itself (`note`) or a property of HTML's forms (`length`).
 
 `static/typed.js` does the same in the browser; `tests/web` compares the two.
 """
@@ -22,6 +22,7 @@ from app.presentation.typed import text_of, value_of
 from app.schemas.designs import Design
 
 OPTIONS = ("level", "tolerance")  # of a step, beside its inputs
+LIMITS = "limits."  # of its criteria: how the rest of their controls' names begins
 MOST_FIELDS = 20_000
 
 Patch = dict[str, dict[str, JsonValue]]
@@ -82,7 +83,7 @@ def kept(typed: Mapping[str, str]) -> dict[str, str]:
 def _is_field(design: Names, blocks: Set[str], name: str) -> bool:
     block, kind, tail = _parts(name)
     if kind == "@":
-        return block in design.steps and tail in OPTIONS
+        return block in design.steps and (tail in OPTIONS or tail.startswith(LIMITS))
     return tail in design.parameters if not block else bool(tail) and block in blocks
 
 
@@ -99,6 +100,7 @@ def texts(design: Design) -> dict[str, str]:
     for block, values in blocks.items():
         fields |= {f"{block}.{name}": text_of(value) for name, value in values.items()}
     for name, step in design.steps.items():
+        fields |= {f"{name}@{LIMITS}{tail}": text_of(value) for tail, value in step.limits.items()}
         fields |= {f"{name}@level": text_of(step.level), f"{name}@tolerance": text_of(step.tolerance)}
     return fields
 
@@ -107,7 +109,9 @@ def _put(patch: Patch, design: Names, name: str, value: JsonValue) -> None:
     """One value in its place; what was emptied is removed."""
     block, kind, tail = _parts(name)
     new = None if value == "" else value
-    if kind == "@":
+    if kind == "@" and tail.startswith(LIMITS):
+        inner(inner(patch.setdefault("steps", {}), block), "limits")[tail.removeprefix(LIMITS)] = new
+    elif kind == "@":
         inner(patch.setdefault("steps", {}), block)[tail] = option_of(tail, new)
     elif not block:
         patch.setdefault("parameters", {})[tail] = new

@@ -12,6 +12,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from app.api.gate.guard import PAGE_POLICY
 from app.presentation.environment import environment
 from app.presentation.units import System
+from app.reports.pictures import axis_of
 from app.web import plotly
 from app.web.session import keep_session
 
@@ -23,9 +24,11 @@ HEADERS = {
     "Vary": "Cookie",
 }
 YEAR = 365 * 24 * 3600  # s
+SCHEMES = ("light", "dark")
 
 jinja = environment(Path(__file__).with_name("pages"))
 jinja.globals["ids_of_styles"] = plotly.ids_of_styles
+jinja.globals["axis_of"] = axis_of
 
 
 def units_of(request: Request) -> System:
@@ -38,12 +41,20 @@ def show(request: Request, name: str, status: int = 200, **context: object) -> R
     """A page."""
     units = units_of(request)
     page = jinja.get_template(name)
-    html = page.render(units=units, path=request.url.path, query=_beside_units(request), **context)
+    html = page.render(
+        units=units, scheme=_scheme(request), path=request.url.path, query=_beside_units(request), **context
+    )
     response = HTMLResponse(html, status, headers=HEADERS)
     if "units" in request.query_params:
         response.set_cookie("units", units, max_age=YEAR, samesite="lax", httponly=True)
     keep_session(request, response)
     return response
+
+
+def _scheme(request: Request) -> str:
+    """The colours that were chosen; empty for those of the system."""
+    kept = request.cookies.get("scheme")
+    return next((scheme for scheme in SCHEMES if scheme == kept), "")
 
 
 def _beside_units(request: Request) -> str:

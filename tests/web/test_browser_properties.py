@@ -169,12 +169,14 @@ def test_a_template_file_has_its_page_form_formulas_and_report(watched):
 
 
 NUMBERS = (3.2449116, 0.0, -50.0, 1.2e-7, 99999.9, 123456.0, 1e6, 2.5e9, 1e-4, 9.99999e-5, -0.00123456, 1e22)
-UNITS = ("mm**2/s", "kJ/(m**3*K)", "degC", "1", "um", "N*s/m", "m**-1", "inch**2", "deg")
+UNITS = ("mm**2/s", "kJ/(m**3*K)", "degC", "1", "um", "N*s/m", "m**-1", "inch**2", "deg", "ureyn")
 QUANTITIES = (
     {"value": 48.0, "unit": "mm"},
     {"value": None, "unit": "1", "reason": "no load"},
     {"value": [1.5, 2.5], "unit": "mm"},
     {"value": [float(n) for n in range(9)], "unit": "deg"},
+    {"value": [float((7 * n) % 31) for n in range(31)], "unit": "N"},
+    {"value": [[1.0] * 12, [2.0] * 12], "unit": "1"},
     "= scale * 48 mm",
 )
 

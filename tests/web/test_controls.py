@@ -118,3 +118,16 @@ def test_the_browser_makes_the_same_patch_as_the_server(watched):
     for typed in (TYPED, {"film@tolerance": "[1]"}, {"film@tolerance": "inf"}, {"film@level": ""}):
         was = json.dumps(dict.fromkeys((name for name, text in typed.items() if not text), "before"))
         assert watched.page.evaluate(script, [typed, ["model"]]) == patch_of(design, {**typed, "was": was})
+
+
+def test_a_fault_is_a_link_to_its_field(watched, http):
+    watched.open(from_example(http, "oil_film/1"))
+    page = watched.page
+    page.get_by_label("Radial load").fill("25 mm")
+    link = page.locator("[data-state] a")
+    expect(link).to_have_text("oil film.radial load")
+    page.evaluate("scrollTo(0, document.body.scrollHeight)")
+    page.locator('[data-fold="oil_film"]').evaluate("(fold) => { fold.open = false; }")
+    link.click()
+    expect(page.get_by_label("Radial load")).to_be_focused()
+    expect(page.get_by_label("Radial load")).to_be_in_viewport()

@@ -106,7 +106,7 @@ def test_only_a_green_verdict_is_green(criteria, expected):
 
 def test_a_revision_without_a_verdict_says_so():
     class Old:
-        verdict, criteria, state = None, [], "current"
+        verdict, criteria, state = None, None, "current"
 
     assert "save to judge" in text_of(html_of(banner(Old)))
 
@@ -149,7 +149,9 @@ def test_two_steps_are_short_and_verdict_and_part_stay_in_view(watched, two_step
     page = watched.page
     watched.open(two_steps)
     expect(page.locator(".solid .js-plotly-plot")).to_be_visible(timeout=60_000)
-    expect(page.locator("[data-picture] .js-plotly-plot").first).to_be_attached()
+    pressure = page.locator('[data-step="film"] .picture.pressure')
+    pressure.scroll_into_view_if_needed()
+    expect(pressure.locator(".js-plotly-plot").first).to_be_attached(timeout=60_000)
     assert page.evaluate("document.documentElement.scrollHeight") < LONGEST
     page.evaluate("scrollTo(0, 1000)")
     page.wait_for_function("scrollY === 1000")

@@ -20,12 +20,18 @@ export function stepOf({ name, require }) {
   return rest.length && /^[A-Za-z_]\w*$/.test(block) ? block : "";
 }
 
-export const title = ({ require }) => plainName(sides(require)[0]);
+const isName = (text) => /^\s*(?:[A-Za-z]\w*\.)*[A-Za-z]\w*\s*$/.test(text);
+
+// What is judged; of what is calculated within a criterion, its own name.
+export function title({ name, require }) {
+  const [left] = sides(require);
+  return plainName(isName(left) ? left : name);
+}
 
 export function compared({ value, limit, require }) {
   if (!value || !limit) return "";
   const [, sign, right] = sides(require);
-  const called = /^\s*(?:[A-Za-z]\w*\.)*[A-Za-z]\w*\s*$/.test(right) ? `${plainName(right)} ` : "";
+  const called = isName(right) ? `${plainName(right)} ` : "";
   const atLeast = sign === ">=" ? (value.value >= limit.value ? "≥" : "<") : value.value <= limit.value ? "≤" : ">";
   return `${quantityText(value)} ${atLeast} ${called}${quantityText(limit)}`;
 }

@@ -1,19 +1,27 @@
-// The button "Decide": an exacter calculation where, and only where, a criterion is undecided. Nothing is saved.
-import { call, units } from "./api.js";
+// The button "Decide": a finer calculation where, and only where, a criterion is undecided. Nothing is saved.
+import { call } from "./api.js";
+import { calculated } from "./calculation.js";
+import { plain } from "./numbers.js";
 import { showVerdict } from "./verdict.js";
+
+const STOPPED = {
+  no_finer_level: "no level states a smaller error",
+  budget: "the time allowed was spent",
+  pending: "a level is still being calculated: press again",
+};
 
 export function startDecide(api, patch) {
   const button = document.querySelector("[data-decide]"), place = document.querySelector("[data-decided]");
   if (!button) return;
-  button.hidden = false;
+  button.hidden = button.dataset.wanted === undefined;
   button.addEventListener("click", async () => {
     if (Object.keys(patch()).length) return (place.textContent = "save your changes first");
     button.disabled = true;
-    place.textContent = "calculating more exactly where it decides …";
+    place.textContent = "calculating at finer levels where that decides …";
     try {
-      const { told: answer } = await call("POST", `${api}/decide?units=${units()}`, {}, { headers: { Prefer: "wait=30" } });
-      showVerdict(answer);
-      place.textContent = spent(answer);
+      const payload = await decision(api);
+      showVerdict(payload);
+      place.textContent = summary(payload);
     } catch (error) {
       place.textContent = error.message;
     } finally {
@@ -22,8 +30,14 @@ export function startDecide(api, patch) {
   });
 }
 
-function spent({ seconds, spent: rounds = [] }) {
-  const climbed = rounds.map(({ step, level }) => `${step} at level ${level}`.replaceAll("_", " ")).join(", ");
-  const time = typeof seconds === "number" ? ` in ${seconds.toPrecision(2)} s` : "";
-  return climbed ? `Decided with ${climbed}${time}. Nothing was saved.` : `No level has a smaller error${time}.`;
+async function decision(api) {
+  const answer = await call("POST", `${api}/decide`, {}, { headers: { Prefer: "wait=2" } });
+  return (answer.status === 202 ? await calculated(answer.location) : answer).told;
+}
+
+function summary({ tried, undecided, stopped, seconds }) {
+  const levels = tried.map(({ step, level }) => `${step} at level ${level.replaceAll("_", " ")}`).join(", ");
+  const spent = levels ? `Calculated ${levels} in ${plain(Number(seconds.toPrecision(2)))} s` : "Nothing was calculated";
+  const left = undecided.length ? `; ${undecided.length} still undecided: ${STOPPED[stopped] ?? stopped}` : "; all decided";
+  return `${spent}${left}. Nothing was saved.`;
 }

@@ -12,7 +12,7 @@ import { OUTDATED, markOutdated, markWaiting, showFaults, showResults } from "./
 import { startSolids } from "./solids.js";
 import { startDecide } from "./decide.js";
 import { nameOf, patchOf } from "./typed.js";
-import { showKeys, showVerdict, startVerdict } from "./verdict.js";
+import { goTo, showKeys, showVerdict, startVerdict } from "./verdict.js";
 
 startDownloads();
 
@@ -23,6 +23,7 @@ const draft = new Draft(form, JSON.parse(form.querySelector("[name=was]").value)
 const models = new Set([...document.querySelectorAll("[data-model]")].map((part) => part.dataset.model));
 const state = form.querySelector("[data-state]");
 const trouble = form.querySelector("[data-trouble]");
+const MOST_LINKS = 5; // to fields that are wrong
 const CONFLICT = 409; // the calculation was cancelled
 const patch = () => patchOf(draft.changed(), models);
 const progress = document.querySelector("[data-progress]");
@@ -85,15 +86,28 @@ function refusePreview(error) {
   progress.hidden = !isFollowing;
   refuse(error);
   markOutdated(true);
-  state.textContent = [state.textContent, OUTDATED].filter(Boolean).join("; ");
+  state.append(state.textContent ? "; " : "", OUTDATED);
 }
 
 function refuse(error) {
   state.textContent = "";
   if (!(error instanceof Refused)) return tell(`The service does not answer: ${error.message}`);
   const loose = showFaults(form, error.faults);
-  state.textContent = error.status === CONFLICT ? "" : "not possible so: see the message beside the field";
+  if (error.status !== CONFLICT) state.replaceChildren("not possible so: see the message beside ", ...linksToFaults());
   if (loose.size || !error.faults.size) tell([...loose.values()].join("; ") || error.message);
+}
+
+// Links to the fields that are wrong; where the fault is of no field, words that fit.
+function linksToFaults() {
+  const links = [...form.querySelectorAll('[aria-invalid="true"]')].slice(0, MOST_LINKS).flatMap((field, place) => {
+    const link = Object.assign(document.createElement("a"), { href: `#${field.id}`, textContent: nameOf(field.name).replaceAll("_", " ") });
+    link.addEventListener("click", (event) => {
+      event.preventDefault();
+      goTo(field);
+    });
+    return place ? [", ", link] : [link];
+  });
+  return links.length ? links : ["the field"];
 }
 
 function tell(words) {

@@ -1,6 +1,6 @@
 // Numbers and units as app/web/numbers.py writes them: five digits, aligned at the point, the unit once.
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
-const WORDS = { deg: "°", degC: "°C", degF: "°F", um: "µm", ohm: "Ω", thou: "mil", inch: "in" };
+const WORDS = { deg: "°", degC: "°C", degF: "°F", um: "µm", ohm: "Ω", thou: "mil", inch: "in", ureyn: "µreyn" };
 const raised = (text) => [...text].map((sign) => RAISED[sign]).join("");
 
 export function aligned(value) {
@@ -26,12 +26,36 @@ export function quantityText(quantity) {
   if (quantity === null || quantity === undefined) return "";
   if (typeof quantity !== "object" || Array.isArray(quantity)) return written(quantity);
   if (quantity.value === null) return quantity.reason ?? "none";
-  return [written(quantity.value), unit(quantity.unit)].filter(Boolean).join(" ");
+  return [written(quantity.value), unit(quantity.unit), remark(quantity.value)].filter(Boolean).join(" ");
 }
 
 function written(value) {
   if (typeof value === "number") return plain(value);
   if (!Array.isArray(value)) return String(value);
-  const items = value.length <= 6 ? value.map(written) : null;
-  return items ? `[${items.join(", ")}]` : `[${written(value[0])} … ${written(value.at(-1))}] (${value.length} values)`;
+  const flat = value.flat(Infinity);
+  if (flat.length <= FEW) return `[${value.map(written).join(", ")}]`;
+  return extremes(flat)?.map((place) => written(flat[place])).join(" … ") ?? "[…]";
+}
+
+// Of a long list, how many values there are, and where the least and the largest are.
+function remark(values) {
+  if (!Array.isArray(values) || values.flat(Infinity).length <= FEW) return "";
+  const ends = values.some(Array.isArray) ? null : extremes(values);
+  return `(${counted(values)} values${ends ? `; least no. ${ends[0] + 1}, largest no. ${ends[1] + 1}` : ""})`;
+}
+
+export const FEW = 20; // values that are shown whole
+
+// How many values there are: 720, or 3 × 24 of a table.
+export const counted = (values) => (Array.isArray(values[0]) ? `${values.length} × ${counted(values[0])}` : String(values.length));
+
+// The places of the least and the largest number; null without any.
+export function extremes(values) {
+  let least = -1, largest = -1;
+  values.forEach((value, place) => {
+    if (typeof value !== "number") return;
+    if (least < 0 || value < values[least]) least = place;
+    if (largest < 0 || value > values[largest]) largest = place;
+  });
+  return least < 0 ? null : [least, largest];
 }

@@ -16,12 +16,16 @@ export function plotly() {
 
 export const CONFIG = { displaylogo: false, responsive: true, displayModeBar: false };
 export const COLOURS = ["#1b4f7f", "#b5651d", "#1d6b3a", "#8e2f6b", "#5a5f66", "#0f8a8a"];
-const FONT = { family: "Liberation Sans, Segoe UI, Arial, sans-serif", size: 12, color: "#1b2733" };
+const FAMILY = "Liberation Sans, Segoe UI, Arial, sans-serif";
+
+// A colour of the page's scheme.
+const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
 export function layout(more = {}) {
-  const axis = { gridcolor: "#e3e8ed", zerolinecolor: "#9aa7b3", automargin: true, linecolor: "#9aa7b3", exponentformat: "e", minexponent: 5 };
+  const line = colour("rule-strong"), paper = colour("paper");
+  const axis = { gridcolor: colour("rule"), zerolinecolor: line, automargin: true, linecolor: line, exponentformat: "e", minexponent: 5 };
   return {
-    font: FONT, paper_bgcolor: "#fff", plot_bgcolor: "#fff", height: 300, colorway: COLOURS,
+    font: { family: FAMILY, size: 12, color: colour("ink") }, paper_bgcolor: paper, plot_bgcolor: paper, height: 300, colorway: COLOURS,
     margin: { l: 55, r: 15, t: 10, b: 45 }, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
     ...more,
     xaxis: { ...axis, ...more.xaxis }, yaxis: { ...axis, ...more.yaxis },

@@ -1,6 +1,7 @@
 // Writes an evaluation into the page: formulas with their numbers, results, errors, warnings.
 import { isolated } from "./isolated.js";
 import { aligned, percent, quantityText, unit } from "./numbers.js";
+import { courseCell, isCourse } from "./course.js";
 import { reveal } from "./reveal.js";
 import { isOf } from "./typed.js";
 
@@ -8,8 +9,9 @@ const TEXT = "\\text{"; // how an answer in words begins
 
 export function showResults(scope, answer) {
   for (const row of answer.formulas ?? []) showFormula(`${scope}.${row.name}`, row);
+  const values = { ...answer.inputs, ...answer.outputs };
   for (const [name, quantity] of Object.entries(answer.outputs ?? {})) {
-    showOutput(`${scope}.${name}`, quantity, answer.error?.[name]);
+    showOutput(`${scope}.${name}`, quantity, answer.error?.[name], values);
   }
   showWarnings(scope, answer.warnings ?? []);
 }
@@ -27,17 +29,19 @@ function showFormula(name, row) {
   }
 }
 
-function showOutput(name, quantity, error) {
+function showOutput(name, quantity, error, values) {
   const line = document.querySelector(`[data-output="${name}"]`);
   if (!line) return;
   for (const old of line.querySelectorAll("td.value, td.unit")) old.remove();
-  line.querySelector(".symbol").after(...cells(quantity));
+  const axis = values[line.dataset.axis];
+  line.querySelector(".symbol").after(...cells(quantity, axis));
   const band = line.querySelector(".band");
   band.textContent = typeof error !== "number" ? "" : error === 0 ? "same at all levels" : `± ${percent(error)}${band.dataset.of ?? ""}`;
 }
 
-export function cells(quantity) {
+export function cells(quantity, axis) {
   const value = Object.assign(document.createElement("td"), { className: "value" });
+  if (isCourse(quantity.value)) return [courseCell(value, quantity, axis)];
   if (typeof quantity.value !== "number") {
     value.classList.add("text");
     value.colSpan = 2;

@@ -14,7 +14,7 @@ export async function drawScene(figure, traces) {
   const Plotly = await plotly();
   const scene = (figure.dataset.scene ??= `scene${++scenes}`);
   const all = traces.map((trace) => ({ ...trace, scene }));
-  await Plotly.react(figure, all, { height: 380, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "#fff", uirevision: "kept", showlegend: false, [scene]: { ...box(traces), camera: CAMERA } }, CONFIG);
+  await Plotly.react(figure, all, { height: 380, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "rgba(0,0,0,0)", uirevision: "kept", showlegend: false, [scene]: { ...box(traces), camera: CAMERA } }, CONFIG);
 }
 
 // The box about all traces, as large as fits.

@@ -22,13 +22,16 @@ export function isOf(fault, control) {
   return fault === name || (isOption && (fault === `steps.${name}` || fault.startsWith(`${name}.`)));
 }
 
+const LIMITS = "limits."; // how the rest of the name of a limit's control begins
+
 // The merge patch of a design for the fields that were changed: { "film.radial_load": "25 kN" } → { steps: … }.
 export function patchOf(changed, models) {
   const patch = {};
   for (const [name, text] of Object.entries(changed)) {
-    const [block, tail] = name.split(/[.@]/);
+    const [, block, kind, tail] = name.match(/^([^.@]*)([.@])(.*)$/s);
     const value = text.trim() === "" ? null : valueOf(text);
-    if (name.includes("@")) inside(patch, "steps", block)[tail] = optionOf(tail, value);
+    if (kind === "@" && tail.startsWith(LIMITS)) inside(patch, "steps", block, "limits")[tail.slice(LIMITS.length)] = value;
+    else if (kind === "@") inside(patch, "steps", block)[tail] = optionOf(tail, value);
     else if (!block) inside(patch, "parameters")[tail] = value;
     else if (models.has(block)) inside(patch, "models", block, "parameters")[tail] = value;
     else inside(patch, "steps", block, "inputs")[tail] = value;

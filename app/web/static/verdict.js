@@ -23,6 +23,8 @@ export function showVerdict({ verdict, criteria = [] }) {
   if (!verdict || criteria.length === 0) return;
   place.classList.remove("green", "bad", "open", "plain");
   place.classList.add(verdict.green ? "green" : TONES[verdict.verdict] ?? "plain");
+  const decide = document.querySelector("[data-decide]");
+  if (decide) decide.hidden = !criteria.some((criterion) => criterion.verdict === "undecided");
   const isOpen = place.querySelector("[data-all-criteria]")?.open;
   place.querySelector("[data-verdict-inside]").replaceChildren(...banner(verdict, criteria, isOpen));
   for (const line of document.querySelectorAll("[data-fold-verdict]")) {

@@ -50,6 +50,7 @@ def describe(cls: type[Template]) -> dict[str, Any]:
         "criteria": described_criteria(cls),
         "references": sections.get("References", []),
         "errata": sections.get("Errata", []),
+        "given_limits": limits_schema(cls),
         "example": dict(cls.example),
     }
 
@@ -62,6 +63,18 @@ def inputs_schema(cls: type[Template]) -> dict[str, Any]:
         "required": [name for name, declared in cls.inputs.items() if declared.required],
         "properties": {name: _input(cls, declared) for name, declared in cls.inputs.items()},
     }
+
+
+def limits_schema(cls: type[Template]) -> dict[str, Any]:
+    """JSON Schema of the object `limits`: what the criteria compare with and the calculation does not take.
+
+    A choice of the library stands once for all limits that its rows fill.
+    """
+    limits = {limit.name: limit for criterion in cls.declared_criteria for limit in criterion.limits}
+    rows = dict.fromkeys(limit.library for limit in limits.values() if limit.library)
+    given = {limit.name: {"title": limit.words, "unit": limit.unit} for limit in limits.values()}
+    chosen = {name: {"title": name.replace("_", " "), "library": name} for name in rows}
+    return {"type": "object", "properties": {**chosen, **given}, "required": []}
 
 
 def outputs_schema(cls: type[Template]) -> dict[str, Any]:
