@@ -71,8 +71,11 @@ class TestVerdict:
         assert not verdict([*killed(89), *(row(f"s{n}") for n in range(11))], [EQUIVALENT]).holds
         assert verdict([*killed(90), *(row(f"s{n}") for n in range(10))], [EQUIVALENT]).holds
 
-    def test_a_failure_that_no_mutant_explains_fails(self):
-        assert not verdict([*killed(99), row("u", "unclear")], []).holds
+    @pytest.mark.parametrize("outcome", ["unclear", "undecided"])
+    def test_what_is_not_decided_counts_as_tried_and_fails(self, outcome):
+        result = verdict([*killed(99), row("u", outcome)], [])
+        assert not result.holds
+        assert result.share == 0.99
 
     @pytest.mark.parametrize(
         "other",

@@ -21,7 +21,7 @@ from benchmarks.mutation.named import named
 from benchmarks.mutation.places import Mutant, sample
 from benchmarks.mutation.related import NEAREST, related
 from benchmarks.mutation.trial import Copies, Copy, row
-from benchmarks.mutation.verdict import REASONS, reasons, report, summary, verdict
+from benchmarks.mutation.verdict import REASONS, UNDECIDED, reasons, report, summary, verdict
 
 
 def arguments() -> argparse.Namespace:
@@ -73,10 +73,20 @@ def main() -> None:
 
 
 def valid(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[str, Any]]:
-    """Return the rows of the record that still hold."""
+    """Return the rows of the record that still hold; for a report also those that are not decided."""
     earlier = recorded(options.record)
     current = {mutant.key: row(mutant, related(mutant.file, options.nearest)) for mutant in chosen}
-    return [old for key, old in earlier.items() if key in current and is_valid(old, current[key])]
+    held = {key: old for key, old in earlier.items() if key in current}
+    open_ones = [
+        key
+        for key, old in held.items()
+        if old["outcome"] in UNDECIDED and old["code"] == current[key]["code"]
+    ]
+    return [
+        old
+        for key, old in held.items()
+        if is_valid(old, current[key]) or (options.report and key in open_ones)
+    ]
 
 
 def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[str, Any]]:
@@ -109,16 +119,24 @@ def tried(
 
     result = copies.using(work)
     if result is None:
+        undecided = {**row(mutant, related(mutant.file)), "outcome": "undecided", "by": "", "seconds": 0}
+        with lock:
+            keep(record, undecided)
         return None
     with lock:
         print(
             f"{result['outcome']:9} {mutant.file}:{mutant.line} {result['by']} ({result['seconds']} s)",
             flush=True,
         )
-        if record:
-            with record.open("a", encoding="utf-8") as file:
-                file.write(json.dumps(result) + "\n")
+        keep(record, result)
     return result
+
+
+def keep(record: Path | None, result: dict[str, Any]) -> None:
+    """Append a row to the record, if there is one."""
+    if record:
+        with record.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(result) + "\n")
 
 
 def recorded(record: Path) -> dict[str, dict[str, Any]]:
@@ -132,9 +150,8 @@ def recorded(record: Path) -> dict[str, dict[str, Any]]:
 def is_valid(old: dict[str, Any], new: dict[str, object]) -> bool:
     """Whether an older result still holds: same change, same code, and for a survivor the same tests."""
     same = all(old[name] == new[name] for name in ("file", "diff", "code"))
-    return (
-        same and (old["outcome"] == "killed" or old["tests"] == new["tests"]) and old["outcome"] != "unclear"
-    )
+    is_decided = old["outcome"] not in UNDECIDED
+    return same and is_decided and (old["outcome"] == "killed" or old["tests"] == new["tests"])
 
 
 if __name__ == "__main__":

@@ -19,6 +19,8 @@ from benchmarks.mutation import ROOT
 REASONS = ROOT / ".ci" / "mutants.toml"
 LEAST_KILLED = 0.85
 MOST_EQUIVALENT = 0.10
+UNDECIDED = ("unclear", "undecided")
+"""Outcomes where a test fails without the mutant too, and where a first pass left a mutant for the second."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ def verdict(rows: Sequence[dict[str, Any]], argued: Sequence[Reason]) -> Verdict
     accepted = [row for row in survivors if (r := reason_of[row["key"]]) and not r.equivalent]
     without = [row for row in survivors if reason_of[row["key"]] is None]
     killed = sum(row["outcome"] == "killed" for row in rows)
-    unclear = [row for row in rows if row["outcome"] == "unclear"]
+    unclear = [row for row in rows if row["outcome"] in UNDECIDED]
     return Verdict(len(rows), killed, equivalent, accepted, without, unclear)
 
 
