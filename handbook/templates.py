@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from handbook.criteria import described_row
 from handbook.rendering import render
 from handbook.rendering import unit as unit_of
 from templates.core.language.evaluate import Answer, evaluate
@@ -60,6 +61,7 @@ def page(cls: type[Template]) -> str:
         levels=list(levels(cls)),
         accuracy=_measurement(cls),
         limits=described_limits(description["limits"]),
+        criteria=[described_row(criterion) for criterion in description["criteria"]],
         command=_command(cls),
     )
 
