@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.truths import FILM, FRICTION, FULL_SHEAR, OIL_SHEAR, meanings
+from benchmarks.truths import COEFFICIENTS, FILM, FULL_SHEAR, OIL_SHEAR, RELATIVE_TO, meanings, truth_of
 from templates.core.arrays import Array
 from templates.core.language.template import Template
 from templates.oil_film.oil_film_v1 import OilFilm as Paper
@@ -49,12 +49,6 @@ FINER = 7
 MARGIN = 1.02
 SCATTERED = 8, 8
 NEARBY = 1.5
-COEFFICIENTS = [f"{name}_{xy}" for name in ("stiffness", "damping") for xy in ("xx", "xy", "yx", "yy")]
-RELATIVE_TO: dict[str, float | list[str]] = {
-    **dict.fromkeys(("attitude_angle", "maximum_pressure_angle"), np.pi / 2),
-    **{name: [n for n in COEFFICIENTS if n.startswith(name[:5])] for name in COEFFICIENTS},
-}
-"""What errors are relative to that are not so to the output itself: a size [SI], or the largest of these."""
 FEWER_POINTS = {"reynolds": 800, "mass_conserving": 400}
 
 Errors = dict[str, Array]
@@ -299,13 +293,6 @@ def measure() -> None:
     write(OilFilm, content_of(OilFilm, truths, [axis("eps", "relative_eccentricity", EPS), width], levels))
     axes = [axis("S_0", "sommerfeld_number", LOADS), axis("b", "width_ratio", PAPER_WIDTH)]
     write(Paper, content_of(Paper, meanings(FILM), axes, {"only": {"cost": {}, **paper()}}))
-
-
-def truth_of(level: str, output: str) -> str:
-    """Against which film the error of an output is measured: `mass_conserving` has a convention of shear."""
-    if output not in FRICTION:
-        return FILM
-    return OIL_SHEAR if level == "mass_conserving" else FULL_SHEAR
 
 
 def costs() -> None:

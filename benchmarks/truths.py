@@ -1,5 +1,7 @@
 """Names of the solutions against which errors are measured, and the conventions that they follow."""
 
+import numpy as np
+
 FILM = "Swift-Stieber"
 FULL_SHEAR = f"{FILM}, shear all around"
 OIL_SHEAR = f"{FILM}, shear where oil is"
@@ -20,3 +22,18 @@ FRICTION = ("shear_torque", "friction_torque", "friction_coefficient", "power_lo
 def meanings(*names: str) -> dict[str, str]:
     """The names that a table uses, with their meanings."""
     return {name: TRUTHS[name] for name in names}
+
+
+COEFFICIENTS = [f"{name}_{xy}" for name in ("stiffness", "damping") for xy in ("xx", "xy", "yx", "yy")]
+RELATIVE_TO: dict[str, float | list[str]] = {
+    **dict.fromkeys(("attitude_angle", "maximum_pressure_angle"), np.pi / 2),
+    **{name: [n for n in COEFFICIENTS if n.startswith(name[:5])] for name in COEFFICIENTS},
+}
+"""What errors are relative to that are not so to the output itself: a size [SI], or the largest of these."""
+
+
+def truth_of(level: str, output: str) -> str:
+    """Against which film the error of an output is measured: `mass_conserving` has a convention of shear."""
+    if output not in FRICTION:
+        return FILM
+    return OIL_SHEAR if level == "mass_conserving" else FULL_SHEAR

@@ -25,6 +25,13 @@ def test_templates_evaluate_and_solve(client):
     inputs = {name: value for name, value in OIL_FILM.items() if name != "bearing_width"}
     solution = client.solve("oil_film", 1, inputs, "bearing_width", ("10 mm", "80 mm"), target)
     assert solution.unknown.value == pytest.approx(18, abs=0.01)
+    assert [root.value for root in solution.roots] == [solution.unknown.value]
+    assert len(solution.curve.x.value) == len(solution.curve.y.value) == 257
+    named = client.solve(
+        "oil_film", 1, inputs, "bearing_width", ("10 mm", "80 mm"), target, outputs=["density"]
+    )
+    assert named.evaluation.outputs.keys() == {"density"}
+    assert named.in_units("us").roots[0].unit == "inch"
 
 
 def test_a_quantity_of_an_answer_is_an_input(client):

@@ -65,6 +65,6 @@ def test_property_bounds_random_duties() -> None:
 
 @pytest.mark.slow
 def test_property_bounds_many_random_duties() -> None:
-    shares = measured(seed=93, duties=400)
+    shares = measured(seed=93, duties=150)
     assert shares.bounded > 0.99
     assert shares.known_usual > 0.8
