@@ -28,7 +28,16 @@ _GREEK = {
     "rho", "sigma", "tau", "phi", "psi", "omega",
 }  # fmt: skip
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_PRINTED = {"deg": "°", "degC": "°C", "degF": "°F", "um": "µm", "ohm": "Ω", "thou": "mil", "inch": "in", "ureyn": "µreyn"}
+_PRINTED = {
+    "deg": "°",
+    "degC": "°C",
+    "degF": "°F",
+    "um": "µm",
+    "ohm": "Ω",
+    "thou": "mil",
+    "inch": "in",
+    "ureyn": "µreyn",
+}
 _OPERATOR = re.compile(
     r"\\operatorname\{([^{}]*)\}"
 )  # which latex2mathml would set in italics, letter by letter
