@@ -11,13 +11,14 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
 
-from handbook import client, decisions, language, map_of_code, models, notebooks, rest, templates
+from handbook import client, criteria, decisions, language, map_of_code, models, notebooks, rest, templates
 
 Content = str | bytes
 
 SOURCES = {
     "templates": templates.pages,
     "models": models.pages,
+    "criteria": criteria.pages,
     "language": language.pages,
     "rest": rest.pages,
     "client": client.pages,

@@ -23,6 +23,7 @@ import numpy as np
 
 from benchmarks.truths import FILM, FRICTION, FULL_SHEAR, OIL_SHEAR, meanings
 from templates.core.arrays import Array
+from templates.core.language.template import Template
 from templates.oil_film.oil_film_v1 import OilFilm as Paper
 from templates.oil_film.oil_film_v2 import OilFilm
 from templates.physics.films.film_fit import load_ISO_7902
@@ -49,6 +50,11 @@ MARGIN = 1.02
 SCATTERED = 8, 8
 NEARBY = 1.5
 COEFFICIENTS = [f"{name}_{xy}" for name in ("stiffness", "damping") for xy in ("xx", "xy", "yx", "yy")]
+RELATIVE_TO: dict[str, float | list[str]] = {
+    **dict.fromkeys(("attitude_angle", "maximum_pressure_angle"), np.pi / 2),
+    **{name: [n for n in COEFFICIENTS if n.startswith(name[:5])] for name in COEFFICIENTS},
+}
+"""What errors are relative to that are not so to the output itself: a size [SI], or the largest of these."""
 DEAR = {"reynolds": 800, "mass_conserving": 400}
 
 Errors = dict[str, Array]
@@ -233,7 +239,7 @@ def cost(level: str) -> dict[str, float]:
 
 
 def told(
-    cls: type, truths: dict[str, str], axes: list[dict[str, Any]], levels: dict[str, Any]
+    cls: type[Template], truths: dict[str, str], axes: list[dict[str, Any]], levels: dict[str, Any]
 ) -> dict[str, Any]:
     """The whole file."""
     return {
@@ -243,6 +249,7 @@ def told(
         "truths": truths,
         "error": "largest found in each cell; relative, of an angle to 90°, of a stiffness or damping to the "
         "largest of its four; of the film at the viscosity used; null: not measured, or refused",
+        "relative_to": {name: size for name, size in RELATIVE_TO.items() if name in cls.formulas},
         "cost": "processor seconds a point, of all measures of the film but stiffness and damping",
         "axes": axes,
         "levels": levels,

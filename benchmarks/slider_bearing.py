@@ -116,6 +116,7 @@ def main() -> None:
         "truths": meanings(PAD),
         "error": "largest found in each cell; relative, of pressure and its gradient to the largest along "
         "the pad, of the velocity to the runner's, of the friction on the pad to that on the runner",
+        "relative_to": {"pressure_gradient": None, "friction_force_fixed": ["friction_force_moving"]},
         "cost": "seconds a point",
         "axes": [
             {"attribute": "a", "name": "film_ratio", "values": RATIO},

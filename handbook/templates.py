@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from handbook.criteria import described_row
 from handbook.rendering import render
 from handbook.rendering import unit as unit_of
 from templates.core.language.evaluate import Answer, evaluate
-from templates.core.language.levels import SINGLE, accuracy, accuracy_file
+from templates.core.language.levels import SINGLE, accuracy, accuracy_file, truth_of
 from templates.core.language.template import Template
 from templates.core.paper.schema import describe
 from templates.door import built_in
@@ -60,6 +61,7 @@ def page(cls: type[Template]) -> str:
         levels=list(levels(cls)),
         accuracy=_measurement(cls),
         limits=described_limits(description["limits"]),
+        criteria=[described_row(criterion) for criterion in description["criteria"]],
         command=_command(cls),
     )
 
@@ -113,7 +115,8 @@ def levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
     costs = _costs(_measurement(cls)["levels"]) if measured else {}
     for level in cls.levels or ((SINGLE,) if measured else ()):
         tables = measured.errors.get(level, {}) if measured else {}
-        errors = [_spread(name, table) for name, table in tables.items() if not np.isnan(table).all()]
+        stated = {name: table for name, table in tables.items() if not np.isnan(table).all()}
+        errors = [{**_spread(name, t), "truth": truth_of(cls, level, name)} for name, t in stated.items()]
         yield {"name": level, "cost": costs.get(level), "errors": errors}
 
 

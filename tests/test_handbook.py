@@ -6,13 +6,15 @@ import re
 from pathlib import Path
 
 import pytest
+from markupsafe import escape
 
 from cad.catalogue import models as cad_models
 from cad.regenerate import regenerate
-from handbook import client, decisions, language, map_of_code, models, rest, templates
+from handbook import client, criteria, decisions, language, map_of_code, models, rest, templates
 from handbook.signatures import prose, signature
 from templates import get
 from templates.door import built_in
+from templates.library.tables import tables
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -79,6 +81,33 @@ def test_the_page_of_a_template_is_complete(cls):
         assert f"<code>{level}</code>" in page
     example = eval(re.search(r"example = (\{.*?^\})", page, re.MULTILINE | re.DOTALL)[1])
     assert example == json.loads(json.dumps(dict(cls.example)))
+
+
+def test_the_page_of_the_criteria_has_every_criterion_and_its_source():
+    page = dict(criteria.pages())["reference/criteria.md"]
+    for cls in built_in():
+        for one in cls.declared_criteria:
+            assert f"<td><code>{one.name}</code><br>{escape(one.words)}</td>" in page
+            assert f"<code>{escape(one.require)}</code>" in page
+            assert one.source is None or str(escape(one.source)) in page
+            assert one.unverified is None or f"no: {escape(one.unverified)}" in page
+            assert all(f"<code>{limit.name}</code>" in page for limit in one.limits)
+    assert page.count("<th>verified</th>") == sum(bool(cls.declared_criteria) for cls in built_in())
+    assert "</table>\n##" not in page  # Markdown ends a block of HTML at an empty line
+
+
+def test_the_page_of_a_template_has_its_criteria():
+    page = templates.page(get("oil_film", 2).template)
+    assert "<code>film_below_roughness</code>" in page
+    assert "or by a row of <code>bearing_material</code>" in page
+
+
+def test_the_page_of_the_library_has_every_row():
+    page = dict(criteria.pages())["reference/library.md"]
+    for table in tables().values():
+        for row in table.rows:
+            assert f'id="{table.id}-{row.id}"' in page
+            assert str(escape(row.source)) in page
 
 
 def test_the_page_of_a_template_shows_the_results_of_its_example():

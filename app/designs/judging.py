@@ -15,7 +15,7 @@ from app.designs.network import Block, Demand
 from app.designs.reference import Reference
 from app.designs.shifting import NOTHING, Shifting, Upstream
 from app.designs.size import limit_operations, limit_values
-from templates.core.errors import FaultyText, listed
+from templates.core.errors import FaultyText, TemplateError, listed
 from templates.core.judging.bands import Estimate
 from templates.core.judging.criterion import Criterion
 from templates.core.judging.judgement import Judgement
@@ -85,7 +85,7 @@ class Judging:
 
     def uncertain(self, name: str) -> frozenset[Reference]:
         """The outputs of steps whose errors, as far as they are stated, make the band of a criterion."""
-        origins = (self._shifting.of(reference).uncertain for reference in self.references(name).values())
+        origins = (self._shifting.behind(reference).uncertain for reference in self.references(name).values())
         return reduce(or_, origins, frozenset())
 
     @cached_property
@@ -189,7 +189,7 @@ class Judging:
             return estimate_of(evaluated, reference.member) if reference.member in declared else waits
         try:
             return Estimate(self.calculation.value(reference))
-        except FaultyText as error:
+        except TemplateError as error:
             return Absent((), str(error))
         except (KeyError, AttributeError):
             return Absent((), f"{reference} waits for a solid or for its calculation")

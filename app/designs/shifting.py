@@ -17,7 +17,7 @@ import numpy as np
 from app.calculations.cost import EXPENSIVE, estimated_seconds
 from app.designs.calculate import recalculated
 from app.designs.calculation import Calculation
-from app.designs.network import Block
+from app.designs.network import Block, Cell
 from app.designs.reference import Reference
 from templates.core.errors import TemplateError
 from templates.core.judging.bands import Estimate, Shift
@@ -26,6 +26,9 @@ from templates.core.units.units import Value
 
 MOST_SHIFTED = 12
 """Uncertain outputs of a design that are shifted; each takes two calculations of what follows from it."""
+LONGEST_SHIFTING = 1.0
+"""What all these calculations may take together, by their estimates [s]."""
+PER_OPERATION = 2e-8  # of a relation on a single value of an array [s]
 
 
 @dataclass(frozen=True)
@@ -77,9 +80,17 @@ class Shifting:
     estimate: EstimateOf
     _beneath: dict[Reference, Upstream] = field(default_factory=dict)
     _ends: dict[Reference, tuple[_End, _End]] = field(default_factory=dict)
+    _seconds: float = 0.0  # that the calculations so far were estimated to take
 
     def beneath(self, reference: Reference) -> Upstream:
         """What a value follows from, without the error of its own step."""
+        if not self._beneath:
+            for node in self.calculation.graph.order:  # in order, so that no chain is too long to follow
+                if isinstance(node, Cell):
+                    self._known(node.reference)
+        return self._known(reference)
+
+    def _known(self, reference: Reference) -> Upstream:
         if reference not in self._beneath:
             self._beneath[reference] = NOTHING  # an iteration comes back to where it began
             self._beneath[reference] = self._upstream(reference)
@@ -90,17 +101,19 @@ class Shifting:
     ) -> tuple[Sequence[Shift], frozenset[Reference]]:
         """The values of some names with each uncertain origin at either end, and the origins left out."""
         origins = sorted(upstream.uncertain, key=str)
-        carried = [o for o in origins if o in self._ends or len(self._ends) < MOST_SHIFTED]
-        both = [(origin, self._at_ends(origin)) for origin in carried]
-        shifts = [(self._values(low, references), self._values(high, references)) for _, (low, high) in both]
-        return shifts, frozenset(origins[len(carried) :])
+        carried = [origin for origin in origins if self._is_carried(origin)]
+        shifts = [
+            (self._values(low, references), self._values(high, references))
+            for low, high in (self._ends[origin] for origin in carried)
+        ]
+        return shifts, upstream.uncertain.difference(carried)
 
     def _upstream(self, reference: Reference) -> Upstream:
         graph = self.calculation.graph
         if reference in graph.assumed:
             return self._of_model(reference.block)
         if cell := graph.cell(reference):
-            return _joined(self.of(used) for used in cell.uses.values())
+            return _joined(self._behind(used) for used in cell.uses.values())
         block = graph.blocks.get(reference.block)
         if block is None:
             return NOTHING
@@ -110,9 +123,12 @@ class Shifting:
             return self._of_model(block.name)
         return self._of_block(block, reference.member)
 
-    def of(self, reference: Reference) -> Upstream:
-        """What follows for somebody who uses a value: its own error, and those beneath it."""
+    def behind(self, reference: Reference) -> Upstream:
+        """What somebody who uses a value depends on: the error of its own step, and those beneath it."""
         return self.beneath(reference) | self._own(reference)
+
+    def _behind(self, reference: Reference) -> Upstream:
+        return self._known(reference) | self._own(reference)
 
     def _own(self, reference: Reference) -> Upstream:
         estimate = self.estimate(reference)
@@ -133,33 +149,52 @@ class Shifting:
         except KeyError:
             return NOTHING  # it waits
         used = [cell for cell in block.cells.values() if cell.declared and cell.declared.attribute in beneath]
-        upstream = _joined(self.beneath(cell.reference) for cell in used)
+        upstream = _joined(self._known(cell.reference) for cell in used)
         return upstream.stopped() if upstream != NOTHING and self._is_expensive(block) else upstream
 
     def _of_model(self, name: str) -> Upstream:
         """What is measured on a solid follows from all its parameters; no error is carried through it."""
         cells = self.calculation.graph.blocks[name].cells.values()
-        return _joined(self.beneath(cell.reference) for cell in cells).stopped()
+        return _joined(self._known(cell.reference) for cell in cells).stopped()
 
     def _is_expensive(self, block: Block) -> bool:
         """Whether a step takes too long to be calculated again and again; by its estimate, not by a clock."""
-        if block.is_model:
-            return False
+        return not block.is_model and self._estimated_seconds(block) > EXPENSIVE
+
+    def _estimated_seconds(self, block: Block) -> float:
         raw = {name: self.calculation.typed.get(cell.name, cell.raw) for name, cell in block.cells.items()}
         level = levels_of(self.calculation)[block.name]
         outputs = list(self.calculation.evaluations[block.name].outputs)
-        return estimated_seconds(block.cls, raw, level, None, outputs) > EXPENSIVE
+        return estimated_seconds(block.cls, raw, level, None, outputs)
 
-    def _at_ends(self, origin: Reference) -> tuple[_End, _End]:
-        if origin not in self._ends:
-            estimate = self.estimate(origin)
-            assert isinstance(estimate, Estimate)
-            low, high = (
-                _End(origin, recalculated(self.calculation, {origin: end}, levels_of(self.calculation)))
-                for end in estimate.bounds()
-            )
-            self._ends[origin] = low, high
-        return self._ends[origin]
+    def _is_carried(self, origin: Reference) -> bool:
+        """Whether what follows from an output is calculated at both ends; it is done here, once."""
+        if origin in self._ends:
+            return True
+        seconds = 2 * self._following(origin)
+        if len(self._ends) >= MOST_SHIFTED or self._seconds + seconds > LONGEST_SHIFTING:
+            return False
+        self._seconds += seconds
+        estimate = self.estimate(origin)
+        assert isinstance(estimate, Estimate)
+        levels = levels_of(self.calculation)
+        low, high = (
+            _End(origin, recalculated(self.calculation, {origin: end}, levels)) for end in estimate.bounds()
+        )
+        self._ends[origin] = low, high
+        return True
+
+    def _following(self, origin: Reference) -> float:
+        """How long all that follows from an output is estimated to take [s]."""
+        steps = (block for block in self.calculation.graph.blocks.values() if not block.is_model)
+        follow = (
+            block
+            for block in steps
+            if block.name in self.calculation.evaluations
+            and any(origin in self.beneath(cell.reference).uncertain for cell in block.cells.values())
+        )
+        relations = self.calculation.operations * PER_OPERATION
+        return relations + sum(map(self._estimated_seconds, follow))
 
     def _values(self, end: _End, references: Mapping[str, Reference]) -> dict[str, Value]:
         """Values of names at one end; the origin keeps its value: its own band is counted elsewhere."""

@@ -18,6 +18,7 @@ from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import TemplateError
 from templates.core.language.intake import Input
 from templates.core.language.spec import Formula as DeclaredFormula
+from templates.core.language.spec import Profile
 from templates.core.language.template import Template
 from templates.core.paper.mathml import mathml, symbol
 from templates.core.paper.schema import documentation
@@ -25,6 +26,8 @@ from templates.core.paper.verdicts import Check
 
 WAITS = "waits for a solid that is not built"
 GUARD = 1e-5  # a domain that is used less than this guards against overflow and says nothing to an engineer
+OF_CURVE = " of its largest value"
+"""What the error of a curve is relative to: it may cross zero."""
 KINDS = {"domain": "range", "published": "published range", "rule": "rule", "warning": "rule"}
 RANGES = ("domain", "published")
 
@@ -149,16 +152,17 @@ def _formula(row: WorkedFormula) -> Formula:
 
 def _result(name: str, step: PreviewedStep, cls: Class) -> Line:
     output = step.outputs[name]
-    error = _error(step.error.get(name)) if _exists(output) else ""
+    is_curve = cls is not None and isinstance(cls.formulas.get(name), Profile)
+    error = _error(step.error.get(name), is_curve=is_curve) if _exists(output) else ""
     return Line(words_of(name, cls), symbol_of(name, cls), cell(output), error=error)
 
 
-def _error(error: Json) -> str:
+def _error(error: Json, *, is_curve: bool) -> str:
     measured = [e for e in flat(error) if isinstance(e, (int, float))]
     if not measured:
         return ""
     worst = max(measured)
-    return "same at all levels" if worst == 0 else f"± {numbers.percent(worst)}"
+    return "same at all levels" if worst == 0 else f"± {numbers.percent(worst)}{OF_CURVE if is_curve else ''}"
 
 
 def words_of(name: str, cls: Class) -> str:

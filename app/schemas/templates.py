@@ -54,6 +54,28 @@ class Limit(Answer):
     source: str | None = None
 
 
+class DeclaredLimit(Answer):
+    """A limit of a criterion that its user gives, in `limits` beside `inputs`."""
+
+    name: str
+    unit: str
+    words: str
+    library: str | None = Field(description="the table of the library whose rows have a value for it")
+    default: str | None = Field(description="what it is where nobody gives it, such as `min(speed_range)`")
+
+
+class DeclaredCriterion(Answer):
+    """A criterion that every evaluation is held against."""
+
+    name: str
+    words: str
+    require: str = Field(description="the comparison, such as `film >= 3 um`")
+    source: str | None = Field(description="of the limit, or of the rule")
+    unverified: str | None = Field(description="why the limit is not sure")
+    warning: str | None = Field(description="the code of the warning where the value misses the limit")
+    limits: list[DeclaredLimit]
+
+
 class Described(Answer):
     """What a version takes and gives, with its sources."""
 
@@ -70,6 +92,7 @@ class Described(Answer):
     levels: list[str] = Field(description="levels of fidelity, the cheapest first")
     default_level: str | None
     limits: list[Limit]
+    criteria: list[DeclaredCriterion]
     references: list[str]
     errata: list[str]
     example: dict[str, JsonValue] = Field(description="inputs that can be sent as they are")

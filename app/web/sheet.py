@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from app.presentation import numbers
 from app.presentation.typed import text_of
@@ -30,6 +30,8 @@ class Field:
     value: object = None  # what a relation comes to, or a default, as a quantity; None where the text says it
     needed: bool = True
     own: bool = False  # a design's own parameter: its name is all its words
+    labels: Mapping[str, str] = field(default_factory=dict)  # words of the options
+    suggestions: Mapping[str, str] = field(default_factory=dict)  # texts to take, and what each stands for
 
     @property
     def id(self) -> str:

@@ -16,6 +16,7 @@ from app.web import sheet
 from app.web.accuracy import table
 from app.web.api import Api, Refused, read
 from app.web.forms import OPTIONS, option_of
+from app.web.limits import PREFIX, library, limit_fields, limits_of, with_rows
 from app.web.rendering import show, units_of
 
 ABOUT = {"units"}  # of the address, beside the inputs
@@ -27,12 +28,14 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
     path = f"/templates/{id}/versions/{version}"
     template = await api.get(path, Template)
     typed = {name: text for name, text in request.query_params.items() if name not in ABOUT}
-    inputs, chosen = _asked(template, typed)
+    inputs, chosen, limits = _asked(template, typed)
+    tables = await library(api)
     measured = await api.find(f"{path}/accuracy", Accuracy)
-    body = {"inputs": inputs, **chosen}
+    body = {"inputs": inputs, **chosen, **({"limits": limits} if limits else {})}
     answer, job, faults = await _tried(api, path, body, units_of(request))
     used = answer.inputs if answer else {}
-    fields = sheet.of_block(template.inputs, "", inputs, used, typed, faults)
+    fields = with_rows(sheet.of_block(template.inputs, "", inputs, used, typed, faults), tables)
+    given = limit_fields(template, tables, limits, typed, faults)
     options = sheet.of_options(template, "", chosen, typed, faults)
     return show(
         request,
@@ -44,7 +47,8 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
         levels=table(measured) if measured else None,
         fields=fields,
         options=options,
-        loose=sheet.loose_faults([*fields, *options], faults),
+        limit_fields=given,
+        loose=sheet.loose_faults([*fields, *given, *options], faults),
         answer=answer or (_empty(template) if job else None),
         job=job,
         pictures=pictures(template, answer) if answer else [],
@@ -52,13 +56,18 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
     )
 
 
-def _asked(template: Template, typed: Mapping[str, str]) -> tuple[dict[str, JsonValue], dict[str, JsonValue]]:
-    """The inputs and the options of a calculation for what was typed."""
+Values = dict[str, JsonValue]
+
+
+def _asked(template: Template, typed: Mapping[str, str]) -> tuple[Values, Values, Values]:
+    """The inputs, the options and the limits of a calculation for what was typed."""
     filled = {name: text.strip() for name, text in typed.items() if text.strip()}
     chosen = {f"@{option}": option for option in OPTIONS}
-    inputs = {name: value_of(text) for name, text in filled.items() if name not in chosen}
+    limits = limits_of(filled)
+    others = (name for name in filled if not name.startswith(PREFIX) and name not in chosen)
+    inputs = {name: value_of(filled[name]) for name in others}
     options = {o: option_of(o, filled[name]) for name, o in chosen.items() if name in filled}
-    return inputs if typed else template.example, options
+    return inputs if typed else template.example, options, limits
 
 
 async def _tried(

@@ -14,6 +14,7 @@ from templates.physics.journals.oil import MM2_PER_S
 from templates.physics.journals.oil_grades import basis, grades, viscosity_at_40, viscosity_at_100
 
 _FOLDER = Path(__file__).parent
+SOURCES = _FOLDER / "sources.csv"
 
 
 @dataclass(frozen=True)
@@ -155,7 +156,7 @@ def fills(input_name: str) -> Iterator[tuple[Row, Cited]]:
 def _read(name: str, columns: tuple[Column, ...]) -> tuple[Row, ...]:
     """The rows of a file, whose quantities are those of the columns, in their units."""
     path = _FOLDER / name
-    rows = read_rows(path, read_sources(_FOLDER / "sources.csv"))
+    rows = read_rows(path, read_sources(SOURCES))
     units = {column.name: unit(column.unit).text for column in columns}
     for row in rows:
         for quantity, cited in row.values.items():

@@ -81,6 +81,10 @@ class OilFilmCycle(Template):
     makes the oil 22 000 times as thick, and where the film is below 0.05 µm.
     A load number below 1e-4 is refused: with a mean speed of half the crank's, a journal in a four-stroke
     engine may then whirl as it likes.
+    No error against the true film is stated: differences between the levels on two duties bounded those of 91
+    of 100 others only.
+    The output step_error is an estimate, from the change of the lowest node at half the step. It bounds the
+    error of the smallest film by the step in six of ten random duties (benchmarks.step_bound).
 
     References
     ----------

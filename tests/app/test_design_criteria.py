@@ -212,6 +212,36 @@ def test_arrays_upstream_are_shifted_row_by_row():
     assert len({judgement.verdict for judgement in single}) > 1
 
 
+def test_a_chain_of_parameters_may_be_long():
+    links = {f"p{n}": f"= p{n - 1} + 0 um" for n in range(1, 400)}
+    parameters = {"p0": "= film.minimum_film_thickness", **links}
+    raw = document({"end": {"require": "p399 >= 2.6 um"}}, parameters=parameters)
+    end = verdicts(raw)["end"]
+    alone = verdicts(document({"end": {"require": "film.minimum_film_thickness >= 2.6 um"}}))["end"]
+    assert (end.verdict, end.unit) == ("met", "m")
+    assert np.array(end.band) * 1e6 == pytest.approx(alone.band)
+
+
+def test_only_so_many_outputs_are_carried_and_the_others_are_named():
+    outputs = [name for name, error in film_errors().items() if error][:14]
+    assert len(outputs) == 14
+    sum_of_all = " + ".join(f"0 * film.{name} / film.{name}" for name in outputs)
+    parameters = {"factor": f"= 1 + {sum_of_all}"}
+    steps = {"film": film("map")}
+    raw = document({"own": {"require": "factor >= 0.5"}}, parameters=parameters, steps=steps)
+    own = verdicts(raw)["own"]
+    assert (own.verdict, own.is_stated) == ("met", False)
+    assert sum(f"film.{name}" in own.reason for name in outputs) == 2
+
+
+def film_errors():
+    """The stated errors of the outputs of the film by name; none of texts."""
+    errors = evaluate(OIL_FILM, FILM, level="map").error
+    return {
+        n: e for n, e in errors.items() if e == e and n not in ("boundary_condition", "lubrication_regime")
+    }
+
+
 def test_what_waits_for_a_solid_is_not_checked():
     shell = {"shell": {"id": "plain_bearing", "parameters": {"inner_diameter": "= film.bearing_diameter"}}}
     raw = document({"mass": {"require": "shell.mass <= 1 kg"}}, models=shell)

@@ -35,7 +35,8 @@ function showOutput(name, quantity, error, values) {
   for (const old of line.querySelectorAll("td.value, td.unit")) old.remove();
   const axis = values[line.dataset.axis];
   line.querySelector(".symbol").after(...cells(quantity, axis));
-  line.querySelector(".band").textContent = typeof error !== "number" ? "" : error === 0 ? "same at all levels" : `± ${percent(error)}`;
+  const band = line.querySelector(".band");
+  band.textContent = typeof error !== "number" ? "" : error === 0 ? "same at all levels" : `± ${percent(error)}${band.dataset.of ?? ""}`;
 }
 
 export function cells(quantity, axis) {

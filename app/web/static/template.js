@@ -11,12 +11,16 @@ import { optionOf, valueOf } from "./typed.js";
 const form = document.querySelector("[data-try]"); // its inputs have bare names: one may be called `dataset`
 const path = form.getAttribute("data-try");
 const state = form.querySelector("[data-state]");
+const headline = document.querySelector("[data-headline]");
+
+const LIMIT = "limits."; // of the controls of limits, as app/web/limits.py names them
 
 function asked() {
   const typed = [...new FormData(form)].filter(([, text]) => text.trim());
   const asked = { inputs: {} };
   for (const [name, text] of typed) {
-    if (name.startsWith("@")) asked[name.slice(1)] = optionOf(name.slice(1), text.trim());
+    if (name.startsWith(LIMIT)) asked.limits = { ...asked.limits, [name.slice(LIMIT.length)]: valueOf(text) };
+    else if (name.startsWith("@")) asked[name.slice(1)] = optionOf(name.slice(1), text.trim());
     else asked.inputs[name] = valueOf(text);
   }
   return asked;
@@ -39,6 +43,7 @@ function show({ told }) {
   showResults("", told);
   drawPictures(document, "", told);
   state.textContent = told.level ? `level ${told.level}` : "";
+  if (headline) headline.textContent = told.verdict?.headline ?? "";
 }
 
 function refuse(error) {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -49,9 +50,17 @@ def declared_criteria(
     for called, text in raw.items():
         try:
             criteria.append(read_criterion(called, text, known))
+            _check_defaults(criteria[-1], inputs)
         except FaultyText as error:
             raise TypeError(f"{name}: criterion {called!r}: {error}") from None
     return tuple(criteria)
+
+
+def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
+    """A limit that nobody gives follows from an input that is a list, not from a result."""
+    for limit in criterion.limits:
+        if limit.default is not None and not isinstance(inputs.get(limit.default[1]), Curve):
+            raise FaultyText("syntax", f"the default of {limit.name} is of an input that is a list")
 
 
 def known_names(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]) -> dict[str, Known]:
@@ -225,8 +234,27 @@ def _estimate_of_output(evaluated: Evaluated, name: str) -> Estimate | Absent:
         return _absent(template, formula, answer.reason)
     axes = formula.axes if isinstance(formula, Profile) else 0
     error, is_stated = _error(evaluated, name)
-    scale = RIGHT_ANGLE if not axes and is_angle(formula.meaning.unit) else None
+    scale = None if axes else _scale(evaluated, name)
+    if scale is not None and np.isnan(scale).any():
+        error, is_stated, scale = float("nan"), False, None
     return Estimate(evaluated.value(name), error, is_stated, axes, scale, answer.reasons)
+
+
+def _scale(evaluated: Evaluated, name: str) -> Value | None:
+    """To what the error of an output is relative [SI], as its table says; None if to the output itself.
+
+    The largest of several outputs, such as the four stiffnesses, counts; NaN stands for a size that is no
+    output. The error of an angle is relative to 90°.
+    """
+    table = evaluated.measured.content.get("relative_to", {}) if evaluated.measured else {}
+    if name not in table:
+        return RIGHT_ANGLE if is_angle(evaluated.template.formulas[name].meaning.unit) else None
+    others = table[name]
+    if not isinstance(others, list):
+        return float("nan") if others is None else float(others)
+    formulas = evaluated.template.formulas
+    sizes = [np.abs(getattr(evaluated.template, formulas[other].attribute)) for other in others]
+    return reduce(np.fmax, sizes)
 
 
 def _absent(template: Template, formula: Formula[Any], reason: str | None) -> Absent:

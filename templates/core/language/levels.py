@@ -18,7 +18,7 @@ import json
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from pathlib import Path
 from typing import Any
 
@@ -178,18 +178,32 @@ def truth_of(cls: type[Template], level: str, output: str) -> str | None:
 
 
 def absolute_error(template: Template, output: str, error: Any) -> Any:
-    """The estimated error of an output in its SI unit, from its relative `error`.
+    """The estimated error of an output in its SI unit, from the `error` stated; NaN where that says nothing.
 
-    That of a profile is the same at all its places: a share of its largest absolute value.
+    Of a profile it is the same at all its places. See `relative_to` for what errors are relative to.
     """
     formula = template.formulas[output]
     size = np.abs(getattr(template, formula.attribute))
     if not isinstance(formula, Profile):
-        return error * size
+        return error * relative_to(template, output)
     axes = tuple(range(-formula.axes, 0))
     return np.broadcast_to(
         np.asarray(error)[(..., *(None,) * formula.axes)] * size.max(axes, keepdims=True), size.shape
     )
+
+
+def relative_to(template: Template, output: str) -> Any:
+    """What the error of an output that is no profile is relative to [SI]: itself, unless the table says else.
+
+    The table's `relative_to` has by output a size [SI] (of an angle, 90°), or a list of outputs, the largest
+    of which counts, or null for a size that is no output.
+    """
+    measured = accuracy(type(template))
+    others = measured.content.get("relative_to", {}).get(output, [output]) if measured else [output]
+    if not isinstance(others, list):
+        return np.nan if others is None else float(others)
+    sizes = [np.abs(getattr(template, template.formulas[name].attribute)) for name in others]
+    return reduce(np.fmax, sizes)
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from templates.core.language.spec import (
     Text,
 )
 from templates.core.language.template import Template
+from templates.core.paper.demands import described_criteria
 from templates.core.paper.mathml import expression, mathml, symbol, symbols
 
 _KEYWORDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
@@ -45,6 +46,7 @@ def describe(cls: type[Template]) -> dict[str, Any]:
         "levels": list(cls.levels),
         "default_level": cls.default_level or None,
         "limits": [*declared_limits(cls), *({"text": text} for text in sections.get("Limits", []))],
+        "criteria": described_criteria(cls),
         "references": sections.get("References", []),
         "errata": sections.get("Errata", []),
         "given_limits": limits_schema(cls),

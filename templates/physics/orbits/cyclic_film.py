@@ -255,12 +255,13 @@ def _shaped(orbit: Orbit, points: tuple[int, ...], marched: TransientOrbit | Non
 def _sampled(marched: TransientOrbit | None, load: CyclicLoad) -> Orbit:
     """A marched orbit at the load's angles; NaN if there is none."""
     if marched is None:
-        return Orbit(np.full(load.S.shape, np.nan), *np.full((3, load.w.shape[0]), np.nan))
+        return Orbit(np.full(load.S.shape, np.nan), *np.full((5, load.w.shape[0]), np.nan))
     gap = 1 - np.hypot(*marched.eps)
     k = int(gap.argmin())
     eps = np.stack([_at(marched, e, load) for e in marched.eps])
     angle = load.angle[0] + (marched.place[k] - load.angle[0]) % load.period
-    return Orbit(eps[:, None], gap[[k]], np.array([angle]), np.array([np.nan]))
+    unknown = np.array([np.nan])
+    return Orbit(eps[:, None], gap[[k]], np.array([angle]), unknown, unknown, unknown)
 
 
 def _at(marched: TransientOrbit, values: Array, load: CyclicLoad) -> Array:

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array, Mask
 from templates.physics.numerics.periodic_steps import differences, imbalance, newton_step
 from templates.physics.orbits.mobility_law import MobilityLaw
+from templates.physics.orbits.step_bound import least_between, step_bound
 
 LARGEST_STEP = np.radians(1.0)
 """The largest step of the finest ring of nodes [rad]."""
@@ -79,7 +80,12 @@ class Orbit:
     least_angle: Array
     """(C,) its crank angle [rad]."""
     step_error: Array
-    """(C,) relative error of the smallest gap by the step; NaN where it is not measured [-]."""
+    """(C,) relative error of the smallest gap by the step, from its change at the nodes that two rings share;
+    no bound, see `step_bound`; NaN where it is not measured [-]."""
+    between: Array
+    """(C,) smallest gap between the nodes, by a parabola through three of them [-]."""
+    step_bound: Array
+    """(C,) bound of the relative error of `between` by the step, see `step_bound`; NaN where unknown [-]."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +126,7 @@ def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
     """
     cases, size = load.w.shape[0], max(1, _BLOCK // node_counts(load).sum())
     borne = np.isfinite(load.w).all(axis=-1) & np.isfinite(load.S).all(axis=(0, 2)) & load.S.any(axis=(0, 2))
-    whole = Orbit(np.full(load.S.shape, np.nan), *np.full((3, cases), np.nan))
+    whole = Orbit(np.full(load.S.shape, np.nan), *np.full((5, cases), np.nan))
     for start in range(0, cases, size):
         part = borne & (np.arange(cases) // size == start // size)
         _fill(whole, load, law, part, finer=1)
@@ -128,7 +134,13 @@ def periodic_orbit(load: CyclicLoad, law: MobilityLaw) -> Orbit:
             _fill(whole, load, law, part & ~(whole.step_error < ROUGHEST), finer=_FINER)
     unknown = ~(whole.step_error < UNKNOWN)
     whole.eps[:, unknown] = np.nan
-    for values in (whole.least_gap, whole.least_angle, whole.step_error):
+    for values in (
+        whole.least_gap,
+        whole.least_angle,
+        whole.step_error,
+        whole.between,
+        whole.step_bound,
+    ):
         values[unknown] = np.nan
     return whole
 
@@ -160,7 +172,7 @@ def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: i
     if not part.any():
         return
     ring, own = ring_of(load.of(part), finer)
-    e, settled, error = _nested(ring, law.of(part))
+    e, settled, error, films = _nested(ring, law.of(part))
     cases = np.flatnonzero(part)[settled]
     gap = 1 - np.hypot(*e[:, settled])
     place = gap.argmin(axis=-1)
@@ -168,15 +180,21 @@ def _fill(whole: Orbit, load: CyclicLoad, law: MobilityLaw, part: Mask, finer: i
     whole.least_gap[cases] = gap[np.arange(cases.size), place]
     whole.least_angle[cases] = ring.place[place]
     whole.step_error[cases] = error[settled]
+    whole.between[cases] = films[-1][settled]
+    whole.step_bound[cases] = step_bound(films[-3:])[settled]
 
 
-def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array]:
-    """Orbits on the finest ring, from coarser ones; which settled, and the error of the smallest gap."""
+def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array, list[Array]]:
+    """Orbits on the finest ring, from coarser ones; which settled, and the error of the gap at the nodes.
+
+    And the smallest gaps between the nodes of every ring, NaN where it did not settle, the finest last.
+    """
     stride = 1 << max(0, int(np.log2(ring.place.size / _COARSEST)))
     tolerance = _ROUGH if stride > 1 else TOLERANCE
     every = np.ones(ring.w.shape[0], bool)
     e, settled = _settled(ring.every(stride), law, np.zeros_like(ring.S[..., ::stride]), tolerance, every)
     error = np.full(settled.shape, np.nan)
+    films = [_between(ring.every(stride), e, settled)]
     while stride > 1:
         stride //= 2
         coarse, settled_before = e, settled
@@ -186,7 +204,14 @@ def _nested(ring: Ring, law: MobilityLaw) -> tuple[Array, Mask, Array]:
         shared = 1 - np.hypot(*e[..., ::2]).max(axis=-1)
         change = shared - (1 - np.hypot(*coarse).max(axis=-1))
         error = np.where(settled_before, np.abs(change) / (3 * shared), np.nan)
-    return e, settled, error
+        films.append(_between(finer, e, settled))
+    return e, settled, error, films
+
+
+def _between(ring: Ring, e: Array, settled: Mask) -> Array:
+    """The smallest gap of each case between the nodes of a ring, (C,)."""
+    gap = np.where(settled[:, None], 1 - np.hypot(*e), 1.0)
+    return np.where(settled, least_between(ring.place, ring.period, gap), np.nan)
 
 
 def _halved(e: Array, nodes: int) -> Array:

@@ -215,6 +215,20 @@ def test_an_error_that_was_not_measured_leaves_it_undecided(wave):
     assert (outside.verdict, outside.is_stated) == ("undecided", False)
 
 
+@pytest.mark.parametrize(
+    ("others", "half"),
+    [(["top"], 11 / 9), (5e-3, 5 / 9), (None, None)],  # e/(1 - e) of the largest of the outputs, or of a size
+)
+def test_an_error_is_relative_to_what_its_table_says(wave, others, half):
+    levels._cache[Wave].content["relative_to"] = {"top": others}
+    top = by_name(evaluate(wave, {"angle": ANGLES, "size": "10 mm"}, outputs=["top"]))["top"]
+    if half is None:  # a size that is no output
+        assert (top.verdict, top.band, top.is_stated) == ("undecided", None, False)
+    else:
+        assert top.band == pytest.approx((11 - half, 11 + half))
+        assert top.verdict == ("undecided" if 11 + half > 12 else "met")
+
+
 def test_each_level_is_judged_with_its_own_error(wave):
     sizes = {"value": [5, 11.5], "unit": "mm"}
     raw = {"angle": ANGLES, "size": sizes}
@@ -231,6 +245,10 @@ BAD = {
     "a text": "remark >= 1",
     "no comparison": "stress < 3 MPa",
     "another key": {"require": "stress <= 3 MPa", "remark": "x"},
+    "a default that is a result": {
+        "require": "stress <= most",
+        "limits": {"most": {"unit": "MPa", "default": "max(stress)"}},
+    },
 }
 
 

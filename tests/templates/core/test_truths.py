@@ -12,6 +12,7 @@ from templates.core.language.template import Template, formula, given, profile, 
 from templates.door import built_in
 from templates.oil_film.oil_film_cycle_v1 import OilFilmCycle
 from templates.oil_film.oil_film_v2 import OilFilm
+from templates.oil_film.slider_bearing_v1 import SliderBearing
 
 MEASURED = [cls for cls in built_in() if accuracy(cls)]
 
@@ -174,6 +175,23 @@ class TestProfiles:
         ]
         assert absolute_error(points, "size", np.array([0.01, 0.1])) == pytest.approx([0.0505, 0.808])
         assert absolute_error(rung("fine"), "wave", 0.5) == pytest.approx([2.0] * 3)
+
+
+class TestSizes:
+    def test_property_what_errors_are_relative_to(self):
+        """An angle to 90°, a stiffness to the largest of its four, a size to itself."""
+        film = OilFilm.from_quantities(OilFilm.example)
+        assert absolute_error(film, "attitude_angle", 0.01) == pytest.approx(np.radians(0.9))
+        largest = max(abs(getattr(film, f"k_{xy}")) for xy in ("xx", "xy", "yx", "yy"))
+        assert absolute_error(film, "stiffness_yy", 0.01) == pytest.approx(0.01 * largest)
+        assert absolute_error(film, "power_loss", 0.01) == pytest.approx(0.01 * film.P)
+
+    def test_property_a_size_that_is_no_output_is_unknown(self):
+        pad = SliderBearing.from_quantities(SliderBearing.example)
+        assert np.isnan(absolute_error(pad, "pressure_gradient", 0.01))
+        assert absolute_error(pad, "pressure", 0.01) == pytest.approx(
+            np.full(np.shape(pad.p), 0.01 * np.abs(pad.p).max())
+        )
 
 
 class TestReachable:

@@ -287,3 +287,35 @@ def test_a_bad_criterion_is_refused_with_its_reason(text, code):
     with pytest.raises(FaultyText) as refusal:
         read_criterion("film", text, KNOWN)
     assert refusal.value.code == code
+
+
+LIMITED = {"unit": "um", "default": "max(film)"}
+REASON = {"with": "load", "reason": "it has no end"}
+
+
+def declared(limit=LIMITED, absent=None):
+    raw = {"require": "film <= largest", "limits": {"largest": limit}}
+    return read_criterion("thin", {**raw, "absent": absent} if absent else raw, KNOWN)
+
+
+def test_a_limit_may_have_a_default_and_a_value_a_reason_for_its_absence():
+    criterion = declared(absent={"film": REASON})
+    assert criterion.limits[0].default == ("max", "film")
+    assert criterion.limits[0].remedy == "give largest in um, or film"
+    assert (criterion.absent["film"].beside, criterion.absent["film"].reason) == ("load", "it has no end")
+
+
+@pytest.mark.parametrize(("limit", "absent", "message"), [
+    ({"unit": "um", "default": "max(films)"}, None, "min.NAME. or max.NAME. of an input"),
+    ({"unit": "um", "default": "mean(film)"}, None, "min.NAME. or max.NAME. of an input"),
+    ({"unit": "um", "default": "max(load)"}, None, "a length"),
+    ({"unit": "um", "default": 3}, None, "default is a text"),
+    (LIMITED, {"load": REASON}, "load"),
+    (LIMITED, {"film": {**REASON, "with": "loads"}}, "loads"),
+    (LIMITED, {"film": {"with": "load"}}, "reason"),
+    (LIMITED, {"film": "it has no end"}, "reason"),
+    (LIMITED, "no end", "objects by name"),
+])  # fmt: skip
+def test_a_wrong_default_or_reason_is_refused_with_the_class(limit, absent, message):
+    with pytest.raises(FaultyText, match=message):
+        declared(limit, absent)

@@ -1,0 +1,96 @@
+"""How often the error of an orbit's smallest gap by the step lies within what is stated: on random duties.
+
+    python -m benchmarks.step_bound [duties]      two minutes for 400; prints the shares
+
+The truth is the orbit with steps sixteen times as fine. `step_error` is what `oil_film_cycle` 1 answers, the
+change at shared nodes; `step_bound` is that of `templates/physics/orbits/step_bound.py`.
+"""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.orbits import journal_orbit
+from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit, periodic_orbit
+from templates.physics.orbits.mobility_law import MapLaw
+
+SEED, DUTIES, POINTS, FINER = 91, 400, 72, 16
+USUAL = (0.3, 105.0)
+"""Largest load numbers of usual engine bearings [-]."""
+
+
+@dataclass(frozen=True)
+class Shares:
+    """What became of the duties that have an orbit."""
+
+    orbits: int
+    bounded_before: float
+    """By `step_error`, the smallest gap at the nodes."""
+    known: float
+    known_usual: float
+    """With a `step_bound`, and the same of usual loads."""
+    bounded: float
+    """Of those with a bound."""
+    worst: float
+    """Largest error over its bound."""
+    excess: float
+    """Median of the bound over the error."""
+
+
+def random_duties(rng: np.random.Generator, count: int, points: int) -> tuple[CyclicLoad, Array]:
+    """Harmonics and a firing at random, six decades of load, speeds of both signs and none, B/D 0.05 … 5."""
+    angle = np.arange(points) * 4 * np.pi / points
+    order = np.arange(8)[:, None, None]
+    size = rng.random((8, count, 4)) * (rng.random((8, count, 1)) < 0.5) / (1 + order)
+    waves = np.stack([np.cos(order * angle / 2), np.sin(order * angle / 2)])
+    S = np.einsum("ocf,foan->fcn", size[..., :2] - size[..., 2:] / 2, waves)
+    S[0] += 3 * rng.random((count, 1)) * np.exp(8 * (np.cos((angle - 6.3 * rng.random((count, 1))) / 2) - 1))
+    S *= 10 ** rng.uniform(-3, 3, (count, 1))
+    w = rng.choice([0.5, 0.5, 1.0, -0.5, 0.0, 0.1, 3.0], (count, 1)) * np.ones(points)
+    return CyclicLoad(angle, 4 * np.pi, S, w), 10 ** rng.uniform(-1.3, 0.7, count)
+
+
+@contextmanager
+def finer_steps(times: float) -> Iterator[None]:
+    """Orbits with so many times finer steps, and none refined beyond."""
+    kept = journal_orbit.LARGEST_STEP, journal_orbit.ROUGHEST
+    journal_orbit.LARGEST_STEP, journal_orbit.ROUGHEST = kept[0] / times, np.inf
+    try:
+        yield
+    finally:
+        journal_orbit.LARGEST_STEP, journal_orbit.ROUGHEST = kept
+
+
+def measured(seed: int, duties: int, finer: float = FINER) -> Shares:
+    """Compare both estimates with the truth."""
+    load, ratio = random_duties(np.random.default_rng(seed), duties, POINTS)
+    law = MapLaw(ratio)
+    orbit = periodic_orbit(load, law)
+    with finer_steps(finer):
+        true = periodic_orbit(load, law).between
+    return compared(orbit, true, np.hypot(*load.S).max(axis=-1))
+
+
+def compared(orbit: Orbit, true: Array, load: Array) -> Shares:
+    """The shares, of the orbits that both have."""
+    present = np.isfinite(orbit.least_gap) & np.isfinite(true)
+    bound, error = orbit.step_bound[present], np.abs(orbit.between / true - 1)[present]
+    at_nodes = np.abs(orbit.least_gap / true - 1)[present]
+    known, usual = np.isfinite(bound), (load[present] > USUAL[0]) & (load[present] < USUAL[1])
+    return Shares(
+        int(present.sum()),
+        float((orbit.step_error[present] >= at_nodes).mean()),
+        float(known.mean()),
+        float(known[usual].mean()),
+        float((bound[known] >= error[known]).mean()),
+        float((error[known] / bound[known]).max()),
+        float(np.median(bound[known] / error[known])),
+    )
+
+
+if __name__ == "__main__":
+    print(measured(SEED, int(sys.argv[1]) if len(sys.argv) > 1 else DUTIES))

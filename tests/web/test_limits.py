@@ -1,0 +1,52 @@
+"""Limits on a template's page: by hand, by a row of the library; finishes for roughnesses."""
+
+import re
+
+from playwright.sync_api import expect
+
+FILM = "/templates/oil_film/2"
+HEADLINE = "[data-headline]"
+
+
+def headline(http, **query):
+    page = http.get(FILM, params=query).text
+    return re.search(r"data-headline>([^<]*)<", page)[1]
+
+
+def test_a_row_and_a_limit_in_the_address_are_judged(http):
+    example = re.findall(r'<input name="([^"@.]+)"[^>]* value="([^"]+)"', http.get(FILM).text)
+    inputs = {name: value for name, value in example if value}
+    assert inputs["radial_load"] == "25 kN"
+    assert headline(http) == headline(http, **inputs) == "6 met, 1 not met, 7 not checked"
+    row = {"limits.bearing_material": "tin_babbitt_b23_2"}
+    assert headline(http, **inputs, **row) == "7 met, 3 not met, 4 not checked"
+    both = {**row, "limits.permissible_pressure": "200 MPa"}
+    assert headline(http, **inputs, **both) == "8 met, 2 not met, 4 not checked"
+
+
+def test_a_wrong_limit_is_refused_beside_its_field(http):
+    answer = http.get(FILM, params={"radial_load": "25 kN", "limits.permissible_pressure": "20 mm"})
+    assert answer.status_code == 422
+    assert re.search(r'id="limits-permissible_pressure-error"><bdi>[^<]*measures', answer.text)
+    assert '<details class="more" open><summary>Limits (7)' in answer.text
+
+
+def test_the_rows_are_named_in_words(http):
+    page = http.get(FILM).text
+    assert '<option value="tin_bronze">tin bronze</option>' in page
+    assert '<option value="aluminium_bronze">' not in page  # has a pressure times speed alone
+    assert 'list="-journal_roughness-rows"' in page
+    assert '<option value="0.25 um">N4, Ra 0.2 um</option>' in page
+
+
+def test_a_chosen_row_is_judged_as_it_is_chosen(watched):
+    page = watched.page
+    watched.open(FILM)
+    expect(page.locator(HEADLINE)).to_have_text("6 met, 1 not met, 7 not checked")
+    page.get_by_text("Limits (7)").click()
+    page.get_by_label("Bearing material", exact=True).select_option("tin_babbitt_b23_2")
+    expect(page.locator(HEADLINE)).to_have_text("7 met, 3 not met, 4 not checked")
+    page.get_by_label("Largest pressure of the film that the bearing material bears").fill("200 MPa")
+    expect(page.locator(HEADLINE)).to_have_text("8 met, 2 not met, 4 not checked")
+    assert "limits.bearing_material=tin_babbitt_b23_2" in page.url
+    assert watched.faults() == []
