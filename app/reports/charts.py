@@ -143,9 +143,9 @@ class _Frame:
             below = self.height - BOTTOM + 15
             yield f'<text x="{at}" y="{below}" text-anchor="middle">{numbers.plain(value)}</text>'
         for value in self.y.ticks():
-            at = self.place(self.x.low, value)[1]
-            yield f'<path d="M{LEFT},{_text(at)}H{WIDTH - RIGHT}" stroke="#d6dde4"/>'
-            yield f'<text x="{LEFT - 6}" y="{_text(at + 4)}" text-anchor="end">{numbers.plain(value)}</text>'
+            level, number = self.place(self.x.low, value)[1], numbers.plain(value)
+            yield f'<path d="M{LEFT},{_text(level)}H{WIDTH - RIGHT}" stroke="#d6dde4"/>'
+            yield f'<text x="{LEFT - 6}" y="{_text(level + 4)}" text-anchor="end">{number}</text>'
         size = f'width="{_text(self.width)}" height="{_text(self.depth)}"'
         yield f'<rect x="{LEFT}" y="{self.top}" {size} fill="none" stroke="#7b8894"/>'
 

@@ -121,7 +121,7 @@ def _accuracy(cls: type[Template]) -> Iterator[Plot]:
     levels = {name: level for name, level in measured.content["levels"].items() if _milliseconds(level)}
     outputs = list(dict.fromkeys(output for level in levels.values() for output in level["errors"]))[:SHOWN]
     series = [
-        Series(output.replace("_", " "), *zip(*points, strict=True), marked=True)
+        Series(output.replace("_", " "), [x for x, _ in points], [y for _, y in points], marked=True)
         for output in outputs
         if len(points := sorted(_points(levels, output))) > 1
     ]

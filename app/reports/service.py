@@ -157,9 +157,8 @@ def _summary(steps: Sequence[Step], models: Sequence[Model]) -> list[str]:
     """What a checker wants to know besides the verdict: warnings, values out of range, violated rules."""
     warnings = sum(len(step.warnings) for step in steps) + sum(len(model.warnings) for model in models)
     outside = [f"{step.name}: {one.words}" for step in steps for one in step.ranges if not one.holds]
-    violated = [
-        f"{part.name}: {one.words}" for part in (*steps, *models) for one in part.rules if not one.holds
-    ]
+    rules = [(part.name, part.rules) for part in steps] + [(part.name, part.rules) for part in models]
+    violated = [f"{name}: {one.words}" for name, those in rules for one in those if not one.holds]
     return [
         f"{warnings or 'no'} warning{'' if warnings == 1 else 's'}",
         *(f"outside its range of validity: {words}" for words in outside),

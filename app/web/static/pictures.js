@@ -1,4 +1,4 @@
-// The pictures of a calculation. Which ones there are is said by app/web/pictures.py; here each kind is drawn.
+// The pictures of a calculation. Which ones there are is said by app/reports/pictures.py; here each kind is drawn.
 import { showClearance } from "./clearance.js";
 import { unit } from "./numbers.js";
 import { draw } from "./plots.js";

@@ -160,10 +160,8 @@ def _in_words(template: Template, side: Operand, other: Operand) -> str:
     scale = _scale(template, side if declared else other)
     if scale is None or (declared is None and side.constant is None):
         return ""
-    value = side.constant if declared is None else side.value
-    number = (
-        f"{float(scale.from_si(value)):.5g} {unit_symbol(scale.text)}".rstrip() if np.ndim(value) == 0 else ""
-    )
+    single = np.ndim(side.value) == 0
+    number = f"{float(scale.from_si(side.value)):.5g} {unit_symbol(scale.text)}".rstrip() if single else ""
     return " ".join(filter(None, (declared.meaning.words if declared else "", number)))
 
 
