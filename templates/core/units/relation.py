@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from importlib.resources import files
 from typing import Any
 
@@ -38,6 +38,11 @@ class Relation:
     names: frozenset[str]
     tree: Any
     parts: int = 1
+
+    @cached_property
+    def only_name(self) -> str | None:
+        """The name, where the relation is nothing but a name."""
+        return self.tree.name if isinstance(self.tree, Name) else None
 
     def kind(self, kinds: Mapping[str, Kind]) -> Kind:
         """What the relation gives, from what its names are.
