@@ -7,7 +7,6 @@ import os
 import sqlite3
 import threading
 from contextlib import suppress
-from pathlib import Path
 
 from app.storage.engines import sqlite_file
 from app.storage.errors import DatabaseDamaged

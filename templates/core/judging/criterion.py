@@ -39,7 +39,7 @@ class Known:
     words: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Limit:
     """A limit that the calculation does not take.
 
@@ -53,7 +53,7 @@ class Limit:
     library: str | None = None
     default: tuple[str, str] | None = None
 
-    @property
+    @cached_property
     def remedy(self) -> str:
         """What to give."""
         unit = "" if self.unit == "1" else f" in {self.unit}"

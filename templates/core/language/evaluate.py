@@ -259,15 +259,15 @@ def _echoes(template: Template) -> dict[str, Echo]:
         typed = given.get(name)
         if isinstance(typed, Typed):
             echoes[name] = Echo(typed.value, typed.unit, "given", typed.extra)
+        elif typed is None and isinstance(declared, Given) and declared.default is not None:
+            echoes[name] = _default(declared)
         elif typed is not None or is_reported(template, declared):
             echoes[name] = _echo(template, declared, typed)
     return echoes
 
 
 def _echo(template: Template, declared: Input, typed: str | None) -> Echo:
-    """An input that is an option, or a default."""
-    if typed is None and isinstance(declared, Given) and isinstance(declared.default, Typed):
-        return _default(declared)
+    """An input that is an option, or whose default is a formula."""
     value = getattr(template, declared.attribute)
     source = "default" if typed is None else "given"
     return Echo(value, None, source, {}) if isinstance(declared, Choice) else _shown(declared, value, source)

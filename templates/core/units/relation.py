@@ -62,6 +62,8 @@ class Relation:
         FaultyText
             With code `shape`, where arrays of different lengths meet.
         """
+        if self.only_name:
+            return values[self.only_name]
         try:
             with np.errstate(all="ignore"):
                 return _value(self.tree, values)
