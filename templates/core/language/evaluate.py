@@ -259,7 +259,7 @@ def _echoes(template: Template) -> dict[str, Echo]:
         typed = given.get(name)
         if isinstance(typed, Typed):
             echoes[name] = Echo(typed.value, typed.unit, "given", typed.extra)
-        elif typed is None and isinstance(declared, Given) and declared.default is not None:
+        elif typed is None and isinstance(declared, Given) and declared.default and not declared.optional:
             echoes[name] = _default(declared)
         elif typed is not None or is_reported(template, declared):
             echoes[name] = _echo(template, declared, typed)
