@@ -22,9 +22,8 @@ def quoted(text: str) -> str:
     What lies beyond the basic plane, such as a pictogram, is written as `\X4\…\X0\`. Open CASCADE takes
     a quote before a comma or bracket for the end of the string, even a doubled one: its number is written.
     """
-    parts = _ENDING.split(text)
-    doubled = (part.replace("\\", "\\\\").replace("'", "''") for part in parts)
-    return "'" + _QUOTE.join(_NOT_PLAIN.sub(_escaped, part) for part in doubled) + "'"
+    escaped = _QUOTE.join(_ENDING.split(text.replace("\\", "\\\\")))
+    return "'" + _NOT_PLAIN.sub(_escaped, escaped.replace("'", "''")) + "'"
 
 
 def _escaped(signs: re.Match[str]) -> str:

@@ -31,12 +31,21 @@ def quantity(value: Json, unit: str | None) -> JsonObject:
     return {"value": value} if unit is None else {"value": value, "unit": unit}
 
 
-def answer(output: Answer) -> JsonObject:
-    """An output; what does not exist is null with its reason."""
-    if not isinstance(output.value, np.ndarray):
-        unit = {} if output.unit is None else {"unit": output.unit}
-        reason = {} if output.reason is None else {"reason": output.reason}
-        return {"value": None if reason else output.value, **unit, **reason}
+def outputs(answers: Mapping[str, Answer]) -> JsonObject:
+    """The outputs; what does not exist is null with its reason."""
+    shown: JsonObject = {}
+    for name, output in answers.items():
+        if isinstance(output.value, np.ndarray):
+            shown[name] = _array(output)
+        else:
+            unit = {} if output.unit is None else {"unit": output.unit}
+            reason = {} if output.reason is None else {"reason": output.reason}
+            shown[name] = {"value": None if reason else output.value, **unit, **reason}
+    return shown
+
+
+def _array(output: Answer) -> JsonObject:
+    """An output of several points or places; each that does not exist is null with its reason."""
     if output.reasons is None:
         return quantity(output.value.tolist(), output.unit)
     holes = _with_holes(output.value, output.reasons)
@@ -72,18 +81,21 @@ def _errors(errors: Mapping[str, Json]) -> JsonObject:
     }
 
 
-def echo(used: Echo) -> JsonObject:
-    """An input as it was used."""
-    unit = {} if used.unit is None else {"unit": used.unit}
-    return {"value": used.value, **unit, "from": used.source, **used.extra}
+def _inputs(echoes: Mapping[str, Echo]) -> JsonObject:
+    """The inputs as they were used."""
+    shown: JsonObject = {}
+    for name, used in echoes.items():
+        unit = {} if used.unit is None else {"unit": used.unit}
+        shown[name] = {"value": used.value, **unit, "from": used.source, **used.extra}
+    return shown
 
 
 def evaluation(result: Evaluation) -> JsonObject:
     """The whole answer to `evaluate`."""
     return {
         "template": identity(type(result.template)),
-        "inputs": {name: echo(used) for name, used in result.inputs.items()},
-        "outputs": {name: answer(output) for name, output in result.outputs.items()},
+        "inputs": _inputs(result.inputs),
+        "outputs": outputs(result.outputs),
         "level": _plain(result.level),
         "error": _errors(result.error),
         "warnings": _warnings(result.warnings),

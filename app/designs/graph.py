@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
+from itertools import filterfalse
 from typing import TypeVar
 
 from app.catalogue.catalogues import Catalogues
@@ -127,6 +128,8 @@ def _step(name: str, step: Step, templates: Catalogue[Template]) -> tuple[Block 
 
 def _limits(name: str, step: Step, cls: type[Template]) -> tuple[dict[str, GivenLimit], list[Fault]]:
     """The limits that a step gives for the criteria of its template."""
+    if not step.limits:
+        return {}, []
     related = [n for n, raw in step.limits.items() if is_relation(raw)]
     faults = [Fault(f"{name}.limits.{n}", "relation", NO_RELATION) for n in related]
     try:
@@ -158,7 +161,7 @@ def _class(
 def _cells(block: str, values: Mapping[str, Raw], cls: type[Template]) -> tuple[dict[str, Cell], list[Fault]]:
     """The cells of a block; names that its template does not know are faults."""
     cells: dict[str, Cell] = {}
-    unknown = unknown_names((name for name in values if name not in cls.inputs), cls.inputs, "input")
+    unknown = unknown_names(filterfalse(cls.inputs.__contains__, values), cls.inputs, "input")
     faults = [fault.within(block) for fault in unknown]
     for name, raw in values.items():
         if declared := cls.inputs.get(name):

@@ -164,7 +164,6 @@ class Judging:
         if absent:
             return judge(criterion, estimates, absent, along, noted=more)
         upstream = reduce(or_, (self._shifting.beneath(r) for r in references.values()), NOTHING)
-        constant = {name: estimate.value for name, estimate in estimates.items() if name not in references}
         try:
             limit_operations(self.calculation.operations + _operations(criterion, estimates, upstream))
             moved, left_out = self._shifting.shifts(references, upstream)
@@ -172,6 +171,9 @@ class Judging:
             return judge(
                 criterion, estimates, dict.fromkeys(criterion.names, Absent((), str(error))), noted=more
             )
+        if upstream == NOTHING:
+            return judge(criterion, estimates, absent, along, noted=more)
+        constant = {name: estimate.value for name, estimate in estimates.items() if name not in references}
         shifts = [({**low, **constant}, {**high, **constant}) for low, high in moved]
         unstated = upstream.unstated | left_out
         tainted = _tainted(estimates, references, upstream, unstated=bool(unstated))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import reduce
+from functools import cached_property, reduce
 from operator import or_
 
 import numpy as np
@@ -84,11 +84,19 @@ class Shifting:
 
     def beneath(self, reference: Reference) -> Upstream:
         """What a value follows from, without the error of its own step."""
+        if not self._is_carried_on:
+            return NOTHING
         if not self._beneath:
             for node in self.calculation.graph.order:  # in order, so that no chain is too long to follow
                 if isinstance(node, Cell):
                     self._known(node.reference)
         return self._known(reference)
+
+    @cached_property
+    def _is_carried_on(self) -> bool:
+        """Whether any relation uses what is calculated or measured; what is written in a cell is exact."""
+        graph = self.calculation.graph
+        return any(graph.cell(used) is None for cell in graph.cells() for used in cell.uses.values())
 
     def _known(self, reference: Reference) -> Upstream:
         if reference not in self._beneath:
@@ -100,6 +108,8 @@ class Shifting:
         self, references: Mapping[str, Reference], upstream: Upstream
     ) -> tuple[Sequence[Shift], frozenset[Reference]]:
         """The values of some names with each uncertain origin at either end, and the origins left out."""
+        if not upstream.uncertain:
+            return (), frozenset()
         origins = sorted(upstream.uncertain, key=str)
         carried = [origin for origin in origins if self._is_carried(origin)]
         shifts = [

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import logging
+import os
 import sqlite3
 import threading
 from contextlib import suppress
-from pathlib import Path
 
 from app.storage.engines import sqlite_file
 from app.storage.errors import DatabaseDamaged
@@ -23,7 +23,7 @@ class Watch:
 
     def __init__(self, url: str) -> None:
         self._path = sqlite_file(url)
-        self._file = _identity(self._path)
+        self._file = self._path.stat() if self._path is not None and self._path.exists() else None
         self._lock = threading.Lock()
         self.damage: DatabaseDamaged | None = None
 
@@ -35,9 +35,13 @@ class Watch:
 
     def require_file(self) -> None:
         """Return if the file is still that of the start: SQLite would make an empty one in its place."""
-        if self._file is not None and _identity(self._path) != self._file:
-            lost = "the file was deleted or replaced while the service used it"
-            raise self._named(DatabaseDamaged(str(self._path), [lost]))
+        if self._path is None or self._file is None:
+            return
+        with suppress(OSError):
+            if os.path.samestat(os.stat(self._path), self._file):
+                return
+        lost = "the file was deleted or replaced while the service used it"
+        raise self._named(DatabaseDamaged(str(self._path), [lost]))
 
     def raise_if_damage(self, error: BaseException | None) -> None:
         """Return unless an error says that the database is damaged; raises DatabaseDamaged."""
@@ -78,12 +82,3 @@ class Watch:
     def _again(damage: DatabaseDamaged) -> DatabaseDamaged:
         """A fresh exception: one that is raised in several threads would collect their tracebacks."""
         return DatabaseDamaged(damage.database, damage.faults)
-
-
-def _identity(path: Path | None) -> tuple[int, int] | None:
-    """Device and inode of a file; None if there is none."""
-    try:
-        seen = path.stat() if path else None
-    except OSError:
-        return None
-    return (seen.st_dev, seen.st_ino) if seen else None

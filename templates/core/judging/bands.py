@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.errors import FaultyText
-from templates.core.judging.criterion import plain_name
 from templates.core.units.relation import Relation
 from templates.core.units.units import Value
 
@@ -142,7 +141,7 @@ def bounds_of(side: Relation, estimates: Mapping[str, Estimate], shifts: Sequenc
     FaultyText
         With code `shape`, where arrays of different lengths meet.
     """
-    name = plain_name(side)
+    name = side.only_name
     if name and not shifts:
         return estimates[name].bounds()
     values = {name: estimates[name].value for name in side.names}

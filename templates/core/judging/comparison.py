@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from templates.core.errors import FaultyText
 from templates.core.judging.bands import Bounds, Estimate, Shift, aligned, bounds_of, spread
-from templates.core.judging.criterion import Criterion, Sign, plain_name
+from templates.core.judging.criterion import Criterion, Sign
 from templates.core.units.relation import Relation
 from templates.core.units.units import Value
 
@@ -75,7 +75,7 @@ def _spread(values: Mapping[str, Value], estimates: Mapping[str, Estimate], axes
 
 def side_of(side: Relation, estimates: Mapping[str, Estimate]) -> Value:
     """The value of a side [SI]."""
-    if name := plain_name(side):
+    if name := side.only_name:
         return estimates[name].value
     return side.value({name: estimates[name].value for name in side.names})
 

@@ -14,7 +14,7 @@ from functools import cache, cached_property
 from typing import Any, Literal
 
 from templates.core.errors import FaultyText, excerpt, unknown_name
-from templates.core.units.operations import Kind, Name
+from templates.core.units.operations import Kind
 from templates.core.units.relation import Relation, parse
 from templates.core.units.units import Unit, compatible, registry, require_same_kind, unit
 
@@ -39,7 +39,7 @@ class Known:
     words: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Limit:
     """A limit that the calculation does not take.
 
@@ -53,7 +53,7 @@ class Limit:
     library: str | None = None
     default: tuple[str, str] | None = None
 
-    @property
+    @cached_property
     def remedy(self) -> str:
         """What to give."""
         unit = "" if self.unit == "1" else f" in {self.unit}"
@@ -109,12 +109,7 @@ class Criterion:
     @cached_property
     def subject(self) -> str | None:
         """The name that is judged, where the value is a name alone."""
-        return plain_name(self.value)
-
-
-def plain_name(relation: Relation) -> str | None:
-    """The name, where a relation is nothing but a name."""
-    return relation.tree.name if isinstance(relation.tree, Name) else None
+        return self.value.only_name
 
 
 @cache
@@ -260,5 +255,5 @@ def _in_words(value: Relation, sign: Sign, limit: Relation, names: Mapping[str, 
 
 
 def _side(relation: Relation, names: Mapping[str, Known]) -> str:
-    name = plain_name(relation)
+    name = relation.only_name
     return names[name].words if name else relation.text

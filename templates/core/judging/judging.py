@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,8 @@ from templates.core.units.units import Value
 
 Parts = dict[str, Any]
 """Fields of a judgement by name."""
+
+IS_STATED = attrgetter("is_stated")  # of an estimate
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +70,8 @@ def judge(
         Further fields of the judgement, such as `level` and `truth`.
     """
     shown = criterion if unit_name is None else replace(criterion, unit=unit_name)
-    missing = [name for name in criterion.names if name not in estimates]
-    if missing:
-        parts = _missing(shown, estimates, [(absent or {}).get(name, Absent()) for name in missing])
+    if not estimates.keys() >= set(criterion.names):
+        parts = _missing(shown, estimates, absent or {})
     else:
         try:
             compared = compare(criterion, estimates, shifts)
@@ -87,7 +89,7 @@ def judge(
     )
 
 
-def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: list[Absent]) -> Parts:
+def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: Mapping[str, Absent]) -> Parts:
     """A criterion of which names have no value; the side that has one is reported if it is a single value."""
     parts: Parts = {"verdict": "not_checked"}
     for name, side in (("value", criterion.value), ("limit", criterion.limit)):
@@ -96,11 +98,13 @@ def _missing(criterion: Criterion, estimates: Mapping[str, Estimate], absent: li
             if not np.ndim(si) and math.isfinite(si):
                 parts[name] = float(criterion.scale.from_si(float(si)))
     give, reasons = dict[str, None](), dict[str, None]()
-    for why in absent:
-        give.update(dict.fromkeys(why.give))
-        reasons.update({why.reason: None} if why.reason else {})
-    parts["is_stated"] = False not in [estimate.is_stated for estimate in estimates.values()]
-    return {**parts, "give": tuple(give), "reason": "; ".join(reasons) or None}
+    for name in criterion.names:
+        if name in absent and name not in estimates:
+            why = absent[name]
+            give.update(dict.fromkeys(why.give))
+            reasons.update({why.reason: None} if why.reason else {})
+    is_stated = all(map(IS_STATED, estimates.values()))
+    return {**parts, "is_stated": is_stated, "give": tuple(give), "reason": "; ".join(reasons) or None}
 
 
 def _compared(
@@ -116,7 +120,7 @@ def _compared(
     used = [estimates[name] for name in criterion.names]
     parts = {
         "verdict": WORST_FIRST[worst.code],
-        "is_stated": all(estimate.is_stated for estimate in used),
+        "is_stated": all(map(IS_STATED, used)),
         "where": _where(worst.index, compared.axes, along),
         "rows": rows,
         **_counted(rows),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 
 from templates.core.judging.comparison import WORST_FIRST, Verdict
 from templates.core.judging.judgement import Judgement
@@ -44,7 +45,7 @@ def summarised(ordered: Sequence[Judgement]) -> Summary:
 
     Waived criteria are counted and listed as what they are, but no longer make the verdict worse than met.
     """
-    counts = Counter(judgement.verdict for judgement in ordered)
+    counts = Counter(map(attrgetter("verdict"), ordered))
     decisive = [judgement for judgement in ordered if judgement.waived is None]
     governing = next((j.name for j in ordered if j.verdict != "not_checked"), None)
     verdict = decisive[0].verdict if decisive else ordered[0].verdict if ordered else "not_checked"

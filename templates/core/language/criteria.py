@@ -136,7 +136,8 @@ def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
 
 def notes(evaluated: Evaluated, criterion: Criterion) -> dict[str, str | None]:
     """What a judgement says of its level, of the truth of its error, and of its sources."""
-    return {**level_and_truth(evaluated, criterion.subject), "source": _source(evaluated, criterion)}
+    source = _with_those_of_limits(evaluated, criterion) if evaluated.limits else criterion.source
+    return {**level_and_truth(evaluated, criterion.subject), "source": source}
 
 
 def level_and_truth(evaluated: Evaluated, output: str | None) -> dict[str, str | None]:
@@ -163,10 +164,8 @@ def estimates_of(evaluated: Evaluated, criterion: Criterion) -> tuple[dict[str, 
     return estimates, absent
 
 
-def _source(evaluated: Evaluated, criterion: Criterion) -> str | None:
+def _with_those_of_limits(evaluated: Evaluated, criterion: Criterion) -> str | None:
     """The source of the criterion, and those of the limits that a library gave."""
-    if not evaluated.limits:
-        return criterion.source
     given = [evaluated.limits[limit.name] for limit in criterion.limits if limit.name in evaluated.limits]
     sources = [criterion.source, *(limit.source for limit in given)]
     return "; ".join(dict.fromkeys(filter(None, sources))) or None
@@ -270,17 +269,12 @@ def _error(evaluated: Evaluated, name: str) -> tuple[Any, bool]:
     states none; its band has no width. Of a level an error that is not known is NaN, and decides nothing.
     """
     error = evaluated.errors.get(name)
-    has_levels = bool(evaluated.template.levels) and evaluated.measured is not None
-    if not has_levels and not _is_measured(evaluated.measured, name):
+    table = evaluated.measured
+    if table is None or not (evaluated.template.levels or name in table.outputs):
         return 0.0, False
     if error is None:
         return float("nan"), False
     return error, not (math.isnan(error) if isinstance(error, float) else np.isnan(error).any())
-
-
-def _is_measured(measured: Accuracy | None, name: str) -> bool:
-    """Whether a table of errors names the output at all."""
-    return measured is not None and name in measured.outputs
 
 
 def along_of(template: Template, names: Iterable[str]) -> Along | None:
@@ -308,7 +302,7 @@ def warned(cls: type[Template], judgements: list[Judgement]) -> Iterator[Notice]
     Where the limit lies within the error of a value that misses it, the verdict is undecided: a film of 1 nm
     whose error is not known is warned of all the same.
     """
-    first = {criterion.name: criterion.names[0] for criterion in cls.declared_criteria}
     for judgement in judgements:
         if judgement.warning and judgement.misses:
-            yield Notice(judgement.warning, first[judgement.name], sentence(judgement))
+            criterion = next(c for c in cls.declared_criteria if c.name == judgement.name)
+            yield Notice(judgement.warning, criterion.names[0], sentence(judgement))

@@ -100,11 +100,7 @@ def evaluate(
         rungs = _rungs(template, names, level, tolerance, per_point)
         parts = [_part(rung.template, names, shown_in) for rung in rungs]
         whole = parts[0] if rungs[0].where is None else _joined(rungs, parts)
-        echoes = {
-            name: _echo(template, declared)
-            for name, declared in cls.inputs.items()
-            if name in template.ledger.typed or is_reported(template, declared)
-        }
+        echoes = _echoes(template)
         criteria = _judged(rungs, whole, shown_in, request.limits) if judge and cls.declared_criteria else []
     notices = [*_standing(cls, raw), *_noticed(rungs)]
     if tolerance is not None:
@@ -151,7 +147,7 @@ def _rungs(
 
 def _part(template: Template, names: list[str], shown_in: Mapping[str, Unit]) -> _Part:
     measured = accuracy(type(template))
-    answers = {name: _answer(template, template.formulas[name], shown_in.get(name)) for name in names}
+    answers = _answers(template, names, shown_in)
     error = measured.of(template, names) if measured else dict.fromkeys(names)
     return _Part(answers, template.level or None, error)
 
@@ -185,17 +181,24 @@ def _scattered(
     return whole
 
 
-def _answer(template: Template, formula: Formula[Any], shown_in: Unit | None) -> Answer:
-    si = getattr(template, formula.attribute)
-    if isinstance(formula, Text):
-        return _words(template, formula, si)
-    scale = shown_in or formula.meaning.scale
-    if formula.attribute in template.ledger.absent:
-        return Answer(None, scale.text, reason=template.ledger.absent[formula.attribute])
-    if not isinstance(si, np.ndarray):
-        return Answer(float(scale.from_si(si)), scale.text)
-    value, reasons = _with_reasons(template, formula, si)
-    return Answer(scale.from_si(value), scale.text, reasons=reasons)
+def _answers(template: Template, names: list[str], shown_in: Mapping[str, Unit]) -> dict[str, Answer]:
+    """Outputs in their units; one that is neither an array nor words is a single value."""
+    answers, absent = {}, template.ledger.absent
+    for name in names:
+        formula = template.formulas[name]
+        si = getattr(template, formula.attribute)
+        if isinstance(formula, Text):
+            answers[name] = _words(template, formula, si)
+            continue
+        scale = shown_in.get(name) or formula.meaning.scale
+        if formula.attribute in absent:
+            answers[name] = Answer(None, scale.text, reason=absent[formula.attribute])
+        elif isinstance(si, np.ndarray):
+            value, reasons = _with_reasons(template, formula, si)
+            answers[name] = Answer(scale.from_si(value), scale.text, reasons=reasons)
+        else:
+            answers[name] = Answer(float(scale.from_si(si)), scale.text)
+    return answers
 
 
 def _words(template: Template, formula: Text[Any], value: Any) -> Answer:
@@ -249,12 +252,22 @@ def is_reported(template: Template, declared: Input) -> bool:
     return not (isinstance(declared, Given) and declared.optional)
 
 
-def _echo(template: Template, declared: Input) -> Echo:
-    typed = template.ledger.typed.get(declared.name)
-    if isinstance(typed, Typed):
-        return Echo(typed.value, typed.unit, "given", typed.extra)
-    if typed is None and isinstance(declared, Given) and isinstance(declared.default, Typed):
-        return _default(declared)
+def _echoes(template: Template) -> dict[str, Echo]:
+    """The inputs as they were used: those given, and the defaults that an answer reports."""
+    echoes, given = {}, template.ledger.typed
+    for name, declared in template.inputs.items():
+        typed = given.get(name)
+        if isinstance(typed, Typed):
+            echoes[name] = Echo(typed.value, typed.unit, "given", typed.extra)
+        elif typed is None and isinstance(declared, Given) and declared.default and not declared.optional:
+            echoes[name] = _default(declared)
+        elif typed is not None or is_reported(template, declared):
+            echoes[name] = _echo(template, declared, typed)
+    return echoes
+
+
+def _echo(template: Template, declared: Input, typed: str | None) -> Echo:
+    """An input that is an option, or whose default is a formula."""
     value = getattr(template, declared.attribute)
     source = "default" if typed is None else "given"
     return Echo(value, None, source, {}) if isinstance(declared, Choice) else _shown(declared, value, source)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import filterfalse
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 def read_inputs(cls: type[Template], raw: Mapping[str, Any]) -> tuple[dict[str, Typed | str], list[Fault]]:
     """Every input that was given, read in its unit, and what is wrong with the others."""
     typed: dict[str, Typed | str] = {}
-    faults = unknown_names((name for name in raw if name not in cls.inputs), cls.inputs, "input")
+    faults = unknown_names(filterfalse(cls.inputs.__contains__, raw), cls.inputs, "input")
     for name, declared in cls.inputs.items():
         if name in raw:
             try:
@@ -199,19 +200,37 @@ def points_of(self: Template, arrays: Mapping[str, Array]) -> tuple[int, ...]:
     return np.broadcast_shapes(*shapes)
 
 
-def violations(self: Template, rule: Requirement) -> Iterator[Fault]:
-    """The fault of a rule that does not hold, if it does not; points of arrays are masked instead."""
-    if rule.warning or (not rule.missing and not self.ledger.missing.isdisjoint(rule.uses)):
-        return
-    holds = rule.function(self)
-    if isinstance(holds, np.ndarray):
-        if not holds.all():
-            names = tuple(self.inputs[name].attribute for name in rule.names)
-            self.ledger.masks.append(Mask(names, ~holds, f"{rule.sentence}: {rule.remedy}"))
-    elif not holds:
-        name, *also = names = suspects(self, rule)
-        values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in names)
-        yield Fault(name, BROKEN, f"{rule.sentence}, but {values}; {rule.remedy}", tuple(also))
+def violations(self: Template, rules: Iterable[Requirement]) -> list[Fault]:
+    """The faults of the rules that do not hold; points of arrays are masked instead."""
+    faults: list[Fault] = []
+    missing = self.ledger.missing
+    for rule in rules:
+        if rule.warning or (not rule.missing and not missing.isdisjoint(rule.uses)):
+            continue
+        try:
+            holds = rule.function(self)
+            if isinstance(holds, np.ndarray):
+                self.ledger.masks += _violated_points(self, rule, holds)
+            elif not holds:
+                faults.append(_violation(self, rule))
+        except InvalidInputs as error:  # a default that the rule reads is refused
+            faults += (fault for fault in error.faults if fault not in faults)
+    return faults
+
+
+def _violation(self: Template, rule: Requirement) -> Fault:
+    """The fault of a rule that does not hold."""
+    name, *also = names = suspects(self, rule)
+    values = ", ".join(f"{name} = {_shown(self, self.inputs[name])}" for name in names)
+    return Fault(name, BROKEN, f"{rule.sentence}, but {values}; {rule.remedy}", tuple(also))
+
+
+def _violated_points(self: Template, rule: Requirement, holds: NDArray[np.bool_]) -> list[Mask]:
+    """The mask of the points at which a rule does not hold, if there are any."""
+    if holds.all():
+        return []
+    names = tuple(self.inputs[name].attribute for name in rule.names)
+    return [Mask(names, ~holds, f"{rule.sentence}: {rule.remedy}")]
 
 
 def remarks(self: Template) -> Iterator[Notice]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import filterfalse
 from typing import Any
 
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name, unknown_names
@@ -75,7 +76,7 @@ def read_options(
 ) -> tuple[list[str], dict[str, Unit], list[Fault]]:
     """Return the outputs asked for, their units, and all that is wrong with these and with the level."""
     names = list(cls.formulas) if outputs is None else list(outputs)
-    faults = unknown_names((name for name in names if name not in cls.formulas), cls.formulas, "output")
+    faults = unknown_names(filterfalse(cls.formulas.__contains__, names), cls.formulas, "output")
     shown_in = _units(cls, units or {}, faults)
     return names, shown_in, faults + _level_faults(cls, level)
 
@@ -92,7 +93,7 @@ def _units(cls: type[Template], units: Mapping[str, str], faults: list[Fault]) -
     shown: dict[str, Unit] = {}
     if not units:
         return shown
-    unknown = unknown_names((name for name in units if name not in cls.formulas), cls.formulas, "output")
+    unknown = unknown_names(filterfalse(cls.formulas.__contains__, units), cls.formulas, "output")
     faults += [fault.within("units") for fault in unknown]
     for name, text in units.items():
         if name not in cls.formulas:

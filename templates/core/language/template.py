@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Truth
-from templates.core.errors import Fault, InvalidInputs
+from templates.core.errors import InvalidInputs
 from templates.core.judging.criterion import Criterion
 from templates.core.language.admission import absence, masked, outside_published, refusal, whole
 from templates.core.language.causes import by_cause
@@ -213,13 +213,8 @@ class Template:
     def _checked(cls, values: Mapping[str, Any], ledger: Ledger, pending: Collection[str] = ()) -> Self:
         self = cls(values, ledger)
         check_shapes(self)
-        faults: list[Fault] = []
         with np.errstate(all="ignore"):
-            for rule in cls._due(pending) if pending else cls.requirements:
-                try:
-                    faults += violations(self, rule)
-                except InvalidInputs as error:  # a default that the rule reads is refused
-                    faults += (fault for fault in error.faults if fault not in faults)
+            faults = violations(self, cls._due(pending) if pending else cls.requirements)
         if faults:
             raise InvalidInputs(by_cause(faults))
         return self

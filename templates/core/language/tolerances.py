@@ -9,24 +9,19 @@ from templates.core.language.ledger import Notice
 from templates.core.units.quantity import TOLERANCES, Typed
 
 UNUSED = "tolerance_unused"
-_SIMPLE = (str, int, float)  # values without a place for a tolerance
 DETAIL = "its tolerance is kept and shown, but not used: the results are those of the value alone"
 
 
 def unused(given: Mapping[str, Any]) -> Iterator[Notice]:
     """A warning for every quantity, as typed or as read, that has `plus` or `minus`."""
-    return (
-        Notice(UNUSED, name, DETAIL)
-        for name, value in given.items()
-        if not isinstance(value, _SIMPLE) and has_tolerance(value)
-    )
+    for name, value in given.items():
+        if value.extra if isinstance(value, Typed) else has_tolerance(value):
+            yield Notice(UNUSED, name, DETAIL)
 
 
 def has_tolerance(value: Any) -> bool:
-    """Whether a quantity, or any of a list, has a tolerance."""
+    """Whether a quantity as its user wrote it, or any of a list, has a tolerance."""
     match value:
-        case Typed():
-            return bool(value.extra)
         case dict():
             return not value.keys().isdisjoint(TOLERANCES)
         case list() | tuple():

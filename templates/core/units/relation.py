@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from importlib.resources import files
 from typing import Any
 
@@ -39,6 +39,11 @@ class Relation:
     tree: Any
     parts: int = 1
 
+    @cached_property
+    def only_name(self) -> str | None:
+        """The name, where the relation is nothing but a name."""
+        return self.tree.name if isinstance(self.tree, Name) else None
+
     def kind(self, kinds: Mapping[str, Kind]) -> Kind:
         """What the relation gives, from what its names are.
 
@@ -57,6 +62,8 @@ class Relation:
         FaultyText
             With code `shape`, where arrays of different lengths meet.
         """
+        if self.only_name:
+            return values[self.only_name]
         try:
             with np.errstate(all="ignore"):
                 return _value(self.tree, values)

@@ -306,7 +306,7 @@ class TestProfiles:
         np.testing.assert_array_equal(moment.value, [[0, 2, 4], [np.nan] * 3, [np.nan] * 3])
         assert [bool(reason) for reason in moment.reasons] == [False, True, True]
         assert "length must be" in moment.reasons[1]
-        shown = rendering.answer(moment)
+        shown = rendering.outputs({"moment": moment})["moment"]
         assert shown["value"] == [[0, 2, 4], None, None]
         assert json.loads(json.dumps(shown))["reasons"] == list(moment.reasons)
 
@@ -316,7 +316,8 @@ class TestProfiles:
         many = {"masses": {"value": [[1, 2], [9, 1], [3, 3]], "unit": "kg"}}
         answer = evaluate(Chain, many).outputs["sums_of_masses"]
         assert [bool(reason) for reason in answer.reasons] == [False, True, False]
-        assert rendering.answer(answer)["value"] == [[[2, 3], [3, 4]], None, [[6, 6], [6, 6]]]
+        shown = rendering.outputs({"sums": answer})["sums"]
+        assert shown["value"] == [[[2, 3], [3, 4]], None, [[6, 6], [6, 6]]]
         limits = evaluate(Chain, {"masses": ["1 kg"], "limit": ["1 kg", "2 kg"]})
         assert limits.outputs["sums_of_masses"].value.shape == (2, 1, 1)
 
