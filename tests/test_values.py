@@ -10,7 +10,18 @@ import app
 import cad
 import templates
 
-GROWING = {"Ledger", "Calculation", "Caller", "Graph", "Findings", "Contents", "Restored"}
+GROWING = {
+    "Ledger",
+    "Calculation",
+    "Caller",
+    "Graph",
+    "Findings",
+    "Contents",
+    "Restored",
+    "Meetings",
+    "_Rows",
+    "Deciding",
+}
 """Records that one function fills step by step before it returns them."""
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Set
 from dataclasses import replace
 
-from app.designs.document import Criterion, Document
+from app.designs.document import Document, WrittenCriterion
 from app.designs.network import Block, Demand, Network
 from app.designs.reference import Reference
 from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
@@ -41,7 +41,7 @@ def _is_unread(name: str, document: Document, blocks: Mapping[str, Block]) -> bo
     return bool(dot) and step in document.steps and step not in blocks
 
 
-def _require_subject(name: str, written: Criterion, blocks: Mapping[str, Block]) -> None:
+def _require_subject(name: str, written: WrittenCriterion, blocks: Mapping[str, Block]) -> None:
     """Refuse a criterion of no template, and one of the design that demands nothing."""
     step, dot, inside = name.partition(".")
     if not dot:

@@ -92,7 +92,7 @@ class Iteration(Bounded):
     limit: int = Field(20, ge=1, le=100, description="rounds")
 
 
-class Criterion(Bounded):
+class WrittenCriterion(Bounded):
     """What a design demands, or what it says of a criterion of one of its templates."""
 
     model_config = _STRICT
@@ -125,7 +125,7 @@ class Document(Bounded):
     models: Annotated[dict[Word, Model], Field(max_length=20), at_most(20)] = {}
     iterations: Annotated[list[Iteration], Field(max_length=10)] = []
     criteria: Annotated[
-        dict[CriterionName, Criterion], Field(max_length=MOST_CRITERIA), at_most(MOST_CRITERIA)
+        dict[CriterionName, WrittenCriterion], Field(max_length=MOST_CRITERIA), at_most(MOST_CRITERIA)
     ] = Field({}, description="what the design demands; `step.name` overrides or waives one of a template")
 
     @model_serializer(mode="wrap")

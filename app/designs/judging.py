@@ -55,7 +55,7 @@ class _Subject:
         return {n: Reference(self.block.name, None, n) for n in self.criterion.names if n not in limits}
 
 
-@dataclass
+@dataclass(frozen=True)
 class Judging:
     """One calculated design, judged."""
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from app.designs.analyses import is_measured, measured_names, measured_unit, used
-from app.designs.document import Criterion
+from app.designs.document import WrittenCriterion
 from app.designs.reference import Reference
 from app.plain import Raw
 from app.solids.questions import Question
@@ -93,7 +93,7 @@ class Demand:
     """
 
     name: str
-    written: Criterion
+    written: WrittenCriterion
     uses: Mapping[str, Reference] = field(default_factory=dict)
     criterion: Judged | None = None
 

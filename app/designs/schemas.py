@@ -13,13 +13,13 @@ from app.designs.document import (
     CRITERION,
     NAME,
     WORD,
-    Criterion,
     CriterionName,
     Document,
     Iteration,
     Model,
     Name,
     Step,
+    WrittenCriterion,
 )
 from app.schemas.bounded import Bounded
 from app.schemas.values import FORMS, GIVEN, Given
@@ -113,7 +113,7 @@ PATCH: JsonDict = {
         "criteria": {
             "type": ["object", "null"],
             "propertyNames": {"pattern": CRITERION},
-            "additionalProperties": _part(Criterion),
+            "additionalProperties": _part(WrittenCriterion),
         },
         "iterations": {"type": ["array", "null"], "maxItems": 10, "items": _part(Iteration)},
         "note": {"type": ["string", "null"], "maxLength": LONGEST_NOTE},

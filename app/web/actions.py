@@ -64,6 +64,7 @@ async def _with_step(
 ) -> Response:
     """A design with one step; its form, where that is not filled in, or refused."""
     if "design_name" not in typed:  # the form of the home page: its name is that of the design
+        await new_step(api, typed)  # a template that does not exist is refused here
         return go(address("/designs/new", {**typed, "design_name": str(document["name"]), "name": ""}))
     step = await new_step(api, typed)
     try:

@@ -179,20 +179,23 @@ class TestValues:
         assert len(self.differ({"value": 1, "unit": "furlongs"}, {"value": 2, "unit": "furlongs"})) == 1
 
 
-def test_verdicts_that_are_stored_are_compared(served, http, design):
+def test_verdicts_that_are_stored_are_compared(served, http):
     """As the contract of criteria stores them; a design of before has none."""
     from app.storage.tables import RevisionRow
 
     database = served.app.state.services.database
-    id = created(http, paper(name="judged"))["id"]
+    id, before = (created(http, paper(name=name))["id"] for name in ("judged", "of before"))
     judged = {"name": "film.film", "verdict": "met", "utilisation": 0.9}
 
     def store(session):
         row = session.get(RevisionRow, (id, 1))
         row.results = {**row.results, "criteria": [judged, {**judged, "name": "film.load"}]}
 
+        old = session.get(RevisionRow, (before, 1))
+        old.results = {name: part for name, part in old.results.items() if name != "criteria"}
+
     database.write(store)
-    told = compared(http, design["id"], design=id)
+    told = compared(http, before, design=id)
     assert by_name(told["criteria"])["film.film"] == {
         "name": "film.film",
         "old": None,

@@ -17,10 +17,13 @@ from patience import GLANCE, patient
 
 from app.api.gate.streams import Streams
 from app.api.routes.jobs import router
+from app.catalogue.catalogues import Catalogues
 from app.jobs.errors import JobFinished, JobNotFound
 from app.jobs.service import Jobs
 from app.settings import Settings
 from app.workers.inline import Inline
+from cad.catalogue import models
+from templates.door import built_in
 
 
 def describe(error):
@@ -45,7 +48,9 @@ def jobs(database):
 def app(jobs):
     app = FastAPI()
     app.include_router(router)
-    app.state.services = SimpleNamespace(jobs=jobs, streams=Streams(most=5, most_of_client=5))
+    app.state.services = SimpleNamespace(
+        jobs=jobs, streams=Streams(most=5, most_of_client=5), catalogues=Catalogues(built_in(), models())
+    )
     return app
 
 
@@ -198,7 +203,9 @@ from app.workers.inline import Inline
 async def lifespan(app):
     database = Database(sys.argv[1])
     jobs = Jobs(database, Inline(), Settings(), lambda error: {})
-    app.state.services = SimpleNamespace(jobs=jobs, streams=Streams(most=5, most_of_client=5))
+    app.state.services = SimpleNamespace(
+        jobs=jobs, streams=Streams(most=5, most_of_client=5), catalogues=Catalogues(built_in(), models())
+    )
     with on_stop_signal(jobs.drain):
         yield
     jobs.stop()

@@ -3,7 +3,7 @@
 import pytest
 
 from app.catalogue.finding import find_templates
-from app.presentation.units import converted, shown_unit
+from app.presentation.units import shown_unit, shown_value
 from templates.core.units.units import compatible, unit
 
 METRIC_THERE_TOO = {"1", "%", "deg", "rad", "rad/s", "rad/s**2", "rpm", "Hz", "s", "K", "W/K", "kJ/(m**3*K)"}
@@ -33,5 +33,5 @@ def test_the_unit_shown_measures_the_same(name):
     ],
 )
 def test_viscosities_and_stiffnesses_are_converted(value, metric, shown, customary):
-    quantity = converted({"value": value, "unit": metric}, "us")
-    assert quantity == {"value": pytest.approx(shown, rel=1e-5), "unit": customary}
+    assert shown_unit(metric, "us") == customary
+    assert shown_value(value, metric, "us") == pytest.approx(shown, rel=1e-5)

@@ -123,7 +123,7 @@ def test_the_fold_line_shows_what_is_judged_or_drives_a_part():
 
 
 def test_the_browser_writes_the_verdict_as_the_server_does(watched, paper):
-    watched.open(paper)
+    watched.open(paper, wait_until="networkidle")  # no preview comes between
     expect(watched.page.locator("[data-state]")).to_be_attached()
     for criteria in (CRITERIA, [MET], [UNCHECKED, {**UNCHECKED, "name": "film.b"}]):
         payload = {"criteria": criteria, "verdict": verdict(*criteria)}

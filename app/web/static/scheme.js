@@ -1,9 +1,8 @@
 // The switch of colours: the choice is kept in a cookie, so that the next page comes in its colours at once.
 const YEAR = 365 * 24 * 3600; // s
 const group = document.querySelector("[data-schemes]");
-const isPaper = document.body.classList.contains("report");
 
-group.hidden = isPaper;
+group.hidden = false;
 group.addEventListener("click", ({ target }) => {
   const scheme = target.dataset.schemeChoice;
   if (scheme === undefined) return;

@@ -163,10 +163,14 @@ def _counted(rows: Codes) -> Parts:
 def _no_value(used: list[Estimate], point: tuple[int, ...]) -> str:
     """Why there is no value at a point."""
     for reasons in (estimate.reasons for estimate in used if estimate.reasons is not None):
-        own = point[len(point) - reasons.ndim :]
-        if reason := reasons[tuple(i % n for i, n in zip(own, reasons.shape, strict=True))]:
+        if reason := reasons[_own_place(point, reasons.shape)]:
             return str(reason)
     return "there is no value here"
+
+
+def _own_place(point: tuple[int, ...], shape: tuple[int, ...]) -> tuple[int, ...]:
+    """The place of a point in an array that was broadcast to all points."""
+    return tuple(i % n for i, n in zip(point[len(point) - len(shape) :], shape, strict=True))
 
 
 def _numbers(criterion: Criterion, parts: Parts, worst: Worst, estimates: Mapping[str, Estimate]) -> Parts:
@@ -197,7 +201,7 @@ def _relative_error(subject: Estimate | None, worst: Worst) -> float | None:
     at = subject.error
     if isinstance(at, np.ndarray):
         points = worst.index[: len(worst.index) - subject.axes]
-        at = np.broadcast_to(at, np.shape(subject.value)[: len(points)])[points]
+        at = at[_own_place(points, at.shape)]
     return None if math.isnan(at) else float(at)
 
 
