@@ -28,7 +28,7 @@ def test_a_wrong_limit_is_refused_beside_its_field(http):
     answer = http.get(FILM, params={"radial_load": "25 kN", "limits.permissible_pressure": "20 mm"})
     assert answer.status_code == 422
     assert re.search(r'id="limits-permissible_pressure-error"><bdi>[^<]*measures', answer.text)
-    assert '<details class="more" open><summary>Limits (7)' in answer.text
+    assert '<details class="more" open><summary>Limits of the criteria (7)' in answer.text
 
 
 def test_the_rows_are_named_in_words(http):
@@ -43,7 +43,7 @@ def test_a_chosen_row_is_judged_as_it_is_chosen(watched):
     page = watched.page
     watched.open(FILM)
     expect(page.locator(HEADLINE)).to_have_text("6 met, 1 not met, 7 not checked")
-    page.get_by_text("Limits (7)").click()
+    page.get_by_text("Limits of the criteria (7)").click()
     page.get_by_label("Bearing material", exact=True).select_option("tin_babbitt_b23_2")
     expect(page.locator(HEADLINE)).to_have_text("7 met, 3 not met, 4 not checked")
     page.get_by_label("Largest pressure of the film that the bearing material bears").fill("200 MPa")
