@@ -24,6 +24,7 @@ from app.designs.reference import Reference
 from app.designs.service import analysed, built, starts
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.plain import JsonObject, Raw
+from app.presentation.units import System
 from app.schemas.answers import Quantity
 from app.schemas.decisions import Decision, Tried
 from app.storage.artifacts import ArtifactStore
@@ -38,12 +39,16 @@ LONGEST_BUDGET = 600.0  # s
 
 @dataclass(frozen=True)
 class Asked:
-    """Which criteria of a design are to be decided (all, if None), and how long that may take [s]."""
+    """Which criteria of a design are to be decided (all, if None), and how long that may take [s].
+
+    The answer has its quantities in `units`.
+    """
 
     design: str
     criteria: list[str] | None
     budget: float
     revision: int | None = None
+    units: System = "si"
 
 
 def read_budget(raw: Raw) -> float:
@@ -90,6 +95,7 @@ class Decisions:
             "design": asked.design,
             "revision": decision.revision,
             "budget": asked.budget,
+            "units": asked.units,
             "body": self.store.put(to_json(asked.criteria)),
         }
         return decision, self._queued(payload, client, begun_steps())
@@ -179,7 +185,7 @@ def _shown(number: int, asked: Asked, decision: deciding.Decision) -> Decision:
         seconds=sum(trial.seconds for trial in decision.trials),
         budget=Quantity(value=asked.budget, unit="s"),
         stopped=decision.stopped,
-    )
+    ).in_units(asked.units)
 
 
 def _tried(trial: deciding.Trial) -> Tried:

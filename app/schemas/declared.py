@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, JsonValue, TypeAdapter
+from pydantic import BaseModel, Field, JsonValue, TypeAdapter
 
 from app.schemas.templates import Schema
 
@@ -16,6 +16,7 @@ class Declared(BaseModel):
     along: str | None = None  # of a curve: the name of its axis
     enum: tuple[str, ...] = ()
     library: str | None = None  # of a limit: the table of the library whose rows may be named
+    filled_by: str | None = Field(None, alias="from")  # of a limit: the table whose rows have a value for it
     default: JsonValue = None
     default_formula: str | None = None
     examples: list[JsonValue] = []

@@ -17,9 +17,11 @@ from app.schemas.designs import (
     RevisionWorksheet,
 )
 from app.schemas.evaluations import Output
+from app.schemas.library import LibraryTable
 from app.schemas.templates import CadModel as Model
 from app.schemas.templates import Template
 from app.web import sheet
+from app.web.limits import limit_fields
 from app.web.sheet import Field
 
 MOST_AT_ONCE = 16  # results
@@ -116,9 +118,9 @@ def _with_places(step: PreviewedStep, names: Iterable[str]) -> PreviewedStep:
 
 
 def with_fields(
-    block: StepBlock, design: Design, refusal: Refusal, rows: Mapping[str, Sequence[str]]
+    block: StepBlock, design: Design, refusal: Refusal, tables: Sequence[LibraryTable]
 ) -> StepBlock:
-    """A step of a design with the fields of its form; `rows` are the ids of the library by table."""
+    """A step of a design with the fields of its form; `tables` are those of the library."""
     step, template, result = design.steps[block.name], block.template, block.result
     used = {} if result.pending or not result.outputs else result.inputs
     typed, faults = refusal.typed, refusal.faults
@@ -127,7 +129,7 @@ def with_fields(
         block,
         fields=sheet.of_block(template.inputs, block.name, step.inputs, used, typed, faults),
         options=sheet.of_options(template, block.name, chosen, typed, faults),
-        limits=sheet.of_limits(template, block.name, step.limits, typed, faults, rows),
+        limits=limit_fields(template, block.name, step.limits, typed, faults, tables),
     )
 
 

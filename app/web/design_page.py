@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 from fastapi import Request, Response
 
 from app.schemas.analyses import Analysis
-from app.schemas.declared import properties
 from app.schemas.designs import (
     Design,
     ModelMeasurements,
@@ -19,7 +18,6 @@ from app.schemas.designs import (
     RevisionWorksheet,
 )
 from app.schemas.jobs import Job, JobList
-from app.schemas.library import LibraryTable
 from app.schemas.templates import CadModel as Model
 from app.schemas.templates import Template, TemplateList, TemplateSummary
 from app.web import sheet
@@ -36,6 +34,7 @@ from app.web.blocks import (
 )
 from app.web.differences import differences
 from app.web.forms import texts
+from app.web.limits import tables_of
 from app.web.model_page import finished_analyses
 from app.web.rendering import show, units_of
 from app.web.verdict import banner, opened, with_keys
@@ -67,8 +66,8 @@ async def design_page(
     preview = await api.post(f"/designs/{id}/preview", Preview, {}, **query)
     before = await _revision(request, api, id, design.revision - 1, within=0) if design.revision > 1 else None
     computed = {name: step.outputs for name, step in design.steps.items()}
-    rows = await _library(api, templates.values())
-    steps = [with_fields(block, design, refusal, rows) for block in steps_of(revision, templates, computed)]
+    tables = await tables_of(api, templates.values())
+    steps = [with_fields(block, design, refusal, tables) for block in steps_of(revision, templates, computed)]
     parts = [
         with_changes(block, design, refusal, before, preview.model_parameters)
         for block in models_of(revision, models)
@@ -163,16 +162,6 @@ async def _models(api: Api, design: Design | RevisionWorksheet) -> dict[str, Mod
     return {
         name: await api.get(f"/models/{model.id}/versions/{model.version}", Model)
         for name, model in design.models.items()
-    }
-
-
-async def _library(api: Api, templates: Iterable[Template]) -> dict[str, list[str]]:
-    """The ids of the rows of every table of the library that a limit may name."""
-    declared = [one for template in templates for one in properties(template.given_limits).values()]
-    tables = {one.library for one in declared if one.library}
-    return {
-        table: [row.id for row in (await api.get(f"/library/{table}", LibraryTable)).rows]
-        for table in sorted(tables)
     }
 
 

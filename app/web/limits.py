@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from pydantic import JsonValue
 
 from app.presentation.typed import text_of, value_of
+from app.schemas.declared import Declared, properties
 from app.schemas.library import LibraryRow, LibraryTable, LibraryTables
-from app.schemas.templates import DeclaredLimit, Template
+from app.schemas.templates import Template
+from app.schemas.values import Given
 from app.web.api import Api
+from app.web.forms import LIMITS
 from app.web.sheet import Field
-
-PREFIX = "limits."
-"""Of the controls; the interface calls a fault of a limit by the same name."""
 
 
 def limits_of(filled: Mapping[str, str]) -> dict[str, JsonValue]:
-    """The limits among the fields of a form that hold a text."""
-    return {
-        name.removeprefix(PREFIX): value_of(text) for name, text in filled.items() if name.startswith(PREFIX)
-    }
+    """The limits among the fields of a template's form that hold a text."""
+    return {name.removeprefix(LIMITS): value_of(text) for name, text in filled.items() if is_limit(name)}
+
+
+def is_limit(control: str) -> bool:
+    """Whether a control of a template's form is that of a limit."""
+    return control.startswith(LIMITS)
 
 
 async def library(api: Api) -> list[LibraryTable]:
@@ -30,57 +33,59 @@ async def library(api: Api) -> list[LibraryTable]:
     return [await api.get(f"/library/{table.id}", LibraryTable) for table in listed.items]
 
 
+async def tables_of(api: Api, templates: Iterable[Template]) -> list[LibraryTable]:
+    """The tables of the library whose rows the limits of some templates may name."""
+    declared = [one for template in templates for one in properties(template.given_limits).values()]
+    ids = {one.library for one in declared if one.library}
+    return [await api.get(f"/library/{id}", LibraryTable) for id in sorted(ids)]
+
+
 def limit_fields(
     template: Template,
-    tables: Sequence[LibraryTable],
-    chosen: Mapping[str, JsonValue],
+    block: str,
+    given: Mapping[str, Given],
     typed: Mapping[str, str],
     faults: Mapping[str, str],
+    tables: Sequence[LibraryTable],
 ) -> list[Field]:
-    """A choice for each table that gives limits of this template, then a field for each limit."""
-    limits = {limit.name: limit for criterion in template.criteria for limit in criterion.limits}
-    taken = {limit.library for limit in limits.values()}
-    rows = {table.id: list(_rows(table, limits)) for table in tables if table.id in taken}
-    choices = [_choice(table, rows[table.id]) for table in tables if table.id in rows]
-    fields = [*choices, *(_field(limit) for limit in limits.values())]
-    return [
-        replace(
-            field,
-            text=typed.get(field.control, text_of(chosen.get(field.control.removeprefix(PREFIX)))),
-            error=faults.get(field.name),
-        )
-        for field in fields
-    ]
+    """A choice for each table that gives limits of this template, then a field for each limit.
+
+    `block` is the name of the step; empty on the page of the template, which calculates without one.
+    """
+    limits = properties(template.given_limits)
+    fields = []
+    for tail, declared in limits.items():
+        control = f"{block}@{LIMITS}{tail}" if block else f"{LIMITS}{tail}"
+        name = control.replace("@", ".")
+        text = typed.get(control, text_of(given.get(tail)))
+        empty = _field(name, control, declared)
+        rows = {row.id: row.words for row in _rows(declared.library, limits, tables)}
+        fields.append(replace(empty, text=text, error=faults.get(name), options=tuple(rows), labels=rows))
+    return fields
 
 
-def _rows(table: LibraryTable, limits: Mapping[str, DeclaredLimit]) -> Iterator[LibraryRow]:
-    """The rows that have a value for a limit which is taken from this table."""
-    taken = {name for name, limit in limits.items() if limit.library == table.id}
-    yield from (row for row in table.rows if not taken.isdisjoint(row.values))
-
-
-def _choice(table: LibraryTable, rows: Sequence[LibraryRow]) -> Field:
+def _field(name: str, control: str, declared: Declared) -> Field:
+    """An empty field; its hint says what holds while it stays empty."""
+    default = declared.default_formula or "not given"
     return Field(
-        name=PREFIX + table.id,
-        control=PREFIX + table.id,
-        words=table.id.replace("_", " "),
+        name=name,
+        control=control,
+        words=declared.title,
         text="",
         error=None,
-        options=tuple(row.id for row in rows),
-        labels={row.id: row.words for row in rows},
+        unit=declared.unit,
+        hint="by the row above" if declared.filled_by else default,
+        needed=False,
     )
 
 
-def _field(limit: DeclaredLimit) -> Field:
-    return Field(
-        name=PREFIX + limit.name,
-        control=PREFIX + limit.name,
-        words=limit.words,
-        text="",
-        error=None,
-        unit=limit.unit,
-        hint="by the row above" if limit.library else limit.default or "not given",
-    )
+def _rows(
+    id: str | None, limits: Mapping[str, Declared], tables: Sequence[LibraryTable]
+) -> Iterator[LibraryRow]:
+    """The rows of a table that have a value for a limit which is taken from it."""
+    taken = {name for name, limit in limits.items() if id and limit.filled_by == id}
+    rows = (row for table in tables if table.id == id for row in table.rows)
+    yield from (row for row in rows if not taken.isdisjoint(row.values))
 
 
 def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[Field]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from app.presentation import numbers
 from app.presentation.typed import text_of
@@ -113,25 +113,6 @@ def of_options(
         )
         for option in OPTIONS
     ]
-
-
-def of_limits(
-    template: Template,
-    block: str,
-    given: Mapping[str, Given],
-    typed: Mapping[str, str],
-    faults: Mapping[str, str],
-    rows: Mapping[str, Sequence[str]],
-) -> list[Field]:
-    """The fields of the limits that the criteria of a template take; `rows` are those of the library."""
-    fields = []
-    for tail, declared in properties(template.given_limits).items():
-        control, name = f"{block}@limits.{tail}", f"{block}.limits.{tail}"
-        text = typed.get(control, text_of(given.get(tail)))
-        field = _field(name, declared, text, None, faults.get(name), needed=False)
-        options = tuple(rows.get(declared.library or "", ()))
-        fields.append(replace(field, control=control, hint="not given", options=options))
-    return fields
 
 
 def _name_of_fault(option: str, faults: Mapping[str, str]) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from fastapi import Request, Response
 from pydantic import JsonValue
 
+from app.presentation.criteria import line
 from app.presentation.typed import value_of
 from app.reports.pictures import pictures
 from app.schemas.declared import properties
@@ -16,7 +17,7 @@ from app.web import sheet
 from app.web.accuracy import table
 from app.web.api import Api, Refused, read
 from app.web.forms import OPTIONS, option_of
-from app.web.limits import PREFIX, library, limit_fields, limits_of, with_rows
+from app.web.limits import is_limit, library, limit_fields, limits_of, with_rows
 from app.web.rendering import show, units_of
 
 ABOUT = {"units"}  # of the address, beside the inputs
@@ -35,7 +36,7 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
     answer, job, faults = await _tried(api, path, body, units_of(request))
     used = answer.inputs if answer else {}
     fields = with_rows(sheet.of_block(template.inputs, "", inputs, used, typed, faults), tables)
-    given = limit_fields(template, tables, limits, typed, faults)
+    given = limit_fields(template, "", limits, typed, faults, tables)
     options = sheet.of_options(template, "", chosen, typed, faults)
     return show(
         request,
@@ -47,8 +48,9 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
         levels=table(measured) if measured else None,
         fields=fields,
         options=options,
-        limit_fields=given,
+        given_limits=given,
         loose=sheet.loose_faults([*fields, *given, *options], faults),
+        criteria=[line(criterion) for criterion in (answer.criteria if answer else None) or ()],
         answer=answer or (_empty(template) if job else None),
         job=job,
         pictures=pictures(template, answer) if answer else [],
@@ -64,7 +66,7 @@ def _asked(template: Template, typed: Mapping[str, str]) -> tuple[Values, Values
     filled = {name: text.strip() for name, text in typed.items() if text.strip()}
     chosen = {f"@{option}": option for option in OPTIONS}
     limits = limits_of(filled)
-    others = (name for name in filled if not name.startswith(PREFIX) and name not in chosen)
+    others = (name for name in filled if not is_limit(name) and name not in chosen)
     inputs = {name: value_of(filled[name]) for name in others}
     options = {o: option_of(o, filled[name]) for name, o in chosen.items() if name in filled}
     return inputs if typed else template.example, options, limits

@@ -124,6 +124,10 @@ def test_a_design_is_decided_over_http_and_nothing_is_saved(http, client):
     assert body["tried"][-1]["decided"] == ["own"]
     assert body["budget"] == {"value": 20, "unit": "s"}
     assert body["revision"] == http.get(f"{DESIGNS}/{design['id']}").json()["revision"] == 1
+    in_us = http.post(f"{DESIGNS}/{design['id']}/decide?units=us", json={}).json()["criteria"]
+    value = next(one["value"] for one in in_us if one["name"] == "own")
+    si = next(one["value"]["value"] for one in body["criteria"] if one["name"] == "own")
+    assert value == {"value": pytest.approx(si / 25.4), "unit": "thou"}
     assert client.decide(design["id"]).stopped in ("decided", "no_finer_level")
     assert http.post(f"{DESIGNS}/{design['id']}/decide").status_code == 200
 
@@ -132,13 +136,15 @@ def test_an_expensive_level_goes_on_as_a_job(http):
     value = film_at("map")
     design = created(http, document(f"film.minimum_film_thickness >= {value!r} um", level="map"))
     wanted = {"criteria": ["own"], "budget": "60 s"}
-    answer = http.post(f"{DESIGNS}/{design['id']}/decide", json=wanted, headers={"Prefer": "respond-async"})
+    path, later = f"{DESIGNS}/{design['id']}/decide?units=us", {"Prefer": "respond-async"}
+    answer = http.post(path, json=wanted, headers=later)
     assert answer.status_code == 202, answer.text
     assert answer.json()["stopped"] == "pending"
     job = answer.headers["Location"]
     until(lambda: http.get(job).json()["state"] == "done")
     body = http.get(http.get(job).json()["result"]).json()
     assert body["stopped"] in ("decided", "no_finer_level")
+    assert next(one["limit"]["unit"] for one in body["criteria"] if one["name"] == "own") == "thou"
     assert "reynolds" in {trial["level"] for trial in body["tried"]}
 
 

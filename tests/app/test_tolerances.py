@@ -57,3 +57,11 @@ def test_the_door_of_python_warns():
     film = get("oil_film", 1)(**{**OIL_FILM, "bearing_width": WIDTH})
     assert film.minimum_film_thickness.magnitude > 0
     assert [warning.code for warning in film.warnings] == ["tolerance_unused"]
+
+
+def test_the_page_of_a_design_says_so(http, design):
+    place = f"/designs/{design['id']}"
+    for path in (place, f"{place}/revisions/1"):
+        page = http.get(path, headers={"Accept": "text/html"}).text
+        for name in ("scale", "model.width", "bearing width"):
+            assert page.count(f'<li class="warning"><strong>{name}</strong>') == 1, (path, name)

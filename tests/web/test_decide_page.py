@@ -40,6 +40,18 @@ def test_decide_decides_what_it_can_and_says_what_it_took(watched, undecided, ht
     assert watched.faults() == []
 
 
+def test_decide_answers_in_the_units_of_the_page(watched, undecided):
+    page = watched.page
+    watched.open(f"{undecided}?units=us")
+    page.locator("[data-all-criteria] summary").click()
+    page.get_by_role("button", name="Decide").click()
+    expect(page.locator("[data-decided]")).to_contain_text("Nothing was saved", timeout=60_000)
+    own = page.locator('[data-criterion="thick_enough"]')
+    expect(own.locator(".tag")).not_to_have_text("undecided")
+    expect(own).to_contain_text(" mil ")
+    assert watched.faults() == []
+
+
 def test_a_limit_that_is_missing_is_given_in_its_field(watched, undecided, http):
     page = watched.page
     watched.open(undecided)

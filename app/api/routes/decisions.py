@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
 
-from app.api.dependencies import ExpensiveSteps, TheDecisions, TheThreads
+from app.api.dependencies import ExpensiveSteps, TheDecisions, TheThreads, Units
 from app.api.gate.clients import TheClient
 from app.api.reading import StrictRoute
 from app.api.routes.designs import Id, Prefer
@@ -27,11 +27,12 @@ async def decide_criteria(
     client: TheClient,
     request: Request,
     body: DecideIn | None = None,
+    units: Units = "si",
     prefer: Prefer = None,
 ) -> Response:
     """Decide the criteria of the newest revision: finer levels where they are undecided; nothing is saved."""
     wanted = body or DecideIn()
-    asked = Asked(id, wanted.criteria, read_budget(wanted.budget))
+    asked = Asked(id, wanted.criteria, read_budget(wanted.budget), units=units)
     seconds = patience(prefer, LONGEST_BUDGET)
     answer, job = await threads.run_within(seconds, request, decisions.answer, asked, client)
     return accepted(job, answer) if job else written(answer)

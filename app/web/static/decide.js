@@ -1,5 +1,5 @@
 // The button "Decide": a finer calculation where, and only where, a criterion is undecided. Nothing is saved.
-import { call } from "./api.js";
+import { call, units } from "./api.js";
 import { calculated } from "./calculation.js";
 import { plain } from "./numbers.js";
 import { showVerdict } from "./verdict.js";
@@ -31,7 +31,7 @@ export function startDecide(api, patch) {
 }
 
 async function decision(api) {
-  const answer = await call("POST", `${api}/decide`, {}, { headers: { Prefer: "wait=2" } });
+  const answer = await call("POST", `${api}/decide?units=${units()}`, {}, { headers: { Prefer: "wait=2" } });
   return (answer.status === 202 ? await calculated(answer.location) : answer).told;
 }
 

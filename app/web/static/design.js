@@ -8,7 +8,7 @@ import { live } from "./live.js";
 import { showParameters, showValues } from "./parameters.js";
 import { drawPictures } from "./pictures.js";
 import { follow } from "./progress.js";
-import { OUTDATED, markOutdated, markWaiting, showFaults, showResults } from "./results.js";
+import { OUTDATED, markOutdated, markWaiting, showFaults, showResults, showWarnings } from "./results.js";
 import { startSolids } from "./solids.js";
 import { startDecide } from "./decide.js";
 import { nameOf, patchOf } from "./typed.js";
@@ -72,8 +72,12 @@ function show(payload) {
     drawPictures(document, step, answer);
   }
   showValues(form, "", { inputs: payload.parameters });
+  showWarnings("", payload.warnings.filter(isOfNoStep));
   showParameters(payload.model_parameters);
 }
+
+// Of the design's own parameters and of its models; those of a step stand in the step.
+const isOfNoStep = ({ name }) => !Object.hasOwn(steps, name.split(".")[0]);
 
 function clear() {
   progress.hidden = !isFollowing;

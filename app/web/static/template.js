@@ -7,11 +7,12 @@ import { live } from "./live.js";
 import { drawPictures, whenSeen } from "./pictures.js";
 import { OUTDATED, markOutdated, showFaults, showResults } from "./results.js";
 import { optionOf, valueOf } from "./typed.js";
+import { criteriaTable, followLinks } from "./verdict.js";
 
 const form = document.querySelector("[data-try]"); // its inputs have bare names: one may be called `dataset`
 const path = form.getAttribute("data-try");
 const state = form.querySelector("[data-state]");
-const headline = document.querySelector("[data-headline]");
+const headline = document.querySelector("[data-headline]"), criteria = document.querySelector("[data-criteria]");
 
 const LIMIT = "limits."; // of the controls of limits, as app/web/limits.py names them
 
@@ -43,7 +44,12 @@ function show({ told }) {
   showResults("", told);
   drawPictures(document, "", told);
   state.textContent = told.level ? `level ${told.level}` : "";
-  if (headline) headline.textContent = told.verdict?.headline ?? "";
+  if (criteria) showCriteria(told);
+}
+
+function showCriteria({ verdict, criteria: judged = [] }) {
+  headline.textContent = verdict?.headline ?? "";
+  criteria.replaceChildren(...(judged.length ? [criteriaTable(judged)] : []));
 }
 
 function refuse(error) {
@@ -73,5 +79,6 @@ if (progress.dataset.job) {
   markOutdated(true);
   calculated(progress.dataset.job).then(show, refuse);
 } else if (document.querySelector("[data-output]")) tried().then(show, refuse);
+if (criteria) followLinks(criteria, form);
 const accuracy = document.querySelector("[data-accuracy]");
 if (accuracy) whenSeen(accuracy, () => drawAccuracy(accuracy));

@@ -46,7 +46,7 @@ function banner(verdict, criteria, isOpen) {
   const head = element("div", { className: "verdict-line" }, element("h2", { className: "headline", id: "verdict" }, capital(verdict.headline)));
   if (governing) head.append(governs(governing));
   const unchecked = criteria.filter((criterion) => criterion.verdict === "not_checked");
-  const all = element("details", { open: Boolean(isOpen) }, element("summary", {}, `All ${criteria.length} criteria`), table(criteria));
+  const all = element("details", { open: Boolean(isOpen) }, element("summary", {}, `All ${criteria.length} criteria`), criteriaTable(criteria));
   all.dataset.allCriteria = "";
   return [head, ...(unchecked.length ? [notChecked(unchecked)] : []), all];
 }
@@ -86,7 +86,7 @@ function link(criterion) {
 
 const tag = ({ verdict }) => element("span", { className: `tag ${verdict}` }, WORDS[verdict]);
 
-function table(criteria) {
+export function criteriaTable(criteria) {
   const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
   const made = element("table", { className: "criteria" }, head, element("tbody", {}, ...criteria.map(row)));
   return element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "All criteria" }, made);
@@ -124,7 +124,13 @@ function drawn(name, attributes) {
 export function startVerdict(form) {
   const measure = () => document.body.style.setProperty("--verdict", `${place.offsetHeight}px`);
   new ResizeObserver(measure).observe(place);
-  place.addEventListener("click", (event) => {
+  followLinks(place, form);
+  rememberFolds(`folds:${form.dataset.design}`);
+}
+
+// What is missing leads to its field, the name of a criterion to its step.
+export function followLinks(criteria, form) {
+  criteria.addEventListener("click", (event) => {
     const target = event.target.closest("[data-give], [data-reveal]");
     if (!target) return;
     const leadsTo = target.dataset.give ? fieldOf(form, target.dataset.give) : document.getElementById(target.hash.slice(1));
@@ -132,7 +138,6 @@ export function startVerdict(form) {
     event.preventDefault();
     goTo(leadsTo);
   });
-  rememberFolds(`folds:${form.dataset.design}`);
 }
 
 export function goTo(leadsTo) {
@@ -141,11 +146,11 @@ export function goTo(leadsTo) {
   leadsTo.scrollIntoView({ block: leadsTo.matches("input, select") ? "center" : "start" });
 }
 
-// The field of an input, or of a limit of a step.
+// The field of an input, or of a limit; on the page of a template both have bare names.
 export function fieldOf(form, name) {
   const [block, ...tail] = name.split(".");
-  const limit = `${block}@limits.${tail.join(".")}`;
-  return [...form.elements].find((field) => field.name === name || field.name === limit || field.name === `.${name}`);
+  const controls = [name, `.${name}`, `limits.${name}`, `${block}@limits.${tail.join(".")}`];
+  return [...form.querySelectorAll("input, select")].find((field) => controls.includes(field.name));
 }
 
 // Which steps the user folded or unfolded is kept by the tab of the browser; what was refused stays in view.

@@ -21,11 +21,12 @@ def _criterion(criterion: Criterion) -> dict[str, Any]:
         "source": criterion.source,
         "unverified": criterion.unverified,
         "warning": criterion.warning,
-        "limits": [_limit(limit) for limit in criterion.limits],
+        "limits": [described_limit(limit) for limit in criterion.limits],
     }
 
 
-def _limit(limit: Limit) -> dict[str, Any]:
+def described_limit(limit: Limit) -> dict[str, Any]:
+    """A limit that the user of a template gives; its default as a formula."""
     default = None if limit.default is None else f"{limit.default[0]}({limit.default[1]})"
     return {
         "name": limit.name,

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from templates.core.catalogue.digests import content_digest, digest
+from templates.core.judging.criterion import Limit
 from templates.core.language.intake import Input, is_single
 from templates.core.language.meaning import Bounds
 from templates.core.language.spec import (
@@ -22,7 +23,7 @@ from templates.core.language.spec import (
     Text,
 )
 from templates.core.language.template import Template
-from templates.core.paper.demands import described_criteria
+from templates.core.paper.demands import described_criteria, described_limit
 from templates.core.paper.mathml import expression, mathml, symbol, symbols
 from templates.core.paper.methods import right_side
 
@@ -68,13 +69,20 @@ def inputs_schema(cls: type[Template]) -> dict[str, Any]:
 def limits_schema(cls: type[Template]) -> dict[str, Any]:
     """JSON Schema of the object `limits`: what the criteria compare with and the calculation does not take.
 
-    A choice of the library stands once for all limits that its rows fill.
+    A choice of the library stands once, before all limits; a limit that its rows fill names it as `from`.
     """
     limits = {limit.name: limit for criterion in cls.declared_criteria for limit in criterion.limits}
     rows = dict.fromkeys(limit.library for limit in limits.values() if limit.library)
-    given = {limit.name: {"title": limit.words, "unit": limit.unit} for limit in limits.values()}
+    given = {limit.name: _limit(limit) for limit in limits.values()}
     chosen = {name: {"title": name.replace("_", " "), "library": name} for name in rows}
     return {"type": "object", "properties": {**chosen, **given}, "required": []}
+
+
+def _limit(limit: Limit) -> dict[str, Any]:
+    described = described_limit(limit)
+    rows = {"from": limit.library} if limit.library else {}
+    default = {"default_formula": described["default"]} if limit.default else {}
+    return {"title": limit.words, "unit": limit.unit, **rows, **default}
 
 
 def outputs_schema(cls: type[Template]) -> dict[str, Any]:
