@@ -64,7 +64,7 @@ NOTHING = Upstream()
 EstimateOf = Callable[[Reference], Estimate | Absent]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Shifting:
     """The errors of one calculated design.
 

@@ -192,12 +192,15 @@ from types import SimpleNamespace
 import uvicorn
 from fastapi import FastAPI
 from app.api.routes.jobs import router
+from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Jobs
 from app.jobs.shutdown import on_stop_signal
 from app.settings import Settings
 from app.storage.database import Database
 from app.api.gate.streams import Streams
 from app.workers.inline import Inline
+from cad.catalogue import models
+from templates.door import built_in
 
 @asynccontextmanager
 async def lifespan(app):

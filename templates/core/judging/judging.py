@@ -201,7 +201,7 @@ def _relative_error(subject: Estimate | None, worst: Worst) -> float | None:
     at = subject.error
     if isinstance(at, np.ndarray):
         points = worst.index[: len(worst.index) - subject.axes]
-        at = at[_own_place(points, at.shape)]
+        at = at[_own_place(points, at.shape)] if len(points) >= at.ndim else at.max()  # one value at all
     return None if math.isnan(at) else float(at)
 
 
