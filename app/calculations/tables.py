@@ -1,8 +1,8 @@
 """Tables as people paste them from a spreadsheet or a measuring program.
 
-Columns are separated by tabs, semicolons or commas. A decimal comma is read where the separator is a tab or a
-semicolon. The first row may hold names, the second one units; a unit may also stand in brackets behind a name,
-`load_x [kN]`. Blank lines are skipped. A fault names the row, counted as in the text, and the column.
+Columns are separated by tabs, semicolons or commas. A decimal comma is read where the separator is a tab or
+a semicolon. The first row may hold names, the second one units; a unit may also stand in brackets behind a
+name, `load_x [kN]`. Blank lines are skipped. A fault names the row, counted as in the text, and the column.
 `curves.py` reads the stricter files of the REST interface.
 """
 

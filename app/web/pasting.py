@@ -1,4 +1,4 @@
-"""Columns of a pasted table become the texts of fields: proposed by name, shifted by an angle, one cycle each."""
+"""Columns of a pasted table become texts of fields: proposed by name, shifted by an angle, one cycle each."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from templates.core.units.units import compatible, require_same_kind, unit
 SHOWN = 5  # rows
 CYCLES = (360.0, 720.0)  # deg
 SAME_ANGLE, SAME_VALUE = 1e-6, 0.01
-"""How far the last angle may be off a whole cycle [deg], and the last value off the first, over the largest."""
+"""How far the last angle may be off a whole cycle [deg], and the last value off the first (relative)."""
 DIGITS = 12  # of a shifted angle: 0.1 + 0.2 is 0.3
 
 

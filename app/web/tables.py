@@ -1,4 +1,4 @@
-"""`/tables`: the dialog of a page sends what was pasted and shows what would become of it; nothing is stored."""
+"""`/tables`: the dialog of a page sends what was pasted and shows what comes of it; nothing is stored."""
 
 from __future__ import annotations
 

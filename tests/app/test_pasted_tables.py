@@ -72,7 +72,7 @@ def test_numbers_without_headings_and_pure_numbers_are_read():
         ("a [deg]\n=A2+1\n", "row 2, column a: '=A2+1' is a formula"),
         ("a [deg]\nNaN\n", "'NaN' is no"),
         ("a [deg]\n1e999\n", "row 2, column a: '1e999' is too large"),
-        ("a [dgr]\n1\n", "row 1, column a: 'dgr' is no known unit"),
+        ("a [qqq]\n1\n", "row 1, column a: 'qqq' is no known unit"),
         ("a;b\nkN;foo\n1;2\n", "row 2, column b: 'foo' is no known unit"),
         ("a [N]\nkN\n1\n", "row 2, column a: the header says N, this row kN; keep one of them"),
         ("a [deg]\n1.000,5\n", "row 2: it has 2 cells"),

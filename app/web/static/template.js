@@ -3,6 +3,7 @@ import { drawAccuracy } from "./accuracy.js";
 import { Refused, call, units } from "./api.js";
 import { calculated } from "./calculation.js";
 import { isolated } from "./isolated.js";
+import { startLists } from "./lists.js";
 import { live } from "./live.js";
 import { drawPictures, whenSeen } from "./pictures.js";
 import { OUTDATED, markOutdated, showFaults, showResults } from "./results.js";
@@ -63,6 +64,7 @@ function keepInAddress(filled) {
   }
 }
 
+startLists();
 const preview = live(tried, show, refuse);
 form.addEventListener("input", () => {
   keepInAddress([...new FormData(form)].filter(([, text]) => text.trim()));
