@@ -34,6 +34,7 @@ from app.web.blocks import (
     with_changes,
     with_fields,
 )
+from app.web.declaring import analysis_lines, iteration_lines, measures
 from app.web.differences import differences
 from app.web.forms import texts
 from app.web.model_page import finished_analyses
@@ -105,6 +106,9 @@ async def design_page(
         painted=painted(steps, parts),
         was=json.dumps(texts(design)),
         choices=await _choices(api),
+        analysis_lines=analysis_lines(design, parts),
+        iteration_lines=iteration_lines(design),
+        measures=list(measures(design, parts)),
     )
 
 

@@ -30,9 +30,9 @@ def test_a_pasted_table_fills_the_curves_of_a_template(watched, tmp_path):
     dialog.get_by_label("Add to the crank angle").fill("10 deg")
     expect(dialog.locator("tbody tr").first).to_contain_text("10")
     dialog.get_by_role("button", name="Take over 4 rows").click()
-    expect(page.locator("#crank_angle")).to_have_value("[10, 100, 190, 280] deg")
-    expect(page.locator("#load_x")).to_have_value("[1.5, -2.5, 0.5, 1] N")
-    expect(page.locator("#load_y")).to_have_value("[0.5, 0.5, 0.5, 0.5] kN")
+    expect(page.locator("[id='-crank_angle']")).to_have_value("[10, 100, 190, 280] deg")
+    expect(page.locator("[id='-load_x']")).to_have_value("[1.5, -2.5, 0.5, 1] N")
+    expect(page.locator("[id='-load_y']")).to_have_value("[0.5, 0.5, 0.5, 0.5] kN")
     assert watched.faults() == []
 
 
@@ -46,8 +46,8 @@ def test_a_file_is_read_as_a_spreadsheet_saved_it(watched, tmp_path, encoding):
     dialog = page.get_by_role("dialog", name="Paste a table")
     dialog.get_by_label("or a file").set_input_files(file)
     dialog.get_by_role("button", name="Take over 2 rows").click()
-    expect(page.locator("#load_x")).to_have_value("[1.5, -2] kN")
-    expect(page.locator("#crank_angle")).to_have_value("[0, 90] °")
+    expect(page.locator("[id='-load_x']")).to_have_value("[1.5, -2] kN")
+    expect(page.locator("[id='-crank_angle']")).to_have_value("[0, 90] °")
 
 
 def test_a_list_of_quantities_and_relations_is_edited_by_keyboard_and_saved(watched, http):
@@ -96,3 +96,78 @@ def test_items_and_texts_become_each_other(watched):
     script = "async (lists) => { const m = await import('/static/items.js'); return lists.map(m.textOf) }"
     lists = [["1 mm", " 2e1 mm", ""], ["1", "2"], ["1 mm", "2 in"], ["= a", "3"], []]
     assert watched.page.evaluate(script, lists) == ["[1,20] mm", "[1,2]", '["1 mm","2 in"]', '["= a",3]', ""]
+
+
+@pytest.fixture
+def throw(http):
+    """The path of a design with a crank throw that nothing sets yet."""
+    document = {"name": "throw", "models": {"throw": {"id": "crank_throw", "version": 1}}}
+    made = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"})
+    assert made.status_code in (201, 202), made.text
+    return f"/designs/{made.json()['id']}"
+
+
+def test_analyses_and_iterations_are_added_changed_and_removed_without_json(watched, http, throw):
+    page = watched.page
+    page.set_viewport_size({"width": 390, "height": 800})
+    watched.open(throw)
+    page.get_by_text("Analyses of the models").click()
+    new = page.get_by_role("group", name="New analysis of throw")
+    new.get_by_label("Kind").select_option("bending")
+    new.get_by_label("Level").select_option("coarse")
+    new.get_by_label("Load").fill("2 N*m")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    new.get_by_role("button", name="Add analysis").click()
+    expect(page.locator(".page-head")).to_contain_text("revision 2")
+    analysis = http.get(f"{API}{throw}").json()["models"]["throw"]["analyses"]["bending"]
+    assert (analysis["kind"], analysis["level"], analysis["load"]) == ("bending", "coarse", "2 N*m")
+
+    page.get_by_text("Analyses of the models").click()
+    old = page.get_by_role("group", name="throw.bending")
+    expect(old.get_by_label("Load")).to_have_value("2 N*m")
+    old.get_by_label("Level").select_option("")
+    old.get_by_label("or largest error").fill("0.02")
+    old.get_by_role("button", name="Change").click()
+    expect(page.locator(".page-head")).to_contain_text("revision 3")
+    analysis = http.get(f"{API}{throw}").json()["models"]["throw"]["analyses"]["bending"]
+    assert (analysis["level"], analysis["tolerance"]) == (None, 0.02)
+
+    page.get_by_text("Iterations (0)").click()
+    new = page.get_by_role("group", name="New iteration")
+    new.get_by_label("Through").fill("throw.mass")
+    new.get_by_label("Start").fill("3 kg")
+    new.get_by_label("Most rounds").fill("12")
+    new.get_by_role("button", name="Add iteration").click()
+    expect(page.locator(".page-head")).to_contain_text("revision 4")
+    iteration = {"through": "throw.mass", "start": "3 kg", "tolerance": 1e-4, "limit": 12}
+    assert http.get(f"{API}{throw}").json()["iterations"] == [iteration]
+
+    page.get_by_text("Iterations (1)").click()
+    page.get_by_role("group", name="Iteration 1").get_by_role("button", name="Remove").click()
+    expect(page.locator(".page-head")).to_contain_text("revision 5")
+    page.get_by_text("Analyses of the models").click()
+    page.get_by_role("group", name="throw.bending").get_by_role("button", name="Remove").click()
+    expect(page.locator(".page-head")).to_contain_text("revision 6")
+    design = http.get(f"{API}{throw}").json()
+    assert design["iterations"] == []
+    assert "analyses" not in design["models"]["throw"]
+    assert watched.faults() == []
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        {"declare": "analysis", "model": "throw", "kind": "torsion", "load": "2 mm"},
+        {"declare": "analysis", "model": "throw", "kind": "torsion", "tolerance": "small"},
+        {"declare": "analysis", "model": "nobody", "kind": "torsion"},
+        {"declare": "analysis"},
+        {"declare": "iteration", "through": "throw.mass", "start": "3 kg", "limit": "many"},
+        {"declare": "iteration", "through": "throw.mass", "start": "3 kg", "tolerance": "7"},
+        {"declare": "iteration"},
+    ],
+)
+def test_a_form_that_is_wrong_says_so_and_saves_nothing(http, throw, typed):
+    answer = http.post(f"{throw}/blocks", data={"revision": "1", **typed})
+    assert answer.status_code == 422
+    assert 'role="alert"' in answer.text
+    assert http.get(f"{API}{throw}").json()["revision"] == 1
