@@ -15,6 +15,8 @@ from app.web.forms import option_of
 
 Change = Mapping[str, JsonValue]
 """A merge patch of a design."""
+_OF_ANALYSIS = ("boundary", "level", "tolerance", "load")
+_OF_ITERATION = ("through", "start", "tolerance", "limit")
 _NUMBERS = {"tolerance", "limit"}
 
 
@@ -52,18 +54,18 @@ def analysis_lines(design: Design, models: Sequence[ModelBlock]) -> list[Analysi
     for block in models:
         if kinds := block.model.analyses:
             for name, options in design.models[block.name].analyses.items():
-                chosen = {"kind": options.kind or name, "boundary": options.boundary, "level": options.level}
+                chosen = {"boundary": options.boundary, "level": options.level}
                 chosen |= {"tolerance": text_of(options.tolerance), "load": text_of(options.load)}
                 texts = {key: text or "" for key, text in chosen.items()}
                 lines.append(AnalysisLine(block.name, kinds, name, texts))
-            lines.append(AnalysisLine(block.name, kinds))
+            lines.append(AnalysisLine(block.name, kinds, texts=dict.fromkeys(_OF_ANALYSIS, "")))
     return lines
 
 
 def iteration_lines(design: Design) -> list[IterationLine]:
     """The iterations, then an empty line."""
     lines = [IterationLine(str(place), _texts(one)) for place, one in enumerate(design.iterations)]
-    return [*lines, IterationLine()]
+    return [*lines, IterationLine(texts=dict.fromkeys(_OF_ITERATION, ""))]
 
 
 def _texts(iteration: DesignIteration) -> dict[str, str]:
@@ -85,7 +87,7 @@ def change_of(design: Design, typed: Mapping[str, str]) -> Change | None:
     """The merge patch that a form of this page asks for; None for another form."""
     match typed.get("declare", ""):
         case "analysis":
-            name = typed.get("name", "").strip() or typed.get("kind", "").strip()
+            name = typed.get("kind", "").strip()  # an analysis is called by its kind
             options = None if typed.get("drop") else _analysis(typed)
             return {"models": {typed.get("model", ""): {"analyses": {name: options}}}}
         case "iteration":
@@ -95,16 +97,16 @@ def change_of(design: Design, typed: Mapping[str, str]) -> Change | None:
 
 def _analysis(typed: Mapping[str, str]) -> dict[str, JsonValue]:
     """The options of an analysis; null removes those that were emptied."""
-    names = ("kind", "boundary", "level", "tolerance", "load")
     return {
-        name: _value(name, typed.get(name, "")) for name in names if name != "boundary" or typed.get(name)
+        name: _value(name, typed.get(name, ""))
+        for name in _OF_ANALYSIS
+        if name != "boundary" or typed.get(name)
     }
 
 
 def _iterations(design: Design, typed: Mapping[str, str]) -> list[JsonValue]:
     """All iterations, with one added, changed or removed."""
-    names = ("through", "start", "tolerance", "limit")
-    given = {name: _value(name, typed[name]) for name in names if typed.get(name, "").strip()}
+    given = {name: _value(name, typed[name]) for name in _OF_ITERATION if typed.get(name, "").strip()}
     whole: list[JsonValue] = [one.model_dump(mode="json") for one in design.iterations]
     place = typed.get("place", "")
     at = next((n for n in range(len(whole)) if str(n) == place), len(whole))

@@ -115,16 +115,16 @@ def test_analyses_and_iterations_are_added_changed_and_removed_without_json(watc
     new = page.get_by_role("group", name="New analysis of throw")
     new.get_by_label("Kind").select_option("bending")
     new.get_by_label("Level").select_option("coarse")
-    new.get_by_label("Load").fill("2 N*m")
+    new.get_by_role("textbox", name="Load").fill("2 N*m")
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     new.get_by_role("button", name="Add analysis").click()
     expect(page.locator(".page-head")).to_contain_text("revision 2")
     analysis = http.get(f"{API}{throw}").json()["models"]["throw"]["analyses"]["bending"]
-    assert (analysis["kind"], analysis["level"], analysis["load"]) == ("bending", "coarse", "2 N*m")
+    assert (analysis["level"], analysis["load"]) == ("coarse", "2 N*m")
 
     page.get_by_text("Analyses of the models").click()
     old = page.get_by_role("group", name="throw.bending")
-    expect(old.get_by_label("Load")).to_have_value("2 N*m")
+    expect(old.get_by_role("textbox", name="Load")).to_have_value("2 N*m")
     old.get_by_label("Level").select_option("")
     old.get_by_label("or largest error").fill("0.02")
     old.get_by_role("button", name="Change").click()

@@ -56,7 +56,10 @@ function refuse(error) {
   state.replaceChildren(isolated(hasResults ? `${words}; ${OUTDATED}` : words));
 }
 
+const LONGEST_ADDRESS = 30_000; // characters; the service takes a head of 64 kB, and a reload sends the address twice
+
 function keepInAddress(filled) {
+  if (new URLSearchParams(filled).toString().length > LONGEST_ADDRESS) return; // it keeps what was typed before
   history.replaceState(null, "", `?${new URLSearchParams(filled)}`);
   for (const link of document.querySelectorAll(".switch a")) {
     const chosen = new URLSearchParams(link.search).get("units");
