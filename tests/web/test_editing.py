@@ -100,8 +100,9 @@ def test_items_and_texts_become_each_other(watched):
 
 @pytest.fixture
 def throw(http):
-    """The path of a design with a crank throw that nothing sets yet."""
-    document = {"name": "throw", "models": {"throw": {"id": "crank_throw", "version": 1}}}
+    """The path of a design with a shell, and with a crank throw that nothing sets yet."""
+    shell = {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "48 mm", "width": "18 mm"}}
+    document = {"name": "throw", "models": {"throw": {"id": "crank_throw", "version": 1}, "shell": shell}}
     made = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"})
     assert made.status_code in (201, 202), made.text
     return f"/designs/{made.json()['id']}"
@@ -134,12 +135,12 @@ def test_analyses_and_iterations_are_added_changed_and_removed_without_json(watc
 
     page.get_by_text("Iterations (0)").click()
     new = page.get_by_role("group", name="New iteration")
-    new.get_by_label("Through").fill("throw.mass")
-    new.get_by_label("Start").fill("3 kg")
+    new.get_by_label("Through").fill("shell.mass")
+    new.get_by_label("Start").fill("0.1 kg")
     new.get_by_label("Most rounds").fill("12")
     new.get_by_role("button", name="Add iteration").click()
     expect(page.locator(".page-head")).to_contain_text("revision 4")
-    iteration = {"through": "throw.mass", "start": "3 kg", "tolerance": 1e-4, "limit": 12}
+    iteration = {"through": "shell.mass", "start": "0.1 kg", "tolerance": 1e-4, "limit": 12}
     assert http.get(f"{API}{throw}").json()["iterations"] == [iteration]
 
     page.get_by_text("Iterations (1)").click()
