@@ -20,11 +20,30 @@ class Declared(BaseModel):
     default: JsonValue = None
     default_formula: str | None = None
     examples: list[JsonValue] = []
+    anyOf: list[dict[str, JsonValue]] = []  # the forms in which it may be given
 
     @property
     def has_default(self) -> bool:
         """Whether a value stands for an empty field."""
         return "default" in self.model_fields_set
+
+    @property
+    def is_list(self) -> bool:
+        """Whether it is a list of values or a curve, as its forms say, or its example."""
+        has_list = any(_holds_list(example) for example in self.examples)
+        return has_list or (bool(self.anyOf) and all(_is_list(form) for form in self.anyOf))
+
+
+def _holds_list(example: JsonValue) -> bool:
+    return isinstance(example.get("value") if isinstance(example, dict) else example, list)
+
+
+def _is_list(form: dict[str, JsonValue]) -> bool:
+    """Whether one form of a value is that of a list, or of a quantity with one."""
+    match form:
+        case {"type": "array"} | {"properties": {"value": {"type": "array"}}}:
+            return True
+    return False
 
 
 _PROPERTIES = TypeAdapter(dict[str, Declared])

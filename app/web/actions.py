@@ -17,6 +17,7 @@ from app.presentation.typed import value_of
 from app.schemas.designs import Design, Proposals
 from app.web.api import Api, Refused, TheApi, read
 from app.web.blocks import Refusal
+from app.web.declaring import change_of
 from app.web.design_page import design_page
 from app.web.forms import Patch, fields, inner, kept, patch_of
 from app.web.gallery import GALLERY
@@ -106,15 +107,20 @@ async def save(id: Id, request: Request, api: TheApi) -> Response:
 
 @router.post("/designs/{id}/blocks")
 async def add(id: Id, request: Request, api: TheApi) -> Response:
-    """A parameter, a template or a model more, or one less; the inputs of a template are asked for first."""
+    """A parameter, a template, a model, an analysis or an iteration more, changed, or one less.
+
+    The inputs of a template are asked for first.
+    """
     typed = await fields(request)
     if typed.get("add") == "template":
         return await _add_step(id, request, api, typed)
-    patch = _block(typed)
     design = await api.get(f"/designs/{id}", Design)
+    declared = change_of(design, typed)
+    patch = _block(typed)
     try:
-        _refuse_taken(design, patch)
-        await _change(api, id, typed.get("revision", ""), patch, "")
+        if declared is None:
+            _refuse_taken(design, patch)
+        await _change(api, id, typed.get("revision", ""), patch if declared is None else declared, "")
     except Refused as refused:
         return await _again(request, api, id, {}, refused)
     return go(f"/designs/{id}")
@@ -186,7 +192,7 @@ async def cancel(id: Id, job: Id, api: TheApi) -> Response:
     return go(f"/designs/{id}")
 
 
-async def _change(api: Api, id: str, revision: str, patch: Patch, note: str) -> None:
+async def _change(api: Api, id: str, revision: str, patch: Mapping[str, JsonValue], note: str) -> None:
     noted = {**patch, "note": note} if note.strip() else patch
     headers = {**AT_ONCE, "If-Match": _tag(revision)}
     await api.send("PATCH", f"/designs/{id}", json=noted, headers=headers)

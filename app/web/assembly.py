@@ -12,7 +12,7 @@ from starlette.middleware.gzip import GZipMiddleware
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.web import actions, organising, problems, routes
+from app.web import actions, organising, problems, routes, tables
 
 STATIC = Path(__file__).with_name("static")
 SMALLEST, LEVEL = 1000, 6  # of what is compressed [bytes], and how hard
@@ -64,6 +64,7 @@ def install(app: FastAPI) -> None:
     app.include_router(routes.router)
     app.include_router(organising.router)
     app.include_router(actions.router)
+    app.include_router(tables.router)
     app.mount("/static", Files(directory=STATIC), name="static")
     problems.install(app)
     app.add_middleware(Compression)

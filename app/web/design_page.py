@@ -32,6 +32,7 @@ from app.web.blocks import (
     with_changes,
     with_fields,
 )
+from app.web.declaring import analysis_lines, iteration_lines, measures
 from app.web.differences import differences
 from app.web.forms import texts
 from app.web.limits import tables_of
@@ -104,6 +105,9 @@ async def design_page(
         painted=painted(steps, parts),
         was=json.dumps(texts(design)),
         choices=await _choices(api),
+        analysis_lines=analysis_lines(design, parts),
+        iteration_lines=iteration_lines(design),
+        measures=list(measures(design, parts)),
     )
 
 

@@ -29,6 +29,7 @@ class Field:
     options: tuple[str, ...] = ()
     value: object = None  # what a relation comes to, or a default, as a quantity; None where the text says it
     needed: bool = True
+    is_list: bool = False  # several values, to be edited item by item or pasted
     own: bool = False  # a design's own parameter: its name is all its words
     labels: Mapping[str, str] = field(default_factory=dict)  # words of the options
     suggestions: Mapping[str, str] = field(default_factory=dict)  # texts to take, and what each stands for
@@ -134,6 +135,7 @@ def _field(name: str, declared: Declared, text: str, value: object, error: str |
         options=declared.enum,
         value=value,
         needed=needed,
+        is_list=declared.is_list or text.startswith("["),
     )
 
 

@@ -4,6 +4,7 @@ import { calculated } from "./calculation.js";
 import { startDownloads } from "./downloads.js";
 import { Draft } from "./draft.js";
 import { isolated } from "./isolated.js";
+import { startLists } from "./lists.js";
 import { live } from "./live.js";
 import { showParameters, showValues } from "./parameters.js";
 import { drawPictures } from "./pictures.js";
@@ -15,6 +16,7 @@ import { nameOf, patchOf } from "./typed.js";
 import { goTo, showKeys, showVerdict, startVerdict } from "./verdict.js";
 
 startDownloads();
+startLists();
 
 const form = document.getElementById("sheet");
 const { design: id, revision } = form.dataset;

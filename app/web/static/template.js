@@ -3,6 +3,7 @@ import { drawAccuracy } from "./accuracy.js";
 import { Refused, call, units } from "./api.js";
 import { calculated } from "./calculation.js";
 import { isolated } from "./isolated.js";
+import { startLists } from "./lists.js";
 import { live } from "./live.js";
 import { drawPictures, whenSeen } from "./pictures.js";
 import { OUTDATED, markOutdated, showFaults, showResults } from "./results.js";
@@ -61,7 +62,10 @@ function refuse(error) {
   state.replaceChildren(isolated(hasResults ? `${words}; ${OUTDATED}` : words));
 }
 
+const LONGEST_ADDRESS = 30_000; // characters; the service takes a head of 64 kB, and a reload sends the address twice
+
 function keepInAddress(filled) {
+  if (new URLSearchParams(filled).toString().length > LONGEST_ADDRESS) return; // it keeps what was typed before
   history.replaceState(null, "", `?${new URLSearchParams(filled)}`);
   for (const link of document.querySelectorAll(".switch a")) {
     const chosen = new URLSearchParams(link.search).get("units");
@@ -69,6 +73,7 @@ function keepInAddress(filled) {
   }
 }
 
+startLists();
 const preview = live(tried, show, refuse);
 form.addEventListener("input", () => {
   keepInAddress([...new FormData(form)].filter(([, text]) => text.trim()));
