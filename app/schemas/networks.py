@@ -24,8 +24,8 @@ class NetworkRelation(Answer):
     source: str = Field(description="what it uses, such as `film.bearing_diameter`")
     relation: str = Field(description="as typed")
     forward: bool = Field(
-        description="false where the source stands in the same or a later column: an iteration, or an input of "
-        "a block that is calculated later"
+        description="false where the source stands in the same or a later column: an iteration, or an input "
+        "of a block that is calculated later"
     )
 
 
@@ -36,7 +36,9 @@ class NetworkName(Answer):
     role: Literal["parameter", "input", "output", "measure"]
     words: str
     unit: str = Field(description="1 for a pure number")
-    dimension: str = Field(description="equal for quantities of the same kind, such as a length in mm or inch")
+    dimension: str = Field(
+        description="equal for quantities of the same kind, such as a length in mm or inch"
+    )
 
 
 class DesignNetwork(Answer):
