@@ -51,7 +51,7 @@ def test_every_name_is_one_that_a_relation_may_use(http):
 
 
 def test_an_input_of_a_later_block_drives_backward(http):
-    sizes = {"inner_diameter": "48 mm", "width": "20 mm", "wall_thickness": "3 mm"}
+    sizes = {"inner_diameter": "48 mm", "width": "20 mm", "wall": "3 mm"}
     shell = {"id": "plain_bearing", "version": 1}
     document = {
         "name": "backward",

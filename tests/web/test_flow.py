@@ -27,7 +27,9 @@ def network(count, seed, backward=0):
 
 
 def relation(target, source, forward):
-    return NetworkRelation(target=target, source=source, relation=f"= {source} * 1.05 + 2 mm", forward=forward)
+    return NetworkRelation(
+        target=target, source=source, relation=f"= {source} * 1.05 + 2 mm", forward=forward
+    )
 
 
 def are_apart(one, other):
