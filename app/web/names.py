@@ -37,4 +37,12 @@ def _measures(part: ModelMeasurements) -> dict[str, object]:
         for name, output in analysis.outputs.items()
         if name != "surface"
     }
-    return {"mass": part.mass, "volume": part.volume, **kinds}
+    box = {"low": part.bounding_box.low, "high": part.bounding_box.high, "centre": part.centre}
+    places = {
+        f"{side}_{axis}": {"value": value, "unit": place.unit}
+        for side, place in box.items()
+        for axis, value in zip("xyz", place.value, strict=True)
+    }
+    inertia = {f"inertia_{axes}": getattr(part.inertia, axes) for axes in ("xx", "xy", "xz", "yy", "yz", "zz")}
+    polar = {"polar_inertia": part.polar_inertia} if part.polar_inertia else {}
+    return {"mass": part.mass, "volume": part.volume, **places, **inertia, **polar, **kinds}

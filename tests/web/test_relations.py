@@ -9,6 +9,11 @@ from playwright.sync_api import expect
 from serving import API
 
 BORE, LIST = "[name='model.inner_diameter']", "#completions"
+BESIDE = f"""() => {{
+  const list = document.querySelector("{LIST}").getBoundingClientRect();
+  const field = document.querySelector("{BORE}").getBoundingClientRect();
+  return list.top >= field.bottom || list.bottom <= field.top;
+}}"""
 OPTION = f"{LIST} [role=option]"
 
 
@@ -87,7 +92,8 @@ def test_the_picker_shows_values_by_block_and_inserts_at_the_caret(opened):
     dialog = opened.locator("[data-picker]")
     expect(dialog).to_be_visible()
     expect(dialog.get_by_label("Filter by name or words")).to_be_focused()
-    assert {"film", "model"} <= set(dialog.locator("h3").all_inner_texts())
+    assert dialog.locator("h3").all_inner_texts()[0] == "film"
+    expect(dialog.locator("[data-pick='model.low_x']")).to_have_count(0)  # it follows from the field
     shown = dialog.locator("[data-pick='film.bearing_diameter']")
     expect(shown).to_contain_text(re.compile(r"^bearing_diameter50 mm"))
     expect(dialog.locator("[data-pick='film.radial_load']")).to_have_count(0)
@@ -118,6 +124,7 @@ def test_values_of_the_picker_are_those_of_the_last_preview(opened):
     field(opened, ".scale").focus()
     opened.keyboard.press("Alt+ArrowDown")
     expect(opened.locator("[data-pick='film.radial_load']")).to_contain_text("12.5 kN")
+    expect(opened.locator("[data-pick='model.low_x']")).to_contain_text(re.compile(r"−45(\.\d+)? mm"))
 
 
 def test_the_drawing_links_to_steps_and_says_the_same_as_a_list(opened):
@@ -144,6 +151,10 @@ def test_a_narrow_page_scrolls_the_drawing_inside_its_panel(browser, served, pap
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     bore = page.locator(BORE)
     bore.fill("= film.")
+    expect(
+        page.locator("[id='model-inner_diameter-error']")
+    ).to_be_visible()  # it moves the field
+    page.wait_for_function(BESIDE)
     box = page.locator(LIST).bounding_box()
     assert box["x"] >= 0
     assert box["x"] + box["width"] <= 390

@@ -9,7 +9,7 @@ export function startCompletion(form, names) {
   const list = Object.assign(document.createElement("ul"), { id: "completions", className: "completions", popover: "manual", ariaLabel: "Names" });
   list.setAttribute("role", "listbox");
   document.body.append(list);
-  let field = null, options = [], chosen = 0, start = -1, isInserting = false;
+  let field = null, options = [], chosen = 0, start = -1, isInserting = false, isFollowing = false;
 
   const close = () => {
     if (!field) return;
@@ -27,7 +27,7 @@ export function startCompletion(form, names) {
     field = target;
     list.replaceChildren(...options.map((item, place) => option(item, place, names.fits(item, target))));
     if (!list.matches(":popover-open")) list.showPopover();
-    place();
+    if (!isFollowing) follow();
     target.setAttribute("aria-expanded", "true");
     choose(0);
   }
@@ -45,6 +45,14 @@ export function startCompletion(form, names) {
     insert(target, options[place].name, start, target.selectionStart);
     isInserting = false;
     close();
+  }
+
+  // The field moves while the list is open: by scrolling, and by the messages of a preview.
+  function follow() {
+    isFollowing = field !== null;
+    if (!isFollowing) return;
+    place();
+    requestAnimationFrame(follow);
   }
 
   // Below the field, or above it where there is more room; never wider than the window.
@@ -84,8 +92,6 @@ export function startCompletion(form, names) {
     const line = event.target.closest("[role=option]");
     if (line) take([...list.children].indexOf(line));
   });
-  addEventListener("scroll", (event) => field && event.target !== list && place(), true);
-  addEventListener("resize", close);
 }
 
 function option(item, place, fits) {

@@ -3,6 +3,7 @@ import { quantityText, unit } from "./numbers.js";
 import { nameOf } from "./typed.js";
 
 const WORD = /[\w.]/;
+const FOLLOWS = new Set(["output", "measure"]);
 
 export class Names {
   constructor(list) {
@@ -21,10 +22,10 @@ export class Names {
 
   fits = (item, field) => this.dimensionOf(field) === undefined || item.dimension === this.dimensionOf(field);
 
-  // All but the field itself and what its own step computes from it.
+  // All but the field itself and what follows from it: results of its own step, measures of its own model.
   for(field) {
     const own = nameOf(field.name), block = field.name.startsWith(".") ? "" : own.split(".")[0];
-    return this.list.filter(({ name, role }) => name !== own && !(role === "output" && name.split(".")[0] === block));
+    return this.list.filter(({ name, role }) => name !== own && !(FOLLOWS.has(role) && name.split(".")[0] === block));
   }
 
   // Names that hold what was typed: those that fit first, of these those that begin so.
