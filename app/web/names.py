@@ -43,6 +43,6 @@ def _measures(part: ModelMeasurements) -> dict[str, object]:
         for side, place in box.items()
         for axis, value in zip("xyz", place.value, strict=True)
     }
-    inertia = {f"inertia_{axes}": getattr(part.inertia, axes) for axes in ("xx", "xy", "xz", "yy", "yz", "zz")}
+    tensor = {f"inertia_{axes}": getattr(part.inertia, axes) for axes in type(part.inertia).model_fields}
     polar = {"polar_inertia": part.polar_inertia} if part.polar_inertia else {}
-    return {"mass": part.mass, "volume": part.volume, **places, **inertia, **polar, **kinds}
+    return {"mass": part.mass, "volume": part.volume, **places, **tensor, **polar, **kinds}

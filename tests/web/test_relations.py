@@ -151,9 +151,7 @@ def test_a_narrow_page_scrolls_the_drawing_inside_its_panel(browser, served, pap
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     bore = page.locator(BORE)
     bore.fill("= film.")
-    expect(
-        page.locator("[id='model-inner_diameter-error']")
-    ).to_be_visible()  # it moves the field
+    expect(page.locator("[id='model-inner_diameter-error']")).to_be_visible()  # it moves the field
     page.wait_for_function(BESIDE)
     box = page.locator(LIST).bounding_box()
     assert box["x"] >= 0
