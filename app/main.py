@@ -37,6 +37,7 @@ from app.api.routes.jobs import router as jobs
 from app.api.routes.labels import router as labels
 from app.api.routes.library import router as library
 from app.api.routes.models import router as models
+from app.api.routes.networks import router as networks
 from app.api.routes.reports import router as reports
 from app.api.routes.templates import router as catalogue
 from app.assembly import assemble
@@ -94,6 +95,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         decisions,
         labels,
         comparisons,
+        networks,
         design_files,
         reports,
         design_events,

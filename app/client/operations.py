@@ -51,6 +51,7 @@ from app.schemas.evaluations import Evaluation, Solution, Worksheet
 from app.schemas.jobs import Job
 from app.schemas.labels import Labels, TagList, TagUse
 from app.schemas.library import LibraryTable, LibraryTables, LibraryTableSummary
+from app.schemas.networks import DesignNetwork
 from app.schemas.solids import Build, Verification
 from app.schemas.templates import Template, TemplateList, TemplateSummary
 
@@ -286,6 +287,11 @@ def auto_map(id: str) -> Exchange[list[Proposal]]:
 def explain(id: str, parameter: str) -> Exchange[Explanation]:
     """Where a model parameter, such as `model.inner_diameter`, comes from."""
     return answered(Explanation, get(f"/designs/{id}/explain/{parameter}"))
+
+
+def network(id: str) -> Exchange[DesignNetwork]:
+    """What drives what in a design, and the names that its relations may use."""
+    return answered(DesignNetwork, get(f"/designs/{id}/network"))
 
 
 def revision(id: str, number: int) -> Exchange[Revision]:

@@ -18,6 +18,7 @@ from app.schemas.designs import (
     RevisionWorksheet,
 )
 from app.schemas.jobs import Job, JobList
+from app.schemas.networks import DesignNetwork
 from app.schemas.templates import CadModel as Model
 from app.schemas.templates import Template, TemplateList, TemplateSummary
 from app.web import sheet
@@ -34,9 +35,11 @@ from app.web.blocks import (
 )
 from app.web.declaring import analysis_lines, iteration_lines, measures
 from app.web.differences import differences
+from app.web.flow import drawing
 from app.web.forms import texts
 from app.web.limits import tables_of
 from app.web.model_page import finished_analyses
+from app.web.names import names_json, values_of
 from app.web.rendering import show, units_of
 from app.web.verdict import banner, opened, with_keys
 from cad.export import MEDIA_TYPES
@@ -80,6 +83,7 @@ async def design_page(
     measured = await api.get(
         f"/designs/{id}/measurements", dict[str, ModelMeasurements], units=units_of(request)
     )
+    network = await api.get(f"/designs/{id}/network", DesignNetwork)
     return show(
         request,
         "design.html",
@@ -108,6 +112,9 @@ async def design_page(
         analysis_lines=analysis_lines(design, parts),
         iteration_lines=iteration_lines(design),
         measures=list(measures(design, parts)),
+        network=network,
+        picture=drawing(network),
+        names=names_json(network, values_of(revision, preview, measured)),
     )
 
 

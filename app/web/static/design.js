@@ -2,11 +2,15 @@
 import { Refused, call, units } from "./api.js";
 import { calculated } from "./calculation.js";
 import { startDownloads } from "./downloads.js";
+import { startCompletion } from "./completion.js";
 import { Draft } from "./draft.js";
+import { startDrives } from "./drives.js";
 import { isolated } from "./isolated.js";
 import { startLists } from "./lists.js";
 import { live } from "./live.js";
+import { Names } from "./names.js";
 import { showParameters, showValues } from "./parameters.js";
+import { startPicker } from "./picker.js";
 import { drawPictures } from "./pictures.js";
 import { follow } from "./progress.js";
 import { OUTDATED, markOutdated, markWaiting, showFaults, showResults, showWarnings } from "./results.js";
@@ -21,6 +25,7 @@ startLists();
 const form = document.getElementById("sheet");
 const { design: id, revision } = form.dataset;
 const api = `/api/v1/designs/${id}`;
+const names = new Names(JSON.parse(document.querySelector("[data-names]").value));
 const draft = new Draft(form, JSON.parse(form.querySelector("[name=was]").value));
 const models = new Set([...document.querySelectorAll("[data-model]")].map((part) => part.dataset.model));
 const state = form.querySelector("[data-state]");
@@ -64,6 +69,7 @@ function waiting({ steps }) {
 
 function show(payload) {
   steps = payload.steps;
+  names.update(payload);
   if (isJudged || draft.isChanged()) showVerdict(payload);
   for (const [step, answer] of Object.entries(steps)) {
     markWaiting(step, isWaiting(answer));
@@ -199,6 +205,9 @@ function conflict() {
 async function start() {
   startVerdict(form);
   startDecide(api, patch);
+  startPicker(form, names);
+  startCompletion(form, names);
+  startDrives();
   const from = draft.restore();
   if (from !== null) showDraft();
   if (from !== null && from !== Number(revision)) tell(`Revision ${revision} was saved since you typed these changes; look at them once more.`);

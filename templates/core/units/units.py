@@ -113,6 +113,14 @@ def compatible(one: pint.Unit, other: pint.Unit) -> bool:
     return not is_rate or _radians(one) == _radians(other)
 
 
+def dimension_of(base: pint.Unit) -> str:
+    """A text that is equal for base units that are compatible."""
+    dimensions = dict(registry.get_dimensionality(base))
+    radians = _radians(base) if dimensions.keys() == {"[time]"} else 0.0
+    powers = sorted([*dimensions.items(), *([("rad", radians)] if radians else [])])
+    return " ".join(f"{name.strip('[]')}^{power:g}" for name, power in powers) or "1"
+
+
 def _radians(base: pint.Unit) -> float:
     exponents: dict[str, Any] = dict(registry.Quantity(1.0, base).unit_items())
     return float(exponents.get("radian", 0))

@@ -1,0 +1,29 @@
+"""`/designs/{id}/network`: what drives what in a design."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path
+
+from app.api.dependencies import TheDesigns
+from app.api.reading import StrictRoute
+from app.designs import repository
+from app.designs.drives import network_of
+from app.designs.graph import build_graph
+from app.designs.service import read_document, resolved
+from app.schemas.networks import DesignNetwork
+from app.schemas.problems import refusals
+
+router = APIRouter(prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute)
+
+Id = Annotated[str, Path(max_length=64)]
+
+
+@router.get("/{id}/network", responses=refusals(404))
+def show_network(id: Id, designs: TheDesigns) -> DesignNetwork:
+    """What drives what: blocks in the order of calculation, relations, and the names these may use."""
+    with designs.database.read() as session:
+        document = repository.head(session, id).document
+    graph, _ = build_graph(resolved(read_document(document), designs.catalogues), designs.catalogues)
+    return network_of(graph)

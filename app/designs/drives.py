@@ -1,0 +1,113 @@
+"""What drives what in a design: its blocks in columns, its relations, and the names that these may use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import Literal
+
+from app.designs.analyses import measured_names, measured_unit
+from app.designs.network import Block, Cell, Graph
+from app.designs.reference import Reference
+from app.schemas.networks import DesignNetwork, NetworkBlock, NetworkName, NetworkRelation
+from templates.core.language.spec import Choice, Declaration
+from templates.core.units.relation import is_relation
+from templates.core.units.units import dimension_of, unit
+
+Columns = Mapping[str, int]
+
+
+def network_of(graph: Graph) -> DesignNetwork:
+    """What drives what in a checked network."""
+    columns = _columns(graph)
+    return DesignNetwork(
+        blocks=[NetworkBlock(name=name, kind=_kind(graph, name), column=columns[name]) for name in columns],
+        relations=list(_relations(graph, columns)),
+        names=list(_names(graph)),
+    )
+
+
+def _columns(graph: Graph) -> dict[str, int]:
+    """The column of every parameter and block, in the order of calculation.
+
+    A block that uses an input of a later one, or what an iteration assumes, does not wait for it.
+    """
+    columns: dict[str, int] = {}
+    for name in _ordered(graph):
+        sources = (source.block for cell in _cells(graph, name) for source in cell.uses.values())
+        columns[name] = max((columns[source] + 1 for source in sources if source in columns), default=0)
+    return columns
+
+
+def _ordered(graph: Graph) -> Iterator[str]:
+    """The names of parameters and blocks as the network orders them; as written where it has no order."""
+    nodes = graph.order or (*graph.parameters.values(), *graph.blocks.values())
+    for node in nodes:
+        if isinstance(node, Block) or (isinstance(node, Cell) and node.declared is None):
+            yield node.name
+
+
+def _cells(graph: Graph, name: str) -> list[Cell]:
+    """The cells of a block; of a parameter itself."""
+    block = graph.blocks.get(name)
+    return list(block.cells.values()) if block else [graph.parameters[name]]
+
+
+def _kind(graph: Graph, name: str) -> Literal["parameter", "step", "model"]:
+    if name not in graph.blocks:
+        return "parameter"
+    return "model" if graph.blocks[name].is_model else "step"
+
+
+def _relations(graph: Graph, columns: Columns) -> Iterator[NetworkRelation]:
+    """Every name that every relation uses, where there is such a block."""
+    for cell in graph.cells():
+        target = cell.reference.block
+        for name, source in cell.uses.items():
+            if source.block in columns:
+                forward = columns[source.block] < columns[target]
+                yield NetworkRelation(target=cell.name, source=name, relation=_text(cell), forward=forward)
+
+
+def _text(cell: Cell) -> str:
+    """The relation as typed; of a list, its first."""
+    texts = cell.raw if isinstance(cell.raw, list) else [cell.raw]
+    return next(str(text) for text in texts if is_relation(text))
+
+
+def _names(graph: Graph) -> Iterator[NetworkName]:
+    """Every name that a relation may use."""
+    for name, kind in graph.kinds.items():
+        if name in graph.parameters:
+            yield _name(name, "parameter", "parameter of the design", f"{kind.base:~}" or "1")
+    for block in graph.blocks.values():
+        for tail, declared in block.cls.inputs.items():
+            if not isinstance(declared, Choice):
+                yield _declared(f"{block.name}.{tail}", "input", declared)
+        for tail, formula in block.cls.formulas.items():
+            yield _declared(f"{block.name}.{tail}", "output", formula)
+        for tail in measured_names(block.analyses) if block.is_model else ():
+            name = f"{block.name}.{tail}"
+            yield _name(name, "measure", _words(tail), measured_unit(Reference.parse(name)))
+
+
+Role = Literal["parameter", "input", "output", "measure"]
+
+
+def _declared(name: str, role: Role, declared: Declaration) -> NetworkName:
+    return _name(name, role, declared.meaning.words, declared.meaning.unit)
+
+
+def _name(name: str, role: Role, words: str, unit_text: str) -> NetworkName:
+    return NetworkName(name=name, role=role, words=words, unit=unit_text, dimension=_dimension(unit_text))
+
+
+def _words(tail: str) -> str:
+    """What a measure is called: `torsion.stiffness` is the stiffness of the analysis torsion."""
+    kind, _, output = tail.rpartition(".")
+    return f"{output.replace('_', ' ')}, {kind} analysis" if kind else f"{output.replace('_', ' ')}, measured"
+
+
+@lru_cache(maxsize=1024)
+def _dimension(unit_text: str) -> str:
+    return dimension_of(unit(unit_text).base)

@@ -1,0 +1,104 @@
+// A relation completes its names while it is typed: a combobox with a list, by keyboard and by mouse.
+import { insert, startOfName } from "./names.js";
+import { unit } from "./numbers.js";
+
+const MOST = 40; // options at once; typing on narrows them
+const STEPS = { ArrowDown: 1, ArrowUp: -1 };
+
+export function startCompletion(form, names) {
+  const list = Object.assign(document.createElement("ul"), { id: "completions", className: "completions", popover: "manual", ariaLabel: "Names" });
+  list.setAttribute("role", "listbox");
+  document.body.append(list);
+  let field = null, options = [], chosen = 0, start = -1, isInserting = false, isFollowing = false;
+
+  const close = () => {
+    if (!field) return;
+    if (list.matches(":popover-open")) list.hidePopover();
+    field.setAttribute("aria-expanded", "false");
+    field.removeAttribute("aria-activedescendant");
+    field = null;
+  };
+
+  function open(target) {
+    start = startOfName(target.value, target.selectionStart);
+    const typed = start < 0 ? "" : target.value.slice(start, target.selectionStart);
+    options = start < 0 ? [] : names.matching(target, typed).slice(0, MOST);
+    if (options.length === 0 || (options.length === 1 && options[0].name === typed)) return close();
+    field = target;
+    list.replaceChildren(...options.map((item, place) => option(item, place, names.fits(item, target))));
+    if (!list.matches(":popover-open")) list.showPopover();
+    if (!isFollowing) follow();
+    target.setAttribute("aria-expanded", "true");
+    choose(0);
+  }
+
+  function choose(place) {
+    chosen = (place + options.length) % options.length;
+    for (const [at, line] of [...list.children].entries()) line.setAttribute("aria-selected", String(at === chosen));
+    field.setAttribute("aria-activedescendant", `completion-${chosen}`);
+    list.children[chosen].scrollIntoView({ block: "nearest" });
+  }
+
+  function take(place) {
+    const target = field;
+    isInserting = true;
+    insert(target, options[place].name, start, target.selectionStart);
+    isInserting = false;
+    close();
+  }
+
+  // The field moves while the list is open: by scrolling, and by the messages of a preview.
+  function follow() {
+    isFollowing = field !== null;
+    if (!isFollowing) return;
+    place();
+    requestAnimationFrame(follow);
+  }
+
+  // Below the field, or above it where there is more room; never wider than the window.
+  function place() {
+    const box = field.getBoundingClientRect(), below = innerHeight - box.bottom;
+    const isBelow = below > 200 || below > box.top;
+    const width = Math.min(Math.max(box.width, 340), innerWidth - 16);
+    Object.assign(list.style, {
+      left: `${Math.max(8, Math.min(box.left, innerWidth - width - 8))}px`,
+      width: `${width}px`,
+      maxHeight: `${Math.min(320, (isBelow ? below : box.top) - 12)}px`,
+      top: isBelow ? `${box.bottom + 2}px` : "auto",
+      bottom: isBelow ? "auto" : `${innerHeight - box.top + 2}px`,
+    });
+  }
+
+  for (const input of [...form.elements].filter((one) => names.takes(one))) {
+    for (const [name, value] of Object.entries({ role: "combobox", "aria-autocomplete": "list", "aria-expanded": "false", "aria-controls": list.id })) input.setAttribute(name, value);
+    input.addEventListener("input", () => isInserting || open(input));
+    input.addEventListener("blur", close);
+    input.addEventListener("keydown", (event) => onKey(event));
+  }
+
+  function onKey(event) {
+    if (!field || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.key in STEPS) choose(chosen + STEPS[event.key]);
+    else if ((event.key === "Enter" || event.key === "Tab") && !event.shiftKey) take(chosen);
+    else if (event.key === "Escape") close();
+    else if (["ArrowLeft", "ArrowRight", "Home", "End"].includes(event.key)) return close();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  list.addEventListener("mousedown", (event) => {
+    event.preventDefault(); // the field keeps the focus
+    const line = event.target.closest("[role=option]");
+    if (line) take([...list.children].indexOf(line));
+  });
+}
+
+function option(item, place, fits) {
+  const line = Object.assign(document.createElement("li"), { id: `completion-${place}`, className: fits ? "" : "other" });
+  line.setAttribute("role", "option");
+  line.append(part("code", item.name), part("span", item.value || unit(item.unit), "value"), part("small", item.words));
+  return line;
+}
+
+const part = (tag, textContent, className = "") => Object.assign(document.createElement(tag), { textContent, className });
