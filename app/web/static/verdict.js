@@ -77,9 +77,9 @@ function give(criterion) {
 }
 
 function link(criterion) {
-  const words = capital(title(criterion)), step = stepOf(criterion);
-  if (!step) return words;
-  const made = element("a", { href: `#step-${step}` }, words);
+  const step = stepOf(criterion);
+  if (!step) return capital(title(criterion));
+  const made = element("a", { href: `#step-${step}` }, `${step}: ${title(criterion)}`);
   made.dataset.reveal = "";
   return made;
 }
