@@ -1,5 +1,5 @@
 // The dialog that edits a list item by item: quantities and relations, side by side.
-import { asDialog, fill } from "./lists.js";
+import { asDialog, fill } from "./dialogs.js";
 import { valueOf } from "./typed.js";
 
 const MOST_ITEMS = 500;

@@ -1,7 +1,7 @@
 // The dialog that takes a pasted table or a CSV file: the service reads it, the user chooses what goes where.
 import { call } from "./api.js";
 import { isolated } from "./isolated.js";
-import { asDialog, fill } from "./lists.js";
+import { asDialog, fill } from "./dialogs.js";
 import { live } from "./live.js";
 
 const LARGEST = 2_000_000; // of a file [bytes]; the service takes a million characters
@@ -120,8 +120,11 @@ export function startPasting(dialog) {
 
 function line(kind, cells) {
   const row = document.createElement("tr");
-  for (const cell of cells) row.append(Object.assign(document.createElement(kind), kind === "th" ? { scope: "col" } : {}));
-  cells.forEach((cell, place) => row.children[place].append(cell));
+  for (const cell of cells) {
+    const made = Object.assign(document.createElement(kind), kind === "th" ? { scope: "col" } : {});
+    made.append(cell);
+    row.append(made);
+  }
   return row;
 }
 
