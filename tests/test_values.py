@@ -12,6 +12,7 @@ import templates
 
 GROWING = {
     "Ledger",
+    "Shifting",
     "Calculation",
     "Caller",
     "Graph",

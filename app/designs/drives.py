@@ -79,7 +79,7 @@ def _names(graph: Graph) -> Iterator[NetworkName]:
     """Every name that a relation may use."""
     for name, kind in graph.kinds.items():
         if name in graph.parameters:
-            yield _name(name, "parameter", "parameter of the design", f"{kind.base:~}" or "1")
+            yield _name(name, "parameter", "parameter of the design", f"{kind.base:~C}" or "1")
     for block in graph.blocks.values():
         for tail, declared in block.cls.inputs.items():
             if not isinstance(declared, Choice):

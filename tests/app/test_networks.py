@@ -79,3 +79,10 @@ def test_dimensions_are_equal_where_units_are_compatible():
     for one in units:
         for other in units:
             assert (dimension_of(one) == dimension_of(other)) == compatible(one, other)
+
+
+def test_a_parameter_of_a_compound_unit(http):
+    document = {**paper(name="compound"), "parameters": {"scale": "1", "load": "25 kN", "push": "3 N*m"}}
+    names = {one["name"]: one for one in network(http, document)["names"]}
+    assert unit(names["load"]["unit"]).base == unit("N").base
+    assert names["push"]["dimension"] == dimension_of(unit("N*m").base)

@@ -129,7 +129,8 @@ def test_missing_artifacts_are_no_fault_of_the_program(http, ids):
         response = http.get(path, headers={"Prefer": "wait=1"})
         assert response.status_code < 500 or response.status_code == 503, (path, response.text[:500])
     for id in SETTLED:
-        assert http.get(f"/designs/{id}").status_code == 200
+        page = http.get(f"/designs/{id}")
+        assert page.status_code == 200, page.text[-1500:]
         assert http.get(f"/designs/{id}/revisions/1").status_code == 200
 
 

@@ -162,7 +162,7 @@ def test_two_steps_are_short_and_verdict_and_part_stay_in_view(watched, two_step
 
 def test_a_link_of_the_verdict_unfolds_its_step_and_the_fold_is_kept(watched, two_steps):
     page = watched.page
-    watched.open(two_steps)
+    watched.open(two_steps, wait_until="networkidle")  # no preview comes between
     criteria = [{**WORST, "name": "load.load"}, UNCHECKED]
     payload = {"criteria": criteria, "verdict": verdict(*criteria)}
     page.locator('[data-fold="load"]').evaluate("(fold) => { fold.open = false; }")
