@@ -186,7 +186,7 @@ def test_the_governing_criterion_stands_on_the_first_screen(browser, served, two
     width, height = size
     context = browser.new_context(viewport={"width": width, "height": height})
     page = context.new_page()
-    page.goto(served.url + two_steps)
+    page.goto(served.url + two_steps, wait_until="networkidle")
     payload = {"criteria": CRITERIA, "verdict": verdict(*CRITERIA)}
     page.evaluate("async (payload) => (await import('/static/verdict.js')).showVerdict(payload)", payload)
     box = page.locator(".governing").bounding_box()
