@@ -26,6 +26,12 @@ ABOUT = {
         "app/*idempotency*.py",
     ),
     "tests/app/test_backup.py": ("app/*maintenance/*.py", "app/*storage/*.py"),
+    "tests/app/test_calculations_in_processes.py": (
+        "app/*jobs/*.py",
+        "app/*workers/*.py",
+        "app/calculations/*.py",
+    ),
+    "tests/app/test_saves_as_jobs.py": ("app/*jobs/*.py", "app/designs/*.py", "app/calculations/*.py"),
     "tests/app/test_old_database.py": ("app/*storage/*.py",),
     "tests/app/test_stopping.py": ("app/server.py", "app/*jobs/*.py", "app/*workers/*.py"),
     "tests/web/test_browser_properties.py": WEB,

@@ -11,16 +11,19 @@ from app.api.services import Services
 from app.api.threads import Threads
 from app.calculations.assembly import Calculations, assemble_calculations
 from app.calculations.cache import results
-from app.calculations.jobs import CALCULATION, DECISION, PREVIEW
+from app.calculations.jobs import CALCULATION, SOLUTION, TOLERANCE
 from app.catalogue.catalogues import Catalogues, TeamCatalogues
 from app.catalogue.checking import CheckInProcess
 from app.catalogue.finding import find_templates
+from app.designs.asking import Asking
 from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
+from app.designs.long_answers import LongAnswers
 from app.designs.previewing import Previews
 from app.designs.recent import Recent
 from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
+from app.designs.solved import solved
 from app.jobs.service import Jobs
 from app.observation import metrics
 from app.reports.paper import Press
@@ -37,9 +40,15 @@ from app.storage.database import Database
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.storage.migrations import migrate
+from app.studies.assembly import assemble_studies
+from app.studies.running import LANES, Parts
+from app.tolerances.process import analysed
 from app.workers.base import Limits, Worker
 from app.workers.local import LocalProcesses
 from cad.catalogue import models as find_models
+
+NETWORK = ("app.designs.net", "app.studies.planning", "app.studies.searching", "app.studies.sensitivities")
+"""What processes have loaded that calculate rows of designs."""
 
 
 def assemble(settings: Settings, stack: ExitStack) -> Services:
@@ -57,17 +66,19 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     catalogues = find_catalogues(settings, worker)
     stack.callback(catalogues.close)
     jobs = Jobs(database, worker, settings, problems.describe)
-    calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs)
+    calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs, NETWORK)
     recent = Recent()
     register_jobs(settings, jobs, database, store, catalogues, calculations, recent)
-    previews = Previews(database, catalogues, store, jobs, calculations.steps)
-    jobs.register(PREVIEW, previews, previews.failed, lane=CALCULATION)
-    decisions = Decisions(database, catalogues, store, jobs, calculations.steps)
-    jobs.register(DECISION, decisions, decisions.failed, lane=CALCULATION)
-    jobs.start(calculations.lanes)
+    about = database, catalogues, store, jobs, calculations.steps
+    previews, decisions = Previews(*about), Decisions(*about)
+    solving, tolerances = Asking(SOLUTION, solved, *about), Asking(TOLERANCE, analysed, *about)
+    register_answers(jobs, previews, decisions, solving, tolerances)
+    designs = Designs(database, jobs, catalogues, recent)
+    parts = Parts(database, store, catalogues, calculations.pool, jobs, calculations.steps)
+    studies = assemble_studies(parts, designs)
+    jobs.start({**calculations.lanes, **LANES})
     stack.callback(jobs.stop)
     models = Models(database, store, jobs, catalogues)
-    designs = Designs(database, jobs, catalogues, recent)
     analyses = Analyses(database, store, jobs)
     return Services(
         settings=settings,
@@ -83,6 +94,9 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         labelling=Labelling(designs),
         previews=previews,
         decisions=decisions,
+        studies=studies,
+        solving=solving,
+        tolerances=tolerances,
         models=models,
         analyses=analyses,
         healing=Healing(database, store, models, analyses),
@@ -91,13 +105,26 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         streams=Streams(settings.streams, settings.streams_per_client),
         readiness=readiness.Readiness(
             {
-                "database": readiness.Writing(database),
-                "space": readiness.Space(folder.path, settings.minimum_free_mb),
+                **data_checks(database, folder, settings),
                 "processes": readiness.Processes(worker),
                 "calculations": readiness.Processes(calculations.pool),
             }
         ),
     )
+
+
+def data_checks(database: Database, folder: DataFolder, settings: Settings) -> dict[str, readiness.Check]:
+    """What must hold of the data for the service to be ready."""
+    return {
+        "database": readiness.Writing(database),
+        "space": readiness.Space(folder.path, settings.minimum_free_mb),
+    }
+
+
+def register_answers(jobs: Jobs, *answering: LongAnswers) -> None:
+    """Let jobs give the answers for which nobody waited."""
+    for one in answering:
+        jobs.register(one.kind, one, one.failed, lane=CALCULATION)
 
 
 def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
@@ -130,7 +157,9 @@ def register_jobs(
     """Say what carries out each kind of job."""
     builds = Builds(database, store)
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
-    regeneration = Regeneration(database, builds, analysing, catalogues, calculations.steps, recent)
+    regeneration = Regeneration(
+        database, builds, analysing, catalogues, calculations.steps, recent, problems.describe
+    )
     jobs.register(REGENERATE, regeneration, regeneration.failed)
     jobs.register(REGENERATE_SLOWLY, regeneration, regeneration.failed, is_slow=True)
     jobs.register(CALCULATE, regeneration, regeneration.failed, lane=CALCULATION)

@@ -1,4 +1,4 @@
-"""The command line: `crankwright serve | demo | download | evaluate | template | check-template | …`."""
+"""The command line: `crankwright serve | demo | download | study | sweep | evaluate | template | …`."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ from app.settings import Settings
 from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
+from app.study_commands import study_command, sweep_command
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.catalogue.golden import freeze as freeze_template
@@ -119,6 +120,8 @@ main.add_command(download_command)
 main.add_command(backup_command)
 main.add_command(restore_command)
 main.add_command(check_template_command)
+main.add_command(study_command)
+main.add_command(sweep_command)
 
 
 @main.command()

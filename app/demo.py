@@ -63,12 +63,12 @@ LOADED = {"steps": {"film": {"inputs": {"radial_load": "30 kN"}}}, "note": "only
 
 
 @contextmanager
-def service(data: Path) -> Iterator[Client]:
-    """A service in a process of its own on a free port, ended when done."""
+def service(data: Path, *, err: bool = False) -> Iterator[Client]:
+    """A service in a process of its own on a free port, ended when done; `err` keeps the output free."""
     with socket.socket() as probe:
         probe.bind((LOOPBACK, 0))
         port = probe.getsockname()[1]
-    click.echo(f"starting the service on port {port}, data in {data.absolute()} …")
+    click.echo(f"starting the service on port {port}, data in {data.absolute()} …", err=err)
     command = [sys.executable, "-m", "app", "serve", "--host", LOOPBACK, "--port", str(port)]
     command += ["--data", str(data)]
     data.mkdir(parents=True, exist_ok=True)
@@ -76,14 +76,14 @@ def service(data: Path) -> Iterator[Client]:
     with log.open("wb") as errors:
         process = subprocess.Popen(command, stderr=errors)
     try:
-        with Client(f"http://{LOOPBACK}:{port}") as client:
-            _await(client, process, log)
+        with Client(f"http://{LOOPBACK}:{port}", timeout=START) as client:
+            _await(client, process, log, err=err)
             yield client
     finally:
         _stop(process)
 
 
-def _await(client: Client, process: subprocess.Popen[bytes], log: Path) -> None:
+def _await(client: Client, process: subprocess.Popen[bytes], log: Path, *, err: bool = False) -> None:
     """Wait until the service answers, as long as its process lives, and say so now and then.
 
     Raises
@@ -102,7 +102,8 @@ def _await(client: Client, process: subprocess.Popen[bytes], log: Path) -> None:
             reason = f"the service runs but does not answer after {waited:.0f} s"
             raise click.ClickException(f"{reason}; {_end_of(log)}")
         if time.monotonic() > remark:
-            click.echo(f"  waiting for the service, which is loading the geometry kernel ({waited:.0f} s)")
+            text = f"  waiting for the service, which is loading the geometry kernel ({waited:.0f} s)"
+            click.echo(text, err=err)
             remark += REMARK
         time.sleep(0.1)
 

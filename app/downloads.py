@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 import httpx
 
-from app.client import Client, Problem
+from app.client import Client, File, Problem
 from app.settings import Settings
 
 
@@ -15,6 +15,7 @@ from app.settings import Settings
 @click.argument("design")
 @click.argument("kind", default="step")
 @click.option("--model", default=None, help="its name in the design, if there are several")
+@click.option("--variant", default=None, help="of the design; the design itself if not given")
 @click.option(
     "--revision", type=click.IntRange(1), default=None, help="that of the newest good model if not given"
 )
@@ -23,17 +24,23 @@ from app.settings import Settings
     "--url", default=None, help="of the service; that of CRANKWRIGHT_PORT on this machine if not given"
 )
 def download_command(
-    design: str, kind: str, model: str | None, revision: int | None, folder: Path, url: str | None
+    design: str,
+    kind: str,
+    model: str | None,
+    variant: str | None,
+    revision: int | None,
+    folder: Path,
+    url: str | None,
 ) -> None:
     """Save a file of DESIGN (an id) as {design}_{model}_r{revision}.KIND.
 
-    KIND is step, glb, stl, svg, drawing.svg, dxf or png. A file that the service still has to make is waited
-    for.
+    KIND is step, glb, stl, svg, drawing.svg, dxf or png; or zip, for the STEP files of all variants. A file
+    that the service still has to make is waited for.
     """
     place = url or f"http://127.0.0.1:{Settings().port}"
     try:
         with Client(place) as client:
-            file = client.download(design, kind, model=model, revision=revision, on_progress=_progress)
+            file = _file(client, design, kind, model, variant, revision)
         click.echo(file.save(folder))
     except Problem as problem:
         raise click.ClickException(str(problem)) from None
@@ -41,6 +48,18 @@ def download_command(
         raise click.ClickException(f"no service answers at {place}: {error}") from None
     except OSError as error:
         raise click.ClickException(f"{folder.absolute()} cannot hold the file: {error.strerror}") from None
+
+
+def _file(
+    client: Client, design: str, kind: str, model: str | None, variant: str | None, revision: int | None
+) -> File:
+    if kind == "zip":
+        return client.download_variants(design, revision, on_progress=_progress)
+    if variant is not None:
+        return client.download_variant(
+            design, variant, kind, model=model, revision=revision, on_progress=_progress
+        )
+    return client.download(design, kind, model=model, revision=revision, on_progress=_progress)
 
 
 def _progress(done: float, text: str) -> None:

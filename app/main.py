@@ -39,7 +39,15 @@ from app.api.routes.library import router as library
 from app.api.routes.models import router as models
 from app.api.routes.networks import router as networks
 from app.api.routes.reports import router as reports
+from app.api.routes.solving import router as solving
+from app.api.routes.spreadsheet_lines import router as spreadsheet_lines
+from app.api.routes.studies import router as studies
+from app.api.routes.study_tables import router as study_tables
 from app.api.routes.templates import router as catalogue
+from app.api.routes.tolerances import router as tolerances
+from app.api.routes.variant_sheets import by_type as sheets_by_type
+from app.api.routes.variant_sheets import router as variant_sheets
+from app.api.routes.variants import router as variants
 from app.assembly import assemble
 from app.hosts import Hosts
 from app.jobs.shutdown import on_stop_signal
@@ -54,6 +62,37 @@ outputs to CAD parameters by relations, and STEP files regenerated whenever an o
 
 Quantities are text with a unit (`"25 kN"`) or objects (`{"value": 25, "unit": "kN"}`). Errors are RFC 9457
 problems that name every wrong input at once."""
+
+ROUTERS = (
+    calculations,
+    worksheets,
+    answers,
+    spreadsheet_lines,
+    film_pressure,
+    curves,
+    catalogue,
+    faults,
+    library,
+    designs,
+    decisions,
+    solving,
+    tolerances,
+    labels,
+    comparisons,
+    networks,
+    design_files,
+    sheets_by_type,
+    variant_sheets,
+    variants,
+    reports,
+    design_events,
+    study_tables,
+    studies,
+    models,
+    analyses,
+    jobs,
+)
+"""They are tried one after another; that of `evaluate`, which is called most, is the first."""
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -81,28 +120,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         responses={"4XX": {"description": "a problem", "content": PROBLEM_CONTENT}},
         generate_unique_id_function=operation_id,
     )
-    # Routers are tried one after another; that of `evaluate`, which is called most, is the first.
-    for router in (
-        calculations,
-        worksheets,
-        answers,
-        film_pressure,
-        curves,
-        catalogue,
-        faults,
-        library,
-        designs,
-        decisions,
-        labels,
-        comparisons,
-        networks,
-        design_files,
-        reports,
-        design_events,
-        models,
-        analyses,
-        jobs,
-    ):
+    for router in ROUTERS:
         app.include_router(router)
     app.include_router(health.router)
     app.include_router(problems.router)

@@ -5,10 +5,12 @@
 Each bearing gets a permissible film within a share of its film at level map. `decide_rows` starts at the
 cheapest level. Every verdict is held against a solution on a mesh twice as fine each way as that of level
 reynolds, extrapolated (256 × 32 and 512 × 64 intervals). The cost is processor time, against that of level
-reynolds for all bearings in the same run.
+reynolds for all bearings in the same run. Figures go to `benchmarks/results/decide.json`.
 """
 
 import argparse
+import json
+from pathlib import Path
 from time import process_time
 from typing import Any
 
@@ -26,6 +28,7 @@ from templates.physics.films.reynolds import extrapolated_film
 FINEST, AT_ONCE = "reynolds", 400
 AROUND, ACROSS = 256, 32  # and twice as many: each way twice those of the finest level
 OUTPUT = "minimum_film_thickness"
+RESULT = Path(__file__).parent / "results" / "decide.json"
 
 
 def bearings(count: int, random: np.random.Generator) -> dict[str, Any]:
@@ -84,27 +87,41 @@ def truths(cls: type[Template], raw: dict[str, Any]) -> Array:
     return np.array([true_film(*map(float, row)) for row in zip(clearance, number, ratio, strict=True)])
 
 
-def report(result: Decided, true: Array, limit: Array, seconds: float, whole: float) -> None:
-    """Print what was asked, what is wrong, and the cost."""
-    count = limit.size
-    for trial in result.trials:
-        line = f"{trial.level:14} {trial.rows:6} bearings, {trial.decided:6} decided, {trial.seconds:7.3f} s"
-        print(line)
-    for level, reason in result.skipped.items():
-        print(f"{level:14} left out: {reason}")
+def figures(result: Decided, true: Array, limit: Array, seconds: float, whole: float) -> dict[str, Any]:
+    """What was asked, what is wrong, and the cost."""
+    count, codes = limit.size, result.codes
     verdicts = {"met": MET, "not met": NOT_MET, "undecided": UNDECIDED, "not checked": NOT_CHECKED}
-    print(", ".join(f"{int((result.codes == code).sum())} {word}" for word, code in verdicts.items()))
-    wrong = ((result.codes == MET) & (true < limit)) | ((result.codes == NOT_MET) & (true >= limit))
-    print(f"{int(wrong.sum())} of {count} verdicts contradict the finer meshes")
     asked = sum(trial.rows for trial in result.trials if trial.level == FINEST)
     before = [trial for trial in result.trials if trial.level != FINEST]
     left = before[-1].rows - before[-1].decided if before else count
-    print(f"level {FINEST} was asked of {asked / count:.1%}; {left / count:.1%} were undecided before it")
-    print(f"processor time {seconds:.2f} s, {seconds / whole:.2%} of {FINEST} for all ({whole:.2f} s)")
+    decided = (codes == MET) | (codes == NOT_MET)
+    wrong = ((codes == MET) & (true < limit)) | ((codes == NOT_MET) & (true >= limit))
+    return {
+        "levels": {
+            trial.level: {"bearings": trial.rows, "decided": trial.decided} for trial in result.trials
+        },
+        "left out": dict(result.skipped),
+        "verdicts": {word: int((codes == code).sum()) for word, code in verdicts.items()},
+        "contradicted by the finer meshes": int(wrong.sum()),
+        "nearest limit of a decided bearing, distance over film": float(
+            np.abs(limit / true - 1)[decided].min()
+        ),
+        "share for which the finest level was asked": asked / count,
+        "share undecided before it": left / count,
+        "processor time [s]": round(seconds, 3),
+        f"processor time, {FINEST} for all [s]": round(whole, 3),
+        "cost over that": round(seconds / whole, 5),
+    }
+
+
+def record(name: str, run: dict[str, Any]) -> None:
+    """Keep the figures of a run beside those of others."""
+    runs = json.loads(RESULT.read_text()) if RESULT.exists() else {}
+    RESULT.write_text(json.dumps({**runs, name: run}, indent=1) + "\n")
 
 
 def main() -> None:
-    """Decide, compare and report."""
+    """Decide, compare and record."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=500)
     parser.add_argument("--seed", type=int, default=0)
@@ -121,7 +138,9 @@ def main() -> None:
     start = process_time()
     finest(cls, raw, options.count)
     whole = process_time() - start
-    report(result, truths(cls, raw), limit, seconds, whole)
+    name = f"limits within {options.within:g} of the film, {options.count} bearings, seed {options.seed}"
+    record(name, figures(result, truths(cls, raw), limit, seconds, whole))
+    print(RESULT.read_text())
 
 
 if __name__ == "__main__":

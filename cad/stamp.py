@@ -36,7 +36,8 @@ _SVG_LINE = re.compile(r'(<text data-stamp="([a-z]+)"[^>]*>)[^<]*')
 class Stamp:
     """Whose file it is; `model` is its name in the design, `date` when the revision was made (ISO 8601).
 
-    `materials` are those of the parts by name, empty where they are not known.
+    `materials` are those of the parts by name, empty where they are not known. A file of a variant is named
+    after that, and after the model only where the design has several (`is_only` is false).
     """
 
     design: str
@@ -44,21 +45,31 @@ class Stamp:
     revision: int
     date: str
     materials: Mapping[str, str] = field(default_factory=dict)
+    variant: str | None = None
+    is_only: bool = True
+
+    @property
+    def called(self) -> str:
+        """What the model is called in names of files."""
+        if self.variant is None:
+            return self.model
+        return self.variant if self.is_only else f"{self.variant}_{self.model}"
 
     @property
     def stem(self) -> str:
         """The file's name without its ending, in ASCII."""
-        return stem(self.design, self.model, self.revision)
+        return stem(self.design, self.called, self.revision)
 
     @property
     def wide_stem(self) -> str:
         """The file's name without its ending, in the letters of its user."""
-        return wide_stem(self.design, self.model, self.revision)
+        return wide_stem(self.design, self.called, self.revision)
 
     @property
     def block(self) -> dict[str, str]:
         """The lines of a drawing's title block."""
-        part = f"{self.model}, revision {self.revision}, {self.date[:10]}"
+        named = ", ".join(filter(None, (self.variant, self.model)))
+        part = f"{named}, revision {self.revision}, {self.date[:10]}"
         return {"design": self.design, "part": part, "material": self.material}
 
     @property
@@ -123,6 +134,7 @@ def _root(stamp: Stamp) -> tuple[str, ...]:
     """Id, name and description of the product that is the file."""
     described = (
         f"design {stamp.design}",
+        f"variant {stamp.variant}" if stamp.variant else "",
         f"model {stamp.model}",
         f"revision {stamp.revision}",
         stamp.material,

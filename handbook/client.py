@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from types import ModuleType
 
 from app import client
-from app.client import operations
+from app.client import design_operations, operations, questions, studies, variant_operations
 from handbook.signatures import functions, prose, section
 from templates import door
 
@@ -22,13 +22,15 @@ def pages() -> Iterator[tuple[str, str]]:
 def client_page() -> str:
     """The reference of both clients: how they are made, and the operations that both have."""
     classes = (client.Client, client.AsyncClient, client.Problem)
-    own = [name for name, thing in vars(operations).items() if _is_of(thing, operations)]
+    modules = (operations, design_operations, variant_operations, questions)
     return "\n".join(
         (
             f"# Python client\n\n`app.client`: {_introduction(client)}\n",
             *(f"## {one.__name__}\n\n{prose(one)}\n" for one in classes),
             "## Methods\n\nThose of `AsyncClient` are awaited.\n",
-            *(_without_exchange(text) for text in functions(operations, own)),
+            *(_without_exchange(text) for module in modules for text in functions(module, _own(module))),
+            f"## {studies.ClientStudy.__name__}\n\n{prose(studies.ClientStudy)}\n",
+            *functions(studies.ClientStudy),
         )
     )
 
@@ -36,6 +38,11 @@ def client_page() -> str:
 def _without_exchange(text: str) -> str:
     """A signature with what the clients return, in place of the exchange that they run for it."""
     return re.sub(r"-> Exchange\[(.*)\]$", r"-> \1", text, flags=re.MULTILINE)
+
+
+def _own(module: ModuleType) -> list[str]:
+    """The public functions that a module defines."""
+    return [name for name, thing in vars(module).items() if name[0] != "_" and _is_of(thing, module)]
 
 
 def _is_of(thing: object, module: ModuleType) -> bool:

@@ -9,7 +9,7 @@ use_one_thread()  # before NumPy is imported, here and in the servers that tests
 
 import pytest  # noqa: E402
 from hypothesis import settings  # noqa: E402
-from lanes import group_of, name_group, rank  # noqa: E402
+from lanes import group_of, name_group, rank, require_distinct  # noqa: E402
 from patience import BUDGET, FACTOR, SLOW_TEST, TEST  # noqa: E402
 from seeds import CHOSEN, SEED  # noqa: E402
 
@@ -55,4 +55,6 @@ def pytest_collection_modifyitems(config, items):
             name_group(item)
         if item.get_closest_marker("slow") and not item.get_closest_marker("timeout"):
             item.add_marker(pytest.mark.timeout(SLOW_TEST))
+    if getattr(config.option, "loadgroup", False):
+        require_distinct(items)
     items.sort(key=lambda item: rank(group_of(item)))

@@ -5,6 +5,10 @@ longest come first, so that both workers end at about the same time. The order i
 a wrong order costs some balance and nothing else.
 """
 
+from collections import Counter
+
+import pytest
+
 SERVED = "served"  # every test that needs the server of tests/app/conftest.py
 PAGES = "pages"  # every test that needs the server or the browser of tests/web/conftest.py
 
@@ -28,9 +32,20 @@ def name_group(item):
     pytest-xdist 3.8 writes it to an attribute that pytest 9.2 no longer reads, so that every test would be a
     group of its own and every fixture of a module be set up on both workers (pytest-xdist issue 1386). Older
     versions of pytest have no `_id`.
+
+    Schemathesis puts the operation into the name of a test alone. Without it in the id the scheduler takes
+    the tests of all operations for one, and runs only the first.
     """
     if hasattr(item, "_id"):
-        item._id = type(item._id).parse(f"{item.nodeid}@{group_of(item)}")
+        operation = "" if item.nodeid.endswith(item.name) else item.name.removeprefix(item.originalname)
+        item._id = type(item._id).parse(f"{item.nodeid}{operation}@{group_of(item)}")
+
+
+def require_distinct(items):
+    """Refuse tests of one id: pytest-xdist would run the first of them and leave out the others."""
+    shared = [id for id, count in Counter(item.nodeid for item in items).items() if count > 1]
+    if shared:
+        raise pytest.UsageError(f"{len(shared)} ids belong to several tests: {', '.join(shared[:3])}")
 
 
 def rank(group):

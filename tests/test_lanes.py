@@ -61,7 +61,11 @@ def test_servers_begin_first():
         ("templates/oil_film/oil_film_v2.py", changed.CATALOGUE, "tests/cad/test_cranks_random.py"),
         ("app/storage/database.py", "tests/app/test_crash.py", "tests/physics/test_film_map.py"),
         ("tests/app/serving.py", "tests/app/test_contract_at_length.py", "tests/physics/test_film_map.py"),
-        ("tests/references/lund_thomsen_1978.csv", "tests/templates/oil_film/test_oil_film_v2.py", "none"),
+        (
+            "tests/references/torsional_frequencies.csv",
+            "tests/templates/stiffness/test_torsional_vibration_v1.py",
+            "tests/app/test_crash.py",
+        ),
     ],
 )
 def test_a_change_selects_the_slow_tests_that_reach_it(file, test, other):

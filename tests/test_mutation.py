@@ -3,10 +3,11 @@
 import ast
 import json
 import random
+import tomllib
 
 import pytest
 
-from benchmarks.mutation import observations
+from benchmarks.mutation import ROOT, observations
 from benchmarks.mutation.related import NEAREST, changed, related
 from benchmarks.mutation.verdict import REASONS, Reason, by_folder, reasons, summary, verdict
 
@@ -100,6 +101,16 @@ class TestVerdict:
 
 def test_every_reason_on_file_argues():
     assert all(len(reason.reason) > 20 for reason in reasons(REASONS))
+
+
+def test_the_text_of_every_named_mutant_occurs_once():
+    """Also where Cosmic Ray is not installed: an entry has to follow the code when that changes."""
+    entries = tomllib.loads(REASONS.read_text(encoding="utf-8"))["named"]
+    files = (file for folder in ("app", "cad", "templates") for file in (ROOT / folder).rglob("*.py"))
+    code = "\n".join(file.read_text(encoding="utf-8") for file in files)
+    assert {entry["title"]: code.count(entry["before"]) for entry in entries} == {
+        entry["title"]: 1 for entry in entries
+    }
 
 
 class TestPlaces:

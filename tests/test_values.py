@@ -22,6 +22,14 @@ GROWING = {
     "Meetings",
     "_Rows",
     "Deciding",
+    "_Climb",
+    "DecidedRows",
+    "StepRows",
+    "RowPass",
+    "RowShifting",
+    "Table",
+    "_Run",
+    "Analysis",
 }
 """Records that one function fills step by step before it returns them."""
 

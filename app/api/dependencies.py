@@ -18,6 +18,7 @@ from app.api.services import Services
 from app.api.threads import Threads
 from app.calculations.steps import Caller, call_as
 from app.catalogue.catalogues import Catalogues
+from app.designs.asking import Asking
 from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.previewing import Previews
@@ -26,12 +27,15 @@ from app.jobs.service import Jobs
 from app.presentation.units import System
 from app.reports.paper import Press
 from app.reports.service import Reports
+from app.schemas.solve import DesignSolution
+from app.schemas.tolerances import ToleranceAnalysis
 from app.solids.analyses import Analyses
 from app.solids.healing import Healing
 from app.solids.models import Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.idempotency import Once
+from app.studies.service import Studies
 
 
 def services_of(request: Request) -> Services:
@@ -57,8 +61,11 @@ TheThreads = Annotated[Threads, Depends(_part("threads"))]
 TheAnswering = Annotated[Answering, Depends(_part("answering"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
 TheLabelling = Annotated[Labelling, Depends(_part("labelling"))]
+TheStudies = Annotated[Studies, Depends(_part("studies"))]
 ThePreviews = Annotated[Previews, Depends(_part("previews"))]
 TheDecisions = Annotated[Decisions, Depends(_part("decisions"))]
+TheSolving = Annotated[Asking[DesignSolution], Depends(_part("solving"))]
+TheTolerances = Annotated[Asking[ToleranceAnalysis], Depends(_part("tolerances"))]
 TheModels = Annotated[Models, Depends(_part("models"))]
 TheAnalyses = Annotated[Analyses, Depends(_part("analyses"))]
 TheHealing = Annotated[Healing, Depends(_part("healing"))]

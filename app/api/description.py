@@ -26,7 +26,7 @@ def operation_id(route: APIRoute) -> str:
 
     It is the name of the route's function; one that serves several paths says which.
     """
-    if not route.name.endswith(("_report", "_worksheet", "_file")):
+    if not route.name.endswith(("_report", "_worksheet", "_file", "show_variants")):
         return route.name
     ends = (("/revisions/{number}", "_of_revision"), ("/models/{name}", "_of_model"), (".{kind}", "_as"))
     return route.name + "".join(end for part, end in ends if part in route.path)
@@ -84,12 +84,13 @@ def _drop_nulls(operation: dict[str, Any]) -> None:
 
 
 def _declare_preconditions(method: str, operation: dict[str, Any]) -> None:
-    """If-Match is needed for PATCH and compared wherever it is sent."""
+    """If-Match is needed for PATCH and PUT and compared wherever it is sent."""
     matching = [one for one in operation.get("parameters", ()) if one["name"] == "if-match"]
     if not matching:
         return
-    matching[0]["required"] = method == "patch"
-    _refused(operation, *((412, 428) if method == "patch" else (412,)))
+    is_change = method in ("patch", "put")
+    matching[0]["required"] = is_change
+    _refused(operation, *((412, 428) if is_change else (412,)))
 
 
 def _declare_problems(operation: dict[str, Any]) -> None:

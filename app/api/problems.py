@@ -39,6 +39,7 @@ from app.reports.errors import Unprintable
 from app.schemas.problems import MEDIA_TYPE, ProblemKind, refusals
 from app.storage import errors as storage
 from app.storage.errors import CannotRebuild
+from app.studies.errors import RowsLost
 from app.workers import errors as workers
 from cad.errors import AnalysisError, GeometryError, UnreadableStep
 from templates.core import errors as templates
@@ -120,6 +121,7 @@ TABLE: dict[type[Exception], Kind] = {
     CannotRebuild: Kind(
         "artifact-gone", 410, "The file is lost", "see `detail` for why, and for what is left"
     ),
+    RowsLost: REBUILDING,
     storage.StorageError: Kind("storage", 503, "The storage is not available", "retry; ask the operator"),
     GeometryError: Kind("geometry", 422, "No sound solid came out", "change the parameters in `errors`"),
     AnalysisError: Kind(
@@ -224,6 +226,7 @@ _CARRIED: dict[type[Exception], Callable[..., JsonObject]] = {
         "errors": [{"name": error.name, "code": error.code, "detail": error.detail}]
     },
     designs.NotConverged: lambda error: {"rounds": error.rounds},
+    RowsLost: lambda error: {"job": f"/api/v1/jobs/{error.job}"},
     CannotRebuild: lambda error: {
         **error.links,
         "errors": [{"name": "artifact", "code": error.code, "detail": error.detail}],
@@ -265,7 +268,7 @@ def install(app: FastAPI) -> None:
 
 async def _handle(request: Request, error: Exception) -> Response:
     headers = getattr(error, "headers", {})
-    if isinstance(error, jobs.QueueFull):
+    if isinstance(error, (jobs.QueueFull, RowsLost)):
         headers = {"Retry-After": str(error.retry_after)}
     return answer(describe(error), headers)
 

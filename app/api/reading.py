@@ -129,10 +129,11 @@ class StrictRoute(APIRoute):
         handler = super().get_route_handler()
         takes_json = self.body_field is not None
         is_patch = "PATCH" in (self.methods or ())
+        is_change = is_patch or "PUT" in (self.methods or ())
 
         async def strict(request: Request) -> Response:
             await _refreshed(request)
-            if is_patch and "if-match" not in request.headers:
+            if is_change and "if-match" not in request.headers:
                 raise PreconditionRequired('send If-Match with the ETag of the design you read, such as "3"')
             strictly = StrictRequest(request.scope, request.receive)
             if takes_json:

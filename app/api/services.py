@@ -11,6 +11,7 @@ from app.api.threads import Threads
 from app.calculations.pool import CalculationPool
 from app.calculations.steps import Steps
 from app.catalogue.catalogues import Catalogues
+from app.designs.asking import Asking
 from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.previewing import Previews
@@ -18,12 +19,15 @@ from app.designs.service import Designs
 from app.jobs.service import Jobs
 from app.reports.paper import Press
 from app.reports.service import Reports
+from app.schemas.solve import DesignSolution
+from app.schemas.tolerances import ToleranceAnalysis
 from app.settings import Settings
 from app.solids.analyses import Analyses
 from app.solids.healing import Healing
 from app.solids.models import Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.studies.service import Studies
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,9 @@ class Services:
     labelling: Labelling
     previews: Previews
     decisions: Decisions
+    studies: Studies
+    solving: Asking[DesignSolution]
+    tolerances: Asking[ToleranceAnalysis]
     models: Models
     analyses: Analyses
     healing: Healing

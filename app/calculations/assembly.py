@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from app.calculations.jobs import CALCULATION, CalculationJobs
 from app.calculations.pool import CalculationPool
+from app.calculations.processes import CalculationProcesses
 from app.calculations.steps import Steps
 from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Jobs
@@ -46,11 +47,16 @@ def assemble_calculations(
     database: Database,
     store: ArtifactStore,
     jobs: Jobs,
+    designs: tuple[str, ...] = (),
 ) -> Calculations:
-    """Make the pool, and register the jobs that use it; the stack ends it."""
+    """Make the pool, and register the jobs that use it; the stack ends it.
+
+    `designs` are the modules that functions of designs need in their processes.
+    """
     size = settings.calculation_processes or len(os.sched_getaffinity(0))
     limits = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
-    processes = WarmProcesses(PRELOAD, spares=size)
+    light = WarmProcesses(PRELOAD, spares=size)
+    processes = CalculationProcesses(light, lambda: WarmProcesses((*PRELOAD, *designs), spares=size))
     stack.callback(processes.close)
     pool = CalculationPool(processes, size, settings.calculation_waiting, limits)
     stack.callback(pool.close)

@@ -29,6 +29,7 @@ EXPENSIVE = 0.05  # beyond this a calculation leaves the server's process [s]
 QUICK = 1e-4  # at one point [s]
 
 PER_CALL, PER_OUTPUT = 2e-4, 5e-5  # of one point, without levels [s]
+PER_POINT = 2e-7  # each number of an output of an array call, before it is written [s]
 PER_VALUE = 1e-6  # each number of an answer, calculated and written as JSON [s]
 PER_NUMBER = 5e-7  # each number of a request, read and checked [s]
 PER_FORMULA = 3e-4  # written out in a worksheet [s]
@@ -54,6 +55,23 @@ def estimated_seconds(
     levels = _levels(cls, inputs, level, tolerance, numbers)
     points = min(MOST_POINTS, spanned(_points(cls, shapes)))
     return numbers * PER_NUMBER + _evaluating(cls, levels, points, outputs) + _profiles(cls, shapes, outputs)
+
+
+def array_seconds(
+    cls: type[Template], level: str | None, points: int, outputs: Collection[str], calls: int, places: int
+) -> float:
+    """How long array calls for so many points take [s], in SI, with nothing read, written or kept.
+
+    `places` are those of the longest curve, 1 if there is none.
+    """
+    wanted = _wanted(cls, outputs)
+    plain = calls * (PER_CALL + PER_OUTPUT * len(wanted)) + PER_POINT * points * places * len(wanted)
+    if level is None or not any("level" in cls.ancestors(cls.formulas[n].attribute) for n in wanted):
+        return plain
+    measured = accuracy(cls)
+    cost = measured.content["levels"].get(level, {}).get("cost", {}) if measured else {}
+    single = float(cost.get("single", 0.0))
+    return plain + ALLOWANCE * (calls * single + points * float(cost.get("vectorised", single)))
 
 
 def solving_seconds(

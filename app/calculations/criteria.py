@@ -62,4 +62,8 @@ def _band(band: tuple[float, float], unit: str) -> JsonObject:
 
 
 def _where(places: Sequence[Place]) -> JsonObject:
-    return {place.name: {"value": place.value, "unit": place.unit} for place in places}
+    """Places by name; what has no unit is a name, such as that of a variant."""
+    return {
+        place.name: {"value": place.value, "unit": place.unit} if place.unit else place.value
+        for place in places
+    }

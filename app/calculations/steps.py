@@ -8,11 +8,12 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from concurrent.futures import wait
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from typing import TypeVar, TypeVarTuple
 
 from app.calculations.begun import Begun, fingerprint
 from app.calculations.cost import EXPENSIVE, estimated_seconds
@@ -25,6 +26,9 @@ from app.workers.errors import JobCancelled
 from templates.core.language.evaluate import Evaluation, evaluate
 from templates.core.language.template import Template
 from templates.core.progress import Reporter
+
+T = TypeVar("T")
+Ts = TypeVarTuple("Ts")
 
 GLANCE = 0.1  # how often a thread looks whether its client has left [s]
 
@@ -80,7 +84,17 @@ class Caller:
         """
         key = (cls, outputs, level, tolerance, fingerprint(raw))
         question: _Question = source_of(cls), raw, outputs, level, tolerance
-        calculation = self.begun.take(key) or self._submitted(question)
+        return self.calculated(key, _evaluated, *question)
+
+    def calculated(self, key: Hashable, function: Callable[[*Ts], T], *args: *Ts) -> T:
+        """What a function returns in the pool; blocks. A job that takes over knows it by its `key`.
+
+        Raises
+        ------
+        StepDeferred
+            It has not ended in time; it goes on if it may.
+        """
+        calculation = self.begun.take(key) or self._submitted(function, *args)
         if self.report is not None:
             calculation.listen(self.report)
         while not wait([calculation.future], self._glance()).done:
@@ -89,15 +103,15 @@ class Caller:
             elif time.monotonic() >= self.until:
                 self.begun.keep(key, calculation)
                 raise StepDeferred
-        evaluation: Evaluation = calculation.future.result()
-        return evaluation
+        result: T = calculation.future.result()
+        return result
 
-    def _submitted(self, question: _Question) -> Calculation:
+    def _submitted(self, function: Callable[[*Ts], object], *args: *Ts) -> Calculation:
         if self.left.is_set():
             raise JobCancelled
         if time.monotonic() >= self.until:
             raise StepDeferred
-        return self.steps.pool.submit(self.client, _evaluated, *question, lane=self.lane)
+        return self.steps.pool.submit(self.client, function, *args, lane=self.lane)
 
     def _glance(self) -> float:
         return max(0.0, min(GLANCE, self.until - time.monotonic()))
@@ -128,6 +142,20 @@ def evaluated_step(
     if caller is None or estimated_seconds(cls, raw, level, tolerance, outputs) <= EXPENSIVE:
         return evaluate(cls, raw, outputs=outputs, level=level, tolerance=tolerance, judge=False)
     return caller.evaluation(cls, dict(raw), outputs, level, tolerance)
+
+
+def in_the_pool(key: Hashable, function: Callable[[*Ts], T], *args: *Ts) -> T:
+    """What a function returns, calculated in the pool for the caller of this context, or here without one.
+
+    Raises
+    ------
+    StepDeferred
+        The caller does not wait for it.
+    TooManyCalculations, WorkerError
+        As `CalculationPool.submit` and `Worker.run`.
+    """
+    caller = _caller.get()
+    return function(*args) if caller is None else caller.calculated(key, function, *args)
 
 
 def begun_steps() -> Begun | None:

@@ -47,15 +47,17 @@ class _Line:
         return Fault(place, code, detail)
 
 
-def read_table(text: str) -> list[TableColumn]:
-    """The columns of a table. Linear in the length of the text, which is at most `MOST_CHARACTERS`.
+def read_table(
+    text: str, *, most_rows: int = MOST_ROWS, most_characters: int = MOST_CHARACTERS
+) -> list[TableColumn]:
+    """The columns of a table. Linear in the length of the text, which is at most `most_characters`.
 
     Raises
     ------
     InvalidInputs
         Naming every cell that is wrong, up to twenty.
     """
-    lines, is_comma = _lines(text)
+    lines, is_comma = _lines(text, most_rows, most_characters)
     width = len(lines[0].cells)
     if width > MOST_COLUMNS:
         raise _wrong("table", "too_many_columns", f"a table has at most {MOST_COLUMNS} columns")
@@ -70,18 +72,18 @@ def read_table(text: str) -> list[TableColumn]:
     return [TableColumn(*parts) for parts in zip(names, units, columns, strict=True)]
 
 
-def _lines(text: str) -> tuple[list[_Line], bool]:
+def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line], bool]:
     """The lines that are not blank, and whether a comma separates their columns."""
-    if len(text) > MOST_CHARACTERS:
-        message = f"a table has at most {MOST_CHARACTERS} characters, this one {len(text)}; take fewer rows"
+    if len(text) > most_characters:
+        message = f"a table has at most {most_characters} characters, this one {len(text)}; take fewer rows"
         raise _wrong("table", "too_long", message)
     rows = re.split(r"\r\n|\r|\n", text.removeprefix("\ufeff"))
     numbered = ((row, line) for row, line in enumerate(rows, start=1) if line.strip(" \t;,"))
-    filled = list(islice(numbered, MOST_ROWS + 3))
+    filled = list(islice(numbered, most_rows + 3))
     if not filled:
         raise _wrong("table", "empty", "the table is empty; paste rows of numbers, with their names above")
-    if len(filled) > MOST_ROWS + 2:
-        raise _wrong("table", "too_many_rows", f"a table has at most {MOST_ROWS} rows; take fewer")
+    if len(filled) > most_rows + 2:
+        raise _wrong("table", "too_many_rows", f"a table has at most {most_rows} rows; take fewer")
     separator = next((sign for sign in "\t;" if sign in filled[0][1]), ",")
     cells = [_cells(row, line, separator) for row, line in filled]
     width = len(_trimmed(cells[0], 1))

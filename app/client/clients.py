@@ -8,9 +8,11 @@ from typing import Generic, ParamSpec, Self, TypedDict, TypeVar, overload
 
 import httpx
 
-from app.client import operations
+from app.client import operations, variant_operations
+from app.client import studies as exchanges
 from app.client.exchange import Exchange, Query, Request
 from app.client.names import CLIENT_HEADER, checked_name
+from app.client.studies import AsyncClientStudy, ClientStudy
 
 _RETRIES = 3  # of the transport, for a connection that is refused
 
@@ -166,6 +168,15 @@ class Client(_Connection):
                     request.listen(line)
             return response
 
+    def study(self, design: str, *, key: str | None = None, **body: object) -> ClientStudy:
+        """Begin a study of a design: `method`, `vary`, `outputs` and so on, as `POST /studies` takes them."""
+        return ClientStudy(self, self.run(exchanges.begin(design, body, key)))
+
+    def open_study(self, id: str) -> ClientStudy:
+        """A study that was begun before."""
+        return ClientStudy(self, self.run(exchanges.find(id)))
+
+    studies = _Method(exchanges.find_all)
     templates = _Method(operations.templates)
     faults = _Method(operations.faults)
     template = _Method(operations.template)
@@ -190,6 +201,8 @@ class Client(_Connection):
     compare = _Method(operations.compare)
     preview = _Method(operations.preview)
     decide = _Method(operations.decide)
+    solve_design = _Method(operations.solve_design)
+    tolerance = _Method(operations.tolerance)
     auto_map = _Method(operations.auto_map)
     explain = _Method(operations.explain)
     network = _Method(operations.network)
@@ -202,6 +215,10 @@ class Client(_Connection):
     download = _Method(operations.download)
     report = _Method(operations.report)
     picture = _Method(operations.picture)
+    variants = _Method(variant_operations.variants)
+    put_variants = _Method(variant_operations.put_variants)
+    download_variant = _Method(variant_operations.download_variant)
+    download_variants = _Method(variant_operations.download_variants)
     verify = _Method(operations.verify)
     job = _Method(operations.job)
     follow = _Method(operations.follow)
@@ -254,6 +271,15 @@ class AsyncClient(_Connection):
                     request.listen(line)
             return response
 
+    async def study(self, design: str, *, key: str | None = None, **body: object) -> AsyncClientStudy:
+        """Begin a study of a design: `method`, `vary`, `outputs` and so on, as `POST /studies` takes them."""
+        return AsyncClientStudy(self, await self.run(exchanges.begin(design, body, key)))
+
+    async def open_study(self, id: str) -> AsyncClientStudy:
+        """A study that was begun before."""
+        return AsyncClientStudy(self, await self.run(exchanges.find(id)))
+
+    studies = _AsyncMethod(exchanges.find_all)
     templates = _AsyncMethod(operations.templates)
     faults = _AsyncMethod(operations.faults)
     template = _AsyncMethod(operations.template)
@@ -278,6 +304,8 @@ class AsyncClient(_Connection):
     compare = _AsyncMethod(operations.compare)
     preview = _AsyncMethod(operations.preview)
     decide = _AsyncMethod(operations.decide)
+    solve_design = _AsyncMethod(operations.solve_design)
+    tolerance = _AsyncMethod(operations.tolerance)
     auto_map = _AsyncMethod(operations.auto_map)
     explain = _AsyncMethod(operations.explain)
     network = _AsyncMethod(operations.network)
@@ -290,6 +318,10 @@ class AsyncClient(_Connection):
     download = _AsyncMethod(operations.download)
     report = _AsyncMethod(operations.report)
     picture = _AsyncMethod(operations.picture)
+    variants = _AsyncMethod(variant_operations.variants)
+    put_variants = _AsyncMethod(variant_operations.put_variants)
+    download_variant = _AsyncMethod(variant_operations.download_variant)
+    download_variants = _AsyncMethod(variant_operations.download_variants)
     verify = _AsyncMethod(operations.verify)
     job = _AsyncMethod(operations.job)
     follow = _AsyncMethod(operations.follow)

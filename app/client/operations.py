@@ -2,16 +2,35 @@
 
 from __future__ import annotations
 
-import uuid
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Literal, TypedDict, Unpack
+from typing import TypedDict, Unpack
 
 import httpx
 
+from app.client.design_operations import Wanted as Wanted
+from app.client.design_operations import auto_map as auto_map
+from app.client.design_operations import change as change
+from app.client.design_operations import compare as compare
+from app.client.design_operations import copy as copy
+from app.client.design_operations import create as create
+from app.client.design_operations import decide as decide
+from app.client.design_operations import delete as delete
+from app.client.design_operations import design as design
+from app.client.design_operations import design_worksheet as design_worksheet
+from app.client.design_operations import designs as designs
+from app.client.design_operations import explain as explain
+from app.client.design_operations import label as label
+from app.client.design_operations import labels as labels
+from app.client.design_operations import measurements as measurements
+from app.client.design_operations import network as network
+from app.client.design_operations import preview as preview
+from app.client.design_operations import restore as restore
+from app.client.design_operations import revision as revision
+from app.client.design_operations import revisions as revisions
+from app.client.design_operations import tags as tags
 from app.client.exchange import (
     BASE,
-    MERGE_PATCH,
     Exchange,
     Progress,
     Request,
@@ -20,38 +39,19 @@ from app.client.exchange import (
     calculated,
     followed,
     get,
-    job_of,
     listed,
     post,
     read,
-    written,
 )
 from app.client.files import File
-from app.client.problem import checked
+from app.client.questions import solve_design as solve_design
+from app.client.questions import tolerance as tolerance
 from app.schemas.analyses import Analysis, Surface
 from app.schemas.catalogue import FaultList, FaultyFile
-from app.schemas.comparisons import Comparison
 from app.schemas.curves import Curves
-from app.schemas.decisions import Decision
-from app.schemas.designs import (
-    Design,
-    DesignList,
-    DesignSummary,
-    Explanation,
-    ModelMeasurements,
-    Preview,
-    Proposal,
-    Proposals,
-    Revision,
-    RevisionList,
-    RevisionWorksheet,
-    State,
-)
 from app.schemas.evaluations import Evaluation, Solution, Worksheet
 from app.schemas.jobs import Job
-from app.schemas.labels import Labels, TagList, TagUse
 from app.schemas.library import LibraryTable, LibraryTables, LibraryTableSummary
-from app.schemas.networks import DesignNetwork
 from app.schemas.solids import Build, Verification
 from app.schemas.templates import Template, TemplateList, TemplateSummary
 
@@ -73,16 +73,6 @@ class Options(SolveOptions, total=False):
     """How a template is evaluated."""
 
     per_point: bool
-
-
-class Wanted(TypedDict, total=False):
-    """Which designs are listed."""
-
-    name: str
-    state: State
-    template: str
-    tag: str | Sequence[str]
-    archived: Literal["false", "true", "any"]
 
 
 class AnalysisOptions(TypedDict, total=False):
@@ -176,145 +166,6 @@ def surface(analysis: str) -> Exchange[Surface]:
     return read(Surface, (yield from awaited(get(f"/analyses/{analysis}/surface"))))
 
 
-def designs(**wanted: Unpack[Wanted]) -> Exchange[list[DesignSummary]]:
-    """Designs that are not archived, newest first; those that fit every filter given."""
-    return listed(DesignList, "/designs", [*_filters(wanted)])
-
-
-def design(id: str) -> Exchange[Design]:
-    """A design as of its newest revision."""
-    return answered(Design, get(f"/designs/{id}"))
-
-
-def create(
-    document: Mapping[str, object], *, on_progress: Progress | None = None, key: str | None = None
-) -> Exchange[Design]:
-    """Create a design and wait until its models are built; see `state` for whether they are.
-
-    Two requests under one key make one design.
-    """
-    return _saved(post("/designs", document, _once(key)), on_progress)
-
-
-def change(
-    design: Design,
-    patch: Mapping[str, object],
-    *,
-    on_progress: Progress | None = None,
-    key: str | None = None,
-) -> Exchange[Design]:
-    """Make a new revision of a design that was read, and wait until its models are built."""
-    headers = {"Content-Type": MERGE_PATCH, **_match(design), **_once(key)}
-    request = Request("PATCH", f"{BASE}/designs/{design.id}", written(patch), headers=headers)
-    return _saved(request, on_progress)
-
-
-def copy(
-    id: str, name: str | None = None, *, on_progress: Progress | None = None, key: str | None = None
-) -> Exchange[Design]:
-    """Make a new design with the newest document of this one; the service names it if no name is given."""
-    return _saved(post(f"/designs/{id}/copy", {"name": name}, _once(key)), on_progress)
-
-
-def restore(
-    design: Design,
-    number: int,
-    note: str | None = None,
-    *,
-    on_progress: Progress | None = None,
-    key: str | None = None,
-) -> Exchange[Design]:
-    """Make a new revision, equal to an old one, of a design that was read."""
-    path = f"/designs/{design.id}/revisions/{number}/restore"
-    return _saved(post(path, {"note": note}, {**_match(design), **_once(key)}), on_progress)
-
-
-def delete(id: str) -> Exchange[None]:
-    """Take a design from the lists; its revisions are kept."""
-    checked((yield Request("DELETE", f"{BASE}/designs/{id}")))
-
-
-def labels(id: str) -> Exchange[Labels]:
-    """The tags of a design, and whether it is archived."""
-    return answered(Labels, get(f"/designs/{id}/labels"))
-
-
-def label(
-    id: str, *, add_tags: Sequence[str] = (), remove_tags: Sequence[str] = (), archived: bool | None = None
-) -> Exchange[Labels]:
-    """Add and remove tags of a design, archive it or fetch it back; this makes no revision."""
-    change = {"add_tags": [*add_tags], "remove_tags": [*remove_tags], "archived": archived}
-    return answered(Labels, post(f"/designs/{id}/labels", change))
-
-
-def tags() -> Exchange[list[TagUse]]:
-    """The tags of designs that are not archived, the most used first."""
-    return (yield from answered(TagList, get("/tags"))).items
-
-
-def compare(
-    id: str, revision: int | None = None, other: int | None = None, *, design: str | None = None
-) -> Exchange[Comparison]:
-    """What differs from a revision to another one, of the same design or of another.
-
-    Without numbers: the newest revision with the one before, or the newest ones of both designs.
-    """
-    chosen = {"revision": revision, "with": other, "design": design}
-    query = {name: str(value) for name, value in chosen.items() if value is not None}
-    return answered(Comparison, get(f"/designs/{id}/compare", query))
-
-
-def preview(id: str, patch: Mapping[str, object], *, worksheet: bool = False) -> Exchange[Preview]:
-    """What a change would do; nothing is saved. `worksheet` adds every step, its formulas written out."""
-    asked = "?worksheet=true" if worksheet else ""
-    return calculated(Preview, post(f"/designs/{id}/preview{asked}", patch))
-
-
-def decide(
-    id: str, criteria: list[str] | None = None, budget: str = "30 s", *, on_progress: Progress | None = None
-) -> Exchange[Decision]:
-    """Decide criteria that are undecided, all if none are named: finer levels where they are needed."""
-    body = {"criteria": criteria, "budget": budget}
-    return calculated(Decision, post(f"/designs/{id}/decide", body), on_progress)
-
-
-def auto_map(id: str) -> Exchange[list[Proposal]]:
-    """Proposals for model parameters that are not set."""
-    request = Request("POST", f"{BASE}/designs/{id}/auto-map")
-    return (yield from answered(Proposals, request)).proposals
-
-
-def explain(id: str, parameter: str) -> Exchange[Explanation]:
-    """Where a model parameter, such as `model.inner_diameter`, comes from."""
-    return answered(Explanation, get(f"/designs/{id}/explain/{parameter}"))
-
-
-def network(id: str) -> Exchange[DesignNetwork]:
-    """What drives what in a design, and the names that its relations may use."""
-    return answered(DesignNetwork, get(f"/designs/{id}/network"))
-
-
-def revision(id: str, number: int) -> Exchange[Revision]:
-    """A revision with its results."""
-    return answered(Revision, get(f"/designs/{id}/revisions/{number}"))
-
-
-def revisions(id: str) -> Exchange[list[Revision]]:
-    """All revisions, newest first."""
-    return listed(RevisionList, f"/designs/{id}/revisions")
-
-
-def measurements(id: str) -> Exchange[dict[str, ModelMeasurements]]:
-    """What the newest good models measure, by the name of the model."""
-    return answered(dict[str, ModelMeasurements], get(f"/designs/{id}/measurements"))
-
-
-def design_worksheet(id: str, number: int | None = None) -> Exchange[RevisionWorksheet]:
-    """A revision, the newest if none is named, with every formula of its steps written out."""
-    revision = f"/revisions/{number}" if number else ""
-    return answered(RevisionWorksheet, get(f"/designs/{id}{revision}/worksheet.json"))
-
-
 def build(key: str) -> Exchange[Build]:
     """A build: its files and what was measured on it."""
     return answered(Build, get(f"/builds/{key}"))
@@ -368,16 +219,6 @@ def follow(job: str, on_progress: Progress | None = None) -> Exchange[Job]:
     return followed(job, on_progress)
 
 
-def _saved(request: Request, on_progress: Progress | None) -> Exchange[Design]:
-    """The design once its job has ended; a failed regeneration is its `state`."""
-    response = yield request
-    saved = read(Design, response)
-    if job := job_of(response):
-        yield from followed(job, on_progress)
-        saved = yield from design(saved.id)
-    return saved
-
-
 def _file(path: str, on_progress: Progress | None) -> Exchange[bytes]:
     """A file once it has been made."""
     return (yield from _awaited(path, on_progress)).content
@@ -387,21 +228,3 @@ def _awaited(path: str, on_progress: Progress | None) -> Exchange[httpx.Response
     """The answer with a file once it has been made, its job followed from the start if progress is wanted."""
     headers = {"Prefer": "respond-async"} if on_progress else {}
     return awaited(replace(get(path), headers=headers), on_progress)
-
-
-def _filters(wanted: Wanted) -> Iterator[tuple[str, str]]:
-    """The filters as a query, in which a tag may stand several times."""
-    for name, value in wanted.items():
-        texts = [value] if isinstance(value, str) else value
-        assert isinstance(texts, Sequence), "filters are texts"
-        yield from ((name, text) for text in texts)
-
-
-def _match(design: Design) -> dict[str, str]:
-    """Refuse a change if the design has changed since it was read."""
-    return {"If-Match": f'"{design.revision}"'}
-
-
-def _once(key: str | None) -> dict[str, str]:
-    """A key that makes a repeated request harmless."""
-    return {"Idempotency-Key": key or uuid.uuid4().hex}

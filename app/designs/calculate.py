@@ -12,7 +12,7 @@ import numpy as np
 
 from app.calculations.errors import StepDeferred
 from app.calculations.size import points, spanned
-from app.designs.calculation import Analysed, Calculation, Measured, Measures, Outputs
+from app.designs.calculation import DEFERRED, Analysed, Calculation, Measured, Measures, Outputs
 from app.designs.memory import memory
 from app.designs.network import Block, Cell, Graph, Node, Solid, SolidAnalysis
 from app.designs.reference import Reference
@@ -20,6 +20,7 @@ from app.designs.size import limit_operations, limit_values
 from app.plain import Raw
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText, InvalidInputs
+from templates.core.language.evaluate import Evaluation
 from templates.core.language.request import read_request
 from templates.core.language.spec import Choice
 from templates.core.units.quantity import Typed, read, read_any
@@ -140,6 +141,13 @@ def _calculate(result: Calculation, nodes: Iterable[Node], measured: Measured, a
                 _analysis(result, node, model, kind, analysed)
 
 
+def calculate_nodes(
+    result: Calculation, nodes: Iterable[Node], measured: Measured, analysed: Analysed
+) -> None:
+    """Calculate some nodes; those before them in order are calculated already."""
+    _calculate(result, nodes, measured, analysed)
+
+
 def _unmapped(result: Calculation, name: str, sources: Iterable[Node]) -> list[Fault]:
     """Faults of a value that needs a model of which a parameter is not set."""
     models = {node.model.name for node in sources if isinstance(node, (Solid, SolidAnalysis))}
@@ -251,7 +259,7 @@ def _attempt(result: Calculation, block: Block, raw: dict[str, Raw], waiting: se
                 shape.inputs_si()
             result.shapes[block.name] = shape
         else:
-            wanted = _wanted(result.graph, block)
+            wanted = result.graph.computed(block)
             limit_values(points(raw) * len(block.cls.formulas if wanted is None else wanted))
             _evaluate(result, block, raw, wanted)
     except InvalidInputs as error:
@@ -264,7 +272,7 @@ def _attempt(result: Calculation, block: Block, raw: dict[str, Raw], waiting: se
 def _evaluate(result: Calculation, block: Block, raw: dict[str, Raw], wanted: tuple[str, ...] | None) -> None:
     """Evaluate a step; one that is deferred is checked as far as that takes no formula."""
     try:
-        evaluation = memory.evaluation(block, raw, wanted)
+        evaluation = _prepared(result, block) or memory.evaluation(block, raw, wanted)
     except StepDeferred:
         read_request(block.cls, raw, wanted, level=block.level)
         result.deferred.add(block.name)
@@ -274,20 +282,20 @@ def _evaluate(result: Calculation, block: Block, raw: dict[str, Raw], wanted: tu
     result.evaluations[block.name] = evaluation
 
 
+def _prepared(result: Calculation, block: Block) -> Evaluation | None:
+    """The evaluation of a step that somebody else has made for this calculation; None if nobody has."""
+    prepared = result.prepared.pop(block.name, None)
+    if prepared == DEFERRED:
+        raise StepDeferred
+    return prepared
+
+
 def _refuse_arrays(result: Calculation, block: Block) -> None:
     arrays = [n for n, cell in block.cells.items() if np.ndim(result.values.get(cell.name, 0.0))]
     if arrays:
         raise InvalidInputs(
             Fault(n, "not_a_number", "a model takes a single value, not an array") for n in arrays
         )
-
-
-def _wanted(graph: Graph, block: Block) -> tuple[str, ...] | None:
-    """The outputs to compute: all, or those the step names and those that relations use."""
-    if block.outputs is None:
-        return None
-    linked = (reference.member for reference in graph.used.get(block.name, ()))
-    return tuple(dict.fromkeys([*block.outputs, *(n for n in linked if n in block.cls.formulas)]))
 
 
 def _solid(result: Calculation, model: Block, measured: Measured) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
@@ -23,6 +24,9 @@ Measures = Mapping[str, float]  # in the units of MEASURES
 Measured = Callable[[CadModel], Measures | None]
 Outputs = Mapping[str, Mapping[str, Json]]  # outputs of an analysis
 Analysed = Callable[[CadModel, Question, tuple[str, ...]], Outputs | None]
+DEFERRED: Literal["deferred"] = "deferred"
+Prepared = Evaluation | Literal["deferred"]
+"""The evaluation of a step that is shared with other designs, or that nobody waited for it."""
 
 
 @dataclass
@@ -34,6 +38,7 @@ class Calculation:
     changed: Mapping[Reference, Value] = field(default_factory=dict)  # outputs of steps that are shifted
     values: dict[str, Value] = field(default_factory=dict)  # of cells
     typed: dict[str, Typed] = field(default_factory=dict)  # cells of blocks as the templates take them
+    prepared: dict[str, Prepared] = field(default_factory=dict)  # of steps still to come, taken when they do
     evaluations: dict[str, Evaluation] = field(default_factory=dict)  # of steps
     shapes: dict[str, CadModel] = field(default_factory=dict)  # models whose parameters are all known
     measures: dict[str, Measures] = field(default_factory=dict)  # of models that are built

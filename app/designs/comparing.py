@@ -91,7 +91,7 @@ class _Parts:
         steps = {name: {**typed, **calculated.get(name, {})} for name, typed in row.document["steps"].items()}
         models = {model.name: model for model in row.models}
         return cls(
-            parameters={name: numbers.told(raw) for name, raw in row.document["parameters"].items()},
+            parameters={name: numbers.told(raw) for name, raw in _typed(row.document).items()},
             versions={**_versions(row.document["steps"], calculated), **_model_versions(row)},
             relations={
                 **_named({name: _texts(step.get("relations", {})) for name, step in steps.items()}),
@@ -103,6 +103,12 @@ class _Parts:
             model_parameters=_named({name: model.parameters for name, model in models.items()}),
             measurements=dict(_measured(session, row)),
         )
+
+
+def _typed(document: JsonObject) -> dict[str, Json]:
+    """The parameters of a design as typed, and what its variants override."""
+    variants = {f"variants.{name}": values for name, values in document.get("variants", {}).items()}
+    return {**document["parameters"], **_named(variants)}
 
 
 def _side(row: RevisionRow) -> Side:

@@ -5,30 +5,23 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from pydantic_core import from_json, to_json
-from sqlalchemy.orm import Session
-
-from app.calculations.begun import Begun
 from app.calculations.criteria import rendered
-from app.calculations.jobs import DECISION, place_of_answer
-from app.calculations.steps import Steps, begun_steps, calling
+from app.calculations.jobs import DECISION
 from app.designs import deciding, repository
 from app.designs.calculate import calculate
 from app.designs.calculation import Calculation
 from app.designs.deciding import Deciding
 from app.designs.document import Document
-from app.designs.graph import Catalogues, build_graph, raise_if
+from app.designs.graph import build_graph, raise_if
 from app.designs.judging import Judging
-from app.designs.previewing import FAILURES
+from app.designs.long_answers import LongAnswers
 from app.designs.reference import Reference
-from app.designs.service import analysed, built, starts
-from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
-from app.plain import JsonObject, Raw
+from app.designs.service import analysed, built
+from app.designs.starting import starts
+from app.plain import Json, JsonObject, Raw
 from app.presentation.units import System
 from app.schemas.answers import Quantity
 from app.schemas.decisions import Decision, Tried
-from app.storage.artifacts import ArtifactStore
-from app.storage.database import Database
 from app.storage.tables import RevisionRow
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_names
 from templates.core.units.quantity import read
@@ -69,14 +62,10 @@ def read_budget(raw: Raw) -> float:
     return seconds
 
 
-class Decisions:
+class Decisions(LongAnswers):
     """Decides criteria, makes jobs where that takes long, and is the handler of such jobs."""
 
-    def __init__(
-        self, database: Database, catalogues: Catalogues, store: ArtifactStore, jobs: Jobs, steps: Steps
-    ) -> None:
-        self.database, self.catalogues, self.store = database, catalogues, store
-        self.jobs, self.steps = jobs, steps
+    kind = DECISION
 
     def answer(self, asked: Asked, client: str) -> tuple[Decision, str | None]:
         """The decision as far as its caller waits for it, and the job that completes it, if any.
@@ -96,32 +85,12 @@ class Decisions:
             "revision": decision.revision,
             "budget": asked.budget,
             "units": asked.units,
-            "body": self.store.put(to_json(asked.criteria)),
         }
-        return decision, self._queued(payload, client, begun_steps())
+        return decision, self.queued(payload, asked.criteria, client)
 
-    def __call__(self, job: Job, context: JobContext) -> Completion:
-        """Decide, and keep the answer.
-
-        Raises
-        ------
-        JobFailed
-            With the problem, for anything that the design itself brings about.
-        """
-        payload = dict(job.payload)
-        criteria = from_json(self.store.read(payload.pop("body")))
-        try:
-            with calling(self.steps, job, context, f"job:{job.id}", "jobs"):
-                decision = self._decided(Asked(criteria=criteria, **payload))
-        except FAILURES as error:
-            raise JobFailed(error) from error
-        content = decision.model_dump_json(by_alias=True, exclude_unset=True).encode()
-        place = place_of_answer(job.id, self.store.put(content))
-        return lambda session: place
-
-    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
-        """End what was left to a job that was cancelled before it began."""
-        self.steps.drop(job.id)
+    def calculated(self, payload: JsonObject, body: Json) -> Decision:
+        """The decision about the criteria that a job names."""
+        return self._decided(Asked(criteria=body, **payload))
 
     def _decided(self, asked: Asked) -> Decision:
         number, calculation = self._calculated(asked)
@@ -147,17 +116,6 @@ class Decisions:
         calculation = calculate(graph, built(self.database), analysed(self.database), assumed)
         raise_if(calculation.faults)
         return row.number, calculation
-
-    def _queued(self, payload: JsonObject, client: str, begun: Begun | None) -> str:
-        def unit_of_work(session: Session) -> str:
-            id = self.jobs.enqueue(session, DECISION, payload, client=client)
-            if begun is not None:
-                begun.leave_to(id)
-            return id
-
-        job = self.database.write(unit_of_work)
-        self.jobs.wake()
-        return job
 
 
 def _settled(row: RevisionRow) -> Mapping[Reference, float]:

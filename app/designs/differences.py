@@ -11,11 +11,12 @@ from app.plain import Json, JsonObject
 from app.schemas.answers import Quantity
 from app.schemas.comparisons import Compared, ComparedValue, TextChange
 from templates.core.errors import FaultyText
+from templates.core.units.tolerance import KEYS
 from templates.core.units.units import Unit, unit
 
 MOST_SHOWN = 20  # numbers of an array
 SAME = 1e-12  # relative: what differs less was typed in another unit
-PARTS = ("value", "unit", "reason", "plus", "minus")
+PARTS = ("value", "unit", "reason", *KEYS)
 
 Numbers = NDArray[np.float64]
 

@@ -11,6 +11,7 @@ from itertools import chain
 from typing import Annotated, Literal, Self
 
 from pydantic import (
+    AfterValidator,
     ConfigDict,
     Field,
     SerializerFunctionWrapHandler,
@@ -19,6 +20,7 @@ from pydantic import (
     model_validator,
 )
 
+from app.designs.variants.names import MOST_OVERRIDES, MOST_VARIANTS, PLACE, natural
 from app.plain import Json, JsonObject, Raw
 from app.schemas.bounded import Bounded, at_most
 from app.schemas.values import Given, Limits
@@ -34,6 +36,9 @@ CRITERION = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63})?$"
 CriterionName = Annotated[str, StringConstraints(pattern=CRITERION)]
 """A criterion of the design, or with a step before it that of a template: `film`, `film.pressure`."""
 Sentence = Annotated[str, StringConstraints(min_length=1, max_length=500, pattern=NAME)]
+Place = Annotated[str, StringConstraints(pattern=PLACE)]
+Overrides = Annotated[dict[Place, Given], Field(max_length=500), at_most(500)]
+"""What a variant changes: values by parameter, `step.input` or `model.parameter`."""
 MOST_CRITERIA = 100
 MOST_VALUES = 10_000  # that all steps and models of a design set together
 
@@ -114,6 +119,11 @@ class WrittenCriterion(Bounded):
         return _without_nothing(plain(self), *type(self).model_fields)
 
 
+def _in_natural_order(variants: dict[str, dict[str, Raw]]) -> dict[str, dict[str, Raw]]:
+    """Variants as people count them: main_2 before main_10."""
+    return {name: variants[name] for name in sorted(variants, key=natural)}
+
+
 class Document(Bounded):
     """All that a revision keeps of its user's words."""
 
@@ -127,11 +137,21 @@ class Document(Bounded):
     criteria: Annotated[
         dict[CriterionName, WrittenCriterion], Field(max_length=MOST_CRITERIA), at_most(MOST_CRITERIA)
     ] = Field({}, description="what the design demands; `step.name` overrides or waives one of a template")
+    variants: Annotated[
+        dict[Word, Overrides],
+        Field(max_length=MOST_VARIANTS),
+        at_most(MOST_VARIANTS),
+        AfterValidator(_in_natural_order),
+    ] = Field(
+        {},
+        description="named sets of values that override parameters, inputs of steps and parameters of models",
+        examples=[{"main_1": {"clearance": "55 um"}, "main_2": {"film.bearing_width": "= width - 2 mm"}}],
+    )
 
     @model_serializer(mode="wrap")
     def without_nothing(self, plain: SerializerFunctionWrapHandler) -> JsonObject:
-        """No criteria are not mentioned: a document of before there were any is the same document."""
-        return _without_nothing(plain(self), "criteria")
+        """No criteria or variants are not mentioned: a document of before there were any is the same."""
+        return _without_nothing(plain(self), "criteria", "variants")
 
     @model_validator(mode="before")
     @classmethod
@@ -144,6 +164,8 @@ class Document(Bounded):
         whole = _in_models(raw)
         if _values_set(whole) > MOST_VALUES:
             raise ValueError(f"the steps and models of a design set at most {MOST_VALUES} values together")
+        if _overrides_set(whole) > MOST_OVERRIDES:
+            raise ValueError(f"the variants of a design override at most {MOST_OVERRIDES} values together")
         return whole
 
     @model_validator(mode="after")
@@ -167,6 +189,13 @@ def _values_set(raw: Mapping[str, Raw]) -> int:
     groups = [(group, part) for name, part in places if isinstance(group := raw.get(name), Mapping)]
     blocks = [(block, part) for group, part in groups for block in group.values()]
     inside = [block.get(part) for block, part in blocks if isinstance(block, Mapping)]
+    return sum(len(values) for values in inside if isinstance(values, Mapping))
+
+
+def _overrides_set(raw: Mapping[str, Raw]) -> int:
+    """How many values the variants of a document override, as far as it has the shape of one."""
+    variants = raw.get("variants")
+    inside = variants.values() if isinstance(variants, Mapping) else ()
     return sum(len(values) for values in inside if isinstance(values, Mapping))
 
 
@@ -198,7 +227,9 @@ def _merged(old: Json, patch: Json, path: tuple[str, ...]) -> Json:
 def _is_container(path: tuple[str, ...]) -> bool:
     """Whether a patch goes on inside: in the document, its groups, its steps and models, and their parts."""
     match path:
-        case () | ("parameters" | "steps" | "models" | "criteria",) | ("steps" | "models", _):
+        case () | ("parameters" | "steps" | "models" | "criteria" | "variants",):
+            return True
+        case ("steps" | "models" | "variants", _):
             return True
         case ("steps", _, "inputs" | "limits") | ("models", _, "parameters" | "analyses"):
             return True

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Literal
 
 from app.designs.analyses import measured_names, measured_unit
-from app.designs.network import Block, Cell, Graph
+from app.designs.network import LIMITS, Block, Cell, Graph
 from app.designs.reference import Reference
 from app.schemas.networks import DesignNetwork, NetworkBlock, NetworkName, NetworkRelation
 from templates.core.language.spec import Choice, Declaration
@@ -64,7 +64,7 @@ def _relations(graph: Graph, columns: Columns) -> Iterator[NetworkRelation]:
     for cell in graph.cells():
         target = cell.reference.block
         for name, source in cell.uses.items():
-            if source.block in columns:
+            if source.block in columns and not (cell.reference.analysis == LIMITS and source.block == target):
                 forward = columns[source.block] < columns[target]
                 yield NetworkRelation(target=cell.name, source=name, relation=_text(cell), forward=forward)
 

@@ -14,7 +14,7 @@ from app.storage.errors import NotFound
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Derived, Formula
 from templates.core.paper.schema import formula_on_paper
-from templates.core.units.units import unit
+from templates.core.units.units import Value, unit
 
 DEEPEST = 50  # links; JSON that nests deeper is refused by many readers, and by our own writer
 
@@ -29,7 +29,7 @@ def explain(calculation: Calculation, name: str) -> JsonObject:
     NotFound
         If no model has this parameter.
     """
-    return _Explainer(calculation).of(Reference.parse(_full_name(calculation, name)))
+    return Explainer(calculation).of(Reference.parse(_full_name(calculation, name)))
 
 
 def _full_name(calculation: Calculation, name: str) -> str:
@@ -44,11 +44,13 @@ def _full_name(calculation: Calculation, name: str) -> str:
     raise NotFound(f"no model has the parameter {name[:80]!r}; there are {', '.join(names)}")
 
 
-class _Explainer:
-    def __init__(self, calculation: Calculation) -> None:
+class Explainer:
+    """The chain behind values of one calculated design; what was explained once is named only."""
+
+    def __init__(self, calculation: Calculation, depth: int = 0) -> None:
         self.calculation, self.graph = calculation, calculation.graph
         self.explained: set[Reference] = set()
-        self.depth = 0
+        self.depth = depth
 
     def of(self, reference: Reference) -> JsonObject:
         """What a name is, and what it follows from."""
@@ -84,7 +86,7 @@ class _Explainer:
         cls = self.graph.blocks[head].cls
         declared = cls.inputs.get(tail) or cls.formulas[tail]
         if not isinstance(declared, Formula):
-            return {"kind": "default", "because": []}
+            return {"kind": "not_given" if declared.default is None else "default", "because": []}
         kind = "default_formula" if isinstance(declared, Derived) else "formula"
         paper = formula_on_paper(cls, declared)
         because = [self.of(Reference(head, None, used)) for used in paper.pop("uses")]
@@ -104,12 +106,22 @@ class _Explainer:
         if isinstance(si, str):
             return {"value": si}
         cls = self.graph.blocks[reference.block].cls
-        declared = cls.inputs.get(reference.member) or cls.formulas.get(reference.member)
-        if declared is None:
-            name = measured_unit(reference)
-            return {"value": float(unit(name).from_si(si)), "unit": name}
-        shown = declared.meaning.scale.from_si(si)
-        return {"value": np.asarray(shown).tolist(), "unit": declared.meaning.unit}
+        cell = self.graph.cell(reference)
+        declared = cell.declared if cell else cls.inputs.get(reference.member)
+        declared = declared or cls.formulas.get(reference.member)
+        if isinstance(si, tuple):  # a table, empty where it is not given
+            si = np.asarray(si)
+        if not np.size(si):
+            return None
+        return shown(si, measured_unit(reference) if declared is None else declared.meaning.unit)
+
+
+def shown(si: Value, unit_name: str) -> JsonObject:
+    """A value [SI] in a unit; null where there is none."""
+    values = np.asarray(unit(unit_name).from_si(si), dtype=float)
+    plain = values.astype(object)
+    plain[~np.isfinite(values)] = None
+    return {"value": plain.tolist(), "unit": unit_name}
 
 
 def _measured_by(node: Solid | SolidAnalysis) -> JsonObject:

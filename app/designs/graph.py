@@ -15,20 +15,20 @@ from app.designs.analyses import is_measured, questions, remedy
 from app.designs.demands import checked_demands, read_demands, unknown_names_in
 from app.designs.document import Document, Model, Step, Version
 from app.designs.kinds import checked_kinds
-from app.designs.network import Block, Cell, Graph, Network, Node
+from app.designs.network import LIMITS, Block, Cell, Graph, Network, Node, limits_of
 from app.designs.ordering import ordered
 from app.designs.reference import Reference
-from app.designs.size import too_many_relations
+from app.designs.size import has_relation, too_many_relations
 from app.plain import Raw
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_names
 from templates.core.judging.limits import GivenLimit, read_limits
 from templates.core.language.intake import Input
+from templates.core.language.meaning import Meaning
+from templates.core.language.spec import Given
 from templates.core.language.template import Template
 from templates.core.units.relation import Kind, Relation, is_relation, parse
-
-NO_RELATION = "a limit is a quantity; write a criterion of the design where it follows from other values"
 
 T = TypeVar("T", bound=Template)
 
@@ -122,21 +122,35 @@ def _step(name: str, step: Step, templates: Catalogue[Template]) -> tuple[Block 
         return None, faults
     cells, faults = _cells(name, step.inputs, cls)
     outputs = None if step.outputs is None else tuple(step.outputs)
-    limits, wrong = _limits(name, step, cls)
-    return Block(name, cls, cells, step.level, step.tolerance, outputs, limits), [*faults, *wrong]
+    related, wrong = _related_limits(name, step, cls)
+    faults += wrong
+    limits, wrong = _limits(name, {n: raw for n, raw in step.limits.items() if n not in related}, cls)
+    return Block(name, cls, cells, step.level, step.tolerance, outputs, limits, related), [*faults, *wrong]
 
 
-def _limits(name: str, step: Step, cls: type[Template]) -> tuple[dict[str, GivenLimit], list[Fault]]:
-    """The limits that a step gives for the criteria of its template."""
+def _related_limits(name: str, step: Step, cls: type[Template]) -> tuple[dict[str, Cell], list[Fault]]:
+    """The limits that a step gives by relations; names that are no limits are left to `_limits`."""
+    cells: dict[str, Cell] = {}
+    faults: list[Fault] = []
     if not step.limits:
-        return {}, []
-    related = [n for n, raw in step.limits.items() if is_relation(raw)]
-    faults = [Fault(f"{name}.limits.{n}", "relation", NO_RELATION) for n in related]
+        return cells, faults
+    for tail in step.limits.keys() & limits_of(cls).keys():
+        if has_relation(raw := step.limits[tail]):
+            declared = limits_of(cls)[tail]
+            given = Given(Meaning(words=declared.words, unit=declared.unit, name=tail))
+            cells[tail], wrong = _cell(Reference(name, LIMITS, tail), f"{name}.{LIMITS}.{tail}", raw, given)
+            faults += wrong
+    return cells, faults
+
+
+def _limits(
+    name: str, raw: Mapping[str, Raw], cls: type[Template]
+) -> tuple[dict[str, GivenLimit], list[Fault]]:
+    """The limits that a step gives by quantities, or by a row of the library."""
     try:
-        literal = {n: raw for n, raw in step.limits.items() if n not in related}
-        return read_limits(cls.declared_criteria, literal), faults
+        return read_limits(cls.declared_criteria, raw), []
     except InvalidInputs as error:
-        return {}, [*faults, *(fault.within(name) for fault in error.faults)]
+        return {}, [fault.within(name) for fault in error.faults]
 
 
 def _model(name: str, model: Model, models: Catalogue[CadModel]) -> tuple[Block | None, list[Fault]]:

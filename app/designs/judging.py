@@ -15,11 +15,13 @@ from app.designs.network import Block, Demand
 from app.designs.reference import Reference
 from app.designs.shifting import NOTHING, Shifting, Upstream
 from app.designs.size import limit_operations, limit_values
+from app.designs.subjects import Subject, subjects
 from templates.core.errors import FaultyText, TemplateError, listed
 from templates.core.judging.bands import Estimate
 from templates.core.judging.criterion import Criterion
 from templates.core.judging.judgement import Judgement
-from templates.core.judging.judging import Absent, Along, judge
+from templates.core.judging.judging import Absent, Along, Instead, judge
+from templates.core.judging.limits import GivenLimit
 from templates.core.judging.summary import worst_first
 from templates.core.language.criteria import (
     Evaluated,
@@ -28,6 +30,7 @@ from templates.core.language.criteria import (
     estimates_of,
     is_due,
     level_and_truth,
+    missing_of,
     notes,
 )
 from templates.core.language.levels import accuracy
@@ -36,23 +39,6 @@ from templates.core.language.levels import accuracy
 def judged(calculation: Calculation) -> list[Judgement]:
     """Every criterion of a design, worst first; what waits for a solid or a step is not checked."""
     return worst_first(Judging(calculation).all())
-
-
-@dataclass(frozen=True)
-class _Subject:
-    """A criterion of a design: that of a step's template, or one that the design writes itself."""
-
-    criterion: Criterion
-    block: Block | None
-    demand: Demand | None
-
-    @cached_property
-    def references(self) -> Mapping[str, Reference]:
-        """The values that it names, without limits."""
-        if self.block is None:
-            return self.demand.uses if self.demand else {}
-        limits = {limit.name for limit in self.criterion.limits}
-        return {n: Reference(self.block.name, None, n) for n in self.criterion.names if n not in limits}
 
 
 @dataclass(frozen=True)
@@ -79,29 +65,25 @@ class Judging:
         """The names of all criteria."""
         return list(self._subjects)
 
+    def subject(self, name: str) -> Subject:
+        """A criterion by its name, and where it is declared."""
+        return self._subjects[name]
+
     def references(self, name: str) -> Mapping[str, Reference]:
         """The values that a criterion names, without limits."""
         return self._subjects[name].references
 
     def uncertain(self, name: str) -> frozenset[Reference]:
         """The outputs of steps whose errors, as far as they are stated, make the band of a criterion."""
-        origins = (self._shifting.behind(reference).uncertain for reference in self.references(name).values())
+        subject = self._subjects[name]
+        judged = [subject, *(one for _, one in subject.instead)]
+        references = (reference for one in judged for reference in one.references.values())
+        origins = (self._shifting.behind(reference).uncertain for reference in references)
         return reduce(or_, origins, frozenset())
 
     @cached_property
-    def _subjects(self) -> dict[str, _Subject]:
-        """All criteria by their names."""
-        graph = self.calculation.graph
-        subjects: dict[str, _Subject] = {}
-        for block in graph.blocks.values():
-            for criterion in block.cls.declared_criteria:
-                name = f"{block.name}.{criterion.name}"
-                subjects[name] = _Subject(criterion, block, graph.demands.get(name))
-        own = {name: demand for name, demand in graph.demands.items() if demand.criterion is not None}
-        for name, demand in own.items():
-            assert demand.criterion is not None
-            subjects[name] = _Subject(demand.criterion, None, demand)
-        return subjects
+    def _subjects(self) -> dict[str, Subject]:
+        return subjects(self.calculation.graph)
 
     def _of_template(self, block: Block, criterion: Criterion, demand: Demand | None) -> Iterator[Judgement]:
         """A criterion of a step's template, unless the step leaves out outputs that it needs."""
@@ -112,14 +94,40 @@ class Judging:
             return
         if not is_due(evaluated, criterion):
             return
-        estimates, absent = estimates_of(evaluated, criterion)
         more = notes(evaluated, criterion)
+        instead = self._instead(block, evaluated, criterion) if criterion.absent else None
+        judgement = self._of_step(Subject(criterion, block, demand), evaluated, more, instead)
+        yield _named(judgement, block, demand)
+
+    def _instead(self, block: Block, evaluated: Evaluated, criterion: Criterion) -> Instead | None:
+        """What is judged where a side has no value, with the errors from upstream."""
+        missing = missing_of(evaluated, criterion)
+        if missing is None or missing.instead is None:
+            return None
+        subject = Subject(missing.instead, block, None)
+        return Instead(self._of_step(subject, evaluated, {}, None), missing.reason)
+
+    def _of_step(
+        self, subject: Subject, evaluated: Evaluated, more: Mapping[str, str | None], instead: Instead | None
+    ) -> Judgement:
+        criterion, block = subject.criterion, subject.block
+        assert block is not None
+        estimates, absent = estimates_of(evaluated, criterion)
+        absent |= self._waiting_limits(block, criterion) if block.related else {}
         if absent:
-            yield _named(judge(criterion, estimates, absent, noted=more), block, demand)
-            return
-        references = {n: Reference(block.name, None, n) for n in estimates.keys() - criterion.limits_by_name}
+            return judge(criterion, estimates, absent, noted=more, instead=instead)
+        references = {n: reference for n, reference in subject.references.items() if n in estimates}
         along = along_of(evaluated.template, criterion.names)
-        yield _named(self._judged(criterion, references, estimates, absent, along, more), block, demand)
+        return self._judged(criterion, references, estimates, {}, along, more, instead)
+
+    def _waiting_limits(self, block: Block, criterion: Criterion) -> dict[str, Absent]:
+        """The limits whose relations have no value yet; a row of the library does not stand in for them."""
+        related = (block.related[name] for name in criterion.limits_by_name if name in block.related)
+        waiting = [cell for cell in related if cell.name not in self.calculation.values]
+        return {
+            cell.reference.output or "": Absent((), f"{cell.name} has no value yet: {cell.raw}")
+            for cell in waiting
+        }
 
     def _of_design(self, criterion: Criterion, demand: Demand) -> Judgement:
         """A criterion that the design writes itself."""
@@ -159,6 +167,7 @@ class Judging:
         absent: Mapping[str, Absent],
         along: Along | None,
         more: Mapping[str, str | None],
+        instead: Instead | None = None,
     ) -> Judgement:
         """A criterion with the errors that reach its values from upstream."""
         if absent:
@@ -172,12 +181,12 @@ class Judging:
                 criterion, estimates, dict.fromkeys(criterion.names, Absent((), str(error))), noted=more
             )
         if upstream == NOTHING:
-            return judge(criterion, estimates, absent, along, noted=more)
+            return judge(criterion, estimates, absent, along, noted=more, instead=instead)
         constant = {name: estimate.value for name, estimate in estimates.items() if name not in references}
         shifts = [({**low, **constant}, {**high, **constant}) for low, high in moved]
         unstated = upstream.unstated | left_out
         tainted = _tainted(estimates, references, upstream, unstated=bool(unstated))
-        result = judge(criterion, tainted, absent, along, shifts=shifts, noted=more)
+        result = judge(criterion, tainted, absent, along, shifts=shifts, noted=more, instead=instead)
         return _explained(result, upstream.unknown, unstated)
 
     @cached_property
@@ -210,10 +219,17 @@ class Judging:
                     evaluation.outputs,
                     evaluation.error,
                     accuracy(block.cls),
-                    block.limits,
+                    self._limits(block),
                     level=evaluation.level,
                 )
         return self._steps[step]
+
+    def _limits(self, block: Block) -> Mapping[str, GivenLimit]:
+        """The limits of a step; those by relations as far as they have values, with these as source."""
+        values = self.calculation.values
+        related = {n: cell for n, cell in block.related.items() if cell.name in values}
+        given = {n: GivenLimit(values[cell.name], f"{n} {cell.raw}") for n, cell in related.items()}
+        return {**block.limits, **given}
 
 
 def _tainted(

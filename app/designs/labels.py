@@ -119,7 +119,7 @@ def _carried(head: RevisionRow, name: str, note: str | None) -> Written:
     """What a revision holds, under another name."""
     models = [
         ModelState(m.name, m.model, m.model_version, m.parameters, m.relations, (), m.build_key)
-        for m in head.models
+        for m in (*head.models, *head.variant_models)
     ]
     document: JsonObject = {**head.document, "name": name}
     return Written(document, head.results, models, head.state, note or f"renamed from {_former(head)}")

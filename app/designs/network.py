@@ -18,6 +18,7 @@ from app.plain import Raw
 from app.solids.questions import Question
 from cad.model import CadModel
 from templates.core.judging.criterion import Criterion as Judged
+from templates.core.judging.criterion import Limit
 from templates.core.judging.limits import GivenLimit
 from templates.core.language.intake import Input
 from templates.core.language.spec import Choice, Declaration, Formula
@@ -25,12 +26,14 @@ from templates.core.language.template import Template
 from templates.core.units.operations import Kind
 from templates.core.units.relation import Relation
 
+LIMITS = "limits"  # where a reference has the name of an analysis, if it means a limit: film.limits.pressure
+
 
 @dataclass(frozen=True, eq=False)
 class Cell:
     """One value as its user wrote it, with the relations in it (a list may hold several) and what they use.
 
-    `declared` is the input of a block that it sets; a parameter of the design has none.
+    `declared` is the input or the limit of a block that it sets; a parameter of the design has none.
     """
 
     reference: Reference
@@ -43,7 +46,11 @@ class Cell:
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """A step or a model: a template and the cells that are set."""
+    """A step or a model: a template and the cells that are set.
+
+    `limits` of its criteria are known at once; `related` ones follow from relations, and nothing of the block
+    follows from them.
+    """
 
     name: str
     cls: type[Template]
@@ -52,6 +59,7 @@ class Block:
     tolerance: float | None = None
     outputs: tuple[str, ...] | None = None
     limits: Mapping[str, GivenLimit] = field(default_factory=dict)
+    related: Mapping[str, Cell] = field(default_factory=dict)
     analyses: Mapping[str, Question] = field(default_factory=dict)
 
     @cached_property
@@ -115,13 +123,18 @@ class Network:
         yield from self.parameters.values()
         for block in self.blocks.values():
             yield from block.cells.values()
+            yield from block.related.values()
 
     def cell(self, reference: Reference) -> Cell | None:
         """The cell of this name."""
         if reference.output is None:
             return self.parameters.get(reference.block)
         block = self.blocks.get(reference.block)
-        return block.cells.get(reference.member) if block else None
+        if block is None:
+            return None
+        if reference.analysis == LIMITS:
+            return block.related.get(reference.output)
+        return block.cells.get(reference.member)
 
     def node(self, reference: Reference) -> Node | None:
         """The node from which a name in a relation takes its value; None if nothing is named so."""
@@ -156,6 +169,13 @@ class Network:
             blocks.setdefault(names[name].block, []).append(names[name])
         return {block: tuple(references) for block, references in blocks.items()}
 
+    def computed(self, step: Block) -> tuple[str, ...] | None:
+        """The outputs that a step computes: all (None), or those that it names and those that are used."""
+        if step.outputs is None:
+            return None
+        linked = (reference.member for reference in self.used.get(step.name, ()))
+        return tuple(dict.fromkeys([*step.outputs, *(name for name in linked if name in step.cls.formulas)]))
+
     def wanted(self, model: str, kind: str) -> tuple[str, ...]:
         """The outputs of an analysis that relations or iterations use."""
         return used(kind, self.used.get(model, ()))
@@ -164,6 +184,11 @@ class Network:
         """The declared unit of a name inside a block."""
         declared = _declared(self.blocks[reference.block], reference)
         return declared.meaning.unit if declared else measured_unit(reference)
+
+
+def limits_of(cls: type[Template]) -> dict[str, Limit]:
+    """The limits that the criteria of a template take from its user."""
+    return {limit.name: limit for criterion in cls.declared_criteria for limit in criterion.limits}
 
 
 def _declared(block: Block, reference: Reference) -> Input | Formula[Template] | None:

@@ -14,7 +14,12 @@ from app.designs.calculate import Calculation, calculate
 from app.designs.document import Document, merge
 from app.designs.graph import build_graph, raise_if
 from app.designs.judging import judged
-from app.designs.service import analysed, built, read_document, resolved, starts
+from app.designs.service import analysed, built, read_document, resolved
+from app.designs.starting import starts
+from app.designs.variants.calculating import checked
+from app.designs.variants.judging import merged
+from app.designs.variants.outcome import Outcome
+from app.designs.variants.together import Available
 from app.designs.worksheet import previewed
 from app.plain import Raw
 from app.presentation.units import System
@@ -68,11 +73,13 @@ def preview(
     new, mismatched = _calculated(database, catalogues, changed)
     raise_if(new.faults)  # not those of the old one: the change may be to correct it
     old, _ = _calculated(database, catalogues, Document.model_validate(head.document))
-    criteria = judged(new)
-    steps = _steps(new, criteria)
+    own = judged(new)
+    steps = _steps(new, own)
+    outcomes = _variants(database, catalogues, changed, new) if not mismatched else []
+    everywhere = merged(own, {outcome.name: outcome.judgements for outcome in outcomes})
     content = Preview(
         revision=head.number,
-        **rendered(criteria),
+        **rendered(everywhere),
         outputs={
             **_compared(_outputs(_steps(old)), _outputs(steps)),
             **_compared(_analysed(old), _analysed(new)),
@@ -82,7 +89,17 @@ def preview(
     ).in_units(system)
     if worksheet:
         content.steps, content.parameters = previewed(new, steps, system), _values(new)
-    return Previewed(content, is_whole=not (old.deferred or new.deferred))
+    is_deferred = old.deferred or new.deferred or any(outcome.is_deferred for outcome in outcomes)
+    return Previewed(content, is_whole=not is_deferred)
+
+
+def _variants(
+    database: Database, catalogues: Catalogues, document: Document, base: Calculation
+) -> list[Outcome]:
+    """The variants of a document, refused as a save refuses them."""
+    outcomes, faults = checked(document, base, Available(catalogues, built(database), analysed(database)))
+    raise_if(faults)
+    return outcomes
 
 
 def _calculated(

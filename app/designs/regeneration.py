@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 
 from sqlalchemy.orm import Session
 
 from app.calculations.pool import Lane
 from app.calculations.steps import Steps, calling
 from app.catalogue.catalogues import Catalogues
-from app.designs import repository, results
+from app.designs import repository
 from app.designs.analyses import measured_unit
 from app.designs.calculate import Calculation, calculate, resume
 from app.designs.document import Document, Iteration
 from app.designs.errors import NotConverged
 from app.designs.graph import Graph, build_graph, raise_if
+from app.designs.naming import named
 from app.designs.recent import Prepared, Recent
 from app.designs.reference import Reference
-from app.designs.service import REGENERATE, analysed, built, starts
+from app.designs.service import REGENERATE, analysed, built
+from app.designs.starting import starts
+from app.designs.variants import stored as variants
+from app.designs.variants.calculating import row_faults
+from app.designs.variants.outcome import Outcome
+from app.designs.variants.settling import Describe, Settling, plain_problem
+from app.designs.variants.together import Available, together
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.plain import Json, JsonObject
 from app.solids.builds import Builds
@@ -48,7 +54,9 @@ class Regeneration:
         catalogues: Catalogues,
         steps: Steps | None = None,
         recent: Recent | None = None,
+        describe: Describe = plain_problem,
     ) -> None:
+        self.describe = describe
         self.database, self.builds, self.catalogues = database, builds, catalogues
         self.analysing, self.steps, self.recent = analysing, steps, recent or Recent()
 
@@ -67,11 +75,13 @@ class Regeneration:
             plain = repository.document(session, id, number)
         try:
             with calling(self.steps, job, context, f"design:{id}", _lane(job)):
-                calculation, rounds = self._settled(self._prepared(plain), context)
+                prepared = self._prepared(plain)
+                calculation, rounds = self._settled(prepared, context)
+                outcomes = self._variants(prepared.document, calculation, context)
         except FAILURES as error:
             raise JobFailed(error) from error
-        stored = results.stored(calculation, rounds)
-        models = results.models(calculation)
+        stored = variants.stored(calculation, rounds, outcomes)
+        models = variants.models(calculation, outcomes)
 
         def completion(session: Session) -> str:
             repository.attach(session, id, number, stored, models)
@@ -120,6 +130,18 @@ class Regeneration:
                     raise NotConverged(iteration.through, iteration.tolerance, done_before)
             calculation = self._calculated(calculation.graph, measured)
 
+    def _variants(self, document: Document, base: Calculation, context: JobContext) -> list[Outcome]:
+        """The variants of a document, each with its solids or with the reason why it has none."""
+        if not document.variants:
+            return []
+        raise_if(row_faults(base))
+        available = Available(self.catalogues, built(self.database), analysed(self.database))
+        settling = Settling(self.builds, self._settle, self.describe, context)
+        return settling.settled(together(document, available))
+
+    def _settle(self, prepared: Prepared, context: JobContext) -> Calculation:
+        return self._settled(prepared, context)[0]
+
     def _built(self, calculation: Calculation, context: JobContext) -> Calculation:
         """The calculation once every model in it is built, and analysed as far as somebody uses it.
 
@@ -132,7 +154,7 @@ class Regeneration:
                 continue  # a build was deleted since: it is built again
             waiting = sorted(calculation.shapes.keys() - calculation.measures.keys())
             for name in waiting:
-                with _named(name):
+                with named(name):
                     self.builds.make(calculation.shapes[name], context)
             if not self._analysed(calculation, context) and not waiting:
                 return calculation
@@ -144,7 +166,7 @@ class Regeneration:
         for node in waiting:
             name, kind = node.model.name, node.kind
             question = node.model.analyses[kind]
-            with _named(name, kind):
+            with named(name, kind):
                 self.builds.make(calculation.shapes[name], context)  # its file may be lost
                 self.analysing.find(
                     calculation.shapes[name], question, calculation.graph.wanted(name, kind), context
@@ -155,19 +177,6 @@ class Regeneration:
 def _lane(job: Job) -> Lane:
     """Where a job calculates: whoever changes a bearing does not wait for calculations of minutes."""
     return "answers" if job.kind == REGENERATE else "jobs"
-
-
-@contextmanager
-def _named(model: str, analysis: str = "") -> Iterator[None]:
-    """Let a failure of geometry name the model of the design, and one of its analysis that too."""
-    try:
-        yield
-    except GeometryError as error:
-        names = (f"{model}.{parameter}" for parameter in error.parameters)
-        raise GeometryError(error.code, f"{model}: {error.detail}", names) from error
-    except AnalysisError as error:
-        name = f"{model}.{analysis}"
-        raise AnalysisError(error.code, f"{name}: {error.detail}", name) from error
 
 
 def _measure(calculation: Calculation, iteration: Iteration) -> float:

@@ -34,9 +34,11 @@ class ModelState:
     build: str | None
 
 
-def stored(calculation: Calculation, rounds: list[JsonObject]) -> JsonObject:
-    """All that a revision keeps of a calculation beside its models."""
-    criteria = judged(calculation)
+def stored(
+    calculation: Calculation, rounds: list[JsonObject], criteria: Sequence[Judgement] | None = None
+) -> JsonObject:
+    """All that a revision keeps of a calculation beside its models; its `criteria`, if they are judged."""
+    criteria = judged(calculation) if criteria is None else criteria
     return {
         "steps": steps(calculation, criteria),
         "iterations": rounds,

@@ -21,6 +21,7 @@ from app.designs.document import (
     Step,
     WrittenCriterion,
 )
+from app.designs.variants.names import MOST_VARIANTS, PLACE
 from app.schemas.bounded import Bounded
 from app.schemas.values import FORMS, GIVEN, Given
 
@@ -114,6 +115,11 @@ PATCH: JsonDict = {
             "type": ["object", "null"],
             "propertyNames": {"pattern": CRITERION},
             "additionalProperties": _part(WrittenCriterion),
+        },
+        "variants": {
+            **_named({"type": ["object", "null"], "propertyNames": {"pattern": PLACE}}),
+            "maxProperties": MOST_VARIANTS,
+            "description": "null removes a variant, or one of its values",
         },
         "iterations": {"type": ["array", "null"], "maxItems": 10, "items": _part(Iteration)},
         "note": {"type": ["string", "null"], "maxLength": LONGEST_NOTE},

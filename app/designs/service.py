@@ -11,8 +11,7 @@ from sqlalchemy.orm import Session
 from app.calculations.begun import Begun
 from app.calculations.steps import begun_steps
 from app.catalogue.catalogues import Catalogues
-from app.designs import repository, results
-from app.designs.analyses import measured_unit
+from app.designs import repository
 from app.designs.automap import proposals
 from app.designs.calculate import Analysed, Calculation, Measured, Measures, Outputs, calculate
 from app.designs.document import Document, merge
@@ -21,6 +20,11 @@ from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.recent import Prepared, Recent
 from app.designs.reference import Reference
 from app.designs.repository import Written
+from app.designs.starting import starts
+from app.designs.variants import stored as variants
+from app.designs.variants.calculating import checked
+from app.designs.variants.outcome import Outcome
+from app.designs.variants.together import Available
 from app.jobs.service import Jobs
 from app.plain import Json, JsonObject, Raw
 from app.schemas.designs import Proposal
@@ -32,8 +36,7 @@ from app.storage.database import Database, Unit
 from app.storage.idempotency import Once
 from cad.model import CadModel
 from cad.regenerate import build_key
-from templates.core.errors import Fault, FaultyText, InvalidInputs, plain
-from templates.core.units.quantity import Value, read
+from templates.core.errors import Fault, InvalidInputs, plain
 
 REGENERATE, REGENERATE_SLOWLY = "regenerate", "regenerate_and_analyse"
 CALCULATE = "calculate_and_regenerate"
@@ -194,14 +197,34 @@ class Designs:
         """What to write for a document; its results wait for a job if anything in it does."""
         document, calculation = self.prepare(raw)
         raise_if(calculation.faults)
-        pending = bool(document.iterations) or bool(calculation.pending)
-        stored = None if pending else results.stored(calculation, [])
+        outcomes = self._variants(document, calculation)
+        waits = bool(outcomes) and any(outcome.is_pending for outcome in outcomes)
+        pending = bool(document.iterations) or bool(calculation.pending) or waits
+        stored = None if pending else variants.stored(calculation, [], outcomes)
         state = "regenerating" if pending else "current"
         plain = document.model_dump(mode="json")
+        is_deferred = bool(calculation.deferred) or (
+            bool(outcomes) and any(outcome.is_deferred for outcome in outcomes)
+        )
         if pending and not calculation.deferred:
             self.recent.keep(plain, Prepared(document, calculation))
-        written = Written(plain, stored, results.models(calculation), state, note)
-        return _Draft(written, _kind(calculation), bool(calculation.deferred), begun_steps())
+        written = Written(plain, stored, variants.models(calculation, outcomes), state, note)
+        return _Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
+
+    def _variants(self, document: Document, base: Calculation) -> list[Outcome]:
+        """The variants of a document, as far as they can be calculated now.
+
+        Raises
+        ------
+        InvalidInputs
+            With everything that is wrong with the table.
+        """
+        if not document.variants:
+            return []
+        available = Available(self.catalogues, built(self.database), analysed(self.database))
+        outcomes, faults = checked(document, base, available)
+        raise_if(faults)
+        return outcomes
 
     def _enqueued(
         self, session: Session, design: str, revision: int, draft: _Draft, once: Once, *, created: bool
@@ -243,11 +266,11 @@ def _with_builds(session: Session, draft: _Draft) -> _Draft:
     return replace(draft, written=replace(draft.written, results=None, state="regenerating"))
 
 
-def _kind(calculation: Calculation) -> str:
+def _kind(graph: Graph, is_deferred: bool) -> str:
     """The kind of job that completes a design."""
-    if analyses_wanted(calculation.graph):
+    if analyses_wanted(graph):
         return REGENERATE_SLOWLY
-    return CALCULATE if calculation.deferred else REGENERATE
+    return CALCULATE if is_deferred else REGENERATE
 
 
 def _saved_before(session: Session, once: Once) -> Saved | None:
@@ -321,28 +344,3 @@ def analysed(database: Database) -> Analysed:
         return under_load(question, {name: outputs[name] for name in wanted})
 
     return stored
-
-
-def starts(document: Document) -> dict[Reference, float]:
-    """The SI values with which the iterations of a document begin.
-
-    Raises
-    ------
-    InvalidInputs
-        If a start is no quantity of its measure's kind.
-    """
-    faults, values = list[Fault](), dict[Reference, float]()
-    for iteration in document.iterations:
-        through = Reference.parse(iteration.through)
-        try:
-            values[through] = _single(read(iteration.start, measured_unit(through)).si)
-        except FaultyText as error:
-            faults.append(error.fault("iterations.start"))
-    raise_if(faults)
-    return values
-
-
-def _single(value: Value) -> float:
-    if not isinstance(value, float):
-        raise FaultyText("not_a_number", "one value is wanted here, not an array")
-    return value

@@ -32,10 +32,17 @@ def too_many_relations(document: Document) -> Iterator[Fault]:
 
 def _items(document: Document) -> Iterator[Raw]:
     """Every value of a document, and every item of those that are lists."""
-    groups = [document.parameters, *(step.inputs for step in document.steps.values())]
+    groups = [document.parameters]
+    groups += [group for step in document.steps.values() for group in (step.inputs, step.limits)]
     groups += [model.parameters for model in document.models.values()]
+    groups += document.variants.values()
     values = chain.from_iterable(group.values() for group in groups)
     return chain.from_iterable(value if isinstance(value, list) else (value,) for value in values)
+
+
+def has_relation(raw: Raw) -> bool:
+    """Whether a value is a relation, or a list that holds one."""
+    return any(map(is_relation, raw)) if isinstance(raw, list) else is_relation(raw)
 
 
 def limit_values(values: int) -> None:

@@ -20,12 +20,15 @@ def stamp(session: Session, model: RevisionModelRow) -> Stamp:
     """The stamp of a built model: always the same, because a revision never changes."""
     revision = repository.revision(session, model.design_id, model.number)
     build = rows.build(session, model.build_key or "")
+    variant, dot, name = model.name.rpartition(".")
     return Stamp(
         design=revision.document["name"],
-        model=model.name,
+        model=name,
         revision=model.number,
         date=revision.created[:19],  # UTC, to the second
         materials=_materials(build) if build else {},
+        variant=variant if dot else None,
+        is_only=len(revision.document["models"]) == 1,
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from sqlalchemy.orm import Session
 
 from app.designs import repository, tolerances
+from app.designs.variants.names import natural
 from app.plain import JsonObject
 from app.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
 from app.solids import measures, rows
@@ -29,11 +30,18 @@ def design(row: DesignRow, revision: RevisionRow) -> Design:
             "models": document["models"],
             "iterations": document["iterations"],
             **{name: document[name] for name in ("criteria",) if name in document},
+            **_variants(document),
             "problem": revision.problem,
             "created": row.created,
             "changed": revision.created,
         }
     )
+
+
+def _variants(document: JsonObject) -> JsonObject:
+    """What the variants of a design override, in their natural order; nothing where there are none."""
+    variants = document.get("variants", {})
+    return {"variants": {name: variants[name] for name in sorted(variants, key=natural)}} if variants else {}
 
 
 def listed(row: DesignRow, revision: RevisionRow, tags: list[str]) -> DesignSummary:

@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session
 from app.jobs import repository
 from app.jobs.admission import Durations
 from app.jobs.context import JobContext, publish
-from app.jobs.errors import JobFailed
+from app.jobs.errors import JobFailed, JobRests
 from app.jobs.events import Events
 from app.jobs.job import Job
 from app.jobs.turns import Lane
@@ -173,6 +173,8 @@ class Dispatcher:
             self._complete(job, context, completion)
         except JobCancelled:
             self._give_back(job, job.crashes)  # unless somebody has cancelled it: then it is no longer held
+        except JobRests:
+            self._rest(job)
         except JobCrashed as error:
             self._crashed(job, context, error)
         except JobFailed as verdict:
@@ -208,6 +210,12 @@ class Dispatcher:
     def _give_back(self, job: Job, crashes: int) -> None:
         if self._database.write(lambda session: repository.give_back(session, job, crashes)):
             publish(self._events, job, "queued")
+
+    def _rest(self, job: Job) -> None:
+        lane = self.lane(job.kind)
+        if self._database.write(lambda session: repository.rest(session, job, lane)):
+            publish(self._events, job, "queued")
+            self.wake(job.kind)
 
     def _fail(
         self,

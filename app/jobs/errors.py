@@ -5,6 +5,7 @@ JobError
  ├── JobFinished    the job has ended, so it cannot be cancelled
  ├── JobShared      several clients wait for the job, so a further one cannot cancel it
  ├── QueueFull      too many jobs are waiting
+ ├── JobRests       raised by a handler: the job goes on later, others come first
  └── JobFailed      raised by a handler: the job ends with this error
 """
 
@@ -51,6 +52,10 @@ class QueueFull(JobError):
         )
         super().__init__(f"{whose} waiting. Try again in {retry_after} s.")
         self.retry_after = retry_after
+
+
+class JobRests(JobError):
+    """A handler lets the jobs of others go first: its own is queued again, in its client's next turn."""
 
 
 class JobFailed(JobError):

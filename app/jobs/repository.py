@@ -10,7 +10,7 @@ from sqlalchemy import ColumnElement, and_, func, select, update
 from sqlalchemy.orm import Session
 
 from app.jobs.job import Job
-from app.jobs.turns import ALL_KINDS, UNFINISHED, Lane
+from app.jobs.turns import ALL_KINDS, UNFINISHED, Lane, next_turn
 from app.plain import JsonObject
 from app.schemas.jobs import State
 from app.storage.clock import operated
@@ -92,6 +92,12 @@ def set_result(session: Session, id: str, link: str | None) -> None:
 def give_back(session: Session, job: Job, crashes: int) -> bool:
     """Queue a claimed job again; return whether it was still held."""
     return _write(session, _held(job), state="queued", crashes=crashes) == 1
+
+
+def rest(session: Session, job: Job, lane: Lane) -> bool:
+    """Queue a claimed job again, in its client's next turn; return whether it was still held."""
+    row = session.get_one(JobRow, job.id)
+    return _write(session, _held(job), state="queued", turn=next_turn(session, row.client, lane)) == 1
 
 
 def give_back_all(session: Session) -> int:

@@ -11,7 +11,7 @@ from app.jobs import repository, turns
 from app.jobs.admission import admit
 from app.jobs.context import JobContext, publish
 from app.jobs.dispatcher import FAST, SLOW, Completion, Dispatcher, FailureHook, Handler, Kind, Problem
-from app.jobs.errors import JobFailed, JobFinished, JobNotFound
+from app.jobs.errors import JobFailed, JobFinished, JobNotFound, JobRests
 from app.jobs.events import Events
 from app.jobs.job import FINAL, Job
 from app.observation import logs
@@ -23,7 +23,7 @@ from app.storage.database import Database
 from app.workers.base import Limits, Worker
 from app.workers.errors import JobCancelled
 
-__all__ = ["Completion", "Job", "JobContext", "JobFailed", "Jobs"]
+__all__ = ["Completion", "Job", "JobContext", "JobFailed", "JobRests", "Jobs"]
 
 logger = logging.getLogger(__name__)
 
@@ -137,6 +137,16 @@ class Jobs:
     def waiting(self, session: Session, kind: str, payload: JsonObject) -> str | None:
         """Return the id of a job that is to do just this and has not ended."""
         return repository.find_waiting(session, kind, payload)
+
+    def others_wait(self, kind: str) -> bool:
+        """Return whether a job waits in the lane of a kind."""
+        lane = self._dispatcher.lane(kind)
+        with self._database.read() as session:
+            return turns.count_queued(session, lane=lane) > 0
+
+    def usual_seconds(self, kind: str) -> float:
+        """Return how long the latest jobs of a kind's lane took on average [s]."""
+        return self._dispatcher.durations.mean(self._dispatcher.lane(kind))
 
     def queued(self, session: Session) -> int:
         """Return how many jobs wait."""

@@ -51,9 +51,11 @@ def _present_turn(session: Session, lane: Lane) -> int:
     return next((turn for turn in turns if turn is not None), 0)
 
 
-def count_queued(session: Session, client: str | None = None) -> int:
-    """How many jobs wait, of one client or of all."""
+def count_queued(session: Session, client: str | None = None, lane: Lane | None = None) -> int:
+    """How many jobs wait, of one client or of all, in one lane or in all."""
     waiting = select(func.count()).select_from(JobRow).where(JobRow.state == "queued")
+    if lane is not None:
+        waiting = waiting.where(lane.holds())
     return session.scalar(waiting if client is None else waiting.where(JobRow.client == client)) or 0
 
 

@@ -19,7 +19,8 @@ from app.storage.artifacts import QUARANTINE, SHA256
 from app.storage.integrity import faults, is_damage, marker_of
 
 YOUNG = 60.0  # a file of a running service may be this old before the row that names it is committed [s]
-OWNERS = {"surface": "analysis", "body": "job", "answer": "job"}  # by kind of file; of a build else
+# by kind of file; of a build else
+OWNERS = {"surface": "analysis", "body": "job", "answer": "job", "rows": "study"}
 MOST = 100  # faults of the database that are listed
 
 Say = Callable[[str], None]
@@ -126,7 +127,7 @@ def is_still_named(database: Path, row: Named) -> bool:
 
 def named_files_of(connection: sqlite3.Connection, row: Named) -> Iterable[Named]:
     """The row as it stands now, if it does."""
-    if row.kind in ("surface", "body", "answer"):
+    if row.kind in OWNERS:
         return (other for other in named_files(connection) if other.kind == row.kind)
     query = "SELECT sha256, size, build_key, kind FROM artifact WHERE build_key = ? AND kind = ?"
     return (Named(*fields) for fields in connection.execute(query, (row.owner, row.kind)))

@@ -78,6 +78,8 @@ class Repair:
         """Have the file of a row good; return why it is not, if it is not."""
         if row.kind == "body":
             return "it is not kept anywhere else; nothing needs it as long as the job's answer is good"
+        if row.kind == "rows":
+            return "the service calculates the rows again when they are read; a table that was sent is lost"
         try:
             if row.kind == "answer":
                 self._answer(row)

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Named:
-    """A file that a row names: of a build, the surface of an analysis, or a calculation's body or answer."""
+    """A file that a row names: of a build, an analysis, a calculation (body, answer), rows of a study."""
 
     sha: str
     size: int | None  # None where the row does not say it
-    owner: str  # the key of the build or the analysis, or the id of the job
-    kind: str  # step, png, …; or surface, body, answer
+    owner: str  # the key of the build or the analysis, or the id of the job or the study
+    kind: str  # step, png, …; or surface, body, answer, rows
 
 
 def named_files(connection: sqlite3.Connection) -> Iterator[Named]:
@@ -29,9 +29,16 @@ def named_files(connection: sqlite3.Connection) -> Iterator[Named]:
             yield Named(surface["sha256"], surface["size"], key, "surface")
     for id, payload, result in connection.execute(CALCULATIONS):
         yield from _files_of_calculation(id, json.loads(payload), result)
+    if _has_table(connection, "study"):
+        for id, sha in connection.execute(STUDIES):
+            yield Named(sha, None, id, "rows")
 
 
 CALCULATIONS = "SELECT id, payload, result FROM job WHERE kind IN ('calculation', 'preview')"
+
+STUDIES = """
+    SELECT id, table_sha256 FROM study WHERE table_sha256 IS NOT NULL
+    UNION ALL SELECT study_id, sha256 FROM study_chunk"""
 
 
 def _files_of_calculation(id: str, payload: dict[str, str], result: str | None) -> Iterator[Named]:

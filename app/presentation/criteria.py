@@ -104,6 +104,7 @@ class Line:
     missing: str
     give: tuple[str, ...]
     remarks: tuple[str, ...]
+    unverified: bool = False
 
 
 def line(criterion: Judged) -> Line:
@@ -122,6 +123,7 @@ def line(criterion: Judged) -> Line:
         missing=missing(criterion),
         give=tuple(criterion.give or ()),
         remarks=remarks(criterion),
+        unverified=criterion.unverified is not None,
     )
 
 

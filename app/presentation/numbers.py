@@ -69,7 +69,8 @@ class Quantity(Protocol):
         """The magnitude, of any shape, or a choice."""
 
 
-PARTS = ("value", "unit", "reason", "plus", "minus")
+SIGNS = {"plus": "+", "minus": "−", "upper": "", "lower": ""}  # of deviations; two have their own
+PARTS = ("value", "unit", "reason", *SIGNS, "zone", "distribution")
 
 
 def told(quantity: object) -> str:
@@ -88,7 +89,7 @@ def _line(quantity: Mapping[str, object]) -> str:
         return str(quantity.get("reason") or "none")
     symbol = quantity.get("unit")
     value = quantity["value"]
-    parts = (_written(value), unit(str(symbol) if symbol else None), _tolerance(quantity), _remark(value))
+    parts = (_written(value), unit(str(symbol) if symbol else None), tolerance(quantity), _remark(value))
     return " ".join(filter(None, parts))
 
 
@@ -144,6 +145,19 @@ def _flat(values: object) -> Iterator[object]:
         yield values
 
 
-def _tolerance(more: Mapping[str, object]) -> str:
-    signs = (("plus", "+"), ("minus", "−"))
-    return " ".join(f"{sign}{more[name]}" for name, sign in signs if more.get(name) is not None)
+def tolerance(more: Mapping[str, object]) -> str:
+    """A tolerance after its value: `H7 (+0.025 −0.0)`, `+10 −5 uniform`."""
+    given = {name: more[name] for name in (*SIGNS, "zone", "distribution") if more.get(name) is not None}
+    signed = [_deviation(name, given[name]) for name in SIGNS if name in given]
+    is_even = "plus" in given and given["plus"] == given.get("minus")
+    limits = signed[0].replace("+", "±", 1) if is_even else " ".join(signed)
+    zone = given.get("zone")
+    parts = (f"{zone} ({limits})" if zone and limits else zone or limits, given.get("distribution"))
+    return " ".join(str(part) for part in parts if part)
+
+
+def _deviation(name: str, size: object) -> str:
+    """A deviation with its sign, in the unit of the value or in that of its text."""
+    shown = plain(size) if isinstance(size, float) else str(size)
+    sign = SIGNS[name]
+    return sign + shown if sign or shown.startswith(("-", "−")) else f"+{shown}"

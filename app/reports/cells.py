@@ -20,7 +20,8 @@ _DERIVED = ("1", "m", "kg", "s", "N", "Pa", "J", "W", "K", "rad", "rad/s")
 _COMPOSED = (*_DERIVED, "m**2", "m**3", "m**2/s", "m**3/s", "Pa*s", "N/m", "N*s/m", "kg*m**2", "N*m")
 _UNSEEN = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 _WORD = re.compile(r"[A-Za-zµμ°Ω%_]+")
-WRITTEN = ("value", "unit", "reason", "plus", "minus")  # the parts of a quantity that a line shows
+WRITTEN = numbers.PARTS  # of a quantity that a line shows
+TOLERANCE = WRITTEN[3:]
 
 
 @dataclass(frozen=True)
@@ -114,6 +115,5 @@ def _all_digits(value: float) -> tuple[str, str]:
 
 
 def _tolerance(quantity: Valued) -> str:
-    signs = (("plus", "+"), ("minus", "−"))
-    written = quantity.model_fields_set
-    return "".join(f" {sign}{getattr(quantity, name)}" for name, sign in signs if name in written)
+    written = {name: getattr(quantity, name) for name in TOLERANCE if name in quantity.model_fields_set}
+    return f" {numbers.tolerance(written)}" if written else ""

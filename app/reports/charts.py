@@ -23,13 +23,14 @@ FONT = "Liberation Sans, Arial, sans-serif"
 
 @dataclass(frozen=True)
 class Series:
-    """A line, or points where `marked`; a None among its values interrupts it."""
+    """A line, with points where `marked`, or points alone; a None among its values interrupts it."""
 
     name: str
     x: Sequence[float | None]
     y: Sequence[float | None]
     dashed: bool = False
     marked: bool = False
+    joined: bool = True
 
 
 @dataclass(frozen=True)
@@ -167,7 +168,7 @@ def _lines(frame: _Frame, series: Sequence[Series]) -> Iterator[str]:
         colour = COLOURS[number % len(COLOURS)]
         dashed = ' stroke-dasharray="4 3"' if line.dashed else ""
         path = _path(frame, line)
-        if path:
+        if path and line.joined:
             yield f'<path d="{path}" fill="none" stroke="{colour}" stroke-width="1.6"{dashed}/>'
         if line.marked:
             yield from (

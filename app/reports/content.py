@@ -167,6 +167,49 @@ class Round:
 
 
 @dataclass(frozen=True)
+class Columns:
+    """A part of the table of variants, as wide as paper: headings, and a row of texts for each variant."""
+
+    heads: list[str]
+    rows: list[list[str]]
+
+
+@dataclass(frozen=True)
+class VariantLine:
+    """The verdict on one variant."""
+
+    name: str
+    governs: bool
+    verdict: str  # met, not_met, undecided, not_checked; empty without criteria
+    headline: str
+    governing: str  # its governing criterion, with value and limit
+    used: str
+    problem: str
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A solid that one or more variants share."""
+
+    name: str  # of its picture
+    words: str
+    file: File | None
+    remark: str
+
+
+@dataclass(frozen=True)
+class Variants:
+    """All variants of the design, the one that governs first."""
+
+    governing: str  # in one sentence; empty without criteria
+    judged: Judged | None  # every criterion of the variant that governs
+    lines: list[VariantLine]
+    inputs: list[Columns]
+    used: list[Columns]  # what each uses of each limit
+    solids: list[Solid]
+
+
+@dataclass(frozen=True)
 class Report:
     """A revision, whole."""
 
@@ -186,3 +229,4 @@ class Report:
     steps: list[Step]
     models: list[Model]
     rounds: list[Round] = field(default_factory=list)
+    variants: Variants | None = None

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib.metadata import version
 
 from pydantic_core import to_json
@@ -16,6 +16,7 @@ from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, stamps, views
+from app.designs.variants.views import variants
 from app.designs.worksheet import worksheet
 from app.presentation.units import System
 from app.reports.cells import Cell, cell, clean, typed
@@ -23,6 +24,7 @@ from app.reports.content import Line, Model, Report, Round, Step
 from app.reports.models import model_of
 from app.reports.steps import step_of
 from app.reports.typesetting import DRAWING, PICTURE
+from app.reports.variants import variants_of
 from app.reports.verdict import judged
 from app.schemas import designs as schemas
 from app.schemas.answers import Quantity
@@ -30,6 +32,7 @@ from app.solids import rows
 from app.solids.models import Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.storage.errors import NotFound
 from cad.stamp import stamped
 
 PENDING = "its picture and drawing were still being made when this report was written"
@@ -71,6 +74,32 @@ class Reports:
         missing = {key: self._missing(files) for key, files in there.items()}
         return [self.models.request_files(key, kinds, client) for key, kinds in missing.items() if kinds]
 
+    def request_variant_pictures(self, id: str, number: int, client: str = "") -> list[str]:
+        """The jobs that make a picture of every distinct solid of the variants; none if all is there."""
+        with self.database.read() as session:
+            row = repository.revision(session, id, number)
+            keys = {model.build_key for model in row.variant_models if model.build_key}
+            there = rows.artifacts_of(session, rows.builds(session, keys))
+        missing = [key for key, files in there.items() if PICTURE in self._missing(files)]
+        return [self.models.request_files(key, (PICTURE,), client) for key in sorted(missing)]
+
+    def gather_variants(self, id: str, number: int, system: System, *, pending: bool) -> Report:
+        """The report of a revision with all its variants.
+
+        Raises
+        ------
+        NotFound
+            If the revision has no variants.
+        """
+        report = self.gather(id, number, system, pending=pending)
+        with self.database.read() as session:
+            out = variants(session, id, number, self.catalogues).in_units(system)
+        if not out.variants:
+            raise NotFound(f"design {id}: revision {number} has no variants")
+        shown = variants_of(out, pending=pending)
+        verdict = replace(report.verdict, criteria=[], governing=shown.governing)
+        return replace(report, verdict=verdict, variants=shown)
+
     def gather(self, id: str, number: int, system: System, *, pending: bool) -> Report:
         """All that the report says; `pending` if a job still draws its pictures."""
         worked = self.worksheet(id, number, system)
@@ -111,7 +140,7 @@ class Reports:
         with self.database.read() as session:
             models = repository.revision(session, report.design, report.revision).models
             named = {model.name: stamps.stamp(session, model) for model in models}
-        return {
+        own = {
             name: {
                 kind: stamped(self.store.read(shas[kind]), kind, named[name])
                 for kind in (PICTURE, DRAWING)
@@ -119,6 +148,8 @@ class Reports:
             }
             for name, shas in files.items()
         }
+        solids = report.variants.solids if report.variants else []
+        return own | {one.name: {PICTURE: self.store.read(one.file.sha256)} for one in solids if one.file}
 
     def _missing(self, there: Mapping[str, str]) -> tuple[str, ...]:
         """The pictures of a build that no job has drawn yet, or that are lost."""

@@ -15,11 +15,11 @@ from datetime import datetime
 from itertools import chain, count, zip_longest
 
 from openpyxl import Workbook  # type: ignore[import-untyped]
-from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE, Cell  # type: ignore[import-untyped]
 from openpyxl.styles import Font  # type: ignore[import-untyped]
 from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untyped]
 
 from app.plain import Json, Raw
+from app.presentation.spreadsheets import Value, harmless, put, without_illegal
 from app.presentation.typed import text_of
 from app.schemas.analyses import AnalysisOutput
 from app.schemas.answers import Shown
@@ -31,11 +31,9 @@ from templates.core.units.relation import is_relation
 
 HEAD = ("block", "kind", "name", "index", "value", "unit", "origin", "remark")
 WIDTHS = (16, 12, 34, 8, 18, 14, 34, 40)
-_DANGEROUS = ("=", "+", "-", "@", "\t", "\r")
 _NO_SHEET_NAME = re.compile(r"[\[\]:*?/\\']")
-_LONGEST_SHEET_NAME, _LONGEST_CELL = 31, 32_000
+_LONGEST_SHEET_NAME = 31
 
-Value = float | int | str | None
 Column = tuple[str, str, list[Value]]  # name, unit, values
 
 
@@ -119,7 +117,7 @@ def write_csv(table: Table) -> bytes:
     for row in table.rows:
         for index, value, remark in _each(row.value, row.remark):
             cells = (row.block, row.kind, row.name, index, value, row.unit, row.origin, remark)
-            writer.writerow([_harmless(cell) for cell in cells])
+            writer.writerow([harmless(cell) for cell in cells])
     return stream.getvalue().encode()
 
 
@@ -133,16 +131,11 @@ def _each(value: Json, remark: Json, index: str = "") -> Iterator[tuple[str, Val
         yield from _each(item, why, f"{index} {i}".strip())
 
 
-def _harmless(cell: Value) -> Value:
-    """A text that no spreadsheet takes for a formula."""
-    return f"'{cell}" if isinstance(cell, str) and cell.startswith(_DANGEROUS) else cell
-
-
 def write_xlsx(table: Table) -> bytes:
     """A sheet of all single values, and for each block that has arrays a sheet with a column for each."""
     book = Workbook()
     created = datetime.fromisoformat(table.created).replace(tzinfo=None)
-    book.properties.title, book.properties.creator = _clean(table.title), "Crankwright"
+    book.properties.title, book.properties.creator = without_illegal(table.title), "Crankwright"
     book.properties.created = book.properties.modified = created
     values = book.active
     assert isinstance(values, Worksheet), "a new workbook has a sheet"
@@ -192,24 +185,9 @@ def _fill(sheet: Worksheet, lines: Sequence[Sequence[Value]]) -> None:
     for number, line in enumerate(lines, 1):
         for place, value in enumerate(line, 1):
             if value is not None and value != "":
-                _put(sheet.cell(number, place), value)
+                put(sheet.cell(number, place), value)
     for cell in sheet[1]:
         cell.font = Font(bold=True)
-
-
-def _put(cell: object, value: Value) -> None:
-    assert isinstance(cell, Cell), "no cells are merged"
-    if not isinstance(value, str):
-        cell.value = value
-        return
-    cell.value = _clean(value)
-    cell.data_type = "s"  # a text, whatever it begins with
-    if value.startswith(_DANGEROUS):
-        cell.quotePrefix = True
-
-
-def _clean(text: str) -> str:
-    return str(ILLEGAL_CHARACTERS_RE.sub("", text))[:_LONGEST_CELL]
 
 
 def _sheet_name(block: str, taken: Sequence[str]) -> str:

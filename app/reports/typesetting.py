@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import typst
 
-from app.plain import Json
+from app.plain import Json, JsonObject
 from app.presentation.bidi import bare_everywhere
 
 PICTURE, DRAWING = "png", "drawing.svg"  # kinds of files that a report shows
@@ -28,13 +28,20 @@ DOCUMENT = Path(__file__).with_name("report.typ")
 
 def typeset(report: Mapping[str, Json], pictures: Pictures) -> bytes:
     """A report as PDF; equal reports give equal bytes."""
-    models = [{**model, "pictures": _as_svg(pictures.get(model["name"], {}))} for model in report["models"]]
-    data = json.dumps(bare_everywhere({**report, "models": models}), ensure_ascii=True).encode()
+    shown = {**report, "models": _illustrated(report["models"], pictures)}
+    if variants := report.get("variants"):
+        shown["variants"] = {**variants, "solids": _illustrated(variants["solids"], pictures)}
+    data = json.dumps(bare_everywhere(shown), ensure_ascii=True).encode()
     files: Any = {"main": DOCUMENT.read_bytes(), "data.json": data}  # missing in the types of typst
     date = datetime.fromisoformat(report["date"]).replace(microsecond=0)
     pdf = typst.compile(files, format="pdf", timestamp=date)
     assert isinstance(pdf, bytes), "one document makes one file"
     return pdf
+
+
+def _illustrated(parts: Sequence[JsonObject], pictures: Pictures) -> list[JsonObject]:
+    """Models or solids, each with its pictures by its name."""
+    return [{**part, "pictures": _as_svg(pictures.get(part["name"], {}))} for part in parts]
 
 
 def _as_svg(files: Mapping[str, bytes]) -> dict[str, str]:

@@ -16,14 +16,17 @@ def judged(revision: RevisionWorksheet) -> Judged:
         return Judged(headline_of(revision.state, is_judged=revision.criteria is not None), "plain", "", [])
     lines = [line(criterion) for criterion in revision.criteria]
     governing = next((one for one in lines if one.name == verdict.governing), None)
-    rows = [_row(one, judged) for one, judged in zip(lines, revision.criteria, strict=True)]
+    rows = [row_of(one, judged) for one, judged in zip(lines, revision.criteria, strict=True)]
     return Judged(verdict.headline, tone(verdict), _governing(governing), rows)
 
 
 def _governing(first: Line | None) -> str:
-    """The criterion that governs, in one sentence."""
-    if first is None:
-        return ""
+    """The criterion that governs, in one sentence; empty without one."""
+    return governing_sentence(first) if first else ""
+
+
+def governing_sentence(first: Line) -> str:
+    """A criterion that governs, in one sentence."""
     used = f"{first.used} of the limit used" if first.used else ""
     margin = f"margin {first.margin}" if first.margin else ""
     error = f"error {first.error}" if first.error else ""
@@ -36,7 +39,8 @@ def _where(one: Line) -> str:
     return f"{one.step}: {one.title}" if one.step else one.title
 
 
-def _row(one: Line, criterion: schemas.Criterion) -> Criterion:
+def row_of(one: Line, criterion: schemas.Criterion) -> Criterion:
+    """A criterion as a row of the report."""
     basis = ", ".join(filter(None, (criterion.level and f"level {criterion.level}", criterion.truth)))
     remarks = [one.missing, *one.remarks, basis and f"calculated: {basis}"]
     return Criterion(

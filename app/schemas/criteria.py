@@ -41,7 +41,10 @@ class Criterion(Answer):
     reason: str | None = None
     level: str | None = Field(None, description="of fidelity")
     truth: str | None = Field(None, description="against which solution the error was measured")
-    where: dict[str, Shown] | None = Field(None, description="the worst place; points count from 1")
+    where: dict[str, Shown | str] | None = Field(
+        None,
+        description="the worst place; points count from 1; `variant` is the name of the worst one",
+    )
     points: int | None = Field(None, description="how many were judged")
     counts: dict[str, int] | None = Field(None, description="points of each verdict")
     source: str | None = Field(None, description="of the limit, or of the rule")

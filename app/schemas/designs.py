@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from app.schemas.analyses import AnalysisOutput, ModelAnalysis
-from app.schemas.answers import Answer, Page, Shown, Version, Warning
+from app.schemas.answers import Answer, Page, Quantity, Shown, Version, Warning
 from app.schemas.criteria import Criterion, Verdict
 from app.schemas.evaluations import CalculatedBy, Error, Level, Output, UsedInput, WorkedFormula
 from app.schemas.problems import Problem
@@ -98,6 +98,9 @@ class Design(Answer):
     models: dict[str, DesignModel]
     iterations: list[DesignIteration]
     criteria: dict[str, DesignCriterion] = Field({}, description="absent where there are none")
+    variants: dict[str, dict[str, Given]] = Field(
+        {}, description="what each variant overrides, by place; absent where there are none"
+    )
     problem: Problem | None = Field(description="why the regeneration failed")
     created: str
     changed: str
@@ -247,6 +250,21 @@ class Preview(Answer):
     verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
 
 
+class Sensitivity(Answer):
+    """How much a value changes with a quantity that its user wrote; local to the design."""
+
+    name: str
+    slope: Quantity | None = Field(None, description="change of the value by that of the place")
+    elasticity: float | None = Field(
+        None, description="relative change by relative change; null where either is 0 or a temperature"
+    )
+    helps: Literal["increase", "decrease"] | None = Field(
+        None,
+        description="of a criterion: which change of the place enlarges its margin; absent where none does",
+    )
+    reason: str | None = Field(None, description="why there is no slope, or only that of one side")
+
+
 class Explanation(Answer):
     """What a name is, and what it follows from."""
 
@@ -261,4 +279,11 @@ class Explanation(Answer):
     mathml: str | None = None
     source: str | None = None
     analysis: AnalysisOptions | None = None
+    criterion: Criterion | None = Field(None, description="of a criterion: as it was judged")
+    side: Literal["value", "limit"] | None = Field(None, description="of the comparison of a criterion")
+    library: str | None = Field(None, description="the table of the row `typed` that gives a limit")
     because: list[Explanation] | None = None
+    sensitivities: list[Sensitivity] | None = Field(
+        None, description="of the name that was asked for, to quantities as typed; largest elasticity first"
+    )
+    reason: str | None = Field(None, description="why all or some sensitivities are missing")

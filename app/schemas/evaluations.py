@@ -28,6 +28,10 @@ class UsedInput(Answer):
     source: Literal["given", "default"] = Field(alias="from")
     plus: JsonValue = Field(None, description="tolerance upwards, if one was given")
     minus: JsonValue = Field(None, description="tolerance downwards, if one was given")
+    upper: JsonValue = Field(None, description="upper deviation of a tolerance that lies on one side")
+    lower: JsonValue = Field(None, description="lower deviation of a tolerance that lies on one side")
+    zone: str | None = Field(None, description="zone of ISO 286 from which the limits come")
+    distribution: str | None = Field(None, description="between the limits, if one was given")
 
 
 class Output(Measured):

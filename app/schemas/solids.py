@@ -58,6 +58,7 @@ class BuildUse(Answer):
     design: str
     revision: int
     current: bool = Field(description="whether it is the newest revision of its design")
+    variant: str | None = Field(None, description="of the design; absent where the design itself uses it")
 
 
 class Verification(Answer):

@@ -19,7 +19,8 @@ FORMS: list[JsonValue] = [
     {"type": "object", "properties": {"value": {}, "unit": {"type": "string"}}, "required": ["value"]},
 ]
 GIVEN: JsonDict = {
-    "description": 'a quantity, `"25 kN"` or `{"value": 25, "unit": "kN"}`; a number of unit 1; a choice',
+    "description": 'a quantity, `"25 kN"`, `"25 ± 1 kN"` or `{"value": 25, "unit": "kN"}`; a number of '
+    "unit 1; a choice",
     "anyOf": FORMS,
 }
 Given = Annotated[object, WithJsonSchema(GIVEN)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -32,6 +32,19 @@ def artifacts(session: Session, key: str | None) -> dict[str, str]:
     """The SHA-256 of every artifact of a build, by kind."""
     rows = session.scalars(select(ArtifactRow).where(ArtifactRow.build_key == key))
     return {row.kind: row.sha256 for row in rows}
+
+
+def builds(session: Session, keys: Collection[str]) -> dict[str, BuildRow]:
+    """Those of several builds that were made, by key."""
+    return {row.key: row for row in session.scalars(select(BuildRow).where(BuildRow.key.in_(keys)))}
+
+
+def artifacts_of(session: Session, keys: Collection[str]) -> dict[str, dict[str, str]]:
+    """The SHA-256 of every artifact of several builds, by key and kind."""
+    found: dict[str, dict[str, str]] = {}
+    for row in session.scalars(select(ArtifactRow).where(ArtifactRow.build_key.in_(keys))):
+        found.setdefault(row.build_key, {})[row.kind] = row.sha256
+    return found
 
 
 def add_build(
@@ -64,12 +77,21 @@ def add_artifact(session: Session, key: str, kind: str, sha256: str, size: int) 
 
 
 def users_of(session: Session, key: str) -> list[Mapping[str, Json]]:
-    """The revisions that use a build, oldest first, and whether each is its design's newest."""
+    """The revisions that use a build, oldest first, and whether each is its design's newest.
+
+    A revision stands there once for its own models, and once for each of its variants.
+    """
     query = (
-        select(RevisionModelRow.design_id, RevisionModelRow.number, DesignRow.head)
+        select(RevisionModelRow.design_id, RevisionModelRow.number, RevisionModelRow.name, DesignRow.head)
         .join(DesignRow, DesignRow.id == RevisionModelRow.design_id)
         .where(RevisionModelRow.build_key == key)
-        .order_by(RevisionModelRow.design_id, RevisionModelRow.number)
+        .order_by(RevisionModelRow.design_id, RevisionModelRow.number, RevisionModelRow.name)
     )
-    rows = session.execute(query).all()
-    return [{"design": id, "revision": number, "current": number == head} for id, number, head in rows]
+    return [_use(*row) for row in session.execute(query).all()]
+
+
+def _use(design: str, number: int, model: str, head: int) -> Mapping[str, Json]:
+    """A use of a build; a dot in the name of the model stands behind that of a variant."""
+    variant = model.partition(".")[0] if "." in model else None
+    more = {} if variant is None else {"variant": variant}
+    return {"design": design, "revision": number, "current": number == head, **more}

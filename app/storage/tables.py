@@ -109,11 +109,22 @@ class RevisionRow(Base):
     state: Mapped[str]  # current, regenerating, failed
     problem: Mapped[JsonObject | None] = mapped_column(Json)
 
-    models: Mapped[list["RevisionModelRow"]] = relationship(order_by="RevisionModelRow.name")
+    models: Mapped[list["RevisionModelRow"]] = relationship(
+        primaryjoin="and_(RevisionRow.design_id == RevisionModelRow.design_id,"
+        " RevisionRow.number == RevisionModelRow.number, ~RevisionModelRow.name.contains('.'))",
+        order_by="RevisionModelRow.name",
+        viewonly=True,
+    )
+    variant_models: Mapped[list["RevisionModelRow"]] = relationship(
+        primaryjoin="and_(RevisionRow.design_id == RevisionModelRow.design_id,"
+        " RevisionRow.number == RevisionModelRow.number, RevisionModelRow.name.contains('.'))",
+        order_by="RevisionModelRow.name",
+        viewonly=True,
+    )
 
 
 class RevisionModelRow(Base):
-    """A CAD model in a revision, with its parameters resolved."""
+    """A CAD model in a revision, with its parameters resolved; that of a variant is named `main_2.shell`."""
 
     __tablename__ = "revision_model"
     __table_args__ = (
@@ -203,6 +214,48 @@ class JobRow(Base):
     others: Mapped[list[str]] = mapped_column(Json, default=list)  # clients that wait for it as well
     turn: Mapped[int] = mapped_column(BigInteger, default=0)
     operated: Mapped[int] = mapped_column(BigInteger, default=0)  # queued, then ended [s of operation]
+
+
+class StudyRow(Base):
+    """A study: many rows of a revision. Its rows follow from body, seed and number; `plan` fixes the rest."""
+
+    __tablename__ = "study"
+    __table_args__ = (
+        ForeignKeyConstraint(["design_id", "revision"], ["revision.design_id", "revision.number"]),
+        Index(None, "design_id", "revision"),
+    )
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    design_id: Mapped[str]
+    revision: Mapped[int]
+    method: Mapped[str]
+    state: Mapped[str]  # queued, running, done, failed, cancelled
+    body: Mapped[JsonObject] = mapped_column(Json)  # as its user wrote it
+    plan: Mapped[JsonObject] = mapped_column(Json)  # what it led to: places, units, levels, stages
+    seed: Mapped[int] = mapped_column(BigInteger)
+    chunk: Mapped[int]  # rows of one chunk
+    rows: Mapped[int]  # that are planned; an optimisation may need fewer
+    table_sha256: Mapped[str | None]  # the artifact with the rows that its user gave
+    client: Mapped[str]
+    job: Mapped[str | None]  # the job that works on it
+    result: Mapped[JsonObject | None] = mapped_column(Json)
+    problem: Mapped[JsonObject | None] = mapped_column(Json)
+    created: Mapped[str]
+    updated: Mapped[str]
+
+
+class StudyChunkRow(Base):
+    """Rows of a study that have been calculated; the values are in the artifact."""
+
+    __tablename__ = "study_chunk"
+
+    study_id: Mapped[str] = mapped_column(ForeignKey("study.id"), primary_key=True)
+    number: Mapped[int] = mapped_column(primary_key=True)
+    state: Mapped[str]  # done
+    attempt: Mapped[int]  # of the job that calculated it
+    rows: Mapped[int]
+    refused: Mapped[JsonObject] = mapped_column(Json)  # how many rows, by reason
+    sha256: Mapped[str] = mapped_column(index=True)
 
 
 class IdempotencyRow(Base):

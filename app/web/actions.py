@@ -29,6 +29,7 @@ AT_ONCE = {"Prefer": "wait=1"}  # the page shows how the rest goes on
 _NUMBER = re.compile(r"[0-9]{1,6}")
 STALE = 412
 ILL_NAMED = 422
+NOTHING: Mapping[str, str] = {}
 
 
 async def forms_only(request: Request) -> None:
@@ -122,7 +123,7 @@ async def add(id: Id, request: Request, api: TheApi) -> Response:
             _refuse_taken(design, patch)
         await _change(api, id, typed.get("revision", ""), patch if declared is None else declared, "")
     except Refused as refused:
-        return await _again(request, api, id, {}, refused)
+        return await _again(request, api, id, {}, refused, part=typed)
     return go(f"/designs/{id}")
 
 
@@ -194,16 +195,23 @@ async def cancel(id: Id, job: Id, api: TheApi) -> Response:
 
 async def _change(api: Api, id: str, revision: str, patch: Mapping[str, JsonValue], note: str) -> None:
     noted = {**patch, "note": note} if note.strip() else patch
-    headers = {**AT_ONCE, "If-Match": _tag(revision)}
+    headers = {**AT_ONCE, "If-Match": tag_of(revision)}
     await api.send("PATCH", f"/designs/{id}", json=noted, headers=headers)
 
 
-def _tag(revision: str) -> str:
+def tag_of(revision: str) -> str:
     """The ETag of a revision as a form names it; of what is no number, one that matches nothing."""
     return f'"{revision if _NUMBER.fullmatch(revision) else 0}"'
 
 
-async def _again(request: Request, api: Api, id: str, typed: Mapping[str, str], refused: Refused) -> Response:
+async def _again(
+    request: Request,
+    api: Api,
+    id: str,
+    typed: Mapping[str, str],
+    refused: Refused,
+    part: Mapping[str, str] = NOTHING,
+) -> Response:
     """The page with a form that was refused; of a stale one, only what its user changed is kept."""
     if refused.status not in (STALE, ILL_NAMED):
         raise refused
@@ -215,7 +223,7 @@ async def _again(request: Request, api: Api, id: str, typed: Mapping[str, str], 
     )
     if not notice and not refused.faults:
         notice = f"Nothing was saved: {refused.problem.detail}"
-    refusal = Refusal(kept(typed), refused.faults)
+    refusal = Refusal(kept(typed), refused.faults, part)
     return await design_page(request, api, id, refusal=refusal, notice=notice, status=refused.status)
 
 

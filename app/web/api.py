@@ -5,7 +5,7 @@ What a page shows is what a user would be answered; what a form does is a call t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from http import HTTPStatus
 from typing import Annotated, TypeVar
 
@@ -24,6 +24,11 @@ _CLIENT = "crankwright.client"
 """Extension of a request within the process: the client of the page's request."""
 
 
+def with_related(detail: str, also: Sequence[str]) -> str:
+    """What is wrong, and the other inputs that it is about; `static/api.js` writes the same."""
+    return f"{detail}. See also {', '.join(also)}" if also else detail
+
+
 class Refused(Exception):
     """The interface answered with a problem; `problem` is it."""
 
@@ -39,8 +44,8 @@ class Refused(Exception):
 
     @property
     def faults(self) -> dict[str, str]:
-        """What is wrong, by the name of the input."""
-        return {fault.name: fault.detail for fault in self.problem.errors}
+        """What is wrong, by the name of the input, with the other inputs that it is about."""
+        return {fault.name: with_related(fault.detail, fault.also) for fault in self.problem.errors}
 
 
 class Api:
@@ -84,6 +89,7 @@ class Api:
         path: str,
         *,
         json: object = None,
+        content: bytes | None = None,
         params: Mapping[str, Scalar] | None = None,
         headers: Mapping[str, str] | None = None,
     ) -> httpx.Response:
@@ -97,7 +103,13 @@ class Api:
         extensions = {_CLIENT: self._client}
         try:
             response = await self._http.request(
-                method, BASE + path, json=json, params=params, headers=headers, extensions=extensions
+                method,
+                BASE + path,
+                json=json,
+                content=content,
+                params=params,
+                headers=headers,
+                extensions=extensions,
             )
         except httpx.InvalidURL:  # the path holds what a client typed
             raise Refused.because(404, "there is nothing at this address") from None

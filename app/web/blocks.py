@@ -21,7 +21,7 @@ from app.schemas.library import LibraryTable
 from app.schemas.templates import CadModel as Model
 from app.schemas.templates import Template
 from app.web import sheet
-from app.web.limits import limit_fields
+from app.web.limits import limit_fields, with_rows
 from app.web.sheet import Field
 
 MOST_AT_ONCE = 16  # results
@@ -85,10 +85,14 @@ class ModelBlock:
 
 @dataclass(frozen=True)
 class Refusal:
-    """What a form that was refused holds, and what is wrong by name; both empty without such a form."""
+    """What a form that was refused holds, and what is wrong by name; all empty without such a form.
+
+    `typed` are fields of the worksheet; `part` is the form of one parameter, analysis or iteration.
+    """
 
     typed: Mapping[str, str] = field(default_factory=dict)
     faults: Mapping[str, str] = field(default_factory=dict)
+    part: Mapping[str, str] = field(default_factory=dict)
 
 
 def steps_of(
@@ -127,7 +131,9 @@ def with_fields(
     chosen = {"level": step.level, "tolerance": step.tolerance}
     return replace(
         block,
-        fields=sheet.of_block(template.inputs, block.name, step.inputs, used, typed, faults),
+        fields=with_rows(
+            sheet.of_block(template.inputs, block.name, step.inputs, used, typed, faults), tables
+        ),
         options=sheet.of_options(template, block.name, chosen, typed, faults),
         limits=limit_fields(template, block.name, step.limits, typed, faults, tables),
     )

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 from pydantic import JsonValue
 
 from app.presentation.typed import text_of, value_of
 from app.schemas.designs import Design, DesignIteration
 from app.schemas.solids import Analysable
-from app.web.blocks import ModelBlock
+from app.web.blocks import ModelBlock, Refusal
 from app.web.forms import option_of
 
 Change = Mapping[str, JsonValue]
@@ -28,6 +29,8 @@ class AnalysisLine:
     kinds: Mapping[str, Analysable]
     name: str = ""
     texts: Mapping[str, str] = field(default_factory=dict)
+    errors: Mapping[str, str] = field(default_factory=dict)
+    is_refused: bool = False
 
     @property
     def levels(self) -> list[str]:
@@ -46,11 +49,51 @@ class IterationLine:
 
     place: str = ""
     texts: Mapping[str, str] = field(default_factory=dict)
+    errors: Mapping[str, str] = field(default_factory=dict)
+    is_refused: bool = False
 
 
-def analysis_lines(design: Design, models: Sequence[ModelBlock]) -> list[AnalysisLine]:
+Line = TypeVar("Line", AnalysisLine, IterationLine)
+
+
+def errors_of(part: Mapping[str, str], faults: Mapping[str, str]) -> dict[str, tuple[str, str]]:
+    """What is wrong with the fields of a refused form: the name of the fault and its detail, by field."""
+    match part.get("declare") or part.get("add"):
+        case "analysis":
+            fields, begins = _OF_ANALYSIS, f"models.{part.get('model', '')}.analyses.{part.get('kind', '')}."
+        case "iteration":
+            fields, begins = _OF_ITERATION, "iterations"
+        case "parameter":
+            name = part.get("name", "").strip()
+            return {"value": (name, faults[name])} if name in faults else {}
+        case _:
+            return {}
+    errors: dict[str, tuple[str, str]] = {}
+    for name, detail in faults.items():
+        if name.startswith(begins):
+            named = (one for one in fields if one in name.removeprefix(begins).split("."))
+            if at := next(named, "through" if begins == name else None):
+                errors.setdefault(at, (name, detail))
+    return errors
+
+
+def _refused(line: Line, refusal: Refusal) -> Line:
+    """The line with what was typed and what is wrong, if its form was refused."""
+    part = refusal.part
+    if isinstance(line, AnalysisLine):
+        is_its = part.get("declare") == "analysis" and part.get("model") == line.model
+        is_its = is_its and line.name == ("" if part.get("new") else part.get("kind"))
+    else:
+        is_its = part.get("declare") == "iteration" and part.get("place", "") == line.place
+    if not is_its or part.get("drop"):
+        return line
+    errors = {name: detail for name, (_, detail) in errors_of(part, refusal.faults).items()}
+    return replace(line, texts={**line.texts, **part}, errors=errors, is_refused=True)
+
+
+def analysis_lines(design: Design, models: Sequence[ModelBlock], refusal: Refusal) -> list[AnalysisLine]:
     """The analyses of every model that can be analysed, each followed by an empty line."""
-    lines = []
+    lines: list[AnalysisLine] = []
     for block in models:
         if kinds := block.model.analyses:
             for name, options in design.models[block.name].analyses.items():
@@ -59,13 +102,14 @@ def analysis_lines(design: Design, models: Sequence[ModelBlock]) -> list[Analysi
                 texts = {key: text or "" for key, text in chosen.items()}
                 lines.append(AnalysisLine(block.name, kinds, name, texts))
             lines.append(AnalysisLine(block.name, kinds, texts=dict.fromkeys(_OF_ANALYSIS, "")))
-    return lines
+    return [_refused(line, refusal) for line in lines]
 
 
-def iteration_lines(design: Design) -> list[IterationLine]:
+def iteration_lines(design: Design, refusal: Refusal) -> list[IterationLine]:
     """The iterations, then an empty line."""
     lines = [IterationLine(str(place), _texts(one)) for place, one in enumerate(design.iterations)]
-    return [*lines, IterationLine(texts=dict.fromkeys(_OF_ITERATION, ""))]
+    lines.append(IterationLine(texts=dict.fromkeys(_OF_ITERATION, "")))
+    return [_refused(line, refusal) for line in lines]
 
 
 def _texts(iteration: DesignIteration) -> dict[str, str]:

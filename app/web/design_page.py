@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from fastapi import Request, Response
 
@@ -21,6 +22,7 @@ from app.schemas.jobs import Job, JobList
 from app.schemas.networks import DesignNetwork
 from app.schemas.templates import CadModel as Model
 from app.schemas.templates import Template, TemplateList, TemplateSummary
+from app.schemas.variants import VariantsOut
 from app.web import sheet
 from app.web.api import Api, Scalar
 from app.web.blocks import (
@@ -33,14 +35,17 @@ from app.web.blocks import (
     with_changes,
     with_fields,
 )
-from app.web.declaring import analysis_lines, iteration_lines, measures
+from app.web.declaring import analysis_lines, errors_of, iteration_lines, measures
 from app.web.differences import differences
 from app.web.flow import drawing
 from app.web.forms import texts
-from app.web.limits import tables_of
+from app.web.limits import library
 from app.web.model_page import finished_analyses
 from app.web.names import names_json, values_of
 from app.web.rendering import show, units_of
+from app.web.study_page import studies_of
+from app.web.tolerances_page import toleranced
+from app.web.variants import RefusedTable, variants_table
 from app.web.verdict import banner, opened, with_keys
 from cad.export import MEDIA_TYPES
 
@@ -49,6 +54,7 @@ QUICK = (
     1  # how long a page waits for steps; its script asks for what takes longer, and shows the progress [s]
 )
 NO_REFUSAL = Refusal()
+NO_PART = dict.fromkeys(("declare", "add", "name", "value"), "")
 DECIDE = "/api/v1/designs/{id}/decide"
 
 
@@ -58,32 +64,19 @@ async def design_page(
     id: str,
     *,
     refusal: Refusal = NO_REFUSAL,
+    table: RefusedTable | None = None,
     notice: str | None = None,
     status: int = 200,
 ) -> Response:
     """The newest revision in a form; or a form that was refused, with what was typed and what is wrong."""
     design = await api.get(f"/designs/{id}", Design)
-    within = 0 if design.state == "regenerating" else QUICK
-    revision = await _revision(request, api, id, design.revision, within=within)
-    templates, models = await _templates(api, _steps_of_design(design)), await _models(api, design)
-    query: dict[str, Scalar] = {"worksheet": True, "units": units_of(request), "within": within}
-    preview = await api.post(f"/designs/{id}/preview", Preview, {}, **query)
-    before = await _revision(request, api, id, design.revision - 1, within=0) if design.revision > 1 else None
-    computed = {name: step.outputs for name, step in design.steps.items()}
-    tables = await tables_of(api, templates.values())
-    steps = [with_fields(block, design, refusal, tables) for block in steps_of(revision, templates, computed)]
-    parts = [
-        with_changes(block, design, refusal, before, preview.model_parameters)
-        for block in models_of(revision, models)
-    ]
-    verdict = banner(revision)
-    steps = with_keys(steps, revision, design)
-    typed, faults = refusal.typed, refusal.faults
-    parameters = sheet.of_parameters(design.parameters, preview.parameters or {}, typed, faults)
+    revision, preview, parameters, steps, parts, models = await _form(request, api, design, refusal)
+    faults, wrong, verdict = refusal.faults, errors_of(refusal.part, refusal.faults), banner(revision)
     measured = await api.get(
         f"/designs/{id}/measurements", dict[str, ModelMeasurements], units=units_of(request)
     )
     network = await api.get(f"/designs/{id}/network", DesignNetwork)
+    variants = variants_table(design, await _variants(request, api, id), network, table)
     return show(
         request,
         "design.html",
@@ -98,24 +91,59 @@ async def design_page(
         revisions=await api.get(f"/designs/{id}/revisions", RevisionList, limit=20),
         proposals=(await api.post(f"/designs/{id}/auto-map", Proposals)).proposals,
         job=await _job(api, design),
+        studies=await studies_of(api, id),
         kinds=list(MEDIA_TYPES),
-        loose=sheet.loose_faults([*parameters, *_fields(steps, parts)], faults),
-        refused=bool(faults),
+        loose=_loose([*parameters, *_fields(steps, parts)], faults, wrong),
+        refused=bool(faults) or table is not None,
         notice=notice,
         verdict=verdict,
-        opened=opened([step.name for step in steps], verdict),
+        opened=None if variants.count else opened([step.name for step in steps], verdict),
         can_decide=_has_route(request, DECIDE),
+        toleranced=toleranced(design),
         base=f"/api/v1/designs/{id}",
         painted=painted(steps, parts),
         was=json.dumps(texts(design)),
         choices=await _choices(api),
-        analysis_lines=analysis_lines(design, parts),
-        iteration_lines=iteration_lines(design),
+        analysis_lines=analysis_lines(design, parts, refusal),
+        iteration_lines=iteration_lines(design, refusal),
+        part={**NO_PART, **refusal.part},
+        part_errors=wrong,
         measures=list(measures(design, parts)),
         network=network,
         picture=drawing(network),
+        variants=variants,
         names=names_json(network, values_of(revision, preview, measured)),
     )
+
+
+class Form(NamedTuple):
+    """A design as it is calculated, with the fields of its form; `models` are described by name."""
+
+    revision: RevisionWorksheet
+    preview: Preview
+    parameters: list[sheet.Field]
+    steps: list[StepBlock]
+    parts: list[ModelBlock]
+    models: dict[str, Model]
+
+
+async def _form(request: Request, api: Api, design: Design, refusal: Refusal) -> Form:
+    id, within = design.id, 0 if design.state == "regenerating" else QUICK
+    revision = await _revision(request, api, id, design.revision, within=within)
+    templates, models = await _templates(api, _steps_of_design(design)), await _models(api, design)
+    query: dict[str, Scalar] = {"worksheet": True, "units": units_of(request), "within": within}
+    preview = await api.post(f"/designs/{id}/preview", Preview, {}, **query)
+    before = await _revision(request, api, id, design.revision - 1, within=0) if design.revision > 1 else None
+    computed = {name: step.outputs for name, step in design.steps.items()}
+    tables = await library(api) if templates else []
+    steps = [with_fields(block, design, refusal, tables) for block in steps_of(revision, templates, computed)]
+    parts = [
+        with_changes(block, design, refusal, before, preview.model_parameters)
+        for block in models_of(revision, models)
+    ]
+    typed, faults = refusal.typed, refusal.faults
+    parameters = sheet.of_parameters(design.parameters, preview.parameters or {}, typed, faults)
+    return Form(revision, preview, parameters, with_keys(steps, revision, design), parts, models)
 
 
 async def revision_page(request: Request, api: Api, id: str, number: int, other: int | None) -> Response:
@@ -186,10 +214,23 @@ async def _analyses(
     }
 
 
+def _loose(
+    fields: list[sheet.Field], faults: Mapping[str, str], wrong: Mapping[str, tuple[str, str]]
+) -> dict[str, str]:
+    """What is wrong beside the fields of the worksheet and those of a small form."""
+    shown = {name for name, _ in wrong.values()}
+    loose = sheet.loose_faults(fields, faults)
+    return {name: detail for name, detail in loose.items() if name not in shown}
+
+
 def _fields(steps: list[StepBlock], models: list[ModelBlock]) -> list[sheet.Field]:
     """Every field of the blocks."""
     of_models = [field for block in models for field in block.fields]
     return of_models + [field for block in steps for field in (*block.fields, *block.options, *block.limits)]
+
+
+async def _variants(request: Request, api: Api, id: str) -> VariantsOut:
+    return await api.get(f"/designs/{id}/variants", VariantsOut, units=units_of(request))
 
 
 async def _job(api: Api, design: Design) -> Job | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from pydantic import JsonValue
@@ -31,13 +31,6 @@ async def library(api: Api) -> list[LibraryTable]:
     """Every table of the library."""
     listed = await api.get("/library", LibraryTables)
     return [await api.get(f"/library/{table.id}", LibraryTable) for table in listed.items]
-
-
-async def tables_of(api: Api, templates: Iterable[Template]) -> list[LibraryTable]:
-    """The tables of the library whose rows the limits of some templates may name."""
-    declared = [one for template in templates for one in properties(template.given_limits).values()]
-    ids = {one.library for one in declared if one.library}
-    return [await api.get(f"/library/{id}", LibraryTable) for id in sorted(ids)]
 
 
 def limit_fields(
@@ -90,7 +83,12 @@ def _rows(
 
 def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[Field]:
     """The fields of inputs, with the rows of the library that may fill them as suggestions."""
-    return [replace(field, suggestions=dict(_filling(field.name, tables))) for field in fields]
+    return [replace(one, suggestions=dict(_filling(_tail(one.name), tables))) for one in fields]
+
+
+def _tail(name: str) -> str:
+    """The name of an input without that of its step."""
+    return name.rpartition(".")[2]
 
 
 def _filling(name: str, tables: Sequence[LibraryTable]) -> Iterator[tuple[str, str]]:

@@ -6,7 +6,7 @@ It makes a new design, or a further step of one. Until it is filled in, nothing 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from urllib.parse import quote, urlencode
 
@@ -14,11 +14,13 @@ from fastapi import Request, Response
 from pydantic import JsonValue
 
 from app.presentation.typed import value_of
+from app.schemas.library import LibraryTable
 from app.schemas.templates import Template
 from app.web import sheet
 from app.web.api import Api
 from app.web.blocks import Refusal
-from app.web.forms import OPTIONS, option_of
+from app.web.forms import LIMITS, OPTIONS, option_of
+from app.web.limits import library, limit_fields, with_rows
 from app.web.rendering import show
 
 _NUMBER = re.compile(r"[0-9]{1,6}")
@@ -33,30 +35,42 @@ class NewStep:
     name: str
     template: Template
     typed: Mapping[str, str]
+    tables: Sequence[LibraryTable] = ()
 
     @property
     def is_filled(self) -> bool:
         """Whether anything was typed into its fields."""
-        return any(self._tails().values())
+        return any([*self._tails(".").values(), *self._limits().values()])
 
     def plain(self) -> dict[str, JsonValue]:
         """The step as the interface takes it."""
         step: dict[str, JsonValue] = {"template": self.template.id, "version": self.template.version}
-        step["inputs"] = {tail: value_of(text) for tail, text in self._tails().items() if text}
+        step["inputs"] = {tail: value_of(text) for tail, text in self._tails(".").items() if text}
+        if limits := {tail: value_of(text) for tail, text in self._limits().items() if text}:
+            step["limits"] = limits
         options = {option: self.typed.get(f"{self.name}@{option}", "").strip() for option in OPTIONS}
         return step | {option: option_of(option, text) for option, text in options.items() if text}
 
     def fields(self, faults: Mapping[str, str]) -> list[sheet.Field]:
         """The fields of its inputs, empty or as typed."""
-        return sheet.of_block(self.template.inputs, self.name, {}, {}, self.typed, faults)
+        fields = sheet.of_block(self.template.inputs, self.name, {}, {}, self.typed, faults)
+        return with_rows(fields, self.tables)
+
+    def limits(self, faults: Mapping[str, str]) -> list[sheet.Field]:
+        """The fields of the limits of its criteria."""
+        return limit_fields(self.template, self.name, {}, self.typed, faults, self.tables)
 
     def options(self, faults: Mapping[str, str]) -> list[sheet.Field]:
         """The fields that choose how exact it is."""
         return sheet.of_options(self.template, self.name, {}, self.typed, faults)
 
-    def _tails(self) -> dict[str, str]:
-        """What was typed, by the name of the input."""
-        begins = f"{self.name}."
+    def _limits(self) -> dict[str, str]:
+        """What was typed, by the name of the limit."""
+        return self._tails(f"@{LIMITS}")
+
+    def _tails(self, sign: str) -> dict[str, str]:
+        """What was typed, by the rest of the control's name behind a sign."""
+        begins = f"{self.name}{sign}"
         return {
             key.removeprefix(begins): text.strip()
             for key, text in self.typed.items()
@@ -68,7 +82,7 @@ async def new_step(api: Api, typed: Mapping[str, str]) -> NewStep:
     """The step that a form asks for; named as its template, if it has no name."""
     id, version = versioned(typed.get("template", ""))
     template = await api.get(f"/templates/{quote(id, safe='')}/versions/{version}", Template)
-    return NewStep(typed.get("name", "").strip() or template.id, template, typed)
+    return NewStep(typed.get("name", "").strip() or template.id, template, typed, await library(api))
 
 
 def versioned(chosen: str) -> tuple[str, int | str]:
@@ -97,7 +111,7 @@ def step_page(
 ) -> Response:
     """The form, empty; or refused, with what was typed and what is wrong."""
     faults = refusal.faults if refusal else {}
-    fields, options = step.fields(faults), step.options(faults)
+    fields, options, limits = step.fields(faults), step.options(faults), step.limits(faults)
     return show(
         request,
         "new_step.html",
@@ -107,6 +121,7 @@ def step_page(
         hidden=hidden,
         fields=fields,
         options=options,
-        loose=sheet.loose_faults([*fields, *options], faults),
+        limits=limits,
+        loose=sheet.loose_faults([*fields, *options, *limits], faults),
         notice=notice,
     )

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Awaitable
 from typing import Annotated, get_args
 from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
+from app.presentation.criteria import line
 from app.schemas.catalogue import FaultList
 from app.schemas.designs import Design, DesignList, Explanation, ModelMeasurements, State
 from app.schemas.labels import TagList
@@ -20,8 +22,10 @@ from app.web.gallery import offered
 from app.web.model_page import model_page
 from app.web.new_step import beside, new_step, step_page
 from app.web.rendering import go, show, units_of
+from app.web.sensitivities import sensitivity_lines
 from app.web.stored_page import is_unusable, stored_page
 from app.web.template_page import template_page
+from app.web.tolerances_page import tolerances_page
 
 router = APIRouter(include_in_schema=False)
 
@@ -146,12 +150,7 @@ async def another_step(id: Id, request: Request, api: TheApi) -> Response:
 @router.get("/designs/{id}")
 async def design(id: Id, request: Request, api: TheApi) -> Response:
     """A design at its newest revision, to be changed; only to be read while its template is quarantined."""
-    try:
-        return await design_page(request, api, id)
-    except Refused as refused:
-        if not is_unusable(refused):
-            raise
-        return await stored_page(request, api, id, None, refused.problem.detail)
+    return await _or_stored(request, api, id, None, design_page(request, api, id))
 
 
 @router.get("/designs/{id}/revisions/{number}")
@@ -163,12 +162,7 @@ async def revision(
     other: Annotated[int | None, Query(alias="with", ge=1, le=10**9)] = None,
 ) -> Response:
     """A revision, and what differs from another."""
-    try:
-        return await revision_page(request, api, id, number, other)
-    except Refused as refused:
-        if not is_unusable(refused):
-            raise
-        return await stored_page(request, api, id, number, refused.problem.detail)
+    return await _or_stored(request, api, id, number, revision_page(request, api, id, number, other))
 
 
 @router.get("/designs/{id}/compare")
@@ -185,16 +179,30 @@ async def compared(
     return await compare_page(request, api, id, Asked(revision, number, design, of))
 
 
-@router.get("/designs/{id}/explain/{parameter}")
-async def explanation(
-    id: Id, parameter: Annotated[str, Path(max_length=130)], request: Request, api: TheApi
+@router.get("/designs/{id}/tolerances")
+async def tolerances(
+    id: Id,
+    request: Request,
+    api: TheApi,
+    job: Annotated[str | None, Query(max_length=64, pattern=r"^[A-Za-z0-9_-]+$")] = None,
+    part: Annotated[str, Query(max_length=1)] = "",
 ) -> Response:
-    """Where a model parameter comes from."""
+    """What the tolerances of a design do; `part` is what the design page takes in."""
+    return await tolerances_page(request, api, id, job, is_part=bool(part))
+
+
+@router.get("/designs/{id}/explain/{name}")
+async def explanation(
+    id: Id, name: Annotated[str, Path(max_length=140)], request: Request, api: TheApi
+) -> Response:
+    """Where a model parameter, or the verdict of a criterion, comes from."""
     design, chain = await asyncio.gather(
         api.get(f"/designs/{id}", Design),
-        api.get(f"/designs/{id}/explain/{quote(parameter, safe='')}", Explanation),
+        api.get(f"/designs/{id}/explain/{quote(name, safe='')}", Explanation),
     )
-    return show(request, "explain.html", design=design, chain=chain)
+    judged = line(chain.criterion) if chain.criterion else None
+    slopes = sensitivity_lines(chain.sensitivities or [])
+    return show(request, "explain.html", design=design, chain=chain, judged=judged, sensitivities=slopes)
 
 
 @router.get("/designs/{id}/report")
@@ -208,6 +216,9 @@ async def report(id: Id, request: Request) -> Response:
 @router.get("/designs/{id}/copy")
 @router.get("/designs/{id}/delete")
 @router.get("/designs/{id}/rename")
+@router.get("/designs/{id}/variants")
+@router.get("/designs/{id}/variants/pasted")
+@router.get("/designs/{id}/variants/file")
 @router.get("/designs/{id}/labels")
 @router.get("/designs/{id}/revisions/{_}/restore")
 @router.get("/designs/{id}/jobs/{_}/cancel")
@@ -224,6 +235,18 @@ async def plotly_script(request: Request) -> Response:
     if request.headers.get("if-none-match") == plotly.tag():
         return Response(status_code=304, headers={"ETag": plotly.tag()})
     return Response(plotly.script(), media_type="text/javascript", headers=headers)
+
+
+async def _or_stored(
+    request: Request, api: Api, id: str, number: int | None, page: Awaitable[Response]
+) -> Response:
+    """A page of a design; what is stored of it, if one of its templates is quarantined."""
+    try:
+        return await page
+    except Refused as refused:
+        if not is_unusable(refused):
+            raise
+        return await stored_page(request, api, id, number, refused.problem.detail)
 
 
 async def _picture(api: Api, id: str) -> tuple[str, str | None]:

@@ -56,14 +56,19 @@ def banner(revision: RevisionWorksheet) -> Banner:
 def key_outputs(
     step: str, outputs: Mapping[str, Output], criteria: Iterable[Criterion], relations: Iterable[str]
 ) -> list[str]:
-    """Outputs for the fold line of a step: those judged, those that drive other parts, else the last ones."""
+    """Outputs for the fold line of a step: those judged, those that drive other parts, else the last ones.
+
+    What was not checked comes last, and what has no value is left out where anything else has one.
+    """
     single = [name for name, output in outputs.items() if not isinstance(output.value, list)]
+    ordered = sorted(criteria, key=lambda criterion: criterion.verdict == "not_checked")
     judged = [
-        tail for criterion in criteria for tail in _tails(step, sides(criterion.require)[0], criterion.name)
+        tail for criterion in ordered for tail in _tails(step, sides(criterion.require)[0], criterion.name)
     ]
     driving = [tail for text in relations for tail in _tails(step, text, "")]
     wanted = [name for name in dict.fromkeys([*judged, *driving]) if name in outputs]
-    return (wanted or single[-3:])[:MOST_KEYS]
+    valued = [name for name in wanted if outputs[name].value is not None]
+    return (valued or wanted or single[-3:])[:MOST_KEYS]
 
 
 def _tails(step: str, text: str, name: str) -> list[str]:

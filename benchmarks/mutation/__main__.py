@@ -57,7 +57,7 @@ def arguments() -> argparse.Namespace:
 def main() -> None:
     """Try the mutants and exit with the verdict."""
     options = arguments()
-    chosen = named(REASONS) if options.named else sample(options.seed, options.count)
+    chosen = named(REASONS)[: options.count] if options.named else sample(options.seed, options.count)
     chosen = [mutant for mutant in chosen if f"{mutant.file}:{mutant.line}".startswith(tuple(options.only))]
     if options.list:
         print("\n".join(f"{m.key} {m.file}:{m.line} {m.operator}\n{m.diff}" for m in chosen))

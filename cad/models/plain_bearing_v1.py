@@ -84,7 +84,11 @@ class Shell:
 
 
 class PlainBearing(CadModel):
-    """Plain bearing shell, half or full, with an oil groove and an oil hole."""
+    """Plain bearing shell, half or full, with an oil groove and an oil hole.
+
+    The shell is one solid of steel, by whose density its mass is computed. Its colour is that of the running
+    surface: the lining is too thin to be a body of its own.
+    """
 
     example = {"inner_diameter": "48 mm"}
     film_bore = "inner_diameter"

@@ -241,7 +241,16 @@ class OilFilm(Template):
             "absent": {
                 "whirl_threshold_speed": {
                     "with": "stiffness_xx",
-                    "reason": "the film is stable at every speed, or carries no mass",
+                    "reason": "there is no threshold: the film is stable at every speed, or carries no mass",
+                    # the same without a root: m γ² ω² ≤ k_0 ω_h², k_0 the stiffness and γ the ratio of whirl
+                    "instead": "rotor_mass * abs(speed)**2 * ((stiffness_xx - (stiffness_xx * damping_yy"
+                    " + stiffness_yy * damping_xx - stiffness_xy * damping_yx - stiffness_yx * damping_xy)"
+                    " / (damping_xx + damping_yy)) * (stiffness_yy - (stiffness_xx * damping_yy"
+                    " + stiffness_yy * damping_xx - stiffness_xy * damping_yx - stiffness_yx * damping_xy)"
+                    " / (damping_xx + damping_yy)) - stiffness_xy * stiffness_yx)"
+                    " <= (stiffness_xx * damping_yy + stiffness_yy * damping_xx - stiffness_xy * damping_yx"
+                    " - stiffness_yx * damping_xy) / (damping_xx + damping_yy) * hydrodynamic_speed**2"
+                    " * (damping_xx * damping_yy - damping_xy * damping_yx)",
                 }
             },
         },

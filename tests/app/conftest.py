@@ -4,7 +4,7 @@ import os
 
 import httpx
 import pytest
-from serving import folder_of_models, serving
+from serving import created, folder_of_models, paper, patched, serving
 
 from app.client import Client
 from app.settings import Settings
@@ -55,3 +55,18 @@ def client(served):
     """The typed client."""
     with Client(served.url) as client:
         yield client
+
+
+@pytest.fixture(scope="session")
+def bearing(http):
+    """The demonstration before the relation is tied: 50 mm."""
+    document = paper()
+    document["model"]["parameters"] = {"inner_diameter": "50 mm"}
+    return created(http, document)
+
+
+@pytest.fixture(scope="session")
+def tied(http, bearing):
+    """… and after: the bore follows the worksheet."""
+    patch = {"models": {"model": {"parameters": {"inner_diameter": "= film.bearing_diameter"}}}}
+    return patched(http, bearing, {**patch, "note": "the relation of the paper"})

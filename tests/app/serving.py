@@ -4,8 +4,6 @@ import json
 import os
 import signal
 import socket
-import subprocess
-import sys
 import threading
 import time
 from contextlib import contextmanager
@@ -16,6 +14,7 @@ from textwrap import dedent
 
 import httpx
 import uvicorn
+from forked import Forked
 from patience import GLANCE, patient, until
 
 from app.client import Client
@@ -201,7 +200,7 @@ def serving(settings: Settings):
 
 
 class ServerProcess:
-    """`python -m app serve` in a process, and a process group, of its own."""
+    """`crankwright serve` in a process, and a session, of its own."""
 
     def __init__(self, data: Path, **environment: str) -> None:
         self.data, self.environment = data, environment
@@ -214,15 +213,8 @@ class ServerProcess:
         return f"http://127.0.0.1:{self.port}"
 
     def start(self) -> "ServerProcess":
-        command = [sys.executable, "-m", "app", "serve", "--port", str(self.port), "--data", str(self.data)]
-        with self.log.open("ab") as log:
-            self.process = subprocess.Popen(
-                command,
-                env={**os.environ, **self.environment},
-                stdout=subprocess.DEVNULL,
-                stderr=log,
-                start_new_session=True,
-            )
+        command = ["serve", "--port", self.port, "--data", self.data]
+        self.process = Forked(command, {**os.environ, **self.environment}, self.log)
         return self
 
     def ready(self) -> "ServerProcess":

@@ -479,6 +479,7 @@ def test_a_file_that_changed_is_calculated_as_it_is_now(tmp_path, monkeypatch, l
         until(lambda: sleep(http).json()["outputs"]["process"]["value"] == -1)
 
 
+@pytest.mark.slow
 def test_a_job_runs_again_after_a_restart(tmp_path, monkeypatch, log):
     monkeypatch.setenv("SLEEPER_LOG", str(log))
     own = folder_of_sleeper(tmp_path / "own")

@@ -65,7 +65,8 @@ def test_no_parameter_may_be_null(http):
 def test_preconditions_are_declared(http):
     described = http.get("/openapi.json").json()
     sent = {name: one["required"] for name, one in parameters(described) if one["name"] == "if-match"}
-    assert {name.split()[0]: required for name, required in sent.items()} == {"patch": True, "post": False}
+    required = {name.split()[0]: is_required for name, is_required in sent.items()}
+    assert required == {"patch": True, "put": True, "post": False}
     assert {"412", "428"} <= set(described["paths"][f"{API}/designs/{{id}}"]["patch"]["responses"])
     for path in ("auto-map", "revisions/{number}/restore"):
         assert "412" in described["paths"][f"{API}/designs/{{id}}/{path}"]["post"]["responses"]

@@ -129,6 +129,10 @@ def test_a_design_is_decided_over_http_and_nothing_is_saved(http, client):
     si = next(one["value"]["value"] for one in body["criteria"] if one["name"] == "own")
     assert value == {"value": pytest.approx(si / 25.4), "unit": "thou"}
     assert client.decide(design["id"]).stopped in ("decided", "no_finer_level")
+    of_client = {one.name: one.value for one in client.decide(design["id"], units="us").criteria}
+    assert {one["name"]: one.get("value") for one in in_us} == {
+        name: value and value.model_dump() for name, value in of_client.items()
+    }
     assert http.post(f"{DESIGNS}/{design['id']}/decide").status_code == 200
 
 

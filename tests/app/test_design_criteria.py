@@ -300,7 +300,7 @@ def test_all_wrong_criteria_are_named_at_once():
     [
         ({"permissible_fil": "2 um"}, "unknown_name"),
         ({"permissible_film": "2 s"}, "wrong_unit"),
-        ({"permissible_film": "= 2 um"}, "relation"),
+        ({"permissible_film": "= 2 s"}, "unit_mismatch"),
         ({"bearing_material": "cheese"}, "unknown_name"),
     ],
 )

@@ -74,9 +74,16 @@ def test_plots_stand_beside_the_results(http):
         "inputs": example(http, "torsional_vibration", 1),
     }
     load = {"template": "bearing_load", "version": 1, "inputs": example(http, "bearing_load", 1)}
-    design = created(http, {"name": "plots", "steps": {"shaft": vibration, "load": load}})
+    film = {"template": "oil_film", "version": 2, "inputs": example(http, "oil_film", 2)}
+    design = created(http, {"name": "plots", "steps": {"shaft": vibration, "load": load, "film": film}})
     page = read(http, design).text
-    for title in ("Campbell diagram", "Polar diagram of the main load", "over crank angle"):
+    titles = (
+        "Campbell diagram",
+        "Polar diagram of the main load",
+        "over crank angle",
+        "Accuracy: median error",
+    )
+    for title in titles:
         assert title in page, title
     assert page.count("<svg xmlns") >= 5
     assert "style=" not in page

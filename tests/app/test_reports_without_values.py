@@ -97,7 +97,19 @@ def without_a_side(cls, revision, limits):
     declared = {*cls.inputs, *cls.formulas, *limits_of(cls)}
     names = available(cls, revision.steps[STEP], limits)
     wanted = [declared & set(NAME.findall(one.require)) for one in revision.criteria or []]
-    return {number for number, sides in enumerate(wanted) if not sides <= names}
+    instead = [names_instead(cls, one.name) for one in revision.criteria or []]
+    return {
+        number
+        for number, (sides, others) in enumerate(zip(wanted, instead, strict=True))
+        if not sides <= names and not (others and others <= names)
+    }
+
+
+def names_instead(cls, name):
+    """The names in the comparison that a criterion is judged by where a side has no value."""
+    criterion = next(one for one in cls.declared_criteria if f"{STEP}.{one.name}" == name)
+    others = [missing.instead.names for missing in criterion.absent.values() if missing.instead]
+    return set().union(*others)
 
 
 @pytest.mark.parametrize("cls", TEMPLATES, ids=lambda cls: f"{cls.id}_{cls.version}")

@@ -315,6 +315,7 @@ def test_a_long_save_does_not_hold_up_the_designs_of_others(http, log):
     http.delete(slow.headers["Location"]).raise_for_status()
 
 
+@pytest.mark.slow
 def test_a_kill_loses_no_accepted_save(tmp_path, log):
     environment = {
         "CRANKWRIGHT_TEMPLATE_FOLDERS": json.dumps([str(folder_of_sleeper(tmp_path / "own"))]),

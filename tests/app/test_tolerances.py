@@ -65,3 +65,10 @@ def test_the_page_of_a_design_says_so(http, design):
         page = http.get(path, headers={"Accept": "text/html"}).text
         for name in ("scale", "model.width", "bearing width"):
             assert page.count(f'<li class="warning"><strong>{name}</strong>') == 1, (path, name)
+
+
+def test_an_analysis_of_steps_without_levels_names_none(http, design):
+    answer = http.post(f"{API}/designs/{design['id']}/tolerance", headers={"Prefer": "wait=60"})
+    assert answer.status_code == 200, answer.text
+    assert answer.json()["analysis"]["levels"] == {}
+    assert "scale" in answer.json()["analysis"]["toleranced"]

@@ -6,7 +6,21 @@ from app.catalogue.finding import find_templates
 from app.presentation.units import shown_unit, shown_value
 from templates.core.units.units import compatible, unit
 
-METRIC_THERE_TOO = {"1", "%", "deg", "rad", "rad/s", "rad/s**2", "rpm", "Hz", "s", "K", "W/K", "kJ/(m**3*K)"}
+METRIC_THERE_TOO = {
+    "1",
+    "%",
+    "deg",
+    "rad",
+    "rad/s",
+    "rad/s**2",
+    "rpm",
+    "Hz",
+    "s",
+    "K",
+    "1/K",
+    "W/K",
+    "kJ/(m**3*K)",
+}
 """Used in American drawings as well, or for heat, of which customary units are many and none is common."""
 
 

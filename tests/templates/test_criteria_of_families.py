@@ -6,9 +6,12 @@ which the tests of that template hold against the literature.
 
 from math import hypot, pi, sqrt
 
+import numpy as np
 import pytest
 
+from templates.core.judging.judging import judge
 from templates.core.language import levels
+from templates.core.language.criteria import Evaluated, estimates_of
 from templates.core.language.evaluate import evaluate
 from templates.door import built_in
 
@@ -50,6 +53,7 @@ RANGE = "speed_range"
 PRESSED = ("pressure_deforms_bearing", "pressure_thickens_oil")
 FILM_1, FILM, CYCLE = ("oil_film", 1), ("oil_film", 2), ("oil_film_cycle", 1)
 PAD, PETROV = ("slider_bearing", 1), ("journal_friction", 1)
+WARM = ("thermal_clearance", 1)
 LOADS, ENGINE = ("bearing_load", 1), ("engine", 1)
 CHAIN, THROW, FATIGUE = ("torsional_vibration", 1), ("crank_stiffness", 1), ("fatigue_life", 1)
 
@@ -164,6 +168,12 @@ CASES = [
      1 / (100 / (1150 * 2e7**-0.09) + 300 / 800), 0.9),
     (FATIGUE, "safety", PULLED, {"required_safety_factor": 1.5}, "not_met",
      1 / (100 / (1150 * 2e7**-0.09) + 300 / 800), 1.5),
+    # 48 mm of aluminium, 80 K warmer, on steel, 90 K warmer: 55 + 88.32 - 47.52 µm
+    (WARM, "runs", {}, {}, "met", 95.8, 0),
+    (WARM, "runs", {"housing_temperature": "20 degC", "journal_temperature": "140 degC"}, {}, "not_met",
+     55 - 63.36, 0),
+    (WARM, "least_clearance", {}, {"smallest_permissible_clearance": "90 um"}, "met", 95.8, 90),
+    (WARM, "least_clearance", {}, {"smallest_permissible_clearance": "0.1 mm"}, "not_met", 95.8, 100),
 ]  # fmt: skip
 NAMES = [f"{case[0][0]}-{case[0][1]}-{case[1]}-{case[4]}-{i}" for i, case in enumerate(CASES)]
 UNSTATED = {(CYCLE, name) for name in ("film", "film_exists", "pressure", "rigid", "isoviscous")}
@@ -264,14 +274,58 @@ def test_the_reason_of_a_missing_safety_factor_is_the_true_one():
     assert unknown.reason == "needs endurance_limit or design_life, and some stress"
 
 
+NO_THRESHOLD = "there is no threshold: the film is stable at every speed, or carries no mass"
+
+
 def test_a_bearing_that_is_stable_at_every_speed_says_so():
     judgement, _ = judged(*FILM, {}, {}, "whirl")
-    assert (judgement.verdict, judgement.reason) == (
-        "not_checked", "the film is stable at every speed, or carries no mass",
-    )  # fmt: skip
+    assert (judgement.verdict, judgement.reason) == ("met", NO_THRESHOLD)
+    assert (judgement.value, judgement.limit, judgement.is_stated) == (5000, None, True)
+    weightless, _ = judged(*FILM, {**LIGHT, "rotor_mass": "0 kg"}, {}, "whirl")
+    assert (weightless.verdict, weightless.reason) == ("met", NO_THRESHOLD)
     result = evaluate(built_in().get(*FILM), inputs(*FILM, {}), level="fit")
     fit = next(j for j in result.criteria if j.name == "whirl")
-    assert "level fit cannot tell" in fit.reason
+    assert (fit.verdict, "level fit cannot tell" in fit.reason) == ("not_checked", True)
+
+
+def test_a_film_that_is_stable_only_within_its_error_is_undecided():
+    result = evaluate(built_in().get(*FILM), inputs(*FILM, {}), level="short_bearing")
+    whirl = next(j for j in result.criteria if j.name == "whirl")
+    assert (whirl.verdict, whirl.reason) == (
+        "undecided", f"within the error of the calculation: {NO_THRESHOLD}",
+    )  # fmt: skip
+
+
+def test_points_without_a_threshold_are_judged_with_those_that_have_one():
+    cls = built_in().get(*FILM)
+    values = {**inputs(*FILM, {}), "radial_load": {"value": [1, 25, 60], "unit": "kN"}}
+    mixed = next(j for j in evaluate(cls, values).criteria if j.name == "whirl")
+    assert (mixed.counts, mixed.where[0].value, mixed.reason) == ({"met": 3}, 1, None)
+    assert mixed.limit == pytest.approx(14535.2, rel=1e-4)
+    heavy = {**values, "radial_load": {"value": [25, 60], "unit": "kN"}}
+    none = next(j for j in evaluate(cls, heavy).criteria if j.name == "whirl")
+    assert (none.verdict, none.limit, none.reason) == ("met", None, NO_THRESHOLD)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_what_is_judged_without_a_threshold_says_the_same_where_there_is_one(seed):
+    """The comparison without a root against speed and threshold: random loads, masses and speeds."""
+    random = np.random.default_rng(seed)
+    changes = {
+        "radial_load": f"{10 ** random.uniform(-2, 0.7)} kN",
+        "rotor_mass": f"{10 ** random.uniform(0, 4)} kg",
+        "speed": f"{random.uniform(500, 9000)} rpm",
+        "sleeve_speed": f"{random.uniform(0, 2000)} rpm",
+    }
+    cls = built_in().get(*FILM)
+    result = evaluate(cls, inputs(*FILM, changes))
+    speed, threshold = (result.template.omega_J, result.template.omega_w)
+    whirl = next(one for one in cls.declared_criteria if one.name == "whirl")
+    instead = whirl.absent["whirl_threshold_speed"].instead
+    estimates, absent = estimates_of(Evaluated(result.template, result.outputs, result.error, None), instead)
+    judgement = judge(instead, estimates, absent)
+    assert (judgement.value <= judgement.limit) == (abs(speed) <= threshold)
+    assert judgement.value / judgement.limit == pytest.approx((speed / threshold) ** 2, rel=1e-9)
 
 
 def test_criteria_over_arrays_of_bearings():

@@ -37,7 +37,7 @@ def http(served):
 def browser():
     """Debian's Chromium, driven by Playwright."""
     if CHROMIUM is None:
-        pytest.skip("needs Debian's package chromium: apt-get install chromium")
+        pytest.skip("needs Debian's package chromium-headless-shell or chromium")
     from playwright.sync_api import expect, sync_playwright
 
     expect.set_options(timeout=20_000)
@@ -61,10 +61,16 @@ def pytest_runtest_teardown(item, nextitem):
 
 
 @pytest.fixture
-def watched(browser, served):
+def plotted():
+    """Plotly draws the plots of the page `watched`, as it does in every slow test."""
+
+
+@pytest.fixture
+def watched(browser, served, request):
     """A page of a fresh visitor, on a wide screen."""
     context = browser.new_context(viewport={"width": 1440, "height": 900}, accept_downloads=True)
-    yield Watched(context.new_page(), served.url)
+    is_slow = request.node.get_closest_marker("slow") is not None
+    yield Watched(context.new_page(), served.url, is_slow or "plotted" in request.fixturenames)
     context.close()
 
 

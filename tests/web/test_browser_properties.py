@@ -54,6 +54,7 @@ def seen_whole(watched, path):
     expect(page.locator("[aria-busy]")).to_have_count(0, timeout=60_000)
 
 
+@pytest.mark.usefixtures("plotted")
 @pytest.mark.parametrize("all_or_one", ["kinds", pytest.param("paths", marks=pytest.mark.slow)])
 def test_no_page_asks_an_outside_address_fails_or_breaks_the_policy(watched, request, all_or_one):
     for path in request.getfixturevalue(all_or_one):
@@ -62,6 +63,7 @@ def test_no_page_asks_an_outside_address_fails_or_breaks_the_policy(watched, req
         assert watched.page.get_by_text("could not be drawn").count() == 0, path
 
 
+@pytest.mark.usefixtures("plotted")
 @pytest.mark.parametrize("all_or_one", ["kinds", pytest.param("paths", marks=pytest.mark.slow)])
 def test_no_page_is_wider_than_a_narrow_screen(browser, watched, http, request, all_or_one):
     paths = request.getfixturevalue(all_or_one)
@@ -74,6 +76,7 @@ def test_no_page_is_wider_than_a_narrow_screen(browser, watched, http, request, 
         assert watched.page.evaluate("document.documentElement.scrollWidth") <= NARROW["width"], path
 
 
+@pytest.mark.usefixtures("plotted")
 @pytest.mark.parametrize("is_all", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_pages_have_no_serious_fault_of_accessibility(watched, kinds, is_all):
     design, template, model = kinds[2], *kinds[5:]
@@ -103,6 +106,7 @@ def test_the_keyboard_reaches_fields_and_save_in_the_order_of_the_page(watched, 
     assert fields.index("note") > fields.index("film.speed")
 
 
+@pytest.mark.usefixtures("plotted")
 def test_the_first_page_is_light(watched, http):
     created(http, "paper")
     session = watched.page.context.new_cdp_session(watched.page)

@@ -5,7 +5,9 @@ from browsing import CHROMIUM
 from playwright.sync_api import expect
 from serving import API
 
-pytestmark = pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
+pytestmark = pytest.mark.skipif(
+    not CHROMIUM, reason="needs Debian's package chromium-headless-shell or chromium"
+)
 
 
 @pytest.fixture

@@ -172,3 +172,52 @@ def test_a_form_that_is_wrong_says_so_and_saves_nothing(http, throw, typed):
     assert answer.status_code == 422
     assert 'role="alert"' in answer.text
     assert http.get(f"{API}{throw}").json()["revision"] == 1
+
+
+def test_a_refused_analysis_keeps_what_was_typed_with_the_fault_beside_it(watched, http, throw):
+    page = watched.page
+    watched.open(throw)
+    page.get_by_text("Analyses of the models").click()
+    new = page.get_by_role("group", name="New analysis of throw")
+    new.get_by_label("Kind").select_option("torsion")
+    new.get_by_label("or largest error").fill("0.01")
+    new.get_by_role("textbox", name="Load").fill("2 mm")
+    new.get_by_role("button", name="Add analysis").click()
+    expect(page.get_by_role("alert").first).to_contain_text("Nothing was saved: load of the analysis")
+    again = page.get_by_role("group", name="New analysis of throw")
+    expect(again.get_by_role("textbox", name="Load")).to_have_value("2 mm")
+    expect(again.get_by_role("textbox", name="Load")).to_have_attribute("aria-invalid", "true")
+    expect(again.get_by_label("or largest error")).to_have_value("0.01")
+    expect(again.get_by_label("Kind")).to_have_value("torsion")
+    expect(again.locator(".field-error")).to_contain_text("measures a length")
+    again.get_by_role("textbox", name="Load").fill("2 N*m")
+    again.get_by_role("button", name="Add analysis").click()
+    expect(page.locator(".page-head")).to_contain_text("revision 2")
+    options = http.get(f"{API}{throw}").json()["models"]["throw"]["analyses"]["torsion"]
+    assert (options["tolerance"], options["load"]) == (0.01, "2 N*m")
+
+
+@pytest.mark.parametrize(
+    ("typed", "field"),
+    [
+        ({"declare": "iteration", "place": "", "through": "shell.mass", "start": "3 mm"}, "start"),
+        ({"declare": "iteration", "place": "", "through": "nobody.mass", "start": "3 kg"}, "through"),
+        (
+            {"declare": "iteration", "place": "", "through": "shell.mass", "start": "3 kg", "limit": "many"},
+            "limit",
+        ),
+        ({"add": "parameter", "name": "gap", "value": "3 parsec kg"}, "value"),
+    ],
+)
+def test_a_refused_part_keeps_what_was_typed(http, throw, typed, field):
+    answer = http.post(f"{throw}/blocks", data={"revision": "1", **typed})
+    assert answer.status_code == 422
+    for name in typed.keys() & {"through", "start", "limit", "value"}:
+        control = re.search(rf'<input name="{name}"[^>]* value="{re.escape(typed[name])}"[^>]*>', answer.text)
+        assert control, name
+        assert ('aria-invalid="true"' in control[0]) == (name == field)
+    beside = re.search(
+        rf'<input name="{field}"[^>]*aria-invalid="true"[^>]*>\s*<span class="field-error"', answer.text
+    )
+    assert beside
+    assert f"{field}</a> of the {typed.get('declare') or typed.get('add')} is not possible so" in answer.text

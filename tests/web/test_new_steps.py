@@ -1,5 +1,7 @@
 """A new design or step begins empty; a mapping is proposed and applied by its user's choice alone."""
 
+import re
+
 from browsing import from_example, settled
 from playwright.sync_api import expect
 from serving import API
@@ -61,3 +63,31 @@ def test_a_further_step_begins_empty_and_says_what_is_missing(http):
     whole = {**typed, **{f"journal_friction.{name}": text for name, text in inputs.items()}}
     assert http.post(f"{place}/blocks", data=whole).headers["location"] == place
     assert http.get(f"{API}{place}").json()["steps"]["journal_friction"]["inputs"]["bearing_width"] == "18 mm"
+
+
+def test_a_new_step_takes_limits_and_rows_of_the_library(watched, http):
+    page = watched.page
+    watched.open("/designs/new?design_name=limited&template=oil_film/2")
+    page.get_by_text("More inputs").click()
+    for label, text in FILM.items():
+        page.get_by_label(label, exact=True).fill(text)
+    page.get_by_text("Limits of the criteria (7)").click()
+    page.get_by_label("Bearing material", exact=True).select_option("tin_babbitt_b23_2")
+    page.get_by_label("Smallest film that its user permits").fill("2 um")
+    page.get_by_role("button", name="Create the design").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("limited")
+    limits = {"bearing_material": "tin_babbitt_b23_2", "permissible_film": "2 um"}
+    design = http.get(f"{API}{page.url.removeprefix(watched.url)}").json()
+    assert design["steps"]["oil_film"]["limits"] == limits
+    expect(page.locator("select[name='oil_film@limits.bearing_material']")).to_have_value("tin_babbitt_b23_2")
+    assert '<option value="0.25 um">N4, Ra 0.2 um</option>' in page.content()
+    assert watched.faults() == []
+
+
+def test_a_refused_limit_of_a_new_step_keeps_what_was_typed(http):
+    typed = {"design_name": "refused", "template": "oil_film/2", "oil_film@limits.permissible_film": "2 s"}
+    refused = http.post("/designs", data=typed)
+    assert refused.status_code == 422
+    assert re.search(r'name="oil_film@limits.permissible_film"[^>]* value="2 s"', refused.text)
+    assert re.search(r'id="oil_film@limits-permissible_film-error"><bdi>[^<]*measures', refused.text)
+    assert '<details class="more" open><summary>Limits of the criteria (7)' in refused.text

@@ -49,6 +49,7 @@ def save(page, revision):
     expect(page.locator("[data-design-state]")).to_have_text("current", timeout=PATIENCE)
 
 
+@pytest.mark.usefixtures("plotted")
 @pytest.mark.skipif(not PDF_TO_TEXT, reason="needs Debian's package poppler-utils, which reads the PDF")
 def test_the_paper_in_a_browser(watched, tmp_path):
     page = created(watched)
@@ -140,6 +141,7 @@ def test_a_change_by_somebody_else_is_told_and_ours_is_kept(watched, http):
     assert (inputs["radial_load"], inputs["speed"]) == ("31 kN", "4000 rpm")
 
 
+@pytest.mark.usefixtures("plotted")
 def test_the_pressure_is_painted_on_the_bore(watched):
     page = created(watched, "shell")
     page.get_by_label("show the film pressure").check()

@@ -2,7 +2,7 @@
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from browsing import from_example
+from browsing import Watched, from_example
 from playwright.sync_api import expect
 
 WHITE, DARK = "rgb(255, 255, 255)", "rgb(24, 32, 41)"
@@ -13,7 +13,7 @@ PAPER = "getComputedStyle(document.querySelector('.sheet, .panel')).backgroundCo
 def dark(browser, served):
     """A page for somebody whose system is dark."""
     context = browser.new_context(color_scheme="dark", viewport={"width": 1440, "height": 900})
-    yield context.new_page()
+    yield Watched(context.new_page(), served.url).page
     context.close()
 
 
@@ -31,6 +31,7 @@ def test_the_system_decides_unless_somebody_chose(dark, served, http):
     assert dark.evaluate(PAPER) == DARK
 
 
+@pytest.mark.usefixtures("plotted")
 def test_the_dark_scheme_can_be_chosen_and_a_report_stays_white(watched, http):
     place = from_example(http, "oil_film/1")
     watched.open(place)

@@ -31,9 +31,9 @@ def judged(*criteria):
     return Revision
 
 
-def html_of(shown):
+def html_of(shown, design=""):
     module = jinja.get_template("verdict.html").module
-    return str(module.banner(shown))
+    return str(module.banner(shown, design))
 
 
 def text_of(html):
@@ -122,6 +122,18 @@ def test_the_fold_line_shows_what_is_judged_or_drives_a_part():
     assert key_outputs("other", outputs, [], []) == ["density", "bearing_diameter", "power_loss"]
 
 
+def test_a_fold_line_shows_values_and_first_those_that_were_checked():
+    """Not a pressure that nobody limited before the film, nor a result that does not exist."""
+    output = type("Output", (), {"value": 1.0})
+    none = type("Output", (), {"value": None})
+    outputs = {"maximum_pressure": output, "minimum_film_thickness": output, "film_parameter": none}
+    rough = criterion(UNCHECKED, name="film.rough", require="film_parameter >= 1")
+    assert key_outputs("film", outputs, [rough, criterion(UNCHECKED), criterion(WORST)], []) == [
+        "minimum_film_thickness",
+        "maximum_pressure",
+    ]
+
+
 def test_the_browser_writes_the_verdict_as_the_server_does(watched, paper):
     watched.open(paper, wait_until="networkidle")  # no preview comes between
     expect(watched.page.locator("[data-state]")).to_be_attached()
@@ -130,9 +142,9 @@ def test_the_browser_writes_the_verdict_as_the_server_does(watched, paper):
         script = "async (payload) => (await import('/static/verdict.js')).showVerdict(payload)"
         watched.page.evaluate(script, payload)
         inside = watched.page.locator("[data-verdict-inside]").inner_html()
-        expected = html_of(banner(judged(*criteria)))
+        expected = html_of(banner(judged(*criteria)), paper.rpartition("/")[2])
         assert text_of(inside) == text_of(expected)
-        links = re.compile(r'data-give="([^"]+)"|href="(#step-[^"]+)"|class="tag (\w+)"')
+        links = re.compile(r'data-give="([^"]+)"|href="(#step-[^"]+|/designs[^"]+)"|class="tag (\w+)"')
         assert links.findall(inside) == links.findall(expected)
     assert watched.faults() == []
 
@@ -145,6 +157,7 @@ def in_view(page, selector):
     )
 
 
+@pytest.mark.usefixtures("plotted")
 def test_two_steps_are_short_and_verdict_and_part_stay_in_view(watched, two_steps):
     page = watched.page
     watched.open(two_steps)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import APIRouter, Header, Response
 from fastapi.responses import FileResponse
+from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
 
 from app.api import problems
@@ -21,9 +24,12 @@ from app.api.waiting import LATER, accepted, accepted_kinds, finished
 from app.designs import stamps, views
 from app.jobs.service import Jobs
 from app.schemas.problems import RouteOptions
+from app.solids.healing import Healing
 from app.solids.models import File, Models
 from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
 from app.storage.errors import NotFound
+from app.storage.tables import RevisionModelRow
 from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.stamp import STAMPED, Stamp, stamped, takes_stamp
 
@@ -74,24 +80,54 @@ async def read_model_file(
     Other kinds than STEP are made when first asked for. The answer waits for that, and is 202 if it takes
     longer than the client waits. STEP files and drawings also say inside whose they are.
     """
-    wanted = kind or _accepted(accept)
+
+    def find(session: Session) -> RevisionModelRow:
+        return views.good_model(session, id, name, number)
+
+    wanted = Wanted(find, kind, accept, prefer, if_none_match)
+    return await model_file(wanted, database, store, models, jobs, client, healing)
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Which file a request wants: how its model is found, and what the client has and takes."""
+
+    find: Callable[[Session], RevisionModelRow]
+    kind: str | None
+    accept: str | None
+    prefer: str | None
+    if_none_match: str | None
+
+
+async def model_file(
+    request: Wanted,
+    database: Database,
+    store: ArtifactStore,
+    models: Models,
+    jobs: Jobs,
+    client: str,
+    healing: Healing,
+) -> Response:
+    """The answer with a file of a model of a revision."""
+    wanted = request.kind or _accepted(request.accept)
+    prefer = request.prefer or PATIENCE
     if wanted not in MEDIA_TYPES:
         raise NotFound(f"there is no model.{wanted[:20]}; there are {', '.join(MEDIA_TYPES)}")
 
     def find() -> tuple[str, Stamp, File | None]:
         with database.read() as session:
-            model = views.good_model(session, id, name, number)
+            model = request.find(session)
             return model.build_key or "", stamps.stamp(session, model), views.file(session, model, wanted)
 
     key, stamp, old = await run_in_threadpool(find)
-    answer = await lost(old.sha256, healing, jobs, prefer or PATIENCE) if old else None
+    answer = await lost(old.sha256, healing, jobs, prefer) if old else None
     if answer is None and (old is None or await run_in_threadpool(_is_outdated, models, key, wanted)):
-        answer = await _made(models, jobs, key, wanted, client, prefer or PATIENCE, has_older=bool(old))
+        answer = await _made(models, jobs, key, wanted, client, prefer, has_older=bool(old))
     if answer:
         return answer
     file = await run_in_threadpool(lambda: models.file(key, wanted))
     assert file is not None, "a job that has done its work left its file"
-    return await run_in_threadpool(_sent, store, file, stamp, if_none_match)
+    return await run_in_threadpool(_sent, store, file, stamp, request.if_none_match)
 
 
 def _is_outdated(models: Models, key: str, kind: str) -> bool:

@@ -28,7 +28,7 @@ from app.api.paging import Cursor, Limit, page
 from app.api.reading import StrictRoute
 from app.api.waiting import LONGEST, accepted, finished, later, patience, written
 from app.designs import repository, views
-from app.designs.explain import explain
+from app.designs.explained import explained as explanation
 from app.designs.filtering import TEMPLATE, DesignFilter
 from app.designs.labels import key_of, tags_of
 from app.designs.previewing import Change
@@ -60,6 +60,7 @@ router = APIRouter(
 )
 
 Id = Annotated[str, Path(max_length=64)]
+Explained = Annotated[str, Path(max_length=140, description="`model.width`; `film.film`, a criterion")]
 Number = Annotated[int, Path(ge=1, le=10**9)]
 Prefer = Annotated[str | None, Header(description="`wait=5` or `respond-async`")]
 IfMatch = Annotated[str | None, Header(description='the ETag of the design that was read, such as `"3"`')]
@@ -113,8 +114,8 @@ async def create_design(
     raw = body.model_dump()  # not in JSON's mode, which hides a NaN as null
     note = raw.pop("note")
     raw.pop("model")
-    saved = await threads.run_within(_seconds(prefer), request, designs.create, raw, note, once)
-    return await _answer(designs, jobs, saved, prefer)
+    saved = await threads.run_within(seconds_waited(prefer), request, designs.create, raw, note, once)
+    return await answer_saved(designs, jobs, saved, prefer)
 
 
 @router.get("")
@@ -168,9 +169,9 @@ async def change_design(
     """
     patch, note = _noted(body)
     saved = await threads.run_within(
-        _seconds(prefer), request, labelling.change, id, patch, note, if_match, once
+        seconds_waited(prefer), request, labelling.change, id, patch, note, if_match, once
     )
-    return await _answer(designs, jobs, saved, prefer)
+    return await answer_saved(designs, jobs, saved, prefer)
 
 
 @router.delete("/{id}", status_code=204, responses=refusals(404))
@@ -197,7 +198,7 @@ async def preview_design(
     change = Change(id, _noted(body)[0], worksheet, units)
     if within is not None:
         return written(await threads.run_within(within, request, previews.known, change))
-    answer, job = await threads.run_within(_seconds(prefer), request, previews.answer, change, client)
+    answer, job = await threads.run_within(seconds_waited(prefer), request, previews.answer, change, client)
     return accepted(job, answer) if job else written(answer)
 
 
@@ -213,13 +214,17 @@ async def map_design(
     if_match: IfMatch = None,
     prefer: Prefer = None,
 ) -> Response:
-    """Proposals for model parameters that are not set, by name and unit."""
+    """Proposals for model parameters that are not set: relations to quantities of the same kind and role.
+
+    A quantity fits if it is measured alike, is called as the parameter is, or as it is also known, and
+    belongs to the same part. Each proposal says why. With `apply` all are saved as a new revision.
+    """
     proposals, saved = await threads.run_within(
-        _seconds(prefer), request, designs.auto_map, id, apply, if_match, once
+        seconds_waited(prefer), request, designs.auto_map, id, apply, if_match, once
     )
     if not saved:
         return written(Proposals(proposals=proposals))
-    return await _answer(designs, jobs, saved, prefer, proposals)
+    return await answer_saved(designs, jobs, saved, prefer, proposals)
 
 
 @router.post("/{id}/copy", status_code=201, response_model=Design, responses=CHANGED)
@@ -235,9 +240,9 @@ async def copy_design(
 ) -> Response:
     """A new design with the newest document of this one."""
     saved = await threads.run_within(
-        _seconds(prefer), request, designs.copy, id, body.name if body else None, once
+        seconds_waited(prefer), request, designs.copy, id, body.name if body else None, once
     )
-    return await _answer(designs, jobs, saved, prefer)
+    return await answer_saved(designs, jobs, saved, prefer)
 
 
 @router.post("/{id}/revisions/{number}/restore", response_model=Design, responses=CHANGED)
@@ -256,9 +261,9 @@ async def restore_revision(
     """A new revision equal to an old one."""
     note = body.note if body else None
     saved = await threads.run_within(
-        _seconds(prefer), request, designs.restore, id, number, note, if_match, once
+        seconds_waited(prefer), request, designs.restore, id, number, note, if_match, once
     )
-    return await _answer(designs, jobs, saved, prefer)
+    return await answer_saved(designs, jobs, saved, prefer)
 
 
 @router.get("/{id}/revisions", responses=refusals(404))
@@ -291,16 +296,21 @@ def show_measurements(id: Id, database: TheDatabase, units: Units = "si") -> dic
         return {name: model.in_units(units) for name, model in measured.items()}
 
 
-@router.get("/{id}/explain/{parameter}", responses=refusals(404))
-async def explain_parameter(
-    id: Id, parameter: Id, designs: TheDesigns, threads: TheThreads, request: Request
+@router.get("/{id}/explain/{name}", responses=refusals(404))
+async def explain_name(
+    id: Id, name: Explained, designs: TheDesigns, threads: TheThreads, request: Request
 ) -> Explanation:
-    """Where a model parameter comes from: dimension ← relation ← output ← formula ← inputs."""
+    """Where a model parameter or the verdict of a criterion comes from.
+
+    Of a parameter: dimension ← relation ← output ← formula ← inputs. Of a criterion such as `film.film`:
+    verdict ← value ← formula ← inputs, and limit ← who gave it. `sensitivities` are local slopes to the
+    quantities as typed.
+    """
 
     def explained() -> Explanation:
         with designs.database.read() as session:
-            document = repository.head(session, id).document
-        return Explanation.model_validate(explain(designs.prepare(document)[1], parameter))
+            row = repository.head(session, id).document
+        return explanation(*designs.prepare(row), designs.catalogues, name)
 
     return await threads.run_for(request, explained)
 
@@ -314,12 +324,12 @@ def _noted(body: JsonObject) -> tuple[JsonObject, str | None]:
     return patch, note
 
 
-def _seconds(prefer: str | None) -> float:
+def seconds_waited(prefer: str | None) -> float:
     """How long a request waits for expensive steps [s]; at most until the deadline."""
     return patience(prefer, math.inf)
 
 
-async def _answer(
+async def answer_saved(
     designs: Designs,
     jobs: Jobs,
     saved: Saved,

@@ -13,7 +13,7 @@ from app.api.gate.clients import TheClient
 from app.api.gate.pacing import PiecesResponse
 from app.api.stored import UNAVAILABLE, rebuilding
 from app.api.waiting import LATER, accepted, finished
-from app.calculations.jobs import CALCULATION, DECISION, PREVIEW, CalculationJobs
+from app.calculations.jobs import ANSWERS, CalculationJobs
 from app.jobs.errors import JobNotFound
 from app.jobs.job import Job
 from app.jobs.service import Jobs
@@ -21,6 +21,8 @@ from app.schemas.decisions import Decision
 from app.schemas.designs import Preview
 from app.schemas.evaluations import AnyCalculation
 from app.schemas.problems import refusals
+from app.schemas.solve import DesignSolution
+from app.schemas.tolerances import ToleranceAnalysis
 from app.storage.artifacts import ArtifactStore
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.workers.pieces import Pieces
@@ -30,7 +32,7 @@ router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
 
 @router.get(
     "/{job}",
-    response_model=AnyCalculation | Preview | Decision,
+    response_model=AnyCalculation | Preview | Decision | DesignSolution | ToleranceAnalysis,
     responses={**LATER, **UNAVAILABLE, **refusals(404, 409, 429)},
 )
 async def show_evaluation(
@@ -75,7 +77,7 @@ async def _calculated_again(
 def _calculation(jobs: Jobs, id: str) -> Job:
     """The job, if its result is an answer; raises JobNotFound."""
     row = jobs.get(id)
-    if row.kind not in (CALCULATION, PREVIEW, DECISION):
+    if row.kind not in ANSWERS:
         raise JobNotFound(id)
     return row
 

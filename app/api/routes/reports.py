@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from typing import Annotated
 
@@ -16,10 +17,12 @@ from app.api.gate.clients import TheClient
 from app.api.gate.guard import PAGE_POLICY
 from app.api.reading import StrictRoute
 from app.api.routes.designs import Id, Number, Prefer, Within
-from app.api.waiting import accepted_kinds, finished, written
+from app.api.waiting import accepted_kinds, finished, patience, written
 from app.jobs.service import Jobs
+from app.presentation.spreadsheets import XLSX
 from app.reports import tables
 from app.reports.content import Report
+from app.reports.paper import Press
 from app.reports.screen import page
 from app.reports.service import Reports, tag
 from app.schemas.designs import RevisionWorksheet
@@ -34,7 +37,7 @@ REPORTS = {"html": "text/html", "pdf": "application/pdf"}
 TABLES = {
     "json": "application/json",
     "csv": "text/csv",
-    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+    "xlsx": XLSX,
 }
 PATIENCE = 15.0  # s that a report waits for its pictures, unless the client says otherwise
 WEIGHT = re.compile(r"\bq=([01](?:\.[0-9]{0,3})?)")
@@ -76,17 +79,56 @@ async def show_report(
     """The calculation report of a revision, the newest if none is named: on the screen or on paper."""
     wanted = _wanted("report", kind, accept, REPORTS)
     revision = await run_in_threadpool(reports.number, id, number)
-    job = await _waited(reports, jobs, id, revision, prefer, client)
+    job = await _waited([reports.request_pictures], jobs, id, revision, prefer, client)
     report = await threads.run_for(request, reports.gather, id, revision, units, pending=job is not None)
-    headers = _headers(report, wanted, job)
+    return await _printed(report, wanted, job, if_none_match, reports, press)
+
+
+@router.get("/{id}/variants/report", **_described(REPORTS, later=True))
+@router.get("/{id}/variants/report.{kind}", **_described(REPORTS, later=True))
+@router.get("/{id}/revisions/{number}/variants/report", **_described(REPORTS, later=True))
+@router.get("/{id}/revisions/{number}/variants/report.{kind}", **_described(REPORTS, later=True))
+async def show_variants_report(
+    id: Id,
+    reports: TheReports,
+    press: ThePress,
+    jobs: TheJobs,
+    client: TheClient,
+    threads: TheThreads,
+    request: Request,
+    number: Number | None = None,
+    kind: Id | None = None,
+    units: Units = "si",
+    accept: Accept = None,
+    prefer: Prefer = None,
+    if_none_match: IfNoneMatch = None,
+) -> Response:
+    """One report for all variants of a revision: the one that governs first, then the table of all.
+
+    The worksheet of the design itself follows once, with a picture of every distinct solid.
+    """
+    wanted = _wanted("report", kind, accept, REPORTS)
+    revision = await run_in_threadpool(reports.number, id, number)
+    pictures = [reports.request_pictures, reports.request_variant_pictures]
+    job = await _waited(pictures, jobs, id, revision, prefer, client)
+    gather = reports.gather_variants
+    report = await threads.run_for(request, gather, id, revision, units, pending=job is not None)
+    return await _printed(report, wanted, job, if_none_match, reports, press)
+
+
+async def _printed(
+    report: Report, kind: str, job: str | None, if_none_match: str | None, reports: Reports, press: Press
+) -> Response:
+    """A report on the screen or on paper, or that it is as it was."""
+    headers = _headers(report, kind, job)
     if job is None and if_none_match and headers["ETag"] in if_none_match:
         return Response(status_code=304, headers=headers)
-    if wanted == "html":
+    if kind == "html":
         body: str | bytes = await run_in_threadpool(page, report)
     else:
         pictures = await run_in_threadpool(reports.pictures, report)
         body = await run_in_threadpool(press.print, asdict(report), pictures)
-    return Response(body, 202 if job else 200, headers, media_type=REPORTS[wanted])
+    return Response(body, 202 if job else 200, headers, media_type=REPORTS[kind])
 
 
 @router.get("/{id}/worksheet", **_described(TABLES))
@@ -125,11 +167,19 @@ async def show_worksheet(
 
 
 async def _waited(
-    reports: Reports, jobs: Jobs, id: str, number: int, prefer: str | None, client: str
+    pictures: Sequence[Callable[[str, int, str], list[str]]],
+    jobs: Jobs,
+    id: str,
+    number: int,
+    prefer: str | None,
+    client: str,
 ) -> str | None:
     """The job that still makes pictures of this revision when the client's patience ends, if any does."""
-    for job in await run_in_threadpool(reports.request_pictures, id, number, client):
-        if not await finished(jobs, job, prefer or f"wait={PATIENCE:g}"):
+    requested = [job for each in pictures for job in await run_in_threadpool(each, id, number, client)]
+    ends = time.monotonic() + patience(prefer, PATIENCE)
+    for job in requested:
+        left = max(ends - time.monotonic(), 0.0)
+        if not await finished(jobs, job, f"wait={left:.0f}"):
             return job
     return None
 

@@ -6,9 +6,12 @@ export class Refused extends Error {
   }
 
   get faults() {
-    return new Map((this.problem.errors ?? []).map((fault) => [fault.name, fault.detail]));
+    return new Map((this.problem.errors ?? []).map(({ name, detail, also }) => [name, withRelated(detail, also)]));
   }
 }
+
+// What is wrong, and the other inputs that it is about, as app/web/api.py writes it.
+const withRelated = (detail, also = []) => (also.length ? `${detail}. See also ${also.join(", ")}` : detail);
 
 export async function call(method, path, body, { headers = {}, signal } = {}) {
   const sent = body === undefined ? {} : { body: JSON.stringify(body) };

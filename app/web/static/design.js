@@ -16,6 +16,7 @@ import { follow } from "./progress.js";
 import { OUTDATED, markOutdated, markWaiting, showFaults, showResults, showWarnings } from "./results.js";
 import { startSolids } from "./solids.js";
 import { startDecide } from "./decide.js";
+import { startTolerances } from "./tolerances.js";
 import { nameOf, patchOf } from "./typed.js";
 import { goTo, showKeys, showVerdict, startVerdict } from "./verdict.js";
 
@@ -36,6 +37,7 @@ const patch = () => patchOf(draft.changed(), models);
 const progress = document.querySelector("[data-progress]");
 const designState = document.querySelector("[data-design-state]").dataset.designState;
 const isJudged = document.querySelector("[data-verdict]").dataset.verdict === "judged"; // the revision has a verdict
+const ofVariants = document.querySelector("[data-governing-variant]"); // as saved
 let steps = {}, conflicted = false, isFollowing = false; // the bar shows the job of a revision
 
 const preview = live(
@@ -70,6 +72,7 @@ function waiting({ steps }) {
 function show(payload) {
   steps = payload.steps;
   names.update(payload);
+  ofVariants?.classList.toggle("outdated", draft.isChanged());
   if (isJudged || draft.isChanged()) showVerdict(payload);
   for (const [step, answer] of Object.entries(steps)) {
     markWaiting(step, isWaiting(answer));
@@ -205,6 +208,7 @@ function conflict() {
 async function start() {
   startVerdict(form);
   startDecide(api, patch);
+  startTolerances(api, patch);
   startPicker(form, names);
   startCompletion(form, names);
   startDrives();

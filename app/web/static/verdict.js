@@ -55,7 +55,7 @@ function governs(criterion) {
   const made = element("p", { className: "governing" }, tag(criterion), " governing: ", element("strong", {}, link(criterion)), ` ${compared(criterion)}`);
   const used = share(criterion.utilisation), left = margin(criterion), off = error(criterion);
   if (used) made.append(" ", element("span", { className: "used" }, bar(criterion), ` ${used} used`));
-  made.append(left && `; margin ${left}`, off && `; error ${off}`);
+  made.append(left && `; margin ${left}`, off && `; error ${off}`, criterion.unverified ? "; the limit is unverified" : "", ...why(criterion));
   return made;
 }
 
@@ -84,6 +84,13 @@ function link(criterion) {
   return made;
 }
 
+// Where the verdict of a saved design comes from; a template's page has no such address.
+function why({ name }) {
+  const design = document.querySelector("[data-design]")?.dataset.design;
+  const title = "where this verdict comes from";
+  return design ? [" ", element("a", { className: "why", href: `/designs/${design}/explain/${name}`, title }, "why?")] : [];
+}
+
 const tag = ({ verdict }) => element("span", { className: `tag ${verdict}` }, WORDS[verdict]);
 
 export function criteriaTable(criteria) {
@@ -95,7 +102,7 @@ export function criteriaTable(criteria) {
 function row(criterion) {
   const said = remarks(criterion).flatMap((text) => [" ", element("span", { className: "muted remark" }, isolated(text))]);
   const cells = [
-    element("th", { scope: "row" }, link(criterion)), element("td", {}, tag(criterion)),
+    element("th", { scope: "row" }, link(criterion), ...why(criterion)), element("td", {}, tag(criterion)),
     element("td", {}, `${compared(criterion)} `, ...give(criterion), ...said),
     element("td", { className: "used" }, share(criterion.utilisation), ...[bar(criterion)].filter(Boolean)),
     element("td", {}, margin(criterion)), element("td", {}, error(criterion)),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -33,6 +33,13 @@ class Compared:
     limit_bounds: Bounds
     codes: Codes
     axes: int
+
+    def filled(self, rows: Codes) -> Compared:
+        """With other verdicts at the points where a side has no value; of a curve nothing changes."""
+        if self.axes:
+            return self
+        codes = np.where(np.equal(self.codes, NOT_CHECKED), rows, self.codes).astype(np.int8)
+        return replace(self, codes=codes if codes.ndim else int(codes))
 
     def rows(self) -> Codes:
         """The verdict at every point: of a curve the worst of its places."""

@@ -24,7 +24,7 @@ LONGEST_REQUIRE = 2000  # characters
 _SIGN = re.compile("(>=|<=)")
 _KEYS = frozenset({"require", "words", "source", "limits", "unverified", "warning", "absent"})
 _LIMIT_KEYS = frozenset({"unit", "words", "from", "default"})
-_ABSENT_KEYS = frozenset({"with", "reason"})
+_ABSENT_KEYS = frozenset({"with", "reason", "instead"})
 _OBJECTS = frozenset({"limits", "absent"})
 _DEFAULT = re.compile(r"(min|max)\(([a-z][a-z0-9_]*)\)")
 _SIGNS = {">=": "≥", "<=": "≤"}
@@ -64,10 +64,14 @@ class Limit:
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """Why a name has no value although another one, `beside`, has."""
+    """Why a name has no value although another one, `beside`, has.
+
+    `instead` is a comparison that says the same as the criterion, and has values where the name has none.
+    """
 
     beside: str
     reason: str
+    instead: Criterion | None = None
 
 
 @dataclass(frozen=True)
@@ -179,7 +183,11 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
         form = "write it as in film.minimum_film_thickness >= 3 um"
         raise FaultyText("syntax", f"a criterion compares two sides by one >= or <=; {form}")
     sign: Sign = ">=" if sides[1] == ">=" else "<="
-    return parse(sides[0].strip()), sign, parse(sides[2].strip())
+    value, limit = parse(sides[0].strip()), parse(sides[2].strip())
+    if items := value.items + limit.items:
+        detail = f"a criterion takes no index; make {items[0].text} a parameter or an input, and compare that"
+        raise FaultyText("index", detail)
+    return value, sign, limit
 
 
 def _check_keys(raw: Any, keys: frozenset[str], needed: str) -> None:
@@ -222,7 +230,8 @@ def _missing(name: str, raw: Any, used: tuple[str, ...], known: Mapping[str, Kno
     for candidate, candidates in ((name, used), (beside, known)):
         if candidate not in candidates:
             raise FaultyText("unknown_name", unknown_name(candidate, candidates, "name").detail)
-    return Missing(beside, raw["reason"])
+    instead = read_criterion(name, raw["instead"], known) if "instead" in raw else None
+    return Missing(beside, raw["reason"], instead)
 
 
 def _ordered(text: str, names: frozenset[str]) -> tuple[str, ...]:

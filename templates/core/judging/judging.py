@@ -12,7 +12,15 @@ import numpy as np
 
 from templates.core.errors import FaultyText
 from templates.core.judging.bands import Estimate, Shift, relative_width
-from templates.core.judging.comparison import NOT_CHECKED, WORST_FIRST, Codes, Compared, compare, side_of
+from templates.core.judging.comparison import (
+    NOT_CHECKED,
+    NOT_MET,
+    WORST_FIRST,
+    Codes,
+    Compared,
+    compare,
+    side_of,
+)
 from templates.core.judging.criterion import Criterion
 from templates.core.judging.judgement import Judgement, Place
 from templates.core.judging.worst import Worst, worst_of
@@ -33,6 +41,28 @@ class Absent:
 
 
 @dataclass(frozen=True, slots=True)
+class Instead:
+    """A comparison that was judged where a side of the criterion has no value, and why it has none."""
+
+    judgement: Judgement
+    reason: str
+
+    @property
+    def rows(self) -> Codes:
+        """The verdicts that stand in: what does not exist cannot be violated for certain."""
+        codes = self.judgement.rows
+        return np.where(np.equal(codes, NOT_MET), NOT_CHECKED, codes).astype(np.int8)
+
+    def parts(self) -> Parts:
+        """What a criterion of single values says instead."""
+        if self.judgement.verdict not in ("met", "undecided"):
+            return {}
+        within = "" if self.judgement.verdict == "met" else "within the error of the calculation: "
+        parts: Parts = {"verdict": self.judgement.verdict, "reason": within + self.reason}
+        return parts | {"is_stated": self.judgement.is_stated, "rows": self.judgement.rows}
+
+
+@dataclass(frozen=True, slots=True)
 class Along:
     """The places of a curve: the name of the axis, its values [unit], one row for all points or one each."""
 
@@ -49,6 +79,7 @@ def judge(
     unit_name: str | None = None,
     shifts: Sequence[Shift] = (),
     noted: Mapping[str, Any] | None = None,
+    instead: Instead | None = None,
 ) -> Judgement:
     """Judge a criterion.
 
@@ -68,14 +99,19 @@ def judge(
         The values of all names, with something upstream shifted to either end of its band.
     noted
         Further fields of the judgement, such as `level` and `truth`.
+    instead
+        What was judged where a side has no value.
     """
     shown = criterion if unit_name is None else replace(criterion, unit=unit_name)
     if not estimates.keys() >= set(criterion.names):
-        parts = _missing(shown, estimates, absent or {})
+        parts = _missing(shown, estimates, absent or {}) | (instead.parts() if instead else {})
     else:
         try:
             compared = compare(criterion, estimates, shifts)
+            compared = compared.filled(instead.rows) if instead else compared
             parts = _compared(shown, compared, estimates, along, bool(shifts))
+            if instead and parts["verdict"] != "not_checked" and "value" not in parts:
+                parts |= instead.parts() | {key: parts[key] for key in ("verdict", "rows")}
         except FaultyText as error:
             parts = {"verdict": "not_checked", "reason": str(error)}
     return Judgement(
@@ -127,6 +163,8 @@ def _compared(
     }
     if worst.code == NOT_CHECKED:
         return {**parts, "reason": _no_value(used, worst.index[: len(worst.index) - compared.axes])}
+    if math.isnan(worst.limit) or math.isnan(worst.value):  # something was judged instead
+        return parts
     numbers = _numbers(criterion, parts, worst, estimates)
     if is_shifted and worst.is_known:  # more than the error of the name that is judged
         numbers["relative_error"] = relative_width(worst.value, worst.low, worst.high)

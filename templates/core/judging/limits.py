@@ -91,7 +91,10 @@ def read_limits(criteria: Iterable[Criterion], raw: Mapping[str, Any]) -> dict[s
 
 
 def _by_hand(declared: Limit, raw: Any) -> GivenLimit:
-    return GivenLimit(read(raw, declared.unit).si)
+    typed = read(raw, declared.unit)
+    if typed.tolerance is not None:
+        raise FaultyText("tolerance", "a limit is exact; give it without a tolerance")
+    return GivenLimit(typed.si)
 
 
 def _by_row(name: str, raw: Any, declared: Mapping[str, Limit]) -> dict[str, GivenLimit]:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from templates.core.arrays import Array
-from templates.core.judging.comparison import Compared
+from templates.core.arrays import Array, Mask
+from templates.core.judging.comparison import NOT_CHECKED, Compared
 from templates.core.judging.criterion import Criterion
 
 
@@ -48,10 +48,39 @@ def worst_of(criterion: Criterion, compared: Compared) -> Worst:
     if isinstance(codes, int):
         return Worst((), codes, *map(float, sides))
     whole = [np.broadcast_to(side, codes.shape) for side in sides]
-    clearance = np.where(codes == codes.min(), _clearance(criterion, whole), np.inf)
+    clearance = _clearance(criterion, whole)
+    if codes.min() != NOT_CHECKED:  # points judged by something else have no numbers to report
+        clearance = np.where(_has_numbers(whole), clearance, np.finfo(float).max)
+    clearance = np.where(codes == codes.min(), clearance, np.inf)
     index = np.unravel_index(int(np.argmin(clearance)), codes.shape)
     place = tuple(map(int, index))
     return Worst(place, int(codes[place]), *(float(side[place]) for side in whole))
+
+
+def worst_of_rows(criterion: Criterion, compared: Compared, count: int) -> tuple[Array, list[Array]]:
+    """The verdict of each row, and both sides and their bands at its worst place.
+
+    Parameters
+    ----------
+    compared
+        A comparison whose first axis is the row, or of single values for all `count` rows.
+
+    Returns
+    -------
+    tuple
+        Codes (count,), and value, limit, low, high, lowest and highest limit [SI], each (count,).
+    """
+    sides = (compared.value, compared.limit, *compared.value_bounds, *compared.limit_bounds)
+    codes = np.asarray(compared.codes)
+    shape = codes.shape or (1,)
+    whole = [np.broadcast_to(side, shape).reshape(shape[0], -1) for side in (codes, *sides)]
+    if whole[0].shape[1] > 1:
+        worst = whole[0] == whole[0].min(axis=1, keepdims=True)
+        clearance = np.where(worst, _clearance(criterion, whole[1:]), np.inf)
+        place = np.argmin(clearance, axis=1, keepdims=True)
+        whole = [np.take_along_axis(side, place, axis=1) for side in whole]
+    rows = [np.broadcast_to(side[:, 0], (count,)) for side in whole]
+    return rows[0], rows[1:]
 
 
 def _clearance(criterion: Criterion, sides: list[Array]) -> Array:
@@ -69,3 +98,7 @@ def _clearance(criterion: Criterion, sides: list[Array]) -> Array:
         gap = np.where(np.isfinite(bound), bound, nominal)
         relative = np.where(limit != 0, gap / np.abs(limit), gap)
     return np.nan_to_num(relative)
+
+
+def _has_numbers(sides: list[Array]) -> Mask:
+    return ~(np.isnan(sides[0]) | np.isnan(sides[1]))

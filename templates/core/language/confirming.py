@@ -9,8 +9,7 @@ import numpy as np
 
 from templates.core.errors import InvalidInputs
 from templates.core.language.crossings import Place
-from templates.core.language.evaluate import Evaluation
-from templates.core.language.scan import TargetCurve
+from templates.core.language.scan import Outputs, SampledCurve
 
 CONFIRMED = 8  # solutions that are calculated again at a level that is not the scan's
 POLISHES, POLISHED = 8, 1e-9  # steps at that level, and the relative miss with which they end
@@ -39,19 +38,19 @@ class Root:
 
 
 def confirmed(
-    requested: TargetCurve, scanned: TargetCurve, places: Sequence[Place], bounds: tuple[float, float]
+    requested: SampledCurve, scanned: SampledCurve, places: Sequence[Place], bounds: tuple[float, float]
 ) -> list[Root]:
     """The solutions at the level requested; one of the scan where that has none near, or after so many."""
-    most = CONFIRMED if "tolerance" in requested.fidelity or _is_finer(requested, scanned) else len(places)
+    most = CONFIRMED if requested.chooses or _is_finer(requested, scanned) else len(places)
     near = [_at_requested(requested, scanned, place, bounds) for place in places[:most]]
     found = [*near, *(None for _ in places[most:])]
     roots = [root or _unconfirmed(scanned, place) for root, place in zip(found, places, strict=True)]
     return _distinct(sorted(roots, key=lambda root: root.value), _shown(scanned, bounds))
 
 
-def _shown(curve: TargetCurve, bounds: tuple[float, float]) -> float:
+def _shown(curve: SampledCurve, bounds: tuple[float, float]) -> float:
     """The distance of the bounds in the declared unit."""
-    scale = curve.declared.meaning.scale
+    scale = curve.x.scale
     return float(scale.from_si(bounds[1])) - float(scale.from_si(bounds[0]))
 
 
@@ -64,38 +63,37 @@ def _distinct(roots: list[Root], span: float) -> list[Root]:
     return kept
 
 
-def _is_finer(requested: TargetCurve, scanned: TargetCurve) -> bool:
+def _is_finer(requested: SampledCurve, scanned: SampledCurve) -> bool:
     """Whether a level is requested that is not the scan's."""
-    level = requested.fidelity.get("level")
-    return level is not None and level != scanned.fidelity.get("level")
+    return requested.level is not None and requested.level != scanned.level
 
 
 def _at_requested(
-    requested: TargetCurve, scanned: TargetCurve, place: Place, bounds: tuple[float, float]
+    requested: SampledCurve, scanned: SampledCurve, place: Place, bounds: tuple[float, float]
 ) -> Root | None:
     """The solution near one of the scan; None where the level requested has none there."""
     try:
-        evaluation = requested.evaluation(np.array([place.x]))
+        outputs = requested.outputs(np.array([place.x]))
     except InvalidInputs:
         return None
-    if evaluation.level is None or evaluation.level == scanned.fidelity.get("level"):
-        return _root(requested, place, place.x, evaluation)
-    fixed = replace(requested, fidelity={"level": evaluation.level})
-    moved = None if place.touches else _polished(fixed, scanned, place, bounds, evaluation)
+    if outputs.level is None or outputs.level == scanned.level:
+        return _root(requested, place, place.x, outputs)
+    fixed = requested.at_level(outputs.level)
+    moved = None if place.touches else _polished(fixed, scanned, place, bounds, outputs)
     return moved and _root(fixed, place, *moved)
 
 
 def _polished(
-    curve: TargetCurve,
-    scanned: TargetCurve,
+    curve: SampledCurve,
+    scanned: SampledCurve,
     place: Place,
     bounds: tuple[float, float],
-    evaluation: Evaluation,
-) -> tuple[float, Evaluation] | None:
-    """The crossing of a curve near that of the scan, by its slope and then by secants, and the evaluation."""
+    outputs: Outputs,
+) -> tuple[float, Outputs] | None:
+    """The crossing of a curve near that of the scan, by its slope and then by secants, and the output."""
     x, slope = place.x, _slope(scanned, place.x, bounds)
     size = abs(curve.wanted) or abs(slope) * (bounds[1] - bounds[0])
-    miss = curve.miss_of(evaluation)
+    miss = curve.miss_of(outputs)
     for _ in range(POLISHES):
         if not abs(miss) > POLISHED * size:
             break
@@ -103,36 +101,34 @@ def _polished(
         x = before - miss / slope
         if not bounds[0] <= x <= bounds[1]:
             return None
-        evaluation = curve.evaluation(np.array([x]))
-        miss = curve.miss_of(evaluation)
+        outputs = curve.outputs(np.array([x]))
+        miss = curve.miss_of(outputs)
         secant = (miss - before_miss) / (x - before) if x != before else slope
         slope = secant if secant * slope > 0 else slope
-    return (x, evaluation) if abs(miss) <= SETTLED * size else None
+    return (x, outputs) if abs(miss) <= SETTLED * size else None
 
 
-def _slope(curve: TargetCurve, x: float, bounds: tuple[float, float]) -> float:
+def _slope(curve: SampledCurve, x: float, bounds: tuple[float, float]) -> float:
     """The slope of the curve, from values within the bounds; NaN where there is none."""
     step = STEP * (abs(x) or bounds[1] - bounds[0])
     low, high = max(bounds[0], x - step), min(bounds[1], x + step)
     return (curve.miss(high) - curve.miss(low)) / (high - low)
 
 
-def _unconfirmed(scanned: TargetCurve, place: Place) -> Root:
+def _unconfirmed(scanned: SampledCurve, place: Place) -> Root:
     """A solution at the level of the scan."""
-    root = _root(scanned, place, place.x, scanned.evaluation(np.array([place.x])))
+    root = _root(scanned, place, place.x, scanned.outputs(np.array([place.x])))
     return replace(root, confirmed=False)
 
 
-def _root(curve: TargetCurve, place: Place, x: float, evaluation: Evaluation) -> Root:
-    value, error = float(curve.declared.meaning.scale.from_si(x)), evaluation.error[curve.formula.name]
-    stated = None if error is None else float(np.ravel(error)[0])
-    miss = abs(curve.miss_of(evaluation))
+def _root(curve: SampledCurve, place: Place, x: float, outputs: Outputs) -> Root:
+    stated = np.nan if outputs.error is None else float(outputs.error[0])
     return Root(
-        value,
+        float(curve.x.scale.from_si(x)),
         place.slope,
         place.touches,
-        evaluation.level,
-        None if stated is None or np.isnan(stated) else stated,
+        outputs.level,
+        None if np.isnan(stated) else stated,
         confirmed=True,
-        miss=miss / abs(curve.wanted) if curve.wanted else 0.0,
+        miss=abs(curve.miss_of(outputs)) / abs(curve.wanted) if curve.wanted else 0.0,
     )

@@ -14,7 +14,7 @@ from templates.core.errors import FaultyText
 from templates.core.judging.bands import Estimate
 from templates.core.judging.criterion import Criterion, Known, Limit, Missing, is_angle, read_criterion
 from templates.core.judging.judgement import Judgement, sentence
-from templates.core.judging.judging import Absent, Along, judge
+from templates.core.judging.judging import Absent, Along, Instead, judge
 from templates.core.judging.limits import GivenLimit
 from templates.core.judging.summary import worst_first
 from templates.core.language.admission import absence
@@ -126,12 +126,40 @@ def is_due(evaluated: Evaluated, criterion: Criterion) -> bool:
     return evaluated.computed.intersection(criterion.names) <= evaluated.answers.keys()
 
 
+def missing_of(evaluated: Evaluated, criterion: Criterion) -> Missing | None:
+    """What the criterion says of a value that is missing, where another comparison can be judged instead.
+
+    It computes no output beyond those evaluated.
+    """
+    for name, missing in criterion.absent.items():
+        answer, beside = evaluated.answers.get(name), evaluated.answers.get(missing.beside)
+        if missing.instead and answer and beside and is_due(evaluated, missing.instead):
+            if _is_missing(answer.value) and not _is_missing(beside.value):
+                return missing
+    return None
+
+
+def _is_missing(value: Any) -> bool:
+    """Whether there is no value, or none at some point."""
+    return value is None or (np.ndim(value) > 0 and bool(np.isnan(value).any()))
+
+
+def _instead(evaluated: Evaluated, criterion: Criterion) -> Instead | None:
+    missing = missing_of(evaluated, criterion)
+    if missing is None or missing.instead is None:
+        return None
+    estimates, absent = estimates_of(evaluated, missing.instead)
+    return Instead(judge(missing.instead, estimates, absent), missing.reason)
+
+
 def _judged(evaluated: Evaluated, criterion: Criterion) -> Judgement:
     estimates, absent = estimates_of(evaluated, criterion)
     subject = criterion.subject or ""
     shown = evaluated.shown_in[subject].text if subject in evaluated.shown_in else None
     along = along_of(evaluated.template, criterion.names)
-    return judge(criterion, estimates, absent, along, shown, noted=notes(evaluated, criterion))
+    more = notes(evaluated, criterion)
+    instead = _instead(evaluated, criterion) if criterion.absent else None
+    return judge(criterion, estimates, absent, along, shown, noted=more, instead=instead)
 
 
 def notes(evaluated: Evaluated, criterion: Criterion) -> dict[str, str | None]:
@@ -234,8 +262,15 @@ def _estimate_of_output(evaluated: Evaluated, name: str) -> Estimate | Absent:
     error, is_stated = _error(evaluated, name)
     scale = None if axes else _scale(evaluated, name)
     if scale is not None and np.isnan(scale).any():
-        error, is_stated, scale = float("nan"), False, None
+        error, is_stated, scale = _where_it_has_a_scale(error, scale)
     return Estimate(evaluated.value(name), error, is_stated, axes, scale, answer.reasons)
+
+
+def _where_it_has_a_scale(error: Any, scale: Value) -> tuple[Any, bool, Value | None]:
+    """An error that says nothing at the points where what it is relative to does not exist."""
+    if not np.ndim(scale):
+        return float("nan"), False, None
+    return np.where(np.isnan(scale), np.nan, error), False, scale
 
 
 def _scale(evaluated: Evaluated, name: str) -> Value | None:

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from templates.core.arrays import Array
-from templates.core.language.scan import Samples, TargetCurve
+from templates.core.language.scan import SampledCurve, Samples
 
 MOST_ROOTS = 50  # crossings that are closed in
 JUMP = (
@@ -46,7 +46,7 @@ class Meetings:
     """Crossings that were not closed in."""
 
 
-def meetings(curve: TargetCurve, samples: Samples) -> Meetings:
+def meetings(curve: SampledCurve, samples: Samples) -> Meetings:
     """Where the curve meets its target."""
     found = Meetings()
     if np.isnan(samples.miss).all():
@@ -82,7 +82,7 @@ def _sign(miss: Array, i: int) -> float:
     return float(np.nan_to_num(np.sign(miss[i]))) if 0 <= i < miss.size else 0.0
 
 
-def _touching(curve: TargetCurve, samples: Samples) -> list[Place]:
+def _touching(curve: SampledCurve, samples: Samples) -> list[Place]:
     """Extrema that come within rounding of the target without crossing it."""
     spread = float(np.nanmax(samples.miss) - np.nanmin(samples.miss))
     size = min(abs(curve.wanted) or spread, spread)
@@ -104,7 +104,7 @@ def _best_of_neighbours(samples: Samples, near: list[int]) -> list[int]:
     return best
 
 
-def _closed(curve: TargetCurve, samples: Samples, i: int) -> Place | Leap:
+def _closed(curve: SampledCurve, samples: Samples, i: int) -> Place | Leap:
     """The crossing between two samples, closed in to rounding; a leap, if the output has no such value."""
     low, high = (float(samples.x[k]) for k in (i, i + 1))
     root = float(brentq(curve.miss, low, high, xtol=1e-300, rtol=4e-15, disp=False))

@@ -102,7 +102,7 @@ def evaluate(
         whole = parts[0] if rungs[0].where is None else _joined(rungs, parts)
         echoes = _echoes(template)
         criteria = _judged(rungs, whole, shown_in, request.limits) if judge and cls.declared_criteria else []
-    notices = [*_standing(cls, raw), *_noticed(rungs)]
+    notices = [*_standing(cls, template.ledger.typed), *_noticed(rungs)]
     if tolerance is not None:
         values = {name: answer.value for name, answer in whole.answers.items()}
         notices += unmet(cls, values, whole.error, whole.level, tolerance)
@@ -300,6 +300,19 @@ def _standing(cls: type[Template], given: Mapping[str, Any]) -> list[Notice]:
     return [*withdrawn, *tolerances.unused(given)]
 
 
+def answers_at_level(template: Template, outputs: Iterable[str]) -> tuple[dict[str, Answer], dict[str, Any]]:
+    """Answers in declared units and error estimates of a template at its level, without warnings.
+
+    Raises
+    ------
+    InvalidInputs
+        If a result is out of its domain.
+    """
+    with np.errstate(all="ignore"):
+        part = _part(template, list(outputs), {})
+    return part.answers, part.error
+
+
 def evaluate_at_level(
     template: Template, outputs: Iterable[str]
 ) -> tuple[dict[str, Answer], dict[str, Any], list[Notice]]:
@@ -312,10 +325,9 @@ def evaluate_at_level(
     InvalidInputs
         If a result is out of its domain.
     """
-    with np.errstate(all="ignore"):
-        part = _part(template, list(outputs), {})
+    answers, errors = answers_at_level(template, outputs)
     standing = _standing(type(template), template.ledger.typed)
-    return part.answers, part.error, [*standing, *_noticed([Rung(template, None)])]
+    return answers, errors, [*standing, *_noticed([Rung(template, None)])]
 
 
 def _noticed(rungs: list[Rung]) -> list[Notice]:

@@ -17,7 +17,8 @@ from templates.core.language.causes import BROKEN, suspects
 from templates.core.language.ledger import Mask, Notice
 from templates.core.language.spec import Choice, Curve, Declaration, Derived, Given, Requirement, Table
 from templates.core.units.quantity import Typed, read
-from templates.core.units.units import unit
+from templates.core.units.tolerance import Tolerance
+from templates.core.units.units import Value, unit
 
 Input = Given | Choice | Derived[Any]
 
@@ -103,7 +104,22 @@ def _bounded(declared: Input, typed: Typed) -> tuple[Any, Fault | Mask | None]:
     if isinstance(typed.si, np.ndarray):
         return _masked_points(declared, typed.si, declared.meaning.admits(typed.si))
     inside = declared.meaning.admits(typed.si)
-    return np.float64(typed.si), None if inside else _out_of_bounds(declared, typed, inside)
+    if not inside:
+        return np.float64(typed.si), _out_of_bounds(declared, typed, inside)
+    tolerance = typed.tolerance
+    return np.float64(typed.si), _end_outside(declared, typed.si, tolerance) if tolerance else None
+
+
+def _end_outside(declared: Declaration, si: Value, tolerance: Tolerance) -> Fault | None:
+    """The fault of a tolerance by which a single value may lie outside its bounds."""
+    ends = (si + tolerance.lower, si + tolerance.upper)
+    outside = next((end for end in ends if not declared.meaning.admits(end)), None)
+    if outside is None:
+        return None
+    meaning = declared.meaning
+    reach = f"by its tolerance {meaning.words} may be {meaning.with_unit(float(outside))}"
+    detail = f"{reach}; it must be {meaning.wanted}: give a smaller tolerance"
+    return Fault(declared.name, "out_of_range", detail)
 
 
 def _along_a_cycle(declared: Curve, typed: Typed) -> tuple[Any, Fault | None]:

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
 from templates.core.language.intake import Input, is_single
 from templates.core.language.request import read_options
 from templates.core.language.spec import Choice, Curve, Formula, Profile, Table, Text
 from templates.core.language.template import Template
 from templates.core.units.quantity import Typed, read
+from templates.core.units.units import Value
 
 
 def read_question(
@@ -121,6 +121,6 @@ def _is_array(value: Any) -> bool:
     return isinstance(value, list) or (isinstance(value, Mapping) and isinstance(value.get("value"), list))
 
 
-def typed_values(declared: Input, si: Array) -> Typed:
+def typed_values(declared: Input, si: Value) -> Typed:
     """Values of the unknown [SI] as if they had been typed."""
     return Typed(None, declared.meaning.unit, si, {})

@@ -7,8 +7,9 @@ two solutions close together are separated, and the end of the reachable range i
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from templates.core.arrays import Array
 from templates.core.errors import Unreachable
 from templates.core.language.evaluate import Answer, Evaluation, evaluate
 from templates.core.language.intake import Input
+from templates.core.language.meaning import Meaning
 from templates.core.language.question import typed_values
 from templates.core.language.spec import Curve, Formula
 from templates.core.language.template import Template
@@ -73,48 +75,80 @@ class Samples:
 
 
 @dataclass(frozen=True)
-class TargetCurve:
-    """The output as a function of the unknown, at one level."""
+class Outputs:
+    """The output at values of the unknown [SI], NaN where it has none, and the level that calculated it.
 
-    cls: type[Template]
-    raw: dict[str, Any]
-    declared: Input
-    formula: Formula[Any]
+    `error` is the relative error at each value; None where none is stated. `reasons` are None where there
+    is a value.
+    """
+
+    values: Array
+    reasons: NDArray[np.object_]
+    level: str | None
+    error: Array | None
+
+
+@dataclass(frozen=True)
+class SampledCurve(ABC):
+    """An output as a function of one unknown: what `x` and `y` mean, and the value wanted of `y` [SI]."""
+
+    x: Meaning
+    y: Meaning
     wanted: float
-    """The target [SI]."""
-    fidelity: dict[str, Any]
 
-    def evaluation(self, values: Any) -> Evaluation:
+    @abstractmethod
+    def outputs(self, x: Array) -> Outputs:
         """The output at values of the unknown [SI]."""
-        raw = {**self.raw, self.declared.name: typed_values(self.declared, values)}
-        return evaluate(self.cls, raw, outputs=[self.formula.name], **self.fidelity)
 
-    def at_one_level(self, x: Array) -> tuple[TargetCurve, Samples]:
+    @abstractmethod
+    def at_level(self, level: str) -> Self:
+        """The same curve, all of it at one level."""
+
+    @abstractmethod
+    def level_at(self, x: float) -> str | None:
+        """The level at one value; raises InvalidInputs where the output is refused there."""
+
+    @property
+    @abstractmethod
+    def level(self) -> str | None:
+        """The level of all samples; None where a tolerance chooses it, or there are no levels."""
+
+    @property
+    @abstractmethod
+    def chooses(self) -> bool:
+        """Whether a tolerance chooses the level at each sample."""
+
+    @property
+    def rows(self) -> int:
+        """How many samples one call takes."""
+        return CELLS
+
+    def at_one_level(self, x: Array) -> tuple[Self, Samples]:
         """The samples, and the curve at the level at which they were calculated."""
-        first = self.evaluation(x[: self._rows()])
-        fixed = self if first.level is None else replace(self, fidelity={"level": first.level})
-        samples = self._samples(x[: self._rows()], first)
-        return fixed, samples.joined(fixed.sample(x[self._rows() :]))
+        first = self.outputs(x[: self.rows])
+        fixed = self if first.level is None else self.at_level(first.level)
+        samples = self._samples(x[: self.rows], first)
+        return fixed, samples.joined(fixed.sample(x[self.rows :]))
 
     def sample(self, x: Array) -> Samples:
         """The output at these values, in as many calls as its level needs."""
         samples = Samples(np.empty(0), np.empty(0), np.empty(0, dtype=object))
-        for start in range(0, x.size, self._rows()):
-            part = x[start : start + self._rows()]
-            samples = samples.joined(self._samples(part, self.evaluation(part)))
+        for start in range(0, x.size, self.rows):
+            part = x[start : start + self.rows]
+            samples = samples.joined(self._samples(part, self.outputs(part)))
         return samples
 
     def miss(self, value: float) -> float:
         """Output minus target at one value [SI]; NaN where the template refuses."""
-        return self.miss_of(self.evaluation(np.array([value])))
+        return self.miss_of(self.outputs(np.array([value])))
 
-    def miss_of(self, evaluation: Evaluation) -> float:
-        """The same of an evaluation at one value."""
-        return float(self._samples(np.empty(1), evaluation).miss[0])
+    def miss_of(self, outputs: Outputs) -> float:
+        """The same of the output at one value."""
+        return float(outputs.values[0]) - self.wanted
 
-    def scan(self, low: float, high: float) -> tuple[TargetCurve, Samples, Samples]:
+    def scan(self, low: float, high: float) -> tuple[Self, Samples, Samples]:
         """The curve at its level, the samples between the bounds, and those with all that was divided."""
-        curve, even = self.at_one_level(_grid(low, high))
+        curve, even = self.at_one_level(evenly(low, high))
         samples = even
         for turn in range(ROUNDS):
             intervals = _divided(samples, turn)
@@ -126,7 +160,7 @@ class TargetCurve:
 
     def unreachable(self, samples: Samples) -> Unreachable:
         """The error that says what can be reached between the bounds, and why the target cannot."""
-        meaning, name = self.formula.meaning, self.formula.name
+        meaning, name = self.y, self.y.name
         if np.isnan(samples.miss).all():
             detail = f"{name} has no value anywhere between the bounds; give other bounds or inputs"
             return Unreachable(name, detail, (np.nan, np.nan), meaning.unit)
@@ -141,17 +175,62 @@ class TargetCurve:
             detail = f"{target} is out of reach: between the bounds {name} is {shown}"
         return Unreachable(name, detail, (low, high), meaning.unit)
 
-    def _samples(self, x: Array, evaluation: Evaluation) -> Samples:
-        answer = evaluation.outputs[self.formula.name]
-        si = self.formula.meaning.scale.to_si(np.asarray(answer.value, dtype=float))
-        return Samples(x, np.broadcast_to(si - self.wanted, x.shape), _reasons(answer, x.size))
+    def _samples(self, x: Array, outputs: Outputs) -> Samples:
+        return Samples(x, outputs.values - self.wanted, outputs.reasons)
 
-    def _rows(self) -> int:
+
+@dataclass(frozen=True)
+class TargetCurve(SampledCurve):
+    """An output of a template as a function of one of its inputs; `fidelity` is its level or tolerance."""
+
+    cls: type[Template]
+    raw: dict[str, Any]
+    declared: Input
+    formula: Formula[Any]
+    fidelity: dict[str, Any]
+
+    @property
+    def level(self) -> str | None:
+        """The level of all samples; None where a tolerance chooses it, or there are no levels."""
+        return self.fidelity.get("level")
+
+    @property
+    def chooses(self) -> bool:
+        """Whether a tolerance chooses the level at each sample."""
+        return "tolerance" in self.fidelity
+
+    @property
+    def rows(self) -> int:
         """How many samples one call takes."""
         curves = (n for n, declared in self.cls.inputs.items() if isinstance(declared, Curve))
         longest = max((np.size(_magnitude(self.raw.get(name))) for name in curves), default=1)
-        most = self.cls.most_points.get(self.fidelity.get("level", ""), CELLS)
+        most = self.cls.most_points.get(self.level or "", CELLS)
         return max(1, min(most, CELLS // max(1, longest)))
+
+    def at_level(self, level: str) -> TargetCurve:
+        """The same curve, all of it at one level."""
+        return replace(self, fidelity={"level": level})
+
+    def evaluation(self, values: Any) -> Evaluation:
+        """The output at values of the unknown [SI]."""
+        raw = {**self.raw, self.declared.name: typed_values(self.declared, values)}
+        return evaluate(self.cls, raw, outputs=[self.formula.name], **self.fidelity)
+
+    def level_at(self, x: float) -> str | None:
+        """The level at one value; raises InvalidInputs where the output is refused there."""
+        return self.evaluation(x).level
+
+    def outputs(self, x: Array) -> Outputs:
+        """The output at values of the unknown [SI]."""
+        evaluation = self.evaluation(x)
+        answer, error = evaluation.outputs[self.formula.name], evaluation.error[self.formula.name]
+        si = self.formula.meaning.scale.to_si(np.asarray(answer.value, dtype=float))
+        return Outputs(
+            np.broadcast_to(si, x.shape),
+            _reasons(answer, x.size),
+            evaluation.level,
+            None if error is None else np.broadcast_to(error, x.shape),
+        )
 
 
 def _magnitude(raw: Any) -> Any:
@@ -165,11 +244,11 @@ def _reasons(answer: Answer, count: int) -> NDArray[np.object_]:
     return np.full(count, answer.reason, dtype=object)
 
 
-def _grid(low: float, high: float) -> Array:
-    """Samples between the bounds: even in the logarithm where both are positive and far apart."""
+def evenly(low: float, high: float, count: int = SAMPLES) -> Array:
+    """Values from one bound to the other: even in the logarithm where both are positive and far apart."""
     if low > 0 and high > DECADE * low:
-        return np.geomspace(low, high, SAMPLES)
-    return np.linspace(low, high, SAMPLES)
+        return np.geomspace(low, high, count)
+    return np.linspace(low, high, count)
 
 
 def _inside(low: float, high: float) -> Array:

@@ -32,6 +32,8 @@ _PRINTED = {
     "deg": "°",
     "degC": "°C",
     "degF": "°F",
+    "delta_degC": "K",
+    "delta_degF": "Δ°F",
     "um": "µm",
     "ohm": "Ω",
     "thou": "mil",

@@ -26,6 +26,7 @@ from templates.core.language.template import Template
 from templates.core.paper.demands import described_criteria, described_limit
 from templates.core.paper.mathml import expression, mathml, symbol, symbols
 from templates.core.paper.methods import right_side
+from templates.core.units.tolerance import DISTRIBUTIONS
 
 _KEYWORDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
 
@@ -145,8 +146,9 @@ def _quantity_in(declared: Declaration) -> dict[str, Any]:
         "properties": {
             "value": magnitude,
             "unit": {"type": "string"},
-            "plus": {"type": ["string", "number"]},
-            "minus": {"type": ["string", "number"]},
+            **{key: {"type": ["string", "number"]} for key in ("plus", "minus", "upper", "lower")},
+            "zone": {"type": "string"},
+            "distribution": {"enum": list(DISTRIBUTIONS)},
         },
     }
     bare = [{"type": "number"}] if declared.meaning.unit == "1" and not listed else []

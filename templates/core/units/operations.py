@@ -41,6 +41,19 @@ class Name:
 
 
 @dataclass(frozen=True)
+class Item:
+    """An item of an array of the design, counted from 1; the index is a number or the name of one."""
+
+    name: str
+    index: int | str
+
+    @property
+    def text(self) -> str:
+        """As it is written: `loads.main_load_x[2]`."""
+        return f"{self.name}[{self.index}]"
+
+
+@dataclass(frozen=True)
 class Apply:
     """An operator or function applied to its arguments."""
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -17,34 +17,49 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.core.errors import FaultyText, excerpt
+from templates.core.units.tolerance import (
+    KEYS,
+    LONGEST_TEXT,
+    NUMBER,
+    Tolerance,
+    Written,
+    from_object,
+    is_zone,
+    joined,
+    split,
+    stated,
+)
 from templates.core.units.units import Unit, Value, compatible, registry, require_same_kind, unit
 
 __all__ = [
-    "Typed", "Unit", "Value", "compatible", "read", "read_any", "registry", "require_same_kind", "unit",
+    "Tolerance", "Typed", "Unit", "Value", "compatible", "read", "read_any", "registry", "require_same_kind",
+    "unit",
 ]  # fmt: skip
 
-_NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?"
-_PATTERN = re.compile(rf"({_NUMBER})\s*(.*)", re.DOTALL)  # of a text without blanks at its ends
-_LONGEST_TEXT = 200
+_PATTERN = re.compile(rf"([+-]?{NUMBER})\s*(.*)", re.DOTALL)  # of a text without blanks at its ends
 _DEEPEST = 4  # axes of an array
-TOLERANCES = ("plus", "minus")
 
 
 @dataclass(frozen=True)
 class Typed:
-    """A quantity as its user typed it, and what it is in SI."""
+    """A quantity as its user typed it, and what it is in SI.
+
+    `extra` is its tolerance as an answer states it, `tolerance` what that means; `si` is the value alone.
+    """
 
     value: Any
     unit: str
     si: Value
     extra: dict[str, Any]
+    tolerance: Tolerance | None = None
 
 
 def read(raw: Any, declared: str) -> Typed:
     """Read a quantity in any of its written forms, for something declared in the unit `declared`.
 
-    Forms: `"25 kN"`, `{"value": 25, "unit": "kN"}` (value may be a list; `plus`, `minus` may stand by it),
-    a list of such, and a bare number or list of numbers where the declared unit is `1`.
+    Forms: `"25 kN"`, `{"value": 25, "unit": "kN"}` (value may be a list), a list of such, and a bare number
+    or list of numbers where the declared unit is `1`. A text or an object may hold a tolerance:
+    `"25 ± 1 kN"`, `"plus": 1`.
 
     Raises
     ------
@@ -85,7 +100,8 @@ def _own_unit(raw: Any) -> str:
         raw = raw[0]
     match raw:
         case str() if parts := _parted(raw):
-            return parts[1] or "1"
+            written = split(parts[1])
+            return written.unit if written else parts[1] or "1"
         case {"unit": str() as name}:
             return name
     return "1"
@@ -98,17 +114,31 @@ def _read_text(text: str, declared: str) -> Typed:
     number, name = parts
     if not name:
         return _read_bare(float(number), declared)
+    if written := split(name):
+        return _toleranced(_finite(float(number)), written, declared)
+    if is_zone(name):
+        raise FaultyText("missing_unit", f'{number} {name} has no unit; write it as in "{number} mm {name}"')
     return _quantity(_finite(float(number)), name, declared)
+
+
+def _toleranced(number: float, written: Written, declared: str) -> Typed:
+    """A quantity whose text holds a tolerance."""
+    if written.unit == "1" != declared:
+        raise FaultyText("missing_unit", f'the unit is missing; write it at the end, as in "… {declared}"')
+    typed = _quantity(number, written.unit, declared)
+    assert isinstance(typed.si, float)
+    tolerance, extra = written.of(typed.si, written.unit, declared)
+    return replace(typed, extra=extra, tolerance=tolerance)
 
 
 def _parted(text: str) -> tuple[str, str] | None:
     """Number and unit of a text; None if it does not begin with a number, or is too long."""
-    match = _PATTERN.fullmatch(text.strip()) if len(text) <= _LONGEST_TEXT else None
+    match = _PATTERN.fullmatch(text.strip()) if len(text) <= LONGEST_TEXT else None
     return (match[1], match[2]) if match else None
 
 
 def _read_object(raw: dict[str, Any], declared: str) -> Typed:
-    if "value" not in raw or not raw.keys() <= {"value", "unit", *TOLERANCES}:
+    if "value" not in raw or not raw.keys() <= {"value", "unit", *KEYS}:
         raise _no_quantity(raw, declared)
     if "unit" not in raw and declared != "1":
         raise FaultyText("missing_unit", f'the unit is missing; add "unit": "{declared}"')
@@ -118,19 +148,12 @@ def _read_object(raw: dict[str, Any], declared: str) -> Typed:
     if isinstance(value, (np.ndarray, np.number)):
         value = value.tolist()
     magnitude = _array(value) if isinstance(value, (list, tuple)) else _number(value)
-    extra = {key: raw[key] for key in TOLERANCES if key in raw}
-    for tolerance in extra.values():
-        _check_tolerance(tolerance, declared)
     typed = _quantity(magnitude, name, declared)
-    return Typed(value, typed.unit, typed.si, extra)
-
-
-def _check_tolerance(tolerance: Any, declared: str) -> None:
-    """A tolerance is a bare number in the quantity's unit, or a text; of a temperature it is a difference."""
-    if isinstance(tolerance, str):
-        _read_text(tolerance, "delta_degC" if unit(declared).absolute else declared)
-    else:
-        _number(tolerance)
+    tolerance = from_object(raw, name, declared, typed.si)
+    extra = {key: raw[key] for key in KEYS if key in raw}
+    if tolerance is not None and tolerance.zone is not None:
+        extra = {**stated(tolerance, unit(name)), **extra}
+    return Typed(value, typed.unit, typed.si, extra, tolerance)
 
 
 def _read_list(raw: list[Any], declared: str) -> Typed:
@@ -143,11 +166,12 @@ def _read_list(raw: list[Any], declared: str) -> Typed:
 
 def _read_each(raw: list[Any], declared: str) -> Typed:
     """A list of quantities, each in its own unit; shown in the declared one."""
-    parts = [read(item, declared).si for item in raw]
-    if len({np.shape(part) for part in parts}) > 1:
+    parts = [read(item, declared) for item in raw]
+    if len({np.shape(part.si) for part in parts}) > 1:
         raise FaultyText("uneven", "the items of an array must be of one length; give each a single value")
-    si = np.array(parts, dtype=float)
-    return Typed(np.asarray(unit(declared).from_si(si)).tolist(), declared, si, {})
+    si = np.array([part.si for part in parts], dtype=float)
+    tolerance = joined([part.tolerance for part in parts])
+    return Typed(np.asarray(unit(declared).from_si(si)).tolist(), declared, si, {}, tolerance)
 
 
 def _read_bare(raw: float, declared: str) -> Typed:

@@ -3,12 +3,13 @@
 A relation ties a value of a design to others, as a cell of a spreadsheet does. A unit stands after a number
 and one blank and has no blank itself; every other word is a name. Units are checked before anything runs:
 lengths add to lengths, an exponent is a pure number, `degC` is a temperature with a zero of its own and may
-not be added.
+not be added. `loads.main_load_x[2]` is the second item of an array along its first axis, so that of several
+curves it is one curve.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from importlib.resources import files
@@ -18,12 +19,23 @@ import lark
 import numpy as np
 
 from templates.core.errors import FaultyText, excerpt
-from templates.core.units.operations import CONSTANTS, FUNCTIONS, OPERATORS, Apply, Constant, Kind, Name
+from templates.core.units.items import check_index, item_of
+from templates.core.units.operations import (
+    CONSTANTS,
+    FUNCTIONS,
+    OPERATORS,
+    Apply,
+    Constant,
+    Item,
+    Kind,
+    Name,
+)
 from templates.core.units.units import Unit, Value, forget_units, unit
 
 __all__ = ["Kind", "Relation", "is_relation", "parse"]
 
 MAX_LENGTH, MAX_DEPTH, MAX_PARTS = 2000, 100, 400
+MAX_INDEX = 10**9
 REMEMBERED = 1024  # trees of up to 50 kB
 
 _GRAMMAR = files(__package__).joinpath("relation.lark").read_text(encoding="utf-8")
@@ -38,6 +50,13 @@ class Relation:
     names: frozenset[str]
     tree: Any
     parts: int = 1
+    items: tuple[Item, ...] = ()
+
+    @cached_property
+    def whole_names(self) -> frozenset[str]:
+        """The names whose values are used whole, not an item of them."""
+        inside = {name for item in self.items for name in (item.name, item.index)}
+        return self.names if not inside else frozenset(_whole(self.tree))
 
     @cached_property
     def only_name(self) -> str | None:
@@ -57,18 +76,27 @@ class Relation:
     def value(self, values: Mapping[str, Value]) -> Value:
         """The value in SI, from the SI values of its names; not finite where the arithmetic is not.
 
+        Items that are known already stand among the values, by their text: `loads.main_load_x[2]`.
+
         Raises
         ------
         FaultyText
-            With code `shape`, where arrays of different lengths meet.
+            With code `shape`, where arrays of different lengths meet; `index`, where an index is no place of
+            its array.
         """
         if self.only_name:
             return values[self.only_name]
+        known = self._with_items(values) if self.items else values
         try:
             with np.errstate(all="ignore"):
-                return _value(self.tree, values)
+                return _value(self.tree, known)
         except ValueError:
             raise FaultyText("shape", f"{self.text!r} joins arrays of different lengths") from None
+
+    def _with_items(self, values: Mapping[str, Value]) -> Mapping[str, Value]:
+        """The values, and those of items of arrays by their text."""
+        chosen = {item.text: item_of(item, values) for item in self.items if item.text not in values}
+        return {**values, **chosen}
 
 
 def is_relation(raw: Any) -> bool:
@@ -96,7 +124,9 @@ def parse(text: str) -> Relation:
     if parts > MAX_PARTS or _height(parsed) > MAX_DEPTH:
         raise FaultyText("syntax", f"a relation has at most {MAX_PARTS} parts, {MAX_DEPTH} deep")
     names = frozenset(str(t.children[0]) for t in parsed.find_data("name"))
-    return Relation(text.strip(), names - CONSTANTS.keys(), _build(parsed), parts)
+    items = tuple(dict.fromkeys(_build(t) for t in parsed.find_data("item")))
+    names |= {name for item in items for name in (item.name, item.index) if isinstance(name, str)}
+    return Relation(text.strip(), names - CONSTANTS.keys(), _build(parsed), parts, items)
 
 
 def _height(tree: lark.Tree[Any]) -> int:
@@ -123,10 +153,31 @@ def _build(node: Any) -> Any:
             return _constant(f"-{text}")
         case "name", [text]:
             return CONSTANTS.get(str(text)) or Name(str(text))
+        case "item", [name, index]:
+            return _item(name, index)
         case "call", [called, *arguments]:
             return _call(str(called)[:-1], tuple(map(_build, arguments)))
         case operator, arguments:
             return Apply(OPERATORS[operator], tuple(map(_build, arguments)))
+
+
+def _item(name: lark.Token, index: lark.Token) -> Item:
+    """An item of an array.
+
+    Raises
+    ------
+    FaultyText
+        With code `syntax`, if its index is neither a whole number from 1 nor a name.
+    """
+    if name in CONSTANTS or index in CONSTANTS:
+        raise FaultyText("syntax", f"{excerpt(f'{name}[{index}]')}: pi is no array, and no index")
+    if index.type == "NAME":
+        return Item(str(name), str(index))
+    number = float(index)
+    if not number.is_integer() or not 1 <= number <= MAX_INDEX:
+        hint = f"an index is a whole number from 1 to the length of {str(name)[:60]}"
+        raise FaultyText("syntax", f"{excerpt(f'{name}[{index}]')}: {hint}")
+    return Item(str(name), int(number))
 
 
 def _constant(text: str) -> Constant:
@@ -167,11 +218,22 @@ def _checked(text: str, kinds: tuple[tuple[str, Kind], ...]) -> Kind:
     return _kind(parse(text).tree, dict(kinds))
 
 
+def _whole(node: Any) -> Iterator[str]:
+    """The names of a tree that are no part of an item."""
+    if isinstance(node, Name):
+        yield node.name
+    for argument in getattr(node, "arguments", ()):
+        yield from _whole(argument)
+
+
 def _kind(node: Any, kinds: Mapping[str, Kind]) -> Kind:
     match node:
         case Constant(kind=kind):
             return kind
         case Name(name=name):
+            return kinds[name]
+        case Item(name=name):
+            check_index(node, kinds)
             return kinds[name]
     parts = [_kind(argument, kinds) for argument in node.arguments]
     return node.operation.kind(node.operation, parts, node.arguments)
@@ -183,4 +245,6 @@ def _value(node: Any, values: Mapping[str, Value]) -> Value:
             return value
         case Name(name=name):
             return values[name]
+        case Item():
+            return values[node.text]
     return node.operation.calculate(*(_value(argument, values) for argument in node.arguments))

@@ -294,7 +294,7 @@ class TestFuzz:
             assert value(f"= {text}") == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
     @settings(max_examples=500)
-    @given(st.text("ab.()+-*/ 019eE mkN°²_,=sincopimax\t", max_size=80) | st.text(max_size=60))
+    @given(st.text("ab.()[]+-*/ 019eE mkN°²_,=sincopimax\t", max_size=80) | st.text(max_size=60))
     def test_property_any_text_is_a_relation_or_refused(self, text):
         try:
             relation, result = checked(text)

@@ -1,0 +1,63 @@
+"""ZIP files written while they are sent: one file is in memory at a time; equal files give equal bytes."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Callable, Iterable, Iterator
+
+MEDIA_TYPE = "application/zip"
+DATE = (1980, 1, 1, 0, 0, 0)  # the first that a ZIP can hold, of every file
+_UNIX, _READABLE = 3, 0o100644 << 16  # made by, and who may read it
+
+Member = tuple[str, Callable[[], bytes]]
+"""A file of a ZIP: its name, and what reads it."""
+
+
+class _Sink:
+    """What a ZIP is written to; it is emptied after every file."""
+
+    def __init__(self) -> None:
+        self._parts: list[bytes] = []
+
+    def write(self, part: bytes) -> int:
+        """Keep a part until it is taken."""
+        self._parts.append(bytes(part))
+        return len(part)
+
+    def flush(self) -> None:
+        """There is nothing to flush."""
+
+    def taken(self) -> bytes:
+        """What was written since the last time."""
+        whole, self._parts = b"".join(self._parts), []
+        return whole
+
+
+def archived(members: Iterable[Member]) -> Iterator[bytes]:
+    """A ZIP in parts: one for every file, and its directory."""
+    sink = _Sink()
+    with zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED) as archive:  # type: ignore[call-overload]
+        for name, read in members:
+            archive.writestr(_about(name), read())
+            yield sink.taken()
+    yield sink.taken()
+
+
+def _about(name: str) -> zipfile.ZipInfo:
+    info = zipfile.ZipInfo(name, DATE)
+    info.compress_type, info.create_system, info.external_attr = zipfile.ZIP_DEFLATED, _UNIX, _READABLE
+    return info
+
+
+def distinct(names: Iterable[str]) -> list[str]:
+    """Names of files that differ on every file system: of those that would be one, the later get a number."""
+    used, result = set[str](), list[str]()
+    for name in names:
+        stem, _, kind = name.rpartition(".")
+        number, one = 1, name
+        while one.casefold() in used:
+            number += 1
+            one = f"{stem}_{number}.{kind}"
+        used.add(one.casefold())
+        result.append(one)
+    return result

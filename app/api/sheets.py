@@ -1,0 +1,63 @@
+"""Sheets of variants in HTTP: their media types, how a request names one, and how a route is found by it."""
+
+from __future__ import annotations
+
+import re
+
+from pydantic.config import JsonDict
+from starlette.requests import Request
+from starlette.routing import Match
+from starlette.types import Scope
+
+from app.api.reading import StrictRoute
+from app.api.waiting import accepted_kinds
+from app.designs.variant_sheets.service import Kind
+from app.presentation.spreadsheets import XLSX
+
+MEDIA: dict[Kind, str] = {
+    "csv": "text/csv",
+    "xlsx": XLSX,
+}
+KINDS: dict[str, Kind] = {media: kind for kind, media in MEDIA.items()}
+JSON = "application/json"
+_WEIGHT = re.compile(r"\bq=([01](?:\.[0-9]{0,3})?)")
+
+_FILE: JsonDict = {"type": "string", "format": "binary"}
+_EXAMPLE = "variant,scale\nunit,1\nmain_1,1.02\nmain_2,1.04\n"
+BODIES: JsonDict = {
+    "requestBody": {
+        "content": {
+            MEDIA["csv"]: {"schema": {"type": "string", "minLength": 1, "examples": [_EXAMPLE]}},
+            MEDIA["xlsx"]: {"schema": _FILE},
+        }
+    }
+}
+"""What a route that takes the table in JSON takes besides."""
+ANSWERS: dict[str, object] = {media: {"schema": _FILE} for media in MEDIA.values()}
+"""What a route that answers the table in JSON answers besides."""
+
+
+class SheetRoute(StrictRoute):
+    """A route of a path that another one answers in JSON: it matches only where the client names a sheet."""
+
+    def matches(self, scope: Scope) -> tuple[Match, Scope]:
+        """Whether path, method and media type fit."""
+        match, found = super().matches(scope)
+        if match is Match.FULL and sheet_kind(Request(scope)) is None:
+            return Match.NONE, {}
+        return match, found
+
+
+def sheet_kind(request: Request) -> Kind | None:
+    """The kind of sheet that a client sends, or likes best; None for JSON."""
+    if request.method == "PUT":
+        sent = request.headers.get("content-type", "").partition(";")[0]
+        return KINDS.get(sent.strip().lower())
+    accepted = dict(accepted_kinds(request.headers.get("accept")))
+    weights = {media: _weight(accepted[media]) for media in (JSON, *KINDS) if media in accepted}
+    return KINDS.get(max(weights, key=lambda media: weights[media], default=JSON))
+
+
+def _weight(parameters: str) -> float:
+    match = _WEIGHT.search(parameters)
+    return float(match[1]) if match else 1.0

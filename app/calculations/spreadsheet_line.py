@@ -1,0 +1,66 @@
+"""An evaluation as lines of CSV, for a spreadsheet that asks by an address: names, units, numbers."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from itertools import zip_longest
+
+from app.calculations.rendering import evaluation
+from app.calculations.sources import Source, loaded
+from app.plain import Json, Raw
+from templates.core.errors import Fault, InvalidInputs
+from templates.core.language.evaluate import evaluate
+
+MOST_INPUTS, MOST_POINTS = 200, 1000
+_DANGEROUS = ("=", "+", "-", "@", "\t", "\r")
+
+
+def csv_of(
+    source: Source,
+    inputs: Mapping[str, Raw],
+    outputs: Sequence[str] | None,
+    level: str | None,
+    tolerance: float | None,
+) -> bytes:
+    """The outputs of a template as CSV: a row of names, one of units, and one for each point.
+
+    Raises
+    ------
+    InvalidInputs
+        With everything that is wrong; with code `shape` for an output that is a curve.
+    """
+    result = evaluation(
+        evaluate(loaded(source), inputs, outputs=outputs, level=level, tolerance=tolerance, judge=False)
+    )
+    shown = result["outputs"]
+    curves = [name for name, output in shown.items() if _depth(output["value"]) > 1]
+    if curves:
+        detail = "is a curve, which has no cell of its own; name other outputs in `outputs`"
+        raise InvalidInputs(Fault(name, "shape", f"{name} {detail}") for name in curves)
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\r\n")
+    writer.writerow(shown)
+    writer.writerow(output.get("unit") or "" for output in shown.values())
+    columns = [_column(output["value"]) for output in shown.values()]
+    count = max(map(len, columns), default=0)
+    spread = [column * count if len(column) == 1 else column for column in columns]
+    for row in zip_longest(*spread):
+        writer.writerow(map(_cell, row))
+    return stream.getvalue().encode()
+
+
+def _depth(value: Json) -> int:
+    return 1 + _depth(value[0]) if isinstance(value, list) and value else 0
+
+
+def _column(value: Json) -> list[Json]:
+    return value if isinstance(value, list) else [value]
+
+
+def _cell(value: Json) -> Json:
+    """A value that no spreadsheet takes for a formula; empty where there is none."""
+    if isinstance(value, str) and value.startswith(_DANGEROUS):
+        return f"'{value}"
+    return "" if value is None else value

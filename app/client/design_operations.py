@@ -1,0 +1,229 @@
+"""What a client can ask of the service about designs: each function is an exchange that returns a model."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Literal, TypedDict, Unpack
+
+from app.client.exchange import (
+    BASE,
+    MERGE_PATCH,
+    Exchange,
+    Progress,
+    Request,
+    answered,
+    calculated,
+    followed,
+    get,
+    job_of,
+    listed,
+    post,
+    read,
+    written,
+)
+from app.client.problem import checked
+from app.presentation.units import System
+from app.schemas.comparisons import Comparison
+from app.schemas.decisions import Decision
+from app.schemas.designs import (
+    Design,
+    DesignList,
+    DesignSummary,
+    Explanation,
+    ModelMeasurements,
+    Preview,
+    Proposal,
+    Proposals,
+    Revision,
+    RevisionList,
+    RevisionWorksheet,
+    State,
+)
+from app.schemas.labels import Labels, TagList, TagUse
+from app.schemas.networks import DesignNetwork
+
+
+class Wanted(TypedDict, total=False):
+    """Which designs are listed."""
+
+    name: str
+    state: State
+    template: str
+    tag: str | Sequence[str]
+    archived: Literal["false", "true", "any"]
+
+
+def designs(**wanted: Unpack[Wanted]) -> Exchange[list[DesignSummary]]:
+    """Designs that are not archived, newest first; those that fit every filter given."""
+    return listed(DesignList, "/designs", [*_filters(wanted)])
+
+
+def design(id: str) -> Exchange[Design]:
+    """A design as of its newest revision."""
+    return answered(Design, get(f"/designs/{id}"))
+
+
+def create(
+    document: Mapping[str, object], *, on_progress: Progress | None = None, key: str | None = None
+) -> Exchange[Design]:
+    """Create a design and wait until its models are built; see `state` for whether they are.
+
+    Two requests under one key make one design.
+    """
+    return saved(post("/designs", document, once(key)), on_progress)
+
+
+def change(
+    design: Design,
+    patch: Mapping[str, object],
+    *,
+    on_progress: Progress | None = None,
+    key: str | None = None,
+) -> Exchange[Design]:
+    """Make a new revision of a design that was read, and wait until its models are built."""
+    headers = {"Content-Type": MERGE_PATCH, **_match(design), **once(key)}
+    request = Request("PATCH", f"{BASE}/designs/{design.id}", written(patch), headers=headers)
+    return saved(request, on_progress)
+
+
+def copy(
+    id: str, name: str | None = None, *, on_progress: Progress | None = None, key: str | None = None
+) -> Exchange[Design]:
+    """Make a new design with the newest document of this one; the service names it if no name is given."""
+    return saved(post(f"/designs/{id}/copy", {"name": name}, once(key)), on_progress)
+
+
+def restore(
+    design: Design,
+    number: int,
+    note: str | None = None,
+    *,
+    on_progress: Progress | None = None,
+    key: str | None = None,
+) -> Exchange[Design]:
+    """Make a new revision, equal to an old one, of a design that was read."""
+    path = f"/designs/{design.id}/revisions/{number}/restore"
+    return saved(post(path, {"note": note}, {**_match(design), **once(key)}), on_progress)
+
+
+def delete(id: str) -> Exchange[None]:
+    """Take a design from the lists; its revisions are kept."""
+    checked((yield Request("DELETE", f"{BASE}/designs/{id}")))
+
+
+def labels(id: str) -> Exchange[Labels]:
+    """The tags of a design, and whether it is archived."""
+    return answered(Labels, get(f"/designs/{id}/labels"))
+
+
+def label(
+    id: str, *, add_tags: Sequence[str] = (), remove_tags: Sequence[str] = (), archived: bool | None = None
+) -> Exchange[Labels]:
+    """Add and remove tags of a design, archive it or fetch it back; this makes no revision."""
+    change = {"add_tags": [*add_tags], "remove_tags": [*remove_tags], "archived": archived}
+    return answered(Labels, post(f"/designs/{id}/labels", change))
+
+
+def tags() -> Exchange[list[TagUse]]:
+    """The tags of designs that are not archived, the most used first."""
+    return (yield from answered(TagList, get("/tags"))).items
+
+
+def compare(
+    id: str, revision: int | None = None, other: int | None = None, *, design: str | None = None
+) -> Exchange[Comparison]:
+    """What differs from a revision to another one, of the same design or of another.
+
+    Without numbers: the newest revision with the one before, or the newest ones of both designs.
+    """
+    chosen = {"revision": revision, "with": other, "design": design}
+    query = {name: str(value) for name, value in chosen.items() if value is not None}
+    return answered(Comparison, get(f"/designs/{id}/compare", query))
+
+
+def preview(id: str, patch: Mapping[str, object], *, worksheet: bool = False) -> Exchange[Preview]:
+    """What a change would do; nothing is saved. `worksheet` adds every step, its formulas written out."""
+    asked = "?worksheet=true" if worksheet else ""
+    return calculated(Preview, post(f"/designs/{id}/preview{asked}", patch))
+
+
+def decide(
+    id: str,
+    criteria: list[str] | None = None,
+    budget: str = "30 s",
+    *,
+    units: System = "si",
+    on_progress: Progress | None = None,
+) -> Exchange[Decision]:
+    """Decide criteria that are undecided, all if none are named: finer levels where they are needed.
+
+    The quantities of the answer are in `units`, "si" or "us".
+    """
+    body = {"criteria": criteria, "budget": budget}
+    return calculated(Decision, post(f"/designs/{id}/decide?units={units}", body), on_progress)
+
+
+def auto_map(id: str) -> Exchange[list[Proposal]]:
+    """Proposals for model parameters that are not set."""
+    request = Request("POST", f"{BASE}/designs/{id}/auto-map")
+    return (yield from answered(Proposals, request)).proposals
+
+
+def explain(id: str, name: str) -> Exchange[Explanation]:
+    """Where a model parameter, such as `model.inner_diameter`, or the verdict of a criterion comes from."""
+    return answered(Explanation, get(f"/designs/{id}/explain/{name}"))
+
+
+def network(id: str) -> Exchange[DesignNetwork]:
+    """What drives what in a design, and the names that its relations may use."""
+    return answered(DesignNetwork, get(f"/designs/{id}/network"))
+
+
+def revision(id: str, number: int) -> Exchange[Revision]:
+    """A revision with its results."""
+    return answered(Revision, get(f"/designs/{id}/revisions/{number}"))
+
+
+def revisions(id: str) -> Exchange[list[Revision]]:
+    """All revisions, newest first."""
+    return listed(RevisionList, f"/designs/{id}/revisions")
+
+
+def measurements(id: str) -> Exchange[dict[str, ModelMeasurements]]:
+    """What the newest good models measure, by the name of the model."""
+    return answered(dict[str, ModelMeasurements], get(f"/designs/{id}/measurements"))
+
+
+def design_worksheet(id: str, number: int | None = None) -> Exchange[RevisionWorksheet]:
+    """A revision, the newest if none is named, with every formula of its steps written out."""
+    revision = f"/revisions/{number}" if number else ""
+    return answered(RevisionWorksheet, get(f"/designs/{id}{revision}/worksheet.json"))
+
+
+def saved(request: Request, on_progress: Progress | None) -> Exchange[Design]:
+    """The design once its job has ended; a failed regeneration is its `state`."""
+    response = yield request
+    answer = read(Design, response)
+    if job := job_of(response):
+        yield from followed(job, on_progress)
+        answer = yield from design(answer.id)
+    return answer
+
+
+def _filters(wanted: Wanted) -> Iterator[tuple[str, str]]:
+    """The filters as a query, in which a tag may stand several times."""
+    for name, value in wanted.items():
+        texts = [value] if isinstance(value, str) else value
+        assert isinstance(texts, Sequence), "filters are texts"
+        yield from ((name, text) for text in texts)
+
+
+def _match(design: Design) -> dict[str, str]:
+    """Refuse a change if the design has changed since it was read."""
+    return {"If-Match": f'"{design.revision}"'}
+
+
+def once(key: str | None) -> dict[str, str]:
+    """A key that makes a repeated request harmless."""
+    return {"Idempotency-Key": key or uuid.uuid4().hex}

@@ -1,0 +1,107 @@
+"""Values of many rows of a design: the row is the first axis, a place along a curve the last.
+
+A value that does not follow from the rows has no axis for them. So whether the first axis of an array counts
+rows is part of the column, and 360 rows are not mistaken for a curve of 360 places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import reduce
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array, Mask
+from templates.core.units.units import Value
+
+Indices = NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A value [SI]: one for all rows, or one for each row.
+
+    Attributes
+    ----------
+    value
+        A number or an array. If `is_row`, its first axis is the row. Further axes are those of the value
+        itself, such as the places along a curve.
+    """
+
+    value: Value
+    is_row: bool = False
+
+    @property
+    def rank(self) -> int:
+        """How many axes the value has in one row."""
+        return np.ndim(self.value) - self.is_row
+
+    @property
+    def places(self) -> tuple[int, ...]:
+        """The shape of the value in one row."""
+        return np.shape(self.value)[int(self.is_row) :]
+
+    def of(self, rows: Indices | slice) -> Column:
+        """The column of some of the rows."""
+        return Column(self.value[rows], is_row=True) if self.is_row else self  # type: ignore[index]
+
+    def padded(self, rank: int) -> Value:
+        """The value as an array that broadcasts with values of a larger rank."""
+        if not self.is_row or rank <= self.rank:
+            return self.value
+        value = np.asarray(self.value)
+        return value.reshape(len(value), *(1,) * (rank - self.rank), *value.shape[1:])
+
+    def spread(self, count: int) -> Array:
+        """The value of every row; a view, where one value serves all of them."""
+        value = np.asarray(self.value, dtype=float)
+        return value if self.is_row else np.broadcast_to(value, (count, *value.shape))
+
+    def finite_rows(self) -> Mask:
+        """The rows in which the value is finite at all its places."""
+        finite: Mask = np.asarray(np.isfinite(self.value))
+        whole: Mask = np.all(finite, axis=tuple(range(1, finite.ndim)))
+        return whole
+
+    def without(self, refused: Mask) -> Column:
+        """The column with NaN in the rows that are refused."""
+        if not refused.any():
+            return self
+        where = refused.reshape(-1, *(1,) * self.rank)
+        return Column(np.where(where, np.nan, self.spread(refused.size)), is_row=True)
+
+
+def aligned(columns: Mapping[str, Column]) -> tuple[dict[str, Value], bool]:
+    """Values that broadcast row by row, and whether any of them has rows.
+
+    Axes within a row broadcast from the last one, as they would in a design without rows.
+    """
+    rank = max((column.rank for column in columns.values()), default=0)
+    values = {name: column.padded(rank) for name, column in columns.items()}
+    return values, any(column.is_row for column in columns.values())
+
+
+def stacked(items: Sequence[Column]) -> Column:
+    """A list of single values, of which some may differ from row to row, as one value of rank 1."""
+    if not any(item.is_row for item in items):
+        return Column(np.array([item.value for item in items], dtype=float))
+    values = np.broadcast_arrays(*(item.value for item in items))
+    return Column(np.stack(list(values), axis=-1), is_row=True)
+
+
+def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Column:
+    """One column of so many rows from columns of parts of the rows; NaN in the others.
+
+    Raises
+    ------
+    ValueError
+        If the parts have curves of different lengths.
+    """
+    found = list(parts)
+    places: tuple[int, ...] = reduce(np.broadcast_shapes, (column.places for _, column in found), ())
+    whole = np.full((count, *places), np.nan)
+    for rows, column in found:
+        whole[rows] = column.padded(len(places))
+    return Column(whole, is_row=True)

@@ -1,0 +1,98 @@
+"""Where a verdict comes from: verdict ← value ← formula ← inputs, and limit ← who gave it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app.calculations.criteria import criterion as rendered
+from app.designs.calculation import Calculation
+from app.designs.document import Document
+from app.designs.explain import Explainer, explain, shown
+from app.designs.judging import Judging
+from app.designs.reference import Reference
+from app.designs.subjects import Subject
+from app.plain import JsonObject
+from app.storage.errors import NotFound
+from templates.core.judging.criterion import Limit
+from templates.core.units.relation import Relation
+
+PREFIX = "criteria."  # before the name of a criterion that is called like a parameter of the only model
+
+
+def explain_any(document: Document, calculation: Calculation, name: str) -> JsonObject:
+    """The chain behind a parameter of a model, or behind the verdict of a criterion.
+
+    Raises
+    ------
+    NotFound
+        If nothing is called so.
+    """
+    names = Judging(calculation).names()
+    try:
+        return explain(calculation, name)
+    except NotFound as error:
+        if name.removeprefix(PREFIX) in names:
+            return explain_criterion(document, calculation, name)
+        criteria = f"no criterion either; there are {', '.join(names)}" if names else "it has no criteria"
+        raise NotFound(f"{error}; {criteria}") from None
+
+
+def explain_criterion(document: Document, calculation: Calculation, name: str) -> JsonObject:
+    """The chain behind a verdict: the values of both sides, each as far as it can be followed.
+
+    A criterion whose step leaves out an output that it needs was not judged, and has no `criterion`.
+    """
+    judging = Judging(calculation)
+    name = name.removeprefix(PREFIX)
+    judgement = next(iter(judging.some([name])), None)
+    sides = _Sides(document, calculation, judging.subject(name))
+    judged = {} if judgement is None else {"criterion": rendered(judgement)}
+    return {"name": name, "kind": "criterion", **judged, "because": list(sides.all())}
+
+
+class _Sides:
+    """Value and limit of one criterion."""
+
+    def __init__(self, document: Document, calculation: Calculation, subject: Subject) -> None:
+        self.document, self.subject = document, subject
+        self.explainer = Explainer(calculation, depth=1)
+
+    def all(self) -> Iterator[JsonObject]:
+        """Every name of the value, then every name of the limit; a side without names stands for itself."""
+        criterion = self.subject.criterion
+        for link in self._side(criterion.value):
+            yield {**link, "side": "value"}
+        for link in self._side(criterion.limit):
+            yield {**link, "side": "limit"}
+
+    def _side(self, relation: Relation) -> Iterator[JsonObject]:
+        for name in (n for n in self.subject.criterion.names if n in relation.names):
+            yield self._link(name)
+        if not relation.names:
+            source = self.subject.criterion.source
+            yield {"name": relation.text, "kind": "written", **({"source": source} if source else {})}
+
+    def _link(self, name: str) -> JsonObject:
+        """What a name follows from, or who gave it."""
+        if name in self.subject.references:
+            return self.explainer.of(self.subject.references[name])
+        return self._limit(self.subject.criterion.limits_by_name[name])
+
+    def _limit(self, limit: Limit) -> JsonObject:
+        """Who gave a limit that the calculation does not take: the step, a row, a default, or nobody."""
+        block = self.subject.block
+        assert block is not None, "a criterion of the design declares no limits"
+        typed = self.document.steps[block.name].limits
+        named: JsonObject = {"name": f"{block.name}.limits.{limit.name}"}
+        if limit.name in block.limits:
+            given = block.limits[limit.name]
+            named["value"] = shown(given.value, limit.unit)
+            if limit.name in typed:
+                return {**named, "kind": "given", "typed": typed[limit.name]}
+            row = {"library": limit.library, "typed": typed.get(limit.library or "")}
+            return {**named, "kind": "library_row", **row, "source": given.source}
+        if limit.default is None:
+            return {**named, "kind": "not_given", "text": limit.remedy}
+        function, other = limit.default
+        because = [self.explainer.of(Reference(block.name, None, other))]
+        return {**named, "kind": "default", "text": f"{function}({other})", "because": because}

@@ -1,0 +1,26 @@
+"""The explanation of a name: the chain behind it, and how much its value changes with what was typed."""
+
+from __future__ import annotations
+
+from app.catalogue.catalogues import Catalogues
+from app.designs.calculation import Calculation
+from app.designs.document import Document
+from app.designs.explain_criterion import explain_any
+from app.designs.judging import Judging
+from app.designs.sensitivities import Asked, sensitivities
+from app.schemas.designs import Explanation
+
+
+def explained(document: Document, calculation: Calculation, catalogues: Catalogues, name: str) -> Explanation:
+    """Where a parameter of a model, or the verdict of a criterion, comes from, with sensitivities.
+
+    Raises
+    ------
+    NotFound
+        If nothing is called so.
+    """
+    chain = Explanation.model_validate(explain_any(document, calculation, name))
+    subject = Judging(calculation).subject(chain.name) if chain.kind == "criterion" else None
+    found = sensitivities(document, calculation, catalogues, Asked(chain.name, subject))
+    reason = {} if found.reason is None else {"reason": found.reason}
+    return chain.model_copy(update={"sensitivities": list(found.items), **reason})

@@ -1,0 +1,79 @@
+"""Where values of a design begin: the literal quantities behind them, and the solids on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from app.designs.calculation import Calculation
+from app.designs.network import Block, Cell, Graph
+from app.designs.reference import Reference
+from app.designs.row_design import Wanted
+from app.designs.rows_needed import Needs, is_member, needs
+from templates.core.errors import FaultyText
+
+
+def literals_behind(calculation: Calculation, starts: Iterable[Reference]) -> list[Cell]:
+    """The single quantities as typed that values follow from, each formula by what it uses itself.
+
+    What acts through a measure of a solid is among them.
+    """
+    graph, cells = calculation.graph, list[Cell]()
+    left, seen = [*starts][::-1], set[Reference]()
+    while left:
+        reference = left.pop()
+        if reference in seen:
+            continue
+        seen.add(reference)
+        if cell := graph.cell(reference):
+            cells.append(cell)
+            left += cell.uses.values()
+        elif reference.block in graph.blocks:
+            left += _inputs(graph, reference)
+    return [cell for cell in cells if not cell.relations and _is_single(calculation, cell)]
+
+
+def _inputs(graph: Graph, reference: Reference) -> list[Reference]:
+    """The cells of a block that an input or output of it follows from; all, if a measure does."""
+    block = graph.blocks[reference.block]
+    if not is_member(graph, reference):
+        return [cell.reference for cell in block.cells.values()]
+    inputs = block.cls.inputs
+    declared = inputs.get(reference.member) or block.cls.formulas[reference.member]
+    used = block.cls.dependencies(declared.attribute)
+    return [cell.reference for name, cell in block.cells.items() if inputs[name].attribute in used]
+
+
+def _is_single(calculation: Calculation, cell: Cell) -> bool:
+    return isinstance(calculation.values.get(cell.name), float)
+
+
+def through_solids(graph: Graph, wanted: Wanted) -> Mapping[Reference, Block]:
+    """The cells that act on values through a solid, each with the model of one such solid.
+
+    A step counts as a whole, as it is calculated: all its inputs are needed.
+    """
+    cells: dict[Reference, Block] = {}
+    left, seen = [*_needs(graph, wanted).waiting], set[str]()
+    while left:
+        model = graph.blocks[left.pop().block]
+        if model.name not in seen:
+            seen.add(model.name)
+            behind = needs(graph, (cell.reference for cell in model.cells.values()), ())
+            cells = {cell.reference: model for cell in behind.cells} | cells
+            left += behind.waiting
+    return cells
+
+
+def measures_behind(calculation: Calculation, wanted: Wanted) -> dict[Reference, float]:
+    """The measures of solids [SI] that values follow from, as far as they are known."""
+    known: dict[Reference, float] = {}
+    for reference in _needs(calculation.graph, wanted).waiting:
+        try:
+            known[reference] = float(calculation.value(reference))
+        except (FaultyText, KeyError):  # not built, or not analysed
+            continue
+    return known
+
+
+def _needs(graph: Graph, wanted: Wanted) -> Needs:
+    return needs(graph, wanted.references, (), wanted.inside)

@@ -1,0 +1,249 @@
+"""How much a value of a design, or what a criterion compares, changes with each quantity that its user wrote.
+
+Slopes by central differences, local to the design: 1 + 2 n rows in one array call, at the levels that the
+design itself used. What acts through a solid has a reason instead: each of its values needs its own solid.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from app.calculations.cost import EXPENSIVE
+from app.catalogue.catalogues import Catalogues
+from app.designs.calculation import Calculation
+from app.designs.document import Document
+from app.designs.net import Net, Table
+from app.designs.origins import literals_behind, measures_behind, through_solids
+from app.designs.reference import Reference
+from app.designs.row_design import MOST_VALUES, Wanted
+from app.designs.size import MOST_OPERATIONS
+from app.designs.slopes import Local, Slopes, slope_in, slopes_at
+from app.designs.subjects import Subject
+from app.schemas.designs import Sensitivity
+from templates.core.arrays import Array
+from templates.core.errors import Fault, InvalidInputs, listed
+from templates.core.units.units import registry, unit
+
+MOST_SHOWN = 50
+MOST_VARIED = 500  # places; the rows of the call are twice as many
+STUDY = "a study of the method sensitivity computes them"
+STEP = 1e-4  # of the value of a place, or of its unit where it is 0
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is looked at: the value of a name, or what a criterion of this name compares."""
+
+    name: str
+    subject: Subject | None = None
+
+    @property
+    def values(self) -> list[Reference]:
+        """The name, if it is that of a value."""
+        return [] if self.subject else [Reference.parse(self.name)]
+
+    @property
+    def criteria(self) -> list[str]:
+        """The name, if it is that of a criterion."""
+        return [self.name] if self.subject else []
+
+    @property
+    def wanted(self) -> Wanted:
+        """All values that are needed."""
+        return Wanted.of(self.values, [self.subject] if self.subject else [])
+
+    def unit(self, net: Net) -> str:
+        """The unit in which the value is shown."""
+        return self.subject.criterion.unit if self.subject else net.unit(*self.values)
+
+    def columns(self, table: Table) -> tuple[Array, Array | None]:
+        """The value [SI] of each row, and of a criterion the margin, positive where it is met."""
+        if self.subject is None:
+            return table.columns[Reference.parse(self.name)], None
+        judged = table.judged[self.name]
+        return judged.value, judged.margin
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """Those of one value, the largest elasticity first, and why all or some of them are missing."""
+
+    items: Sequence[Sensitivity]
+    reason: str | None = None
+
+
+def sensitivities(
+    document: Document, calculation: Calculation, catalogues: Catalogues, asked: Asked
+) -> Sensitivities:
+    """The sensitivities of a value to the single quantities, as typed, that it follows from."""
+    wanted = asked.wanted
+    behind = literals_behind(calculation, [*wanted.references, *wanted.inside])
+    solids = through_solids(calculation.graph, wanted)
+    apart = {*solids, *asked.values}
+    places = [cell.reference for cell in behind if cell.reference not in apart]
+    through = [
+        _of_solid(cell.name, solids[cell.reference].name) for cell in behind if cell.reference in solids
+    ]
+    try:
+        surroundings = Surroundings(document, calculation, catalogues, asked, places[:MOST_VARIED])
+        items = sorted(surroundings.items(), key=_rank) if places else []
+    except InvalidInputs as error:
+        return Sensitivities(through[:MOST_SHOWN], error.faults[0].detail)
+    all_items = [*items, *through]
+    return Sensitivities(all_items[:MOST_SHOWN], _left_out(len(places), len(through), len(all_items)))
+
+
+def _of_solid(place: str, model: str) -> Sensitivity:
+    reason = f"it acts through the solid of {model}, which would have to be built for each value"
+    return Sensitivity(name=place, reason=reason)
+
+
+def _rank(item: Sensitivity) -> tuple[int, float]:
+    """The largest elasticity first, then slopes without one, then places without a slope."""
+    if item.elasticity is not None:
+        return 0, -abs(item.elasticity)
+    return (2 if item.slope is None else 1), 0.0
+
+
+def _left_out(places: int, through: int, shown: int) -> str | None:
+    """Which of so many places the list leaves out."""
+    if places > MOST_VARIED:
+        return (
+            f"only the first {MOST_VARIED} of {places + through} places were varied; {MOST_SHOWN} are listed"
+        )
+    return f"the first {MOST_SHOWN} of {shown} places are listed" if shown > MOST_SHOWN else None
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """The rows around one design, and what comes out of them."""
+
+    document: Document
+    calculation: Calculation
+    catalogues: Catalogues
+    asked: Asked
+    places: Sequence[Reference]
+
+    def items(self) -> Iterator[Sensitivity]:
+        """The sensitivity to each place, in the order of the places.
+
+        Raises
+        ------
+        InvalidInputs
+            If the design cannot be calculated for rows, if that would take long, or if the value itself is
+            missing or no single number.
+        """
+        table = self._table()
+        value, margin = self.asked.columns(table)
+        self._check(value, table)
+        slopes = slopes_at(self._points, value)
+        margins = None if margin is None else slopes_at(self._points, margin).slopes
+        for number in range(len(self.places)):
+            item = self._item(number, slopes)
+            if reason := _one_sided(*self._points.beside(number), value, table):
+                item = item.model_copy(update={"reason": reason})
+            if margins is not None and abs(margins[number]) > 0:
+                helps = "increase" if margins[number] > 0 else "decrease"
+                item = item.model_copy(update={"helps": helps})
+            yield item
+
+    def _table(self) -> Table:
+        count, levels = self._points.count, self._levels
+        values, criteria = self.asked.values, self.asked.criteria
+        self._check_cost()
+        rows = self._points.rows(0, count)
+        columns = {place: rows[:, column] for column, place in enumerate(self.places)}
+        return self._net(columns, values, levels=levels, judge=bool(criteria), criteria=criteria)
+
+    def _check_cost(self) -> None:
+        """Refuse rows that take long, or many operations in relations between lists."""
+        count, wanted = self._points.count, self.asked.wanted
+        seconds = self._net.seconds(count, self.asked.values, self._levels, criteria=self.asked.criteria)
+        values = count * sum(self._net.design.sizes(wanted).values())
+        if seconds > EXPENSIVE:
+            raise self._refused(
+                "expensive", f"{count} rows would take about {seconds:.1g} s{self._at()}; {STUDY}"
+            )
+        if values > MOST_VALUES or count * self.calculation.operations > MOST_OPERATIONS:
+            raise self._refused(
+                "too_many_values", f"{count} rows of lists this long would take long; {STUDY}"
+            )
+
+    def _at(self) -> str:
+        """The levels of the steps that are calculated."""
+        steps = [step.name for step in self._net.design.steps(self.asked.wanted)]
+        used = [f"{name} at {self._levels[name]}" for name in steps if name in self._levels]
+        return f" ({', '.join(used)})" if used else ""
+
+    def _check(self, value: Array, table: Table) -> None:
+        """Refuse a value that has no slope."""
+        if value.ndim > 1:
+            raise self._refused("shape", f"{self.asked.name} is a list; a slope is that of a single number")
+        if not math.isfinite(value[0]):
+            raise self._refused("no_value", self._missing(table))
+
+    def _missing(self, table: Table) -> str:
+        """Why the design itself has no value."""
+        waiting = self._net.design.needs(self.asked.wanted).waiting
+        if waiting:
+            return f"{self.asked.name} waits for {listed(sorted(map(str, waiting)))}"
+        refusal = table.refusals.get(0)
+        return refusal.detail if refusal else f"{self.asked.name} has no value"
+
+    def _refused(self, code: str, detail: str) -> InvalidInputs:
+        return InvalidInputs([Fault(self.asked.name, code, detail)])
+
+    @cached_property
+    def _net(self) -> Net:
+        return Net.of(
+            self.document,
+            self.catalogues,
+            self.places,
+            wanted=self.asked.values,
+            criteria=self.asked.criteria,
+            measured=measures_behind(self.calculation, self.asked.wanted),
+        )
+
+    @cached_property
+    def _levels(self) -> dict[str, str | None]:
+        """The levels that the design used."""
+        blocks = self.calculation.graph.blocks
+        used = {name: evaluation.level for name, evaluation in self.calculation.evaluations.items()}
+        return {name: level for name, level in used.items() if level in blocks[name].cls.levels}
+
+    @cached_property
+    def _points(self) -> Local:
+        at = np.array([self.calculation.value(place) for place in self.places], dtype=float)
+        units = np.array([unit(self._net.unit(place)).factor for place in self.places])
+        return Local(at, STEP * np.where(at == 0, units, np.abs(at)))
+
+    def _item(self, number: int, slopes: Slopes) -> Sensitivity:
+        name, place = str(self.places[number]), float(self._points.at[number])
+        over, under = self.asked.unit(self._net), self._net.unit(self.places[number])
+        slope = slope_in(over, under, float(slopes.slopes[number]))
+        if slope is None:
+            return Sensitivity(name=name, reason="its slope is not finite")
+        elasticity = float(slopes.elasticities[number])
+        has_ratio = place != 0 and math.isfinite(elasticity) and not _is_temperature(over, under)
+        return Sensitivity(name=name, slope=slope, elasticity=elasticity if has_ratio else None)
+
+
+def _one_sided(below: int, above: int, value: Array, table: Table) -> str | None:
+    """Why a slope is missing, or is that of one side of the place."""
+    missing = [row for row in (below, above) if not math.isfinite(value[row])]
+    if not missing:
+        return None
+    refusal = table.refusals.get(missing[0])
+    why = refusal.detail if refusal else "there is no value"
+    where = "on both sides" if missing[1:] else "below" if missing == [below] else "above"
+    return f"{where}: {why}"
+
+
+def _is_temperature(*units: str) -> bool:
+    """Whether any is a unit of temperatures, whose ratios mean nothing; their differences have ratios."""
+    return any(unit(name).base == registry.kelvin and not unit(name).difference for name in units)

@@ -1,0 +1,161 @@
+"""The answer to a question of solving: read, calculated in a process, and written for the interface."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import ConfigDict, Field, StringConstraints
+
+from app.catalogue.catalogues import Catalogues
+from app.designs.calculate import calculate
+from app.designs.document import Document
+from app.designs.graph import build_graph
+from app.designs.judging import judged
+from app.designs.net import Net
+from app.designs.reference import Reference
+from app.designs.solving import DesignRoots, Wanted, roots_of_design
+from app.designs.starting import starts
+from app.designs.tasks import DesignTask
+from app.designs.variants.table import applied
+from app.schemas.answers import Quantity, Shown, Values, Warning
+from app.schemas.bounded import Bounded, at_most
+from app.schemas.criteria import Word
+from app.schemas.evaluations import Jump, TracedCurve
+from app.schemas.solve import DesignRoot, DesignSolution, Target
+from app.schemas.values import Given
+from templates.core.errors import Fault, FaultyText, InvalidInputs
+from templates.core.language.confirming import Root
+from templates.core.language.roots import Jump as FoundJump
+from templates.core.units.quantity import read
+
+_NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}$"
+Named = Annotated[str, StringConstraints(pattern=_NAME)]
+MOST_JUDGED = 8  # roots of which the criteria are judged: each is a calculation of the whole design
+
+
+class SolveDesignIn(Bounded):
+    """Which value of one parameter or input gives a wanted output."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        allow_inf_nan=False,
+        json_schema_extra={
+            "examples": [
+                {
+                    "unknown": "film.diametral_clearance",
+                    "between": ["2 um", "0.5 mm"],
+                    "target": {"film.minimum_film_thickness": "2.5 um"},
+                }
+            ]
+        },
+    )
+
+    unknown: Named = Field(description="a parameter, `step.input` or `model.parameter` that is no relation")
+    between: Annotated[list[Given], Field(min_length=2, max_length=2)] = Field(
+        description="the lowest and the highest value to try"
+    )
+    target: Annotated[dict[Named, Given], Field(min_length=1, max_length=1), at_most(1)] = Field(
+        description="one output and its wanted value"
+    )
+    tolerance: float | None = Field(
+        None, gt=0, lt=1, description="relative error at which solutions are confirmed; that of the design"
+    )
+
+
+def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
+    """Every solution, in SI units.
+
+    Raises
+    ------
+    InvalidInputs
+        With what is wrong with the question or the design.
+    Unreachable
+        If no value between the bounds gives the target.
+    """
+    question = SolveDesignIn.model_validate_json(body)
+    document, catalogues = task.read()
+    unknown = Reference.parse(question.unknown)
+    [(name, raw)] = question.target.items()
+    target = Reference.parse(name)
+    net = Net.of(document, catalogues, [unknown], wanted=[target], pending=True)
+    low, high = (_single(end, net.unit(unknown), "between") for end in question.between)
+    if low >= high:
+        detail = "the first bound must be below the second"
+        raise InvalidInputs([Fault("between", "not_ascending", detail)])
+    value = _single(raw, net.unit(target), f"target.{name}")
+    found = roots_of_design(net, Wanted(unknown, (low, high), target, value, question.tolerance))
+    return _Written(found, document, catalogues).answer(revision)
+
+
+def _single(raw: object, unit: str, name: str) -> float:
+    """One value [SI] as typed."""
+    try:
+        value = read(raw, unit).si
+    except FaultyText as error:
+        raise InvalidInputs([error.fault(name)]) from None
+    if np.ndim(value):
+        raise InvalidInputs([Fault(name, "not_a_number", "one value is wanted here, not an array")])
+    return float(value)
+
+
+class _Written:
+    """What was found, as the interface writes it."""
+
+    def __init__(self, found: DesignRoots, document: Document, catalogues: Catalogues) -> None:
+        self.found, self.document, self.catalogues = found, document, catalogues
+        self.curve = found.scanned
+        self.x, self.y = self.curve.x.unit, self.curve.y.unit
+
+    def answer(self, revision: int) -> DesignSolution:
+        roots, curve = self.found.found, self.found.found.curve
+        left = MOST_JUDGED - len(roots.roots)
+        return DesignSolution(
+            revision=revision,
+            unknown=self.curve.x.name,
+            target=self._target(),
+            roots=[self._root(root, n < MOST_JUDGED) for n, root in enumerate(roots.roots)],
+            touching=[self._root(root, n < left) for n, root in enumerate(roots.touching)],
+            jumps=[self._jump(jump) for jump in roots.jumps],
+            curve=TracedCurve(
+                x=Values(value=curve.x.tolist(), unit=self.x),
+                y=Shown(value=[None if np.isnan(y) else y for y in curve.y.tolist()], unit=self.y),
+                reasons=curve.reasons.tolist(),
+                level=curve.level,
+            ),
+            warnings=[
+                Warning(code=w.code, name=w.name, detail=w.detail)
+                for w in roots.warnings
+                if w.code != "several_solutions"  # `roots` has them, and none is preferred
+            ],
+            levels=dict(self.curve.levels),
+        )
+
+    def _target(self) -> Target:
+        value = float(np.asarray(self.curve.y.scale.from_si(self.curve.wanted)))
+        return Target(name=self.curve.y.name, value=value, unit=self.y)
+
+    def _root(self, root: Root, is_judged: bool) -> DesignRoot:
+        return DesignRoot(
+            value=root.value,
+            unit=self.x,
+            slope=root.slope,
+            level=root.level,
+            error=root.error,
+            confirmed=root.confirmed,
+            verdicts=self._verdicts(root.value) if is_judged else {},
+        )
+
+    def _verdicts(self, value: float) -> dict[str, Word]:
+        """The verdict of every criterion with one value of the unknown; what needs a solid is not checked."""
+        own = applied(self.document, {self.curve.x.name: {"value": value, "unit": self.x}})
+        graph, faults = build_graph(own, self.catalogues)
+        if faults:
+            return {}
+        calculation = calculate(graph, lambda _: None, lambda *_: None, starts(own))
+        return {judgement.name: judgement.verdict for judgement in judged(calculation)}
+
+    def _jump(self, jump: FoundJump) -> Jump:
+        before, after = (Quantity(value=side, unit=self.y) for side in (jump.before, jump.after))
+        return Jump(value=jump.value, unit=self.x, before=before, after=after)

@@ -1,0 +1,140 @@
+"""Solve a design: every value of one parameter or input between two bounds that gives a wanted output.
+
+The curve between the bounds is a few array calls of the whole design, every step at one level. Its crossings
+are confirmed at the levels of the design, or at those that a tolerance asks for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.designs.net import Net, Table
+from app.designs.reference import Reference
+from templates.core.arrays import Array
+from templates.core.errors import Fault, InvalidInputs
+from templates.core.language.meaning import Meaning
+from templates.core.language.roots import Roots, roots_of
+from templates.core.language.scan import Outputs, SampledCurve, evenly
+
+EXPLORED = 0.05
+"""The relative error at which the curve between the bounds is calculated."""
+PROBED = 33  # rows by which levels are chosen
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A value of `target` [SI], by varying `unknown` between two bounds [SI].
+
+    `tolerance` is the relative error at which solutions are confirmed; None: that of the design.
+    """
+
+    unknown: Reference
+    between: tuple[float, float]
+    target: Reference
+    value: float
+    tolerance: float | None = None
+
+
+@dataclass(frozen=True)
+class DesignCurve(SampledCurve):
+    """An output of a design as a function of one of its values, each step at one level."""
+
+    net: Net
+    unknown: Reference
+    target: Reference
+    levels: Mapping[str, str | None]
+
+    @property
+    def level(self) -> str | None:
+        """The level of the step whose output it is."""
+        return self.levels.get(self.target.block)
+
+    @property
+    def chooses(self) -> bool:
+        """No: all levels are fixed."""
+        return False
+
+    @property
+    def rows(self) -> int:
+        """How many samples one call takes: any number, in chunks."""
+        return 1_000_000
+
+    def at_level(self, level: str) -> DesignCurve:
+        """The same curve, with the step whose output it is at one level."""
+        return replace(self, levels={**self.levels, self.target.block: level})
+
+    def level_at(self, x: float) -> str | None:
+        """The level at one value; raises InvalidInputs where the design is refused there."""
+        if refusal := self._table(np.array([x])).refusals.get(0):
+            raise InvalidInputs([Fault(refusal.place, refusal.code, refusal.detail)])
+        return self.level
+
+    def outputs(self, x: Array) -> Outputs:
+        """The output at values of the unknown [SI]."""
+        table = self._table(x)
+        values, error = table.columns[self.target], table.errors.get(self.target)
+        return Outputs(values, self._reasons(table), self.level, error)
+
+    def _table(self, x: Array) -> Table:
+        return self.net({self.unknown: x}, [self.target], levels=self.levels)
+
+    def _reasons(self, table: Table) -> NDArray[np.object_]:
+        reasons: NDArray[np.object_] = np.full(table.count, None, dtype=object)
+        absent = table.absent.get(self.target)
+        reasons[np.isnan(table.columns[self.target])] = absent or "it does not exist here"
+        for row, refusal in table.refusals.items():
+            reasons[row] = f"{refusal.place}: {refusal.detail}"
+        return reasons
+
+
+@dataclass(frozen=True)
+class DesignRoots:
+    """All roots, and the curves on which they were sought and confirmed."""
+
+    found: Roots
+    scanned: DesignCurve
+    requested: DesignCurve
+
+
+def roots_of_design(net: Net, wanted: Wanted) -> DesignRoots:
+    """Every value of the unknown that gives the target.
+
+    Raises
+    ------
+    InvalidInputs
+        If the design is refused at every solution.
+    Unreachable
+        If no value between the bounds gives the target, with the range that is reachable.
+    """
+    cheap, fine = _levels(net, wanted)
+    x, y = (_meaning(net, reference) for reference in (wanted.unknown, wanted.target))
+    scanned = DesignCurve(x, y, wanted.value, net, wanted.unknown, wanted.target, cheap)
+    requested = replace(scanned, levels=fine)
+    return DesignRoots(roots_of(requested, scanned, wanted.between), scanned, requested)
+
+
+def _levels(net: Net, wanted: Wanted) -> tuple[dict[str, str | None], dict[str, str | None]]:
+    """The levels of the curve, and those of its solutions; none of the first is finer than the second."""
+    rows, outputs = {wanted.unknown: evenly(*wanted.between, PROBED)}, [wanted.target]
+    cheap = net.levels_for(rows, outputs, max(EXPLORED, wanted.tolerance or 0.0))
+    if wanted.tolerance is not None:
+        return cheap, net.levels_for(rows, outputs, wanted.tolerance)
+    middle = {wanted.unknown: np.array([rows[wanted.unknown][PROBED // 2]])}
+    fine = net(middle, outputs).levels
+    return {step: _coarser(net, step, level, fine.get(step)) for step, level in cheap.items()}, fine
+
+
+def _coarser(net: Net, step: str, one: str | None, other: str | None) -> str | None:
+    """The cheaper of two levels of a step."""
+    ladder = list(net.graph.blocks[step].cls.levels)
+    known = [level for level in (one, other) if level in ladder]
+    return min(known, key=ladder.index) if known else one
+
+
+def _meaning(net: Net, reference: Reference) -> Meaning:
+    """A name of the design as messages call it, with its declared unit."""
+    return Meaning(words=str(reference), unit=net.unit(reference), name=str(reference))

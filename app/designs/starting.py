@@ -1,0 +1,35 @@
+"""The values with which the iterations of a design begin."""
+
+from __future__ import annotations
+
+from app.designs.analyses import measured_unit
+from app.designs.document import Document
+from app.designs.graph import raise_if
+from app.designs.reference import Reference
+from templates.core.errors import Fault, FaultyText
+from templates.core.units.quantity import Value, read
+
+
+def starts(document: Document) -> dict[Reference, float]:
+    """The SI values with which the iterations of a document begin.
+
+    Raises
+    ------
+    InvalidInputs
+        If a start is no quantity of its measure's kind.
+    """
+    faults, values = list[Fault](), dict[Reference, float]()
+    for iteration in document.iterations:
+        through = Reference.parse(iteration.through)
+        try:
+            values[through] = _single(read(iteration.start, measured_unit(through)).si)
+        except FaultyText as error:
+            faults.append(error.fault("iterations.start"))
+    raise_if(faults)
+    return values
+
+
+def _single(value: Value) -> float:
+    if not isinstance(value, float):
+        raise FaultyText("not_a_number", "one value is wanted here, not an array")
+    return value

@@ -1,0 +1,64 @@
+"""A design as it is sent to a calculation process: its document and the files that its steps are made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+from pydantic_core import from_json
+
+from app.calculations.sources import Source, loaded, source_of
+from app.catalogue.catalogues import Catalogues
+from app.designs.document import Document
+from app.plain import JsonObject
+from app.storage.tables import canonical_json
+from cad.model import CadModel
+from templates.core.catalogue.finding import Catalogue
+from templates.core.language.template import Template
+
+T = TypeVar("T", bound=Template)
+_Sources = tuple[tuple[str, int, Source], ...]
+
+
+@dataclass(frozen=True)
+class DesignTask:
+    """A revision's document with its templates and models; equal designs make equal tasks."""
+
+    document: str
+    templates: _Sources
+    models: _Sources
+
+    @classmethod
+    def of(cls, document: JsonObject, catalogues: Catalogues) -> DesignTask:
+        """The task of a revision's document.
+
+        Raises
+        ------
+        UnknownTemplate
+            The catalogue has no longer what a step or model of the design needs.
+        """
+        read = Document.model_validate(document)
+        steps = {(step.template, _number(step.version)) for step in read.steps.values()}
+        models = {(model.id, _number(model.version)) for model in read.models.values()}
+        templates, shapes = _sources(catalogues.templates, steps), _sources(catalogues.models, models)
+        return cls(canonical_json(document), templates, shapes)
+
+    def read(self) -> tuple[Document, Catalogues]:
+        """The design in this process, and what it is made of."""
+        templates = _catalogue(self.templates, Template, "template")
+        catalogues = Catalogues(templates, _catalogue(self.models, CadModel, "model"))
+        return Document.model_validate(from_json(self.document)), catalogues
+
+
+def _catalogue(sources: _Sources, base: type[T], kind: str) -> Catalogue[T]:
+    classes = {(id, version): loaded(source) for id, version, source in sources}
+    return Catalogue({key: cls for key, cls in classes.items() if issubclass(cls, base)}, kind)
+
+
+def _sources(catalogue: Catalogue[T], wanted: set[tuple[str, int]]) -> _Sources:
+    return tuple((id, number, source_of(catalogue.get(id, number))) for id, number in sorted(wanted))
+
+
+def _number(version: object) -> int:
+    assert isinstance(version, int), "a revision pins every version"
+    return version

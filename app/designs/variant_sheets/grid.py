@@ -1,0 +1,100 @@
+"""The cells of a sheet as texts, with their addresses: `D4` is the fourth column of the fourth row."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from templates.core.errors import Fault, InvalidInputs
+
+LAST_ROW, MOST_COLUMNS, LONGEST_CELL = 1000, 400, 32_000
+MOST_FAULTS = 500
+"""Of one table; nobody reads more."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Cells of a sheet, row by row, without the empty ones at the ends; `faults` are those of its cells."""
+
+    rows: tuple[tuple[str, ...], ...]
+    faults: tuple[Fault, ...] = ()
+
+    def cell(self, row: int, column: int) -> str:
+        """The text of a cell, counted from 0; empty where the sheet has none."""
+        inside = 0 <= row < len(self.rows) and 0 <= column < len(self.rows[row])
+        return self.rows[row][column] if inside else ""
+
+    @property
+    def width(self) -> int:
+        """The length of the longest row."""
+        return max(map(len, self.rows), default=0)
+
+
+def grid_of(rows: Sequence[Sequence[str]], faults: Sequence[Fault] = ()) -> Grid:
+    """A grid of texts, trimmed, with every cell that is too long or lies too far out refused.
+
+    Raises
+    ------
+    InvalidInputs
+        If a cell lies beyond `LAST_ROW` or `MOST_COLUMNS`, is too long, or none has a text.
+    """
+    trimmed = [_trimmed([cell.strip() for cell in row]) for row in rows]
+    while trimmed and not trimmed[-1]:
+        trimmed.pop()
+    if not trimmed:
+        message = "the table is empty; begin with the headings: variant, film.bearing_width, …"
+        raise InvalidInputs([Fault("A1", "empty", message)])
+    _refuse_large(trimmed)
+    return Grid(tuple(map(tuple, trimmed)), tuple(faults))
+
+
+def _trimmed(cells: list[str]) -> list[str]:
+    while cells and not cells[-1]:
+        cells.pop()
+    return cells
+
+
+def _refuse_large(rows: Sequence[Sequence[str]]) -> None:
+    faults = []
+    if len(rows) > LAST_ROW:
+        place, message = address(len(rows) - 1, 0), f"a table of variants ends by row {LAST_ROW}"
+        faults.append(Fault(place, "too_many_rows", f"{message}; remove what stands below"))
+    for number, row in enumerate(rows):
+        if len(row) > MOST_COLUMNS:
+            place, message = address(number, len(row) - 1), f"a table has at most {MOST_COLUMNS} columns"
+            faults.append(Fault(place, "too_many_columns", message))
+        faults += [
+            Fault(address(number, column), "too_long", f"a cell has at most {LONGEST_CELL} characters")
+            for column, cell in enumerate(row)
+            if len(cell) > LONGEST_CELL
+        ]
+    refuse(faults)
+
+
+def refuse(faults: Sequence[Fault]) -> None:
+    """Refuse a table that has faults.
+
+    Raises
+    ------
+    InvalidInputs
+        With up to `MOST_FAULTS` of them.
+    """
+    if faults:
+        raise InvalidInputs(faults[:MOST_FAULTS])
+
+
+def address(row: int, column: int) -> str:
+    """The address of a cell whose row and column are counted from 0: `address(3, 3)` is `D4`."""
+    letters, rest = "", column + 1
+    while rest:
+        rest, place = divmod(rest - 1, 26)
+        letters = chr(ord("A") + place) + letters
+    return f"{letters}{row + 1}"
+
+
+def column_of(letters: str) -> int:
+    """The number of a column, from 0: 0 for `A`, 26 for `AA`."""
+    number = 0
+    for letter in letters:
+        number = 26 * number + ord(letter) - ord("A") + 1
+    return number - 1

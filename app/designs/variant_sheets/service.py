@@ -1,0 +1,64 @@
+"""Sheets of variants: a design's table written as a file, and a file saved as the table of a design."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from app.designs import repository
+from app.designs.graph import build_graph
+from app.designs.service import Designs, Saved, read_document, resolved
+from app.designs.variant_sheets.csv_files import read_csv, write_csv
+from app.designs.variant_sheets.grid import Grid
+from app.designs.variant_sheets.reading import read_variants
+from app.designs.variant_sheets.units import units_of
+from app.designs.variant_sheets.writing import rows_of, sheet_columns
+from app.designs.variant_sheets.xlsx_files import read_xlsx, write_xlsx
+from app.designs.variants.saving import replace_variants
+from app.schemas.variants import VariantsOut
+from app.storage.idempotency import Once
+from templates.core.errors import InvalidInputs
+
+Kind = Literal["csv", "xlsx"]
+
+
+def write_sheet(out: VariantsOut, kind: Kind) -> bytes:
+    """The table of a design's variants as a file."""
+    columns = sheet_columns(out)
+    if kind == "csv":
+        return write_csv(rows_of(columns))
+    return write_xlsx(rows_of(columns), [column.is_result for column in columns], out.name)
+
+
+def read_sheet(content: bytes, kind: Kind) -> Grid:
+    """The cells of a file.
+
+    Raises
+    ------
+    InvalidInputs
+        If the file is none of its kind, or too large.
+    """
+    return read_csv(content) if kind == "csv" else read_xlsx(content)
+
+
+def save_sheet(
+    designs: Designs, id: str, content: bytes, kind: Kind, expected: str | None, once: Once
+) -> Saved:
+    """A new revision whose variants are those of a sheet; a sheet that changes nothing makes none.
+
+    Raises
+    ------
+    StaleRevision
+        If `expected` (an If-Match) is not the newest revision.
+    InvalidInputs
+        With every faulty cell by its address; nothing is saved then.
+    """
+    grid = read_sheet(content, kind)
+    with designs.database.read() as session:
+        _, raw = repository.newest_document(session, id)
+    document = resolved(read_document(raw), designs.catalogues)
+    network, _ = build_graph(document.model_copy(update={"variants": {}}), designs.catalogues)
+    sheet = read_variants(grid, units_of(network), document.variants)
+    try:
+        return replace_variants(designs, id, sheet.variants, None, expected, once)
+    except InvalidInputs as error:
+        raise sheet.named(error) from None

@@ -1,0 +1,34 @@
+"""Every place that a variant may override, with the unit in which it is declared."""
+
+from __future__ import annotations
+
+from app.designs.network import Cell, Network
+from app.designs.reference import Reference
+from app.designs.variant_sheets.reading import Units
+from app.designs.variants.table import places
+from templates.core.errors import FaultyText
+from templates.core.language.spec import Choice
+from templates.core.units.quantity import read_any
+from templates.core.units.relation import is_relation
+
+
+def units_of(network: Network) -> Units:
+    """Units by place; None for a choice, and for a parameter that a relation sets."""
+    return {place: _unit(network, Reference.parse(place)) for place in places(network)}
+
+
+def _unit(network: Network, place: Reference) -> str | None:
+    if place.output is None:
+        return _typed_unit(network.parameters[place.block])
+    declared = network.blocks[place.block].cls.inputs[place.output]
+    return None if isinstance(declared, Choice) else network.unit_of(place)
+
+
+def _typed_unit(cell: Cell) -> str | None:
+    """The unit that a parameter was typed in; a relation has none of its own."""
+    if is_relation(cell.raw) or cell.relations:
+        return None
+    try:
+        return read_any(cell.raw).unit
+    except FaultyText:
+        return None

@@ -1,0 +1,180 @@
+"""XLSX files: the sheet named `variants`, else the first that is not hidden.
+
+The file is a zip archive of XML that a stranger made: the size of its parts is bounded before any is read,
+and a cell that holds a formula, a date or an error is refused by its address.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import zipfile
+from collections.abc import Iterable, Iterator, Sequence
+from datetime import date, time, timedelta
+from typing import Protocol
+
+from openpyxl import Workbook, load_workbook  # type: ignore[import-untyped]
+from openpyxl.styles import Alignment, Font, PatternFill  # type: ignore[import-untyped]
+from openpyxl.utils import get_column_letter  # type: ignore[import-untyped]
+from openpyxl.worksheet.worksheet import Worksheet  # type: ignore[import-untyped]
+
+from app.designs.variant_sheets.grid import LAST_ROW, Grid, address, grid_of
+from app.designs.variant_sheets.values import FORMULA
+from app.presentation.spreadsheets import Value, put, without_illegal
+from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt
+
+SHEET = "variants"
+MOST_BYTES, MOST_UNPACKED, MOST_PARTS = 2_000_000, 4_000_000, 500
+"""Of a file: as it comes, unpacked [bytes], and the files within it."""
+LAST_ROW_OF_ALL = 1_048_576
+NARROWEST, WIDEST = 9, 40  # columns [characters]
+RESULT_FILL, HEAD_ROWS = "E9EDF1", 2
+DAMAGED = "this file cannot be read as XLSX; open it in a spreadsheet and save it again, or send CSV"
+
+
+class _Cell(Protocol):
+    """A cell as openpyxl reads it."""
+
+    @property
+    def value(self) -> object:
+        """A number, a text, a date; None where it is empty."""
+
+    @property
+    def data_type(self) -> str:
+        """`f` for a formula, `e` for an error."""
+
+
+def read_xlsx(content: bytes) -> Grid:
+    """The cells of an XLSX file.
+
+    Raises
+    ------
+    InvalidInputs
+        If the file is too large, damaged, or has no visible sheet.
+    """
+    _check_size(content)
+    try:
+        book = load_workbook(io.BytesIO(content), read_only=True, keep_links=False)
+        rows, faults = _cells(_sheet(book))
+    except InvalidInputs:
+        raise
+    except Exception:  # openpyxl raises whatever a damaged file makes of it
+        raise _wrong("damaged", DAMAGED) from None
+    return grid_of(rows, faults)
+
+
+def _check_size(content: bytes) -> None:
+    """Refuse what would unpack to more than any table of variants needs.
+
+    `zipfile` never unpacks more of a part than the archive says, so that what it says can be added up.
+    """
+    if len(content) > MOST_BYTES:
+        raise _wrong("too_long", f"an XLSX file has at most {MOST_BYTES // 10**6} MB")
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            parts = archive.infolist()
+    except (zipfile.BadZipFile, ValueError, NotImplementedError, EOFError):
+        raise _wrong("damaged", DAMAGED) from None
+    if len(parts) > MOST_PARTS or sum(part.file_size for part in parts) > MOST_UNPACKED:
+        message = f"the file unpacks to more than {MOST_UNPACKED // 10**6} MB or {MOST_PARTS} parts"
+        raise _wrong("too_large", f"{message}; keep the one sheet only")
+
+
+def _sheet(book: Workbook) -> Worksheet:
+    """The sheet to read; hidden ones are passed over."""
+    visible = [sheet for sheet in book.worksheets if sheet.sheet_state == "visible"]
+    if not visible:
+        raise _wrong("no_sheet", "the file has no visible sheet with cells")
+    named = (sheet for sheet in visible if sheet.title.strip().lower() == SHEET)
+    return next(named, visible[0])
+
+
+def _cells(sheet: Worksheet) -> tuple[list[list[str]], list[Fault]]:
+    """The texts of all cells; and the faults of those that hold no value."""
+    sheet.reset_dimensions()  # what the file says of its own size may be wrong
+    rows: list[list[str]] = []
+    faults: list[Fault] = []
+    for number, row in enumerate(_first(sheet.iter_rows(max_row=LAST_ROW_OF_ALL))):
+        texts = []
+        for column, cell in enumerate(row):
+            try:
+                texts.append(_text(cell.value, cell.data_type) if cell.value is not None else "")
+            except FaultyText as error:
+                faults.append(error.fault(address(number, column)))
+                texts.append(str(cell.value)[:60])
+        rows.append(texts)
+    return rows, faults
+
+
+def _first(rows: Iterable[Sequence[_Cell]]) -> Iterator[Sequence[_Cell]]:
+    """Rows up to the last that is allowed; of those below, the first that has a value, which is refused."""
+    for number, row in enumerate(rows):
+        if number < LAST_ROW:
+            yield row
+        elif any(cell.value is not None for cell in row):
+            yield row
+            return
+
+
+def _text(value: object, kind: str) -> str:
+    """A value of a cell as text.
+
+    Raises
+    ------
+    FaultyText
+        If it is a formula, an error, a date or a truth value.
+    """
+    if kind == "f":
+        raise FaultyText("formula", FORMULA)
+    if kind == "e":
+        raise FaultyText("error_value", f"{excerpt(str(value))} is an error of the spreadsheet")
+    if isinstance(value, (date, time, timedelta)):
+        message = "the spreadsheet made a date of this cell; format it as a number, and type it again"
+        raise FaultyText("date", message)
+    if isinstance(value, bool):
+        raise FaultyText("not_a_number", f"{str(value).upper()} is no quantity; write a number")
+    return number_text(value) if isinstance(value, (int, float)) else str(value)
+
+
+def number_text(number: float) -> str:
+    """A number with all its digits, as short as can be: `60`, `0.05`."""
+    if isinstance(number, float) and not math.isfinite(number):
+        raise FaultyText("not_finite", "the value must be finite")
+    whole = isinstance(number, int) or (number.is_integer() and abs(number) < 1e15)
+    return str(int(number)) if whole else repr(number)
+
+
+def write_xlsx(rows: Sequence[Sequence[Value]], results: Sequence[bool], title: str) -> bytes:
+    """Rows as an XLSX file with frozen headings; `results` says which columns hold results."""
+    book = Workbook()
+    book.properties.title, book.properties.creator = without_illegal(title), "Crankwright"
+    sheet = book.active
+    assert isinstance(sheet, Worksheet), "a new workbook has a sheet"
+    sheet.title = SHEET
+    for number, row in enumerate(rows, 1):
+        for place, value in enumerate(row, 1):
+            if value is not None and value != "":
+                put(sheet.cell(number, place), value)
+    for place, is_result in enumerate(results, 1):
+        _style(sheet, place, [row[place - 1] for row in rows], is_result=is_result)
+    sheet.freeze_panes = "B3"
+    stream = io.BytesIO()
+    book.save(stream)
+    return stream.getvalue()
+
+
+def _style(sheet: Worksheet, place: int, cells: Sequence[Value], *, is_result: bool) -> None:
+    """Width, headings and ground of a column."""
+    longest = max((len(str(cell)) for cell in cells if cell is not None), default=0)
+    sheet.column_dimensions[get_column_letter(place)].width = min(max(longest + 2, NARROWEST), WIDEST)
+    for row in range(1, len(cells) + 1):
+        cell = sheet.cell(row, place)
+        if row <= HEAD_ROWS:
+            cell.font = Font(bold=row == 1, italic=row > 1)
+            cell.alignment = Alignment(horizontal="left")
+        if is_result:
+            cell.fill = PatternFill("solid", fgColor=RESULT_FILL)
+
+
+def _wrong(code: str, detail: str) -> InvalidInputs:
+    return InvalidInputs([Fault("file", code, detail)])

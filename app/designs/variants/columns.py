@@ -1,0 +1,67 @@
+"""The columns of a table of variants: every place that at least one of them overrides."""
+
+from __future__ import annotations
+
+from app.catalogue.catalogues import Catalogues
+from app.designs.document import Document
+from app.designs.graph import Graph, build_graph
+from app.designs.network import Cell
+from app.designs.reference import Reference
+from app.designs.variants.outcome import base_unit
+from app.designs.variants.table import places
+from app.plain import JsonObject
+from app.schemas.answers import Shown
+from app.schemas.variants import VariantColumn
+from templates.core.errors import FaultyText
+from templates.core.language.intake import Input
+from templates.core.language.spec import Choice
+from templates.core.units.quantity import Typed, read, read_any
+
+
+def columns(plain: JsonObject, catalogues: Catalogues) -> list[VariantColumn]:
+    """The columns of a stored document: its parameters first, then steps and models, each as declared."""
+    if not plain.get("variants"):
+        return []
+    document = Document.model_validate(plain)
+    graph, _ = build_graph(document, catalogues)
+    used = {place: None for overrides in document.variants.values() for place in overrides}
+    ordered = dict.fromkeys([*(place for place in places(graph) if place in used), *used])
+    return [_column(place, graph) for place in ordered]
+
+
+def _column(place: str, graph: Graph) -> VariantColumn:
+    reference = Reference.parse(place)
+    cell = graph.cell(reference)
+    block = graph.blocks.get(reference.block)
+    declared = block.cls.inputs.get(reference.output or "") if block else None
+    words = declared.meaning.words if declared else place.replace("_", " ")
+    heading = words if reference.output is None else f"{reference.block}: {words}"
+    more = {"unit": _unit(place, cell, declared, graph), "nominal": _nominal(cell)}
+    known = {name: part for name, part in more.items() if part is not None}
+    return VariantColumn.model_validate({"place": place, "words": heading, **known})
+
+
+def _unit(place: str, cell: Cell | None, declared: Input | None, graph: Graph) -> str | None:
+    """The unit of a column: as declared, of a parameter as the design has typed it; None of a choice."""
+    if declared is not None:
+        return None if isinstance(declared, Choice) else declared.meaning.unit
+    if cell is not None and not cell.relations and (typed := _typed(cell)):
+        return typed.unit
+    return base_unit(graph, place) if place in graph.kinds else None
+
+
+def _nominal(cell: Cell | None) -> Shown | None:
+    """The design's own value, as typed; None where it is a relation, or not set."""
+    if cell is None or cell.relations:
+        return None
+    if isinstance(cell.declared, Choice):
+        return Shown(value=cell.raw)
+    typed = _typed(cell)
+    return Shown(value=typed.value, unit=typed.unit) if typed else None
+
+
+def _typed(cell: Cell) -> Typed | None:
+    try:
+        return read(cell.raw, cell.declared.meaning.unit) if cell.declared else read_any(cell.raw)
+    except FaultyText:  # an older program took it
+        return None

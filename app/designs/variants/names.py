@@ -1,0 +1,30 @@
+"""What variants and the places that they override are called, and the order of their names."""
+
+from __future__ import annotations
+
+import re
+
+BASE = "base"
+"""The design without any override; no variant has this name."""
+
+MOST_VARIANTS = 200
+MOST_OVERRIDES = 10_000  # values that all variants of a design override together
+PLACE = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63})?$"
+"""A parameter of the design, an input of a step, or a parameter of a model: `film.bearing_width`."""
+
+_PART = re.compile(r"[0-9]+|[^0-9]+")
+
+NaturalKey = tuple[tuple[tuple[int, int, str], ...], str]
+
+
+def natural(name: str) -> NaturalKey:
+    """The key by which names are sorted as people count: main_2 before main_10."""
+    parts = (
+        (0, int(part), "") if part[0].isdigit() else (1, 0, part.lower()) for part in _PART.findall(name)
+    )
+    return tuple(parts), name
+
+
+def dotted(variant: str, model: str) -> str:
+    """The name of a variant's model among the models of a revision; a model of the design has no dot."""
+    return f"{variant}.{model}"

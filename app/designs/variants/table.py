@@ -1,0 +1,111 @@
+"""A design with the overrides of one variant applied, and the faults of a table of variants."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import chain
+
+from app.designs.document import Document, Model, Step
+from app.designs.network import Graph, Network
+from app.designs.reference import Reference
+from app.designs.variants.names import BASE
+from app.plain import Raw
+from templates.core.errors import Fault, FaultyText, unknown_names
+from templates.core.units.quantity import read, read_any
+from templates.core.units.relation import is_relation
+
+Overrides = Mapping[str, Raw]
+"""Values of one variant by their places."""
+
+RESERVED = f"{BASE!r} is the design itself; give the variant another name, such as main_1"
+
+
+def applied(document: Document, overrides: Overrides) -> Document:
+    """The document as one variant has it, without variants of its own; nothing of the original changes."""
+    parameters = dict(document.parameters)
+    inside: dict[str, dict[str, Raw]] = {}
+    for place, value in overrides.items():
+        reference = Reference.parse(place)
+        if reference.output is None:
+            parameters[place] = value
+        else:
+            inside.setdefault(reference.block, {})[reference.output] = value
+    steps = {name: _step(step, inside.get(name)) for name, step in document.steps.items()}
+    models = {name: _model(model, inside.get(name)) for name, model in document.models.items()}
+    changes = {"parameters": parameters, "steps": steps, "models": models, "variants": {}}
+    return document.model_copy(update=changes)
+
+
+def _step(step: Step, values: Overrides | None) -> Step:
+    return step.model_copy(update={"inputs": {**step.inputs, **values}}) if values else step
+
+
+def _model(model: Model, values: Overrides | None) -> Model:
+    return model.model_copy(update={"parameters": {**model.parameters, **values}}) if values else model
+
+
+def place_name(variant: str, place: str) -> str:
+    """Where a cell of the table stands, in faults: `variants.main_2.clearance`."""
+    return f"variants.{variant}.{place}"
+
+
+Cells = Mapping[tuple[str, str], Fault]
+"""What is wrong with cells of the table, by variant and place; a place is empty for a whole variant."""
+
+
+def faulty_cells(document: Document, graph: Graph) -> Cells:
+    """A reserved name, places that the design does not have, and parameters of another kind than its own."""
+    faults: dict[tuple[str, str], Fault] = {}
+    if BASE in document.variants:
+        faults[BASE, ""] = Fault(f"variants.{BASE}", "reserved", RESERVED)
+    unknown: list[tuple[str, str]] = []
+    for variant, overrides in document.variants.items():
+        for place, value in overrides.items():
+            if not is_place(graph, place):
+                unknown.append((variant, place))
+            elif fault := _other_kind(graph, variant, place, value):
+                faults[variant, place] = fault
+    if unknown:
+        details = unknown_names((place for _, place in unknown), list(places(graph)), "parameter or input")
+        for cell, detail in zip(unknown, details, strict=True):
+            faults[cell] = Fault(place_name(*cell), detail.code, detail.detail)
+    return faults
+
+
+def _other_kind(graph: Graph, variant: str, place: str, value: Raw) -> Fault | None:
+    """A fault if a parameter is given in a unit of another kind than that of the design."""
+    cell, kind = graph.parameters.get(place), graph.kinds.get(place)
+    if cell is None or kind is None or is_relation(value) or isinstance(value, list):
+        return None
+    try:
+        read(value, f"{kind.base:~C}" or "1" if cell.relations else read_any(cell.raw).unit)
+    except FaultyText as error:
+        return error.fault(place_name(variant, place))
+    return None
+
+
+def sound(document: Document, faults: Cells) -> Document:
+    """The document without its faulty cells, so that all other faults are found too."""
+    variants = {
+        name: {place: value for place, value in overrides.items() if (name, place) not in faults}
+        for name, overrides in document.variants.items()
+        if name != BASE
+    }
+    return document.model_copy(update={"variants": variants})
+
+
+def is_place(network: Network, place: str) -> bool:
+    """Whether a variant may override a place: a parameter, an input of a step, a parameter of a model."""
+    reference = Reference.parse(place)
+    if reference.output is None:
+        return reference.block in network.parameters
+    block = network.blocks.get(reference.block)
+    return block is not None and reference.analysis is None and reference.output in block.cls.inputs
+
+
+def places(network: Network) -> Iterator[str]:
+    """Every place that a variant may override."""
+    yield from network.parameters
+    yield from chain.from_iterable(
+        (f"{block.name}.{name}" for name in block.cls.inputs) for block in network.blocks.values()
+    )

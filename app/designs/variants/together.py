@@ -1,0 +1,153 @@
+"""Variants calculated together: every step once for all of them, in array calls at one level.
+
+Cells are calculated variant by variant, as in designs of their own. At a step, those variants that give it
+the same inputs, of the same shapes and with the same choices, share one array call; each then has its row of
+the result, and goes on with it. What an array call refuses, or masks, is calculated alone: the refusal then
+speaks of that variant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from app.catalogue.catalogues import Catalogues
+from app.designs.calculate import calculate_nodes
+from app.designs.calculation import Analysed, Calculation, Measured
+from app.designs.document import Document
+from app.designs.graph import build_graph
+from app.designs.network import Block, Node
+from app.designs.size import MOST_OPERATIONS
+from app.designs.starting import starts
+from app.designs.variants.outcome import Outcome, outcome_of, refused, units_of
+from app.designs.variants.sharing import Asking, evaluations
+from app.designs.variants.table import applied
+from templates.core.errors import Fault, InvalidInputs
+
+TOO_MUCH = (
+    f"the relations of all variants make more than {MOST_OPERATIONS} operations on single values; "
+    "use shorter arrays, or fewer variants"
+)
+ROW_ARRAYS = "{} is calculated at several points; a design with variants gives it single values and curves"
+
+
+@dataclass(frozen=True)
+class Available:
+    """What a calculation can count on: the catalogues, and what is known of solids."""
+
+    catalogues: Catalogues
+    measured: Measured
+    analysed: Analysed
+
+
+@dataclass
+class _Run:
+    """One variant on its way through its network."""
+
+    name: str
+    places: Mapping[str, str]  # that it overrides, with the units of parameters
+    document: Document
+    calculation: Calculation
+    left: Iterator[Node]
+    at: Block | None = field(default=None)  # the step that comes next
+
+    def advance(self, available: Available) -> None:
+        """Calculate everything up to the next step."""
+        if self.at is not None:
+            self._calculate(self.at, available)
+        self.at = None
+        for node in self.left:
+            if isinstance(node, Block) and not node.is_model:
+                self.at = node
+                return
+            self._calculate(node, available)
+
+    def _calculate(self, node: Node, available: Available) -> None:
+        calculate_nodes(self.calculation, [node], available.measured, available.analysed)
+
+    def stop(self) -> None:
+        """Calculate no more: all variants together ask for too much."""
+        self.at, self.left = None, iter(())
+        self.calculation.faults.append(Fault("relations", "too_many_values", TOO_MUCH))
+
+    def outcome(self) -> Outcome:
+        """What it came to."""
+        if wrong := row_arrays(self.calculation):
+            return refused(self.name, wrong)
+        return outcome_of(self.name, self.places, self.document, self.calculation)
+
+
+def together(document: Document, available: Available) -> list[Outcome]:
+    """Every variant of a document, as far as it can be calculated now."""
+    begun = {name: _begun(document, name, available) for name in document.variants}
+    runs = [run for run in begun.values() if isinstance(run, _Run)]
+    for run in runs:
+        run.advance(available)
+    _limit(runs)
+    while waiting := [run for run in runs if run.at is not None]:
+        for group in _by_step(waiting):
+            _share(group)
+            for run in group:
+                run.advance(available)
+        _limit(runs)
+    return [run.outcome() if isinstance(run, _Run) else run for run in begun.values()]
+
+
+def _limit(runs: Sequence[_Run]) -> None:
+    """Stop all variants once their relations together have calculated more than those of a design may."""
+    if sum(run.calculation.operations for run in runs) > MOST_OPERATIONS:
+        for run in runs:
+            run.stop()
+
+
+def _begun(document: Document, name: str, available: Available) -> _Run | Outcome:
+    """A variant before anything of it is calculated, or what is wrong with its network."""
+    overrides = document.variants[name]
+    own = applied(document, overrides)
+    graph, faults = build_graph(own, available.catalogues)
+    if faults:
+        return refused(name, faults)
+    try:
+        assumed = starts(own)
+    except InvalidInputs as error:
+        return refused(name, error.faults)
+    places = units_of(document, overrides)
+    return _Run(name, places, own, Calculation(graph, assumed), iter(graph.order))
+
+
+def _by_step(runs: Sequence[_Run]) -> list[list[_Run]]:
+    """The variants that are at the first step at which any is; the others wait, to be joined there."""
+    steps: dict[str, list[_Run]] = {}
+    for run in runs:
+        assert run.at is not None, "it waits at a step"
+        steps.setdefault(run.at.name, []).append(run)
+    return [max(steps.values(), key=len)]
+
+
+def _share(runs: Sequence[_Run]) -> None:
+    """Leave the evaluation of a step with each variant that can have it from an array call."""
+    asking = {run.name: asked for run in runs if (asked := _asking(run)) is not None}
+    shared = evaluations(list(asking.values()))
+    for name, evaluation in zip(asking, shared, strict=True):
+        if evaluation is not None:
+            run = next(run for run in runs if run.name == name)
+            run.calculation.prepared[asking[name].block.name] = evaluation
+
+
+def _asking(run: _Run) -> Asking | None:
+    """What a step is asked by a variant; None while an input waits for a solid, or is faulty."""
+    block, calculation = run.at, run.calculation
+    assert block is not None, "it waits at a step"
+    unknown = calculation.pending | calculation.broken
+    if not unknown.isdisjoint(block.cells.values()):
+        return None
+    raw = {name: calculation.typed.get(cell.name, cell.raw) for name, cell in block.cells.items()}
+    return Asking(block, raw, calculation.graph)
+
+
+def row_arrays(calculation: Calculation) -> Sequence[Fault]:
+    """A fault for every step that is calculated at several points at once."""
+    points = {
+        name: evaluation.template.shape_of_points() for name, evaluation in calculation.evaluations.items()
+    }
+    return [Fault(name, "shape", ROW_ARRAYS.format(name)) for name, shape in points.items() if shape]

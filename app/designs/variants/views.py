@@ -1,0 +1,166 @@
+"""The variants of a revision as the REST interface shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+
+from sqlalchemy.orm import Session
+
+from app.catalogue.catalogues import Catalogues
+from app.designs import repository
+from app.designs.variants.columns import columns
+from app.designs.variants.names import BASE, natural
+from app.plain import Json, JsonObject
+from app.schemas.variants import (
+    Governing,
+    ModelState,
+    VariantModel,
+    VariantResult,
+    VariantsOut,
+    VariantState,
+)
+from app.solids import measures, rows
+from app.storage.tables import BuildRow, RevisionModelRow, RevisionRow
+from templates.core.errors import InvalidInputs, unknown_names
+from templates.core.judging.comparison import WORST_FIRST
+
+
+def variants(
+    session: Session,
+    id: str,
+    number: int | None,
+    catalogues: Catalogues,
+    outputs: Collection[str] = (),
+) -> VariantsOut:
+    """The variants of a design's revision, the newest if none is named; with those outputs.
+
+    Raises
+    ------
+    InvalidInputs
+        If an output is unknown.
+    NotFound
+        If there is no such design or revision.
+    """
+    design = repository.design(session, id) if number is None else None
+    row = repository.revision(session, id, design.head if design else number or 0)
+    table = _Table.of(session, row)
+    _require_known(outputs, table.stored)
+    names = sorted(row.document.get("variants", {}), key=natural)
+    results = [table.row(name, outputs) for name in names]
+    base = table.row(BASE, outputs) if BASE in table.stored else None
+    everybody = [*([base] if base else []), *results]
+    worst = _governing(everybody)
+    parts: JsonObject = {"base": base, "by_criterion": worst or None, "problem": row.problem}
+    checked = [one for one in worst.values() if one.verdict != "not_checked"]
+    parts["governing"] = min(checked, key=_rank_of_governing, default=None)
+    return VariantsOut(
+        design=row.design_id,
+        name=row.document["name"],
+        revision=row.number,
+        state=row.state,
+        variants={name: row.document["variants"][name] for name in names},
+        columns=columns(row.document, catalogues),
+        rows=results,
+        **{name: part for name, part in parts.items() if part is not None},
+    )
+
+
+def _require_known(outputs: Collection[str], stored: Mapping[str, JsonObject]) -> None:
+    known = dict.fromkeys(name for one in stored.values() for name in one.get("outputs", {}))
+    unknown = [name for name in outputs if name not in known] if stored else []
+    if unknown:
+        raise InvalidInputs(fault.within("outputs") for fault in unknown_names(unknown, known, "output"))
+
+
+@dataclass(frozen=True)
+class _Table:
+    """One revision with all that its variants refer to."""
+
+    revision: RevisionRow
+    stored: Mapping[str, JsonObject]  # results by variant, those of the design under `base`
+    models: Mapping[str, list[RevisionModelRow]]  # by variant
+    builds: Mapping[str, BuildRow]
+    artifacts: Mapping[str, Mapping[str, str]]  # by build
+
+    @classmethod
+    def of(cls, session: Session, row: RevisionRow) -> _Table:
+        models: dict[str, list[RevisionModelRow]] = {BASE: list(row.models)}
+        for model in row.variant_models:
+            models.setdefault(model.name.partition(".")[0], []).append(model)
+        keys = {model.build_key for group in models.values() for model in group if model.build_key}
+        stored = (row.results or {}).get("variants", {})
+        return cls(row, stored, models, rows.builds(session, keys), rows.artifacts_of(session, keys))
+
+    def row(self, name: str, outputs: Collection[str]) -> VariantResult:
+        """One variant; what does not apply is left out."""
+        result = self.stored.get(name, {})
+        models = {
+            model.name.removeprefix(f"{name}."): self._model(model, result.get("failures", {}))
+            for model in self.models.get(name, ())
+        }
+        parts: JsonObject = {
+            **{part: result[part] for part in ("criteria", "verdict", "problem") if part in result},
+            **({"outputs": dict(_chosen(result, outputs))} if outputs else {}),
+        }
+        return VariantResult.model_validate(
+            {
+                "name": name,
+                "state": self._state(result, models),
+                "values": result.get("values", {}),
+                "models": models,
+                **parts,
+            }
+        )
+
+    def _state(self, result: JsonObject, models: Mapping[str, VariantModel]) -> VariantState:
+        if self.revision.state == "regenerating":
+            return "regenerating"
+        failed = "problem" in result or any(model.state == "failed" for model in models.values())
+        return "failed" if failed or self.revision.state == "failed" else "current"
+
+    def _model(self, row: RevisionModelRow, failures: Mapping[str, Json]) -> VariantModel:
+        build = self.builds.get(row.build_key or "")
+        problem = failures.get(row.name.rpartition(".")[2])
+        parts: JsonObject = {"problem": problem} if problem else {}
+        if build is not None:
+            parts["measurements"] = measures.measurements(**build.measurements).plain()
+        return VariantModel.model_validate(
+            {
+                "build": row.build_key,
+                "state": self._model_state(row, is_built=build is not None),
+                "parameters": row.parameters,
+                "artifacts": self.artifacts.get(row.build_key or "", {}),
+                **parts,
+            }
+        )
+
+    def _model_state(self, row: RevisionModelRow, *, is_built: bool) -> ModelState:
+        if is_built:
+            return "current"
+        if self.revision.state == "regenerating":
+            return "regenerating"
+        return "incomplete" if row.build_key is None and self.revision.state == "current" else "failed"
+
+
+def _chosen(result: JsonObject, outputs: Collection[str]) -> Iterator[tuple[str, Json]]:
+    stored = result.get("outputs", {})
+    yield from ((name, stored[name]) for name in outputs if name in stored)
+
+
+def _governing(results: Collection[VariantResult]) -> dict[str, Governing]:
+    """The worst variant of each criterion; the first of those that are equal."""
+    worst: dict[str, Governing] = {}
+    for result in results:
+        for criterion in result.criteria:
+            more = {} if criterion.utilisation is None else {"utilisation": criterion.utilisation}
+            one = Governing(variant=result.name, criterion=criterion.name, verdict=criterion.verdict, **more)
+            known = worst.get(criterion.name)
+            if known is None or _rank_of_governing(one) < _rank_of_governing(known):
+                worst[criterion.name] = one
+    return worst
+
+
+def _rank_of_governing(one: Governing) -> tuple[int, float]:
+    """Worst first, as criteria are ordered."""
+    return WORST_FIRST.index(one.verdict), -(one.utilisation or 0.0)

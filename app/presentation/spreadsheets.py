@@ -1,0 +1,34 @@
+"""Texts in spreadsheets: what a program could take for a formula is stored so that it stays a text."""
+
+from __future__ import annotations
+
+from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE, Cell  # type: ignore[import-untyped]
+
+XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
+"""The media type of a sheet."""
+DANGEROUS = ("=", "+", "-", "@", "\t", "\r")
+LONGEST_CELL = 32_000
+
+Value = float | int | str | None
+
+
+def harmless(value: Value) -> Value:
+    """A value for a cell of a CSV file: a text that looks like a formula gets a leading apostrophe."""
+    return f"'{value}" if isinstance(value, str) and value.startswith(DANGEROUS) else value
+
+
+def put(cell: object, value: Value) -> None:
+    """Write a value into a cell of an XLSX file: a number as a number, a text as a text."""
+    assert isinstance(cell, Cell), "no cells are merged"
+    if not isinstance(value, str):
+        cell.value = value
+        return
+    cell.value = without_illegal(value)
+    cell.data_type = "s"  # a text, whatever it begins with
+    if value.startswith(DANGEROUS):
+        cell.quotePrefix = True
+
+
+def without_illegal(text: str) -> str:
+    """A text without the control characters that XLSX cannot hold, at most `LONGEST_CELL` long."""
+    return str(ILLEGAL_CHARACTERS_RE.sub("", text))[:LONGEST_CELL]

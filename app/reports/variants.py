@@ -1,0 +1,137 @@
+"""The variants of a design in its report: the one that governs first, then inputs, verdicts and solids."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from app.designs.variants.names import BASE
+from app.presentation import numbers
+from app.presentation.criteria import Line, line, tone
+from app.reports.cells import clean
+from app.reports.content import Columns, File, Judged, Solid, VariantLine, Variants
+from app.reports.verdict import governing_sentence, row_of
+from app.schemas.criteria import Criterion
+from app.schemas.variants import VariantResult, VariantsOut
+
+MOST_COLUMNS = 6  # of one table on paper, beside the names
+PICTURE = "png"
+SIGNS = {"met": "met", "not_met": "NOT MET", "undecided": "undecided", "not_checked": "not checked"}
+
+
+def variants_of(out: VariantsOut, *, pending: bool) -> Variants:
+    """What a report says of all variants; `pending` if their pictures are still being made."""
+    rows = _worst_first(out)
+    first = next((row for row in rows if out.governing and row.name == out.governing.variant), None)
+    return Variants(
+        governing=_sentence(first),
+        judged=_judged(first) if first else None,
+        lines=[_line(row, out) for row in rows],
+        inputs=[*_parts(_inputs(out, rows), rows)],
+        used=[*_parts(_used(rows), rows)],
+        solids=_solids(rows, pending=pending),
+    )
+
+
+def _worst_first(out: VariantsOut) -> list[VariantResult]:
+    """The variants in their order, the one that governs before them."""
+    rows = [*([out.base] if out.base else []), *out.rows]
+    governs = out.governing.variant if out.governing else ""
+    return sorted(rows, key=lambda row: row.name != governs)
+
+
+def _called(row: VariantResult) -> str:
+    return "design itself" if row.name == BASE else row.name
+
+
+def _sentence(first: VariantResult | None) -> str:
+    """Which variant governs, and by what."""
+    criterion = _governing(first)
+    if first is None or criterion is None:
+        return ""
+    which = "the design itself" if first.name == BASE else f"variant {first.name}"
+    return clean(f"{which} governs; {governing_sentence(line(criterion))}")
+
+
+def _governing(row: VariantResult | None) -> Criterion | None:
+    name = row.verdict.governing if row and row.verdict else None
+    return next((one for one in row.criteria if one.name == name), None) if row else None
+
+
+def _judged(row: VariantResult) -> Judged | None:
+    if row.verdict is None:
+        return None
+    criteria = [row_of(line(one), one) for one in row.criteria]
+    return Judged(row.verdict.headline, tone(row.verdict), "", criteria)
+
+
+def _line(row: VariantResult, out: VariantsOut) -> VariantLine:
+    criterion = _governing(row)
+    shown = line(criterion) if criterion else None
+    return VariantLine(
+        name=_called(row),
+        governs=out.governing is not None and out.governing.variant == row.name,
+        verdict=row.verdict.verdict if row.verdict else "",
+        headline=row.verdict.headline if row.verdict else "",
+        governing=clean(f"{_title(shown)} {shown.compared}") if shown else "",
+        used=shown.used if shown else "",
+        problem=clean(row.problem.detail) if row.problem else "",
+    )
+
+
+def _title(shown: Line) -> str:
+    return f"{shown.step}: {shown.title}" if shown.step else shown.title
+
+
+Column = tuple[str, list[str]]  # heading, and a text for each variant
+
+
+def _inputs(out: VariantsOut, rows: Sequence[VariantResult]) -> list[Column]:
+    """Every place in which variants differ; the design's own value in brackets."""
+    columns = []
+    for about in out.columns:
+        own = f"({numbers.told(about.nominal)})" if about.nominal else ""
+        texts = [numbers.told(row.values[about.place]) if about.place in row.values else own for row in rows]
+        columns.append((clean(about.words), [clean(text) for text in texts]))
+    return columns
+
+
+def _used(rows: Sequence[VariantResult]) -> list[Column]:
+    """Verdict and utilisation of every criterion."""
+    names = dict.fromkeys(one.name for row in rows for one in row.criteria)
+    columns = []
+    for name in names:
+        judged = [next((one for one in row.criteria if one.name == name), None) for row in rows]
+        shown = [line(one) if one else None for one in judged]
+        title = next(_title(one) for one in shown if one)
+        columns.append((clean(title), [_share(one) for one in shown]))
+    return columns
+
+
+def _share(shown: Line | None) -> str:
+    return f"{SIGNS[shown.verdict]} {shown.used}".strip() if shown else ""
+
+
+def _parts(columns: Sequence[Column], rows: Sequence[VariantResult]) -> Iterable[Columns]:
+    """Tables that are as wide as paper, each with the names of the variants."""
+    for start in range(0, len(columns), MOST_COLUMNS):
+        part = columns[start : start + MOST_COLUMNS]
+        texts = [[_called(row), *(column[1][at] for column in part)] for at, row in enumerate(rows)]
+        yield Columns(["Variant", *(heading for heading, _ in part)], texts)
+
+
+def _solids(rows: Sequence[VariantResult], *, pending: bool) -> list[Solid]:
+    """Every distinct solid once, with the variants that share it."""
+    shared: dict[tuple[str, str], list[VariantResult]] = {}
+    for row in rows:
+        for name, model in row.models.items():
+            if model.build:
+                shared.setdefault((name, model.build), []).append(row)
+    return [_solid(name, build, those, pending) for (name, build), those in shared.items()]
+
+
+def _solid(name: str, build: str, those: Sequence[VariantResult], pending: bool) -> Solid:
+    sha = those[0].models[name].artifacts.get(PICTURE)
+    words = f"{name} of {', '.join(_called(row) for row in those)}"
+    missing = "its picture was still being made" if pending else "no picture could be made of it"
+    file = File(PICTURE, sha) if sha else None
+    return Solid(f"{name}-{build[:16]}", clean(words), file, "" if file else missing)

@@ -1,0 +1,154 @@
+"""Studies and their rows as the interface shows them."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from pydantic import Field
+
+from app.presentation.units import System, shown_unit, shown_value
+from app.schemas.answers import Answer, Page, Quantity
+from app.schemas.criteria import Word
+from app.schemas.problems import Problem
+
+Method = Literal["grid", "table", "sample", "sensitivity", "optimise"]
+StudyState = Literal["queued", "running", "done", "failed", "cancelled"]
+
+
+class Estimate(Answer):
+    """What a study will take, as known before it begins."""
+
+    seconds: float = Field(description="of one calculation process; an order of magnitude")
+    solids: int = Field(0, description="that have to be built")
+
+
+class Refused(Answer):
+    """Rows without values."""
+
+    count: int
+    reasons: dict[str, int] = Field(description="how many rows, by `place: code`; the most frequent ones")
+
+
+class StudyRow(Answer):
+    """One row: the values of its places and its outputs, in the units that the page names."""
+
+    row: int = Field(description="its number, from 0")
+    values: dict[str, float | None] = Field(description="places and outputs; null where there is no value")
+    errors: dict[str, float] = Field({}, description="relative, of outputs whose level states one")
+    verdicts: dict[str, Word] = Field({}, description="by criterion")
+    verdict: Word | None = Field(None, description="the worst of them")
+    level: dict[str, str] = Field({}, description="of fidelity, by step")
+    confirmed: bool = Field(False, description="whether it was calculated again at finer levels")
+    reason: str | None = Field(None, description="why it has no values")
+
+
+class Units(Answer):
+    """Numbers by name, each with a unit that the system of units replaces."""
+
+    units: dict[str, str] = Field(description="of every place and output")
+
+    def _converted(self, row: StudyRow, system: System) -> StudyRow:
+        values = {n: shown_value(v, self.units[n], system) for n, v in row.values.items()}
+        return row.model_copy(update={"values": values})
+
+    def _units(self, system: System) -> dict[str, str]:
+        return {name: shown_unit(unit, system) for name, unit in self.units.items()}
+
+
+class StudyRows(Units, Page[StudyRow]):
+    """A page of rows."""
+
+    count: int | None = Field(None, description="of all rows that fit the filter, where it was counted")
+
+    def in_units(self, system: System) -> Self:
+        """The rows in a system of units."""
+        if system == "si":
+            return self
+        items = [self._converted(row, system) for row in self.items]
+        return self.model_copy(update={"items": items, "units": self._units(system)})
+
+
+class Trade(Answer):
+    """What one level of fidelity promises, and what is true of it."""
+
+    level: dict[str, str] = Field(description="by step")
+    at: dict[str, Quantity] = Field(description="where its optimum lies")
+    promise: dict[str, Quantity]
+    confirmed: dict[str, Quantity] = Field({}, description="at the levels of `confirm`")
+    verdicts: dict[str, Word] = Field({}, description="as confirmed")
+    rows: int = Field(description="that were calculated")
+    seconds: float = Field(description="estimated")
+
+
+class Best(Answer):
+    """A row that was found to be the best, or one of the front."""
+
+    row: int
+    at: dict[str, Quantity]
+    outputs: dict[str, Quantity]
+    verdicts: dict[str, Word] = {}
+    verdict: Word | None = None
+    confirmed: bool = False
+
+
+class Index(Answer):
+    """How much an output follows from a place; what the kind does not tell is absent."""
+
+    slope: Quantity | None = Field(None, description="change of the output by that of the place")
+    elasticity: float | None = Field(None, description="relative change by relative change")
+    mu_star: Quantity | None = Field(None, description="Morris: mean size of the effect of its whole range")
+    sigma: Quantity | None = Field(None, description="Morris: how much that differs from place to place")
+    first: float | None = Field(None, description="Sobol': share of the variance by itself")
+    first_error: float | None = None
+    total: float | None = Field(None, description="Sobol': share with all interactions")
+    total_error: float | None = None
+
+
+class StudyResult(Answer):
+    """What the method found."""
+
+    best: Best | None = None
+    front: list[Best] | None = Field(None, description="none is better in all objectives")
+    indices: dict[str, dict[str, Index]] | None = Field(None, description="by output, by place")
+    trade: list[Trade] | None = None
+    settled: bool | None = Field(None, description="whether promise and confirmed value agree")
+    global_: str | None = Field(None, alias="global", description="`not proven`: of every search")
+    share: float | None = Field(None, description="of the rows that meet all criteria")
+    design: str | None = Field(None, description="the new design, whose variants are the rows to build")
+    notes: list[str] = []
+
+
+class Study(Units):
+    """A study."""
+
+    id: str
+    design: str
+    revision: int
+    method: Method
+    state: StudyState
+    seed: int
+    progress: float = Field(ge=0, le=1)
+    rows: int = Field(description="planned")
+    done: int = Field(description="rows that were calculated")
+    refused: Refused
+    varied: list[str]
+    outputs: list[str]
+    criteria: list[str]
+    levels: dict[str, str] = Field(description="at which rows are explored, by step")
+    estimate: Estimate
+    result: StudyResult | None = None
+    problem: Problem | None = None
+    job: str | None = Field(None, description="path of the job that works on it")
+    created: str
+    changed: str
+
+    def in_units(self, system: System) -> Self:
+        """The study in a system of units."""
+        if system == "si":
+            return self
+        converted = super().in_units(system)
+        return converted.model_copy(update={"units": self._units(system)})
+
+
+class StudyList(Page[Study]):
+    """A page of studies, newest first."""

@@ -1,0 +1,1 @@
+"""Studies: many rows of one design, calculated in chunks that survive a crash, read and chosen from."""

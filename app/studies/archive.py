@@ -1,0 +1,86 @@
+"""Arrays as bytes: an `.npz` whose bytes follow from its contents alone, whatever the date."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+from numpy.lib import format as npy
+from numpy.typing import NDArray
+
+from app.plain import JsonObject
+from app.storage.tables import canonical_json
+from app.workers.pieces import Pieces
+
+AnyArray = NDArray[np.generic]
+_DATE = (1980, 1, 1, 0, 0, 0)  # the first that a ZIP file can name
+_ABOUT = "about"
+
+
+def packed(arrays: Mapping[str, AnyArray], about: JsonObject | None = None) -> Pieces:
+    """The bytes of an archive of arrays, and a JSON object beside them; equal contents, equal bytes."""
+    stream = io.BytesIO()
+    write(stream, arrays, about)
+    return Pieces.of(stream.getvalue())
+
+
+def write(stream: IO[bytes], arrays: Mapping[str, AnyArray], about: JsonObject | None = None) -> None:
+    """Write such an archive into a file."""
+    write_each(stream, ((name, arrays[name]) for name in sorted(arrays)), about)
+
+
+def write_each(
+    stream: IO[bytes], arrays: Iterable[tuple[str, AnyArray]], about: JsonObject | None = None
+) -> None:
+    """Write such an archive, one array after another, so that not all must be in memory."""
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as archive:
+        for name, array in arrays:
+            _write_member(archive, name, np.ascontiguousarray(array))
+        if about is not None:
+            _write_member(archive, _ABOUT, np.frombuffer(canonical_json(about).encode(), dtype=np.uint8))
+
+
+def _write_member(archive: zipfile.ZipFile, name: str, array: AnyArray) -> None:
+    info = zipfile.ZipInfo(f"{name}.npy", _DATE)
+    info.external_attr = 0o600 << 16
+    with archive.open(info, "w", force_zip64=True) as member:
+        npy.write_array(member, array, allow_pickle=False)
+
+
+class Archive:
+    """An archive that is read array by array: what nobody asks for is not read."""
+
+    def __init__(self, source: Path | bytes) -> None:
+        self._file = zipfile.ZipFile(io.BytesIO(source) if isinstance(source, bytes) else source)
+
+    def __enter__(self) -> Archive:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self._file.close()
+
+    @property
+    def names(self) -> list[str]:
+        """The names of its arrays, without the JSON object."""
+        members = (name.removesuffix(".npy") for name in self._file.namelist())
+        return [name for name in members if name != _ABOUT]
+
+    def __contains__(self, name: str) -> bool:
+        return f"{name}.npy" in self._file.NameToInfo
+
+    def __getitem__(self, name: str) -> AnyArray:
+        with self._file.open(f"{name}.npy") as member:
+            array: AnyArray = npy.read_array(member, allow_pickle=False)
+        return array
+
+    def about(self) -> JsonObject:
+        """The JSON object beside the arrays; empty if there is none."""
+        if _ABOUT not in self:
+            return {}
+        about: JsonObject = json.loads(self[_ABOUT].tobytes())
+        return about

@@ -1,0 +1,118 @@
+"""What a study found, once its rows are calculated: the best row, the front, sensitivities."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.schemas.studies import StudyResult, Trade
+from app.studies.asking import directions
+from app.studies.building import Building
+from app.studies.finding import MOST_CONFIRMED, front, ranked, signed
+from app.studies.optimising import optimised
+from app.studies.running import Run
+from app.studies.sensitivities import Shares, sensitivities
+from app.studies.shown import rows_found
+from app.studies.stored import OUTPUT, PLACE, Stored
+from app.studies.task import read_body
+from templates.core.arrays import Integers
+from templates.core.judging.comparison import MET
+
+
+class Concluding:
+    """Calculates all that a method needs, and says what it found."""
+
+    def __init__(self, building: Building) -> None:
+        self._building = building
+
+    def __call__(self, run: Run) -> StudyResult:
+        """The result of a study; raises what its design brings about."""
+        return self._building.built(run, read_body(run.task.body), _concluded(run))
+
+
+def _concluded(run: Run) -> StudyResult:
+    if run.row.method == "optimise":
+        return optimised(run)
+    run.explore()
+    if run.row.method == "sensitivity":
+        return _sensitivity(run)
+    return _chosen(run)
+
+
+def _sensitivity(run: Run) -> StudyResult:
+    stored = run.stored()
+    columns = {name: stored.values(f"{OUTPUT}{name}") for name in run.plan.outputs}
+    shares = run.result_of(run.submit(sensitivities, run.task, columns))
+    assert isinstance(shares, Shares)
+    return _answered(indices=shares.indices, notes=shares.notes or None)
+
+
+def _chosen(run: Run) -> StudyResult:
+    """The best rows among all; those that matter are calculated again, if the study asks for that."""
+    stored = run.stored(run.plan.chunks)
+    worst = stored.worst(run.plan.required)
+    share = float(np.mean(worst == MET)) if run.plan.required else None
+    names, maximised = directions(read_body(run.task.body))
+    if not names:
+        return _answered(share=share)
+    objectives = signed(
+        stored.rows([f"{OUTPUT}{name}" for name in names], np.arange(stored.count)), maximised
+    )
+    is_open = run.plan.confirm is not None
+    if len(names) == 1:
+        numbers = ranked(objectives[:, 0], worst, MOST_CONFIRMED if is_open else 1, undecided=is_open)
+    else:
+        numbers = front(objectives, worst, undecided=is_open)
+    explored = numbers
+    if is_open and len(numbers):
+        run.confirm(stored.rows([f"{PLACE}{name}" for name in run.plan.places], numbers))
+        stored, numbers = run.stored(), np.arange(stored.count, stored.count + len(numbers))
+        numbers = _feasible(stored, numbers, run, names, maximised)
+    return _result(run, stored, explored, numbers, share, several=len(names) > 1)
+
+
+def _feasible(
+    stored: Stored, numbers: Integers, run: Run, names: list[str], maximised: list[bool]
+) -> Integers:
+    """Of rows that were calculated again those that count, the best first."""
+    objectives = signed(stored.rows([f"{OUTPUT}{name}" for name in names], numbers), maximised)
+    worst = stored.worst(run.plan.required)[numbers]
+    if len(names) == 1:
+        return numbers[ranked(objectives[:, 0], worst, len(numbers))]
+    return numbers[front(objectives, worst)]
+
+
+def _result(
+    run: Run, stored: Stored, explored: Integers, numbers: Integers, share: float | None, *, several: bool
+) -> StudyResult:
+    if not len(numbers):
+        return _answered(share=share, notes=["no row meets all criteria that are held"])
+    is_confirmed = run.plan.confirm is not None
+    found = rows_found(run, stored, numbers if several else numbers[:1], confirmed=is_confirmed)
+    result: dict[str, object] = {
+        "share": share,
+        ("front" if several else "best"): found if several else found[0],
+    }
+    if is_confirmed and not several:
+        result["trade"] = [_trade(run, stored, int(explored[0]), int(numbers[0]))]
+    return _answered(**result)
+
+
+def _answered(**fields: object) -> StudyResult:
+    """A result without the fields that do not apply."""
+    return StudyResult.model_validate({name: value for name, value in fields.items() if value is not None})
+
+
+def _trade(run: Run, stored: Stored, explored: int, confirmed: int) -> Trade:
+    """What the levels of the exploration promised, and what is true of it."""
+    (promised,) = rows_found(run, stored, np.array([explored]), confirmed=False)
+    (true,) = rows_found(run, stored, np.array([confirmed]), confirmed=True)
+    levels = {step: level for step, level in run.plan.levels.items() if level is not None}
+    return Trade(
+        level=levels,
+        at=promised.at,
+        promise=promised.outputs,
+        confirmed=true.outputs,
+        verdicts=true.verdicts,
+        rows=run.plan.rows,
+        seconds=run.plan.seconds,
+    )

@@ -1,0 +1,104 @@
+"""The rows of a study as files: CSV row by row, XLSX of some rows, an archive of all columns."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Iterator
+from typing import IO
+
+import numpy as np
+from openpyxl import Workbook  # type: ignore[import-untyped]
+
+from app.presentation.spreadsheets import Value, harmless
+from app.presentation.units import System, shown_unit, shown_value
+from app.schemas.studies import StudyRow
+from app.studies.archive import AnyArray, write_each
+from app.studies.views import Listing
+from templates.core.errors import Fault, InvalidInputs
+from templates.core.judging.comparison import WORST_FIRST
+
+MOST_XLSX = 20_000  # rows of a sheet: a spreadsheet program takes a million, but not gladly
+SOME, SOME_SORTED = 2000, 20_000  # rows that are read and written at once; sorted ones lie in all chunks
+
+
+def heads(listing: Listing, system: System) -> list[list[str]]:
+    """The two rows above the numbers: names, then units."""
+    criteria = listing.plan.criteria
+    names = ["row", *listing.names, *criteria, "verdict", "level", "reason"]
+    units = [shown_unit(unit, system) for unit in listing.units.values()]
+    return [names, ["", *units, *("" for _ in criteria), "", "", ""]]
+
+
+def lines(listing: Listing, system: System) -> Iterator[list[Value]]:
+    """A line for each row, under `heads`."""
+    numbers = listing.numbers()
+    size = SOME if listing.wanted.sort is None else SOME_SORTED
+    for start in range(0, len(numbers), size):
+        for row in listing.rows(numbers[start : start + size]):
+            yield _line(listing, row, system)
+
+
+def _line(listing: Listing, row: StudyRow, system: System) -> list[Value]:
+    units = listing.units
+    values = [_cell(shown_value(value, units[name], system)) for name, value in row.values.items()]
+    verdicts = [row.verdicts.get(name, "") for name in listing.plan.criteria]
+    levels = " ".join(f"{step}:{level}" for step, level in row.level.items())
+    return [row.row, *values, *verdicts, row.verdict or "", levels, harmless(row.reason or "")]
+
+
+def _cell(value: object) -> float | str:
+    return value if isinstance(value, float) and math.isfinite(value) else ""
+
+
+def csv_parts(listing: Listing, system: System) -> Iterator[bytes]:
+    """The rows as CSV, piece by piece."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\r\n")
+    writer.writerows(heads(listing, system))
+    for number, line in enumerate(lines(listing, system), 1):
+        writer.writerow(line)
+        if number % SOME == 0:
+            yield stream.getvalue().encode()
+            stream.seek(0)
+            stream.truncate()
+    yield stream.getvalue().encode()
+
+
+def xlsx(listing: Listing, system: System) -> bytes:
+    """The rows as one sheet.
+
+    Raises
+    ------
+    InvalidInputs
+        If there are too many for a sheet.
+    """
+    if listing.stored.count > MOST_XLSX and len(listing.numbers()) > MOST_XLSX:
+        detail = (
+            f"a sheet holds at most {MOST_XLSX} rows here; ask for rows.csv or rows.npz, or filter by `where`"
+        )
+        raise InvalidInputs([Fault("rows", "too_many_rows", detail)])
+    book = Workbook(write_only=True)
+    sheet = book.create_sheet("rows")
+    for line in (*heads(listing, system), *lines(listing, system)):
+        sheet.append(line)
+    stream = io.BytesIO()
+    book.save(stream)
+    return stream.getvalue()
+
+
+def write_npz(listing: Listing, file: IO[bytes]) -> None:
+    """Write all columns as arrays by name, in their units, the verdicts as words; equal rows, equal bytes."""
+    write_each(file, _arrays(listing), {"units": listing.units, "levels": dict(listing.plan.levels)})
+
+
+def _arrays(listing: Listing) -> Iterator[tuple[str, AnyArray]]:
+    numbers = listing.numbers()
+    yield "row", numbers
+    for name in listing.names:
+        yield name, listing.column(name)[numbers]
+    words = np.array(WORST_FIRST)
+    for criterion in listing.plan.criteria:
+        yield f"verdict {criterion}", words[listing.stored.codes(criterion)[numbers]]
+    yield "refused", listing.stored.is_refused[numbers]

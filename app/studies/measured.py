@@ -1,0 +1,36 @@
+"""Measures of solids that are built already and do not follow from what varies: one value for all rows."""
+
+from __future__ import annotations
+
+from app.designs.analyses import is_measured
+from app.designs.calculate import Calculation
+from app.designs.reference import Reference
+from app.designs.service import Designs
+from app.plain import JsonObject
+from templates.core.errors import FaultyText
+
+
+def measured_in(designs: Designs, document: JsonObject) -> dict[str, float]:
+    """The measures [SI] that relations of a document use, as far as they are known."""
+    if not document.get("models"):
+        return {}
+    calculation = designs.prepare(document)[1]
+    known = {str(reference): _value(calculation, reference) for reference in _used(calculation)}
+    return {name: value for name, value in known.items() if value is not None}
+
+
+def _used(calculation: Calculation) -> set[Reference]:
+    """The measures and results of analyses that relations name."""
+    blocks = calculation.graph.blocks
+    used = {reference for cell in calculation.graph.cells() for reference in cell.uses.values()}
+    models = {
+        reference for reference in used if reference.block in blocks and blocks[reference.block].is_model
+    }
+    return {reference for reference in models if is_measured(reference, blocks[reference.block].analyses)}
+
+
+def _value(calculation: Calculation, reference: Reference) -> float | None:
+    try:
+        return calculation.measure(reference)
+    except (FaultyText, KeyError):  # not built, or not analysed
+        return None

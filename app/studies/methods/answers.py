@@ -1,0 +1,138 @@
+"""What an optimisation asks of a design: objectives and criteria for rows of varied values."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from app.studies.methods.space import Space
+from templates.core.arrays import Array
+from templates.core.errors import Fault, InvalidInputs
+from templates.core.judging.comparison import Verdict
+from templates.core.judging.criterion import Sign
+
+
+@dataclass(frozen=True)
+class Objective:
+    """A result to make as small or as large as possible."""
+
+    name: str
+    sense: Literal["minimise", "maximise"] = "minimise"
+
+
+@dataclass(frozen=True)
+class Held:
+    """A criterion that the optimum must meet: its value `>=` or `<=` its limit."""
+
+    name: str
+    sign: Sign
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What to vary, what to optimise, and which criteria to hold; one objective or several."""
+
+    space: Space
+    objectives: tuple[Objective, ...]
+    held: tuple[Held, ...] = ()
+
+    @property
+    def senses(self) -> Array:
+        """1 for each objective to minimise, -1 to maximise, shape (k,)."""
+        return np.array([1.0 if one.sense == "minimise" else -1.0 for one in self.objectives])
+
+    @property
+    def signs(self) -> Array:
+        """1 for each criterion with `>=`, -1 with `<=`, shape (m,)."""
+        return np.array([1.0 if one.sign == ">=" else -1.0 for one in self.held])
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Results of N rows [SI], NaN in the rows that are refused.
+
+    Attributes
+    ----------
+    objectives
+        Shape (N, k).
+    values, limits
+        The two sides of each criterion, shape (N, m).
+    low, high
+        The margin of each criterion at the bad and at the good end of its band, shape (N, m); zero or more is
+        safe, NaN is not known.
+    reasons
+        Why a row is refused, by its number.
+    seconds
+        What the rows cost; an answer from storage repeats what they cost when they were calculated.
+    """
+
+    objectives: Array
+    values: Array
+    limits: Array
+    low: Array
+    high: Array
+    reasons: Mapping[int, str] = field(default_factory=dict)
+    seconds: float = 0.0
+
+    def row(self, number: int) -> Columns:
+        """One row, as columns of a single row."""
+        part = slice(number, number + 1)
+        arrays = (self.objectives, self.values, self.limits, self.low, self.high)
+        objectives, values, limits, low, high = (array[part] for array in arrays)
+        reasons = {0: self.reasons[number]} if number in self.reasons else {}
+        return Columns(objectives, values, limits, low, high, reasons)
+
+    def worst(self, problem: Problem) -> Array:
+        """The margin of each criterion at the bad end of its band, shape (N, m); itself if it has none."""
+        margins = problem.signs * (self.values - self.limits)
+        return np.where(np.isfinite(self.low), self.low, margins)
+
+    def verdicts(self, problem: Problem) -> tuple[Verdict, ...]:
+        """The verdict on each criterion in the first row."""
+        margins = problem.signs * (self.values - self.limits)
+        return tuple(map(_verdict, margins[0], self.low[0], self.high[0]))
+
+
+def _verdict(margin: float, low: float, high: float) -> Verdict:
+    if np.isnan(margin):
+        return "not_checked"
+    return "met" if low >= 0 else "not_met" if high < 0 else "undecided"
+
+
+def exact(problem: Problem, objectives: Array, values: Array, limits: Array) -> Columns:
+    """Columns whose criteria have bands of no width; `limits` may be one row for all."""
+    limits = np.broadcast_to(limits, values.shape)
+    margin = problem.signs * (values - limits)
+    return Columns(objectives, values, limits, margin, margin)
+
+
+Answer = Callable[[Array], Columns]
+"""The results at one level for rows [SI], shape (N, d): a pure function."""
+
+
+class Counted:
+    """An answer that counts the rows that it was asked for, and adds up their cost [s]."""
+
+    def __init__(self, answer: Answer) -> None:
+        self._answer = answer
+        self.rows = 0
+        self.seconds = 0.0
+
+    def __call__(self, rows: Array) -> Columns:
+        """The results of rows [SI]."""
+        columns = self._answer(rows)
+        self.rows += len(rows)
+        self.seconds += columns.seconds
+        return columns
+
+
+def all_refused(columns: Columns, count: int) -> InvalidInputs:
+    """The error of a search none of whose rows has results, with the reasons given most often."""
+    reasons = Counter(columns.reasons.values()).most_common(3)
+    listed = "; ".join(f"{times} times: {reason}" for reason, times in reasons) or "no reason is stated"
+    detail = f"none of {count} rows within the bounds can be calculated ({listed}); change the bounds"
+    return InvalidInputs([Fault("vary", "all_refused", detail)])

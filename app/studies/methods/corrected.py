@@ -1,0 +1,149 @@
+"""A coarse level of a design, multiplied by the ratios that a fine level showed where it was asked.
+
+The logarithm of the ratio is interpolated between the confirmed rows by ordinary kriging with a smooth
+covariance. Inverse distances would leave the slope at a confirmed row as the coarse level has it. Kriging
+takes over the slope that the confirmed rows show, so the rounds approach the optimum of the fine level itself
+(docs/decisions/044). Where a column is zero or changes its sign, differences replace ratios.
+
+References
+----------
+Cressie 1993, Statistics for Spatial Data, section 3.2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.studies.methods.answers import Answer, Columns, Problem
+from templates.core.arrays import Array, Mask
+
+REACH = 1.0
+"""Distance in the unit cube over which ratios stay alike."""
+CLOSE = 0.02
+"""Distance in the unit cube within which a confirmation elsewhere adds little."""
+NUGGET = 1e-9
+"""Variance of the ratios at one place, relative to that over the box: solvers are not exact."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What a search sees of N rows: objectives to minimise, and how far each criterion is from its limit.
+
+    Attributes
+    ----------
+    objectives
+        Shape (N, k), those to maximise with the opposite sign.
+    margins
+        Relative to the scale of the criterion, less its guard, shape (N, m); at least zero is feasible.
+    columns
+        Objectives, values and limits [SI] that are promised, shape (N, k + 2 m).
+    """
+
+    objectives: Array
+    margins: Array
+    columns: Array
+
+    @property
+    def violation(self) -> Array:
+        """The largest relative distance on the wrong side of a limit, shape (N,); zero is feasible."""
+        worst = np.max(-self.margins, axis=1, initial=0.0)
+        return np.where(np.isnan(self.margins).any(axis=1), np.nan, worst)
+
+    @property
+    def complete(self) -> Mask:
+        """Which rows have all results, shape (N,)."""
+        return np.asarray(np.isfinite(np.hstack([self.objectives, self.margins])).all(axis=1))
+
+
+def stacked(columns: Columns) -> Array:
+    """Objectives, values and limits side by side, shape (N, k + 2 m)."""
+    return np.hstack([columns.objectives, columns.values, columns.limits])
+
+
+class Corrected:
+    """The coarse answer over the unit cube, corrected and guarded by what was confirmed."""
+
+    def __init__(self, problem: Problem, answer: Answer, scales: Array) -> None:
+        """Take the scale [SI] of each criterion, shape (m,), above zero."""
+        self.problem, self.answer, self.scales = problem, answer, scales
+        self.places: list[Array] = []
+        self.coarse: list[Array] = []
+        self.fine: list[Array] = []
+        self.guards: list[Array] = []
+        self.reserve = np.zeros(len(problem.held))
+
+    def __call__(self, unit: Array) -> Seen:
+        """What is promised at places of the unit cube, shape (N, d)."""
+        return self.seen(unit, self.answer(self.problem.space.at(unit)))
+
+    def seen(self, unit: Array, columns: Columns) -> Seen:
+        """What is promised where the coarse level has been asked already."""
+        weights = self._weights(unit)
+        promise = self._promise(stacked(columns), weights)
+        count, held = len(self.problem.objectives), len(self.problem.held)
+        values, limits = promise[:, count : count + held], promise[:, count + held :]
+        margins = self.problem.signs * (values - limits) - self._guard(values, weights)
+        margins = margins / self.scales - self.reserve
+        return Seen(self.problem.senses * promise[:, :count], margins, promise)
+
+    def learn(self, unit: Array, coarse: Columns, fine: Columns) -> None:
+        """Correct by one more confirmed place, shape (1, d), and guard its bands from now on."""
+        self.places.append(unit[0])
+        self.coarse.append(stacked(coarse)[0])
+        self.fine.append(stacked(fine)[0])
+        width = (self.problem.signs * (fine.values - fine.limits) - fine.low)[0]
+        with np.errstate(all="ignore"):
+            share = width / np.abs(fine.values[0])
+        self.guards.append(np.where(np.isfinite(share), np.maximum(share, 0.0), 0.0))
+
+    def is_known(self, unit: Array) -> bool:
+        """Whether a place, shape (d,), is close to one that was confirmed."""
+        return any(float(np.linalg.norm(unit - place)) < CLOSE for place in self.places)
+
+    def _weights(self, unit: Array) -> Array:
+        """How much each confirmed place counts, shape (N, a); the rows add up to one."""
+        if not self.places:
+            return np.empty((len(unit), 0))
+        return kriging_weights(np.array(self.places), unit)
+
+    def _guard(self, values: Array, weights: Array) -> Array:
+        """The half of each band that is bad [SI], shape (N, m), as the fine level had it; none at first."""
+        if not self.guards:
+            return np.zeros_like(values)
+        return np.asarray(np.abs(values) * np.maximum(weights @ np.array(self.guards), 0.0))
+
+    def _promise(self, coarse: Array, weights: Array) -> Array:
+        if not self.places:
+            return coarse
+        before, after = np.array(self.coarse), np.array(self.fine)
+        alike = (before * after > 0).all(axis=0)
+        with np.errstate(all="ignore"):
+            ratios = np.log(np.where(alike, after / before, 1.0))
+        shifts = np.where(alike, 0.0, after - before)
+        return np.asarray(coarse * np.exp(_kriged(weights, ratios)) + _kriged(weights, shifts))
+
+
+def _kriged(weights: Array, values: Array) -> Array:
+    """Values at places interpolated; beyond their own range by no more than its width."""
+    low, high = values.min(axis=0), values.max(axis=0)
+    return np.clip(weights @ values, 2 * low - high, 2 * high - low)
+
+
+def kriging_weights(places: Array, unit: Array) -> Array:
+    """How much each of the places (a, d) counts at each row of `unit` (N, d), shape (N, a).
+
+    The weights of a row add up to one. Ordinary kriging with the covariance exp(-r²/2 l²).
+    """
+    count = len(places)
+    system = np.ones((count + 1, count + 1))
+    system[:count, :count] = _covariance(places, places) + NUGGET * np.eye(count)
+    system[count, count] = 0.0
+    right = np.vstack([_covariance(places, unit), np.ones(len(unit))])
+    return np.ascontiguousarray(np.linalg.solve(system, right)[:count].T)
+
+
+def _covariance(places: Array, unit: Array) -> Array:
+    squares = np.sum((places[:, None] - unit[None]) ** 2, axis=2)
+    return np.asarray(np.exp(-squares / (2 * REACH**2)))

@@ -1,0 +1,26 @@
+"""Packages of the extra `study`, imported when a method needs them: together they take half a second."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from types import ModuleType
+
+from templates.core.errors import Fault, InvalidInputs
+
+
+def extra(module: str) -> ModuleType:
+    """A module of SALib or of pymoo.
+
+    Raises
+    ------
+    InvalidInputs
+        With code `not_installed`, if the package is not there.
+    """
+    try:
+        return import_module(module)
+    except ModuleNotFoundError as error:
+        package = module.partition(".")[0]
+        if (error.name or "").partition(".")[0] != package:
+            raise
+        detail = f"this method needs {package}: pip install 'crankwright[study]' on the server"
+        raise InvalidInputs([Fault("method", "not_installed", detail)]) from None

@@ -1,0 +1,242 @@
+"""Several objectives: the places where none gets better unless another gets worse, found by NSGA-II of pymoo.
+
+The front is searched at the coarse level, where places spread over it are polished too. The fine level
+confirms them, which corrects the coarse level for the next round, as for one objective.
+
+References
+----------
+Deb, Pratap, Agarwal and Meyarivan 2002, IEEE Trans. Evol. Comput. 6, 182.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, Protocol, cast
+
+import numpy as np
+
+from app.studies.methods.answers import Answer, Problem
+from app.studies.methods.confirming import WITHIN, Round, Run, State, unmet
+from app.studies.methods.corrected import Corrected, Seen
+from app.studies.methods.extras import extra
+from app.studies.methods.polish import Scaled, polished
+from app.studies.methods.search import best, middle_and_width
+from templates.core.arrays import Array, Integers, Mask
+
+POPULATION, GENERATIONS = 100, 200
+"""Of NSGA-II in the first round; later ones start from its last population and take half as many."""
+CONFIRMED = 20
+"""Places of the front that each round confirms."""
+ROUNDS = 4
+"""Most rounds."""
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How hard to search: rows of a generation, generations, confirmed places and rounds at most."""
+
+    population: int = POPULATION
+    generations: int = GENERATIONS
+    confirmed: int = CONFIRMED
+    rounds: int = ROUNDS
+
+
+@dataclass(frozen=True)
+class Front:
+    """The confirmed front and what it cost.
+
+    Attributes
+    ----------
+    state
+        As of an `Optimum`, for all places of the last round together.
+    places
+        Confirmed places that meet all criteria and of which none is better than another in all objectives, by
+        the first objective. Empty if no place meets all criteria.
+    rounds
+        All confirmed places, by round.
+    explored, confirmations
+        Rows asked of the coarse and of the fine level.
+    seconds
+        What both cost, as the answers state it.
+    """
+
+    state: State
+    places: tuple[Round, ...]
+    rounds: tuple[tuple[Round, ...], ...]
+    explored: int
+    confirmations: int
+    seconds: float
+    is_global: Literal["not proven"] = "not proven"
+
+
+def pareto_front(
+    problem: Problem,
+    explore: Answer,
+    confirm: Answer,
+    *,
+    seed: int,
+    effort: Effort = Effort(),
+    within: float = WITHIN,
+) -> Front:
+    """The front of a problem of several objectives; parameters as of `optimise`.
+
+    Raises
+    ------
+    InvalidInputs
+        With code `all_refused`, if no row of the scan has results; with `not_installed` without pymoo.
+    """
+    run = Run(problem, explore, confirm, seed, within)
+    done: list[tuple[Round, ...]] = []
+    state: State | None = None
+    population = _first(run, effort.population)
+    while state is None and len(done) < effort.rounds:
+        generations = effort.generations if not done else -(-effort.generations // 2)
+        population = _evolved(run.surface, population, seed, generations)
+        unit = _chosen(run.surface, population, effort.confirmed)
+        rounds, fine = run.confirmed(unit)
+        done.append(tuple(rounds))
+        state = _state(rounds)
+        run.learn(unit, rounds, fine)
+    places = _best(problem, [one for rounds in done for one in rounds if one.is_met])
+    return Front(state or "not_settled", places, tuple(done), *run.rows, run.seconds)
+
+
+def dominations(objectives: Array) -> Integers:
+    """By how many rows each row is dominated, shape (N,); objectives to minimise, shape (N, k)."""
+    columns = [np.ascontiguousarray(column) for column in objectives.T]
+    counts = np.zeros(len(objectives), dtype=np.int64)
+    for row, values in enumerate(objectives):
+        as_good, better = np.ones(len(counts), dtype=bool), np.zeros(len(counts), dtype=bool)
+        for column, value in zip(columns, values, strict=True):
+            as_good &= column <= value
+            better |= column < value
+        counts[row] = np.count_nonzero(as_good & better)
+    return counts
+
+
+def _state(rounds: list[Round]) -> State | None:
+    """How the search ends with these places; None if it goes on."""
+    if not all(one.agrees for one in rounds):
+        return None
+    if all(one.is_met for one in rounds):
+        return "settled"
+    if any(one.fell_short for one in rounds):
+        return None
+    return unmet(rounds)
+
+
+def _first(run: Run, count: int) -> Array:
+    """The best rows of the scan, spread as evenly as they are there."""
+    seen = run.surface.seen(run.scanned.unit, run.scanned.columns)
+    if not (seen.violation == 0).any():  # the feasible places are few: evolution starts from one of them
+        return np.vstack([best(run.surface, run.scanned).unit[None], run.scanned.unit[: count - 1]])
+    rows = np.flatnonzero(seen.complete)
+    order = np.lexsort((dominations(seen.objectives[rows]), seen.violation[rows]))
+    return run.scanned.unit[rows[order[:count]]]
+
+
+def _evolved(surface: Corrected, population: Array, seed: int, generations: int) -> Array:
+    """The last population of NSGA-II, as places of the unit cube."""
+    problem, algorithm = _set_up(surface, population, seed, generations)
+    static, evaluator = extra("pymoo.problems.static").StaticProblem, extra("pymoo.core.evaluator").Evaluator
+    while algorithm.has_next():
+        asked = algorithm.ask()
+        if asked is None or not len(asked):
+            break
+        objectives, margins = _for_pymoo(surface(np.asarray(asked.get("X"), dtype=np.float64)))
+        evaluator().eval(static(problem, F=objectives, G=margins), asked)
+        algorithm.tell(infills=asked)
+    return np.asarray(algorithm.pop.get("X"), dtype=np.float64)
+
+
+class Population(Protocol):
+    """What is used of pymoo's population."""
+
+    def __len__(self) -> int: ...
+
+    def get(self, name: str) -> Array:
+        """The variables of all members, by the name `X`."""
+        ...
+
+
+class Algorithm(Protocol):
+    """What is used of pymoo's algorithms."""
+
+    pop: Population
+
+    def has_next(self) -> bool:
+        """Whether a generation is left."""
+        ...
+
+    def ask(self) -> Population | None:
+        """The members to evaluate."""
+        ...
+
+    def tell(self, *, infills: Population) -> object:
+        """Take members that have been evaluated."""
+        ...
+
+
+def _set_up(surface: Corrected, population: Array, seed: int, generations: int) -> tuple[object, Algorithm]:
+    kinds = surface.problem
+    problem = extra("pymoo.core.problem").Problem(
+        n_var=len(kinds.space), n_obj=len(kinds.objectives), n_ieq_constr=len(kinds.held) + 1, xl=0.0, xu=1.0
+    )
+    algorithm = extra("pymoo.algorithms.moo.nsga2").NSGA2(pop_size=len(population), sampling=population)
+    algorithm.setup(problem, termination=("n_gen", generations), seed=seed, verbose=False)
+    return problem, cast(Algorithm, algorithm)
+
+
+def _for_pymoo(seen: Seen) -> tuple[Array, Array]:
+    """Objectives and constraints, which hold at zero or less; one more says whether a row has results."""
+    complete = seen.complete
+    objectives = np.where(complete[:, None], seen.objectives, 0.0)
+    margins = np.where(complete[:, None], -seen.margins, 0.0)
+    return objectives, np.column_stack([margins, np.where(complete, -1.0, 1e6)])
+
+
+def _chosen(surface: Corrected, population: Array, count: int) -> Array:
+    """Places of a population's front to confirm, far from each other; without a feasible one the nearest."""
+    unit = np.unique(population, axis=0)
+    seen = surface(unit)
+    feasible = seen.complete & (seen.violation == 0)
+    if not feasible.any():
+        return unit[[int(np.nanargmin(np.where(seen.complete, seen.violation, np.nan)))]]
+    unit, objectives = unit[feasible], seen.objectives[feasible]
+    front = dominations(objectives) == 0
+    chosen = spread(objectives[front], count)
+    return _polished(surface, unit[front][chosen], objectives[front][chosen])
+
+
+def _polished(surface: Corrected, unit: Array, objectives: Array) -> Array:
+    """Each place with its first objective as small as it gets while no other grows.
+
+    NSGA-II keeps places in the gaps of its front that are not quite of it.
+    """
+    middle_width = middle_and_width(objectives)
+    ends = [
+        polished(Scaled(surface, *middle_width, most=row[1:]), place)
+        for place, row in zip(unit, objectives, strict=True)
+    ]
+    return np.array([end.unit for end in ends])
+
+
+def spread(objectives: Array, count: int) -> list[int]:
+    """Up to `count` rows far from each other, the least of each objective first; shape (N, k)."""
+    low, high = objectives.min(axis=0), objectives.max(axis=0)
+    scaled = (objectives - low) / np.where(high > low, high - low, 1.0)
+    chosen = list(dict.fromkeys(int(row) for row in scaled.argmin(axis=0)))
+    distance = np.min([np.linalg.norm(scaled - scaled[row], axis=1) for row in chosen], axis=0)
+    while len(chosen) < count and distance.max() > 0:
+        chosen.append(int(distance.argmax()))
+        distance = np.minimum(distance, np.linalg.norm(scaled - scaled[chosen[-1]], axis=1))
+    return chosen
+
+
+def _best(problem: Problem, met: list[Round]) -> tuple[Round, ...]:
+    if not met:
+        return ()
+    objectives = problem.senses * np.array([one.confirmed[: len(problem.objectives)] for one in met])
+    first = np.unique(objectives, axis=0, return_index=True)[1]
+    kept: Mask = dominations(objectives[first]) == 0
+    return tuple(met[row] for row in first[kept])

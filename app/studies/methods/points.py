@@ -1,0 +1,130 @@
+"""The rows of a study: any chunk is computed without the others, and is the same whichever chunk it is in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import prod
+from typing import Protocol
+
+import numpy as np
+from scipy.stats import qmc
+
+from app.studies.methods.space import Space
+from templates.core.arrays import Array
+
+
+class Points(Protocol):
+    """Rows [SI] by number, of which there are `count`."""
+
+    @property
+    def count(self) -> int:
+        """How many rows there are."""
+        ...
+
+    def rows(self, first: int, last: int) -> Array:
+        """Rows number `first` to `last`, the last one excluded, shape (last - first, d)."""
+        ...
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows that the user gives [SI], shape (N, d)."""
+
+    values: Array
+
+    @property
+    def count(self) -> int:
+        """How many rows there are."""
+        return len(self.values)
+
+    def rows(self, first: int, last: int) -> Array:
+        """Rows number `first` to `last`, the last one excluded."""
+        return self.values[first:last]
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Each combination of the steps of all variables; the last variable changes from row to row.
+
+    `steps` names the number of steps of each interval; a variable with `values` takes all of them.
+
+    Raises
+    ------
+    InvalidInputs
+        With code `steps`, if an interval has less than two.
+    """
+
+    space: Space
+    steps: Mapping[str, int] = field(default_factory=dict)
+
+    @cached_property
+    def axes(self) -> tuple[Array, ...]:
+        """The values [SI] of each variable."""
+        return tuple(v.steps(self.steps.get(v.name, 0)) for v in self.space.variables)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """How many values each variable takes."""
+        return tuple(len(axis) for axis in self.axes)
+
+    @property
+    def count(self) -> int:
+        """How many rows there are."""
+        return prod(self.shape)
+
+    def rows(self, first: int, last: int) -> Array:
+        """Rows number `first` to `last`, the last one excluded."""
+        numbers = np.arange(first, min(last, self.count))
+        places = np.unravel_index(numbers, self.shape)
+        return np.stack([axis[place] for axis, place in zip(self.axes, places, strict=True)], axis=-1)
+
+
+@dataclass(frozen=True)
+class Sobol:
+    """The scrambled Sobol' sequence of a seed; a power of two of rows covers the box most evenly."""
+
+    space: Space
+    count: int
+    seed: int
+
+    def unit(self, first: int, last: int) -> Array:
+        """The rows as places in the unit cube."""
+        return sobol_sequence(len(self.space), self.seed, first, min(last, self.count))
+
+    def rows(self, first: int, last: int) -> Array:
+        """Rows number `first` to `last`, the last one excluded."""
+        return self.space.at(self.unit(first, last))
+
+
+def sobol_sequence(dimensions: int, seed: int, first: int, last: int) -> Array:
+    """Points number `first` to `last`, the last one excluded, of a scrambled sequence in the unit cube."""
+    sequence = qmc.Sobol(dimensions, rng=seed)
+    if first:
+        return np.asarray(sequence.fast_forward(first).random(last - first), dtype=np.float64)
+    # SciPy warns if the first draw is no power of two; what it draws too much is left out.
+    drawn = sequence.random_base2(max(last - 1, 0).bit_length())
+    return np.asarray(drawn[:last], dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class LatinHypercube:
+    """A Latin hypercube of a seed: `count` rows, one in each of as many slices of every variable."""
+
+    space: Space
+    count: int
+    seed: int
+
+    @cached_property
+    def _unit(self) -> Array:
+        """All rows at once: where one lies depends on all others."""
+        return np.asarray(qmc.LatinHypercube(len(self.space), rng=self.seed).random(self.count))
+
+    def unit(self, first: int, last: int) -> Array:
+        """The rows as places in the unit cube."""
+        return self._unit[first:last]
+
+    def rows(self, first: int, last: int) -> Array:
+        """Rows number `first` to `last`, the last one excluded."""
+        return self.space.at(self.unit(first, last))

@@ -1,0 +1,210 @@
+"""Polishing a place: SciPy's SLSQP, with values and slopes at a place by one call of 1 + 2 n rows.
+
+References
+----------
+Kraft 1988, A software package for sequential quadratic programming, DFVLR-FB 88-28.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Literal, TypedDict
+
+import numpy as np
+from scipy.optimize import minimize
+
+from app.studies.methods.corrected import Corrected
+from templates.core.arrays import Array, Mask
+
+STEP = 1e-5
+"""Of central differences, as a share of a variable's range."""
+HOLD = 1e-9
+"""Relative margin that the polish keeps, so that rounding does not carry it over a limit."""
+REFUSED = 1e3
+"""Scaled objective of a refused row: worse than any, so that the polish turns back."""
+STALE, WORTH = 12, 1e-9
+"""A polish ends after so many places none of which is better by so much, scaled, than those before."""
+ACCURACY, MOST_STEPS = 1e-12, 100
+"""Of SLSQP: scaled objective, and iterations."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """The end of a search: a place in the unit cube, shape (d,), its objective and its relative violation."""
+
+    unit: Array
+    objective: float
+    violation: float
+
+
+def rank(place: Place) -> tuple[float, float]:
+    """By this places compare: feasible ones first, the smaller objective first."""
+    return (place.violation, place.objective)
+
+
+@dataclass(frozen=True)
+class Scaled:
+    """The first objective, near one, and the margins of a surface.
+
+    `middle` and `width` are those of all objectives, shape (k,). `most` bounds the other objectives, shape
+    (k - 1,): so a place of a front gets better in one objective, and worse in none.
+    """
+
+    surface: Corrected
+    middle: Array
+    width: Array
+    most: Array | None = None
+
+    def __call__(self, unit: Array) -> tuple[Array, Array]:
+        """Objectives, shape (N,), and margins, shape (N, m), or (N, m + k - 1) with bounds on the others."""
+        seen = self.surface(unit)
+        scaled = (seen.objectives - self.middle) / self.width
+        margins = seen.margins - HOLD
+        if self.most is not None:
+            margins = np.hstack([margins, (self.most - seen.objectives[:, 1:]) / self.width[1:]])
+        return scaled[:, 0], margins
+
+
+Linear = tuple[float, Array, Array, Array]
+"""Objective, its slopes (n,), margins (m,), their slopes (m, n)."""
+
+
+class _Stale(Exception):
+    """The polish brings nothing any more."""
+
+
+class _Tangent:
+    """Values and slopes over the free variables around a start; remembers the best place it was asked for."""
+
+    def __init__(self, scaled: Scaled, start: Array, free: Mask) -> None:
+        self._scaled, self._start, self.free = scaled, start, np.flatnonzero(free)
+        self._kept: dict[bytes, Linear] = {}
+        self.places: list[Place] = []
+
+    def unit(self, z: Array) -> Array:
+        """The place in the unit cube for values of the free variables."""
+        place = self._start.copy()
+        place[self.free] = np.clip(z, 0.0, 1.0)
+        return place
+
+    def __call__(self, z: Array) -> Linear:
+        place = self.unit(z)
+        if (key := place.tobytes()) not in self._kept:
+            if self._is_stale():
+                raise _Stale
+            self._kept[key] = self._asked(place)
+        return self._kept[key]
+
+    def _is_stale(self) -> bool:
+        """Whether the last places brought nothing: SLSQP chases the noise of solvers for ever."""
+        if len(self.places) < STALE:
+            return False
+        before, after = (min(part, key=rank) for part in (self.places[: 1 - STALE], self.places[1 - STALE :]))
+        nearer = before.violation - after.violation > WORTH
+        better = before.violation >= after.violation and before.objective - after.objective > WORTH
+        return not (nearer or better)
+
+    def _asked(self, place: Array) -> Linear:
+        below, above = self._steps(place)
+        rows = np.repeat(place[None], 1 + 2 * self.free.size, axis=0)
+        each = np.arange(self.free.size)
+        rows[1 + each, self.free] += below
+        rows[1 + self.free.size + each, self.free] += above
+        objective, margins = self._scaled(rows)
+        both = np.column_stack([objective, margins])
+        if not np.isfinite(both[0]).all():
+            return _refused(each.size, both.shape[1] - 1)
+        self._remember(place, both[0])
+        slopes = _slopes(both[0], both[1 : 1 + each.size], both[1 + each.size :], below, above)
+        # SciPy's SLSQP reads the memory of its arrays as if they were contiguous.
+        across = np.ascontiguousarray(slopes.T)
+        return float(both[0, 0]), across[0], both[0, 1:], across[1:]
+
+    def _steps(self, place: Array) -> tuple[Array, Array]:
+        """Two steps for each free variable, to both sides, or to one side at a bound."""
+        z = place[self.free]
+        below = np.where(z < STEP, 2 * STEP, -STEP)
+        above = np.where(z > 1 - STEP, -2 * STEP, STEP)
+        return below, above
+
+    def _remember(self, place: Array, both: Array) -> None:
+        violation = max(0.0, float(np.max(-(both[1:] + HOLD), initial=0.0)))
+        self.places.append(Place(place, float(both[0]), violation))
+
+
+def _refused(free: int, held: int) -> Linear:
+    """A flat place so bad that the line search comes back from it."""
+    return REFUSED, np.zeros(free), np.full(held, -1.0), np.zeros((held, free))
+
+
+def _slopes(middle: Array, one: Array, other: Array, a: Array, b: Array) -> Array:
+    """Slopes at 0 of the parabola through (0, middle), (a, one), (b, other); of a line if one is missing."""
+    a, b = a[:, None], b[:, None]
+    with np.errstate(all="ignore"):
+        first, second = (one - middle) / a, (other - middle) / b
+        slopes = (first * b - second * a) / (b - a)
+    for line in (first, second):
+        slopes = np.where(np.isfinite(slopes), slopes, line)
+    return np.where(np.isfinite(slopes), slopes, 0.0)
+
+
+def polished(scaled: Scaled, start: Array) -> Place:
+    """The best place on the way of SLSQP from a start."""
+    tangent = _Tangent(scaled, start, scaled.surface.problem.space.continuous)
+    first = tangent(start[tangent.free])
+    if tangent.free.size and first[0] < REFUSED:
+        _slsqp(tangent, start[tangent.free], len(first[2]))
+    return min(tangent.places, key=rank, default=Place(start, REFUSED, np.inf))
+
+
+def _slsqp(tangent: _Tangent, start: Array, held: int) -> None:
+    limits = _Limits(type="ineq", fun=lambda z: tangent(z)[2], jac=lambda z: tangent(z)[3])
+    _minimise(lambda z: tangent(z)[:2], start, [(0.0, 1.0)] * start.size, [limits] if held else [])
+
+
+def relaxed(scaled: Scaled, place: Place) -> Place:
+    """The place of least violation near a place: the violation t becomes the objective, margins + t >= 0."""
+    tangent = _Tangent(scaled, place.unit, scaled.surface.problem.space.continuous)
+    start = place.unit[tangent.free]
+    margins = tangent(start)[2]
+    if not start.size or not np.isfinite(place.violation):
+        return place
+    down = np.append(np.zeros(start.size), 1.0)
+    limits = _Limits(
+        type="ineq",
+        fun=lambda y: tangent(y[:-1])[2] + y[-1],
+        jac=lambda y: np.column_stack([tangent(y[:-1])[3], np.ones(len(margins))]),
+    )
+    most = float(np.max(-margins))
+    bounds = [(0.0, 1.0)] * start.size + [(0.0, 2 * most)]
+    _minimise(lambda y: (y[-1], down), np.append(start, most), bounds, [limits])
+    return min(tangent.places, key=rank)
+
+
+class _Limits(TypedDict):
+    """Functions that SLSQP keeps at zero or above, and their slopes (m, n)."""
+
+    type: Literal["ineq"]
+    fun: Callable[[Array], Array]
+    jac: Callable[[Array], Array]
+
+
+def _minimise(
+    objective: Callable[[Array], tuple[float, Array]],
+    start: Array,
+    bounds: list[tuple[float, float]],
+    limits: list[_Limits],
+) -> None:
+    """Run SLSQP; the functions remember where it was."""
+    with suppress(_Stale):
+        minimize(  # type: ignore[call-overload] # its stubs know functions of arrays of one axis only
+            objective,
+            start,
+            jac=True,
+            method="SLSQP",
+            bounds=bounds,
+            constraints=limits,
+            options={"ftol": ACCURACY, "maxiter": MOST_STEPS},
+        )

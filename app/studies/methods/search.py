@@ -1,0 +1,118 @@
+"""The optimum of one objective at one level: a scan of the whole box, then a polish of its best places.
+
+Values of a list stay as the scan found them, so each promising combination is polished by itself. Nothing
+proves that the optimum is global.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import prod
+
+import numpy as np
+
+from app.studies.methods.answers import Answer, Columns, Problem, all_refused
+from app.studies.methods.corrected import Corrected, Seen
+from app.studies.methods.points import Grid, sobol_sequence
+from app.studies.methods.polish import Place, Scaled, polished, rank, relaxed
+from app.studies.methods.space import Space, Values
+from templates.core.arrays import Array, Integers
+
+SCANNED = 4096
+"""Rows of the scan; a power of two of Sobol' points."""
+STARTS = 6
+"""Places that are polished, if all variables are continuous."""
+AGAIN = 3
+"""The same beside places that are given to start from."""
+COMBINATIONS = 24
+"""Combinations of values of lists that are polished, each from its best place."""
+RELAXED = 3
+"""Ends without a feasible place from which the place of least violation is searched."""
+APART = 0.15
+"""Distance in the unit cube between two starts."""
+
+
+@dataclass(frozen=True)
+class Scan:
+    """Places of the unit cube, shape (N, d), and what the coarse level has there."""
+
+    unit: Array
+    columns: Columns
+
+
+def scan(problem: Problem, answer: Answer, seed: int) -> Scan:
+    """Ask for rows all over the box: each combination, if there are few and nothing is continuous.
+
+    Raises
+    ------
+    InvalidInputs
+        With code `all_refused`, if no row has results.
+    """
+    unit = _places(problem.space, seed)
+    columns = answer(problem.space.at(unit))
+    complete = np.isfinite(np.hstack([columns.objectives, columns.values, columns.limits])).all(axis=1)
+    if not complete.any():
+        raise all_refused(columns, len(unit))
+    return Scan(unit, columns)
+
+
+def _places(space: Space, seed: int) -> Array:
+    lists = [v for v in space.variables if isinstance(v, Values)]
+    if len(lists) == len(space) and prod(len(v.values) for v in lists) <= SCANNED:
+        grid = Grid(space)
+        return space.place(grid.rows(0, grid.count))
+    return sobol_sequence(len(space), seed, 0, SCANNED)
+
+
+def scales(columns: Columns) -> Array:
+    """The scale [SI] of each criterion, shape (m,): its limit, or its value where the limit is zero."""
+    with np.errstate(all="ignore"):
+        return np.array([_scale(*pair) for pair in zip(columns.limits.T, columns.values.T, strict=True)])
+
+
+def _scale(limits: Array, values: Array) -> float:
+    for sizes in (np.abs(limits[np.isfinite(limits)]), np.abs(values[np.isfinite(values)])):
+        if sizes.size and (middle := float(np.median(sizes))):
+            return middle
+    return 1.0
+
+
+def best(surface: Corrected, scanned: Scan, starts: tuple[Array, ...] = ()) -> Place:
+    """The best place that the polish finds from the best of the scan, and from `starts` besides."""
+    seen = surface.seen(scanned.unit, scanned.columns)
+    scaled = Scaled(surface, *middle_and_width(seen.objectives[seen.complete]))
+    count = AGAIN if starts else STARTS
+    chosen = [*starts, *scanned.unit[_starts(surface.problem.space, scanned.unit, seen, count)]]
+    ends = [polished(scaled, start) for start in chosen]
+    ends.sort(key=rank)
+    if ends[0].violation > 0:
+        ends = sorted((relaxed(scaled, end) for end in ends[:RELAXED]), key=rank)
+    # A fresh start cures a Hessian that the way there has spoilt.
+    return min(ends[0], polished(scaled, ends[0].unit), key=rank)
+
+
+def middle_and_width(objectives: Array) -> tuple[Array, Array]:
+    """The middle and the width of each objective, shape (N, k), over rows; no width is zero."""
+    low, middle, high = np.percentile(objectives, [10, 50, 90], axis=0)
+    sizes = [high - low, np.abs(middle), np.ones_like(middle)]
+    return middle, np.select([size > 0 for size in sizes], sizes)
+
+
+def _starts(space: Space, unit: Array, seen: Seen, count: int) -> list[int]:
+    """Rows of the scan to polish: the best, no two close together or of the same combination of lists."""
+    rows = np.flatnonzero(seen.complete)
+    order = rows[np.lexsort((seen.objectives[rows, 0], seen.violation[rows]))].astype(np.int64)
+    if not space.continuous.all():
+        lists = space.at(unit[order])[:, ~space.continuous]
+        first = np.unique(lists, axis=0, return_index=True)[1]
+        return list(map(int, order[np.sort(first)[:COMBINATIONS]]))
+    return _apart(unit, order, count)
+
+
+def _apart(unit: Array, order: Integers, count: int) -> list[int]:
+    chosen: list[int] = []
+    left = order
+    while left.size and len(chosen) < count:
+        chosen.append(int(left[0]))
+        left = left[np.linalg.norm(unit[left] - unit[left[0]], axis=1) > APART]
+    return chosen

@@ -1,0 +1,131 @@
+"""The box of the varied values: the unit cube, in which methods work, and the values in SI."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from templates.core.arrays import Array, Mask
+from templates.core.errors import Fault, InvalidInputs
+
+Spacing = Literal["linear", "log"]
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A value that varies between two bounds [SI]; log spacing gives each decade the same share.
+
+    Raises
+    ------
+    InvalidInputs
+        With code `bounds`, if the bounds are not finite or not in order, or log spacing meets a bound ≤ 0.
+    """
+
+    name: str
+    low: float
+    high: float
+    spacing: Spacing = "linear"
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
+            raise _bounds(self.name, "the lower bound must be less than the upper one, both finite")
+        if self.spacing == "log" and self.low <= 0:
+            raise _bounds(self.name, "spacing `log` needs bounds above zero")
+
+    def at(self, u: Array) -> Array:
+        """The values [SI] at places `u` from 0 to 1."""
+        if self.spacing == "log":
+            values = self.low * np.exp(u * math.log(self.high / self.low))
+        else:
+            values = self.low + u * (self.high - self.low)
+        return np.where(u >= 1.0, self.high, np.clip(values, self.low, self.high))
+
+    def place(self, values: Array) -> Array:
+        """The places from 0 to 1 of values [SI] within the bounds."""
+        if self.spacing == "log":
+            places = np.log(values / self.low) / math.log(self.high / self.low)
+        else:
+            places = (values - self.low) / (self.high - self.low)
+        return np.clip(places, 0.0, 1.0)
+
+    def steps(self, count: int) -> Array:
+        """`count` values [SI], the bounds among them."""
+        if count < 2:
+            raise InvalidInputs([Fault(self.name, "steps", f"{self.name}: a grid needs at least 2 steps")])
+        return self.at(np.linspace(0.0, 1.0, count))
+
+
+@dataclass(frozen=True)
+class Values:
+    """A value that takes one of a list: whole numbers, standard sizes [SI], or places in a list of choices.
+
+    Raises
+    ------
+    InvalidInputs
+        With code `values`, if the list is empty or a value is not finite.
+    """
+
+    name: str
+    values: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if not self.values or not all(map(math.isfinite, self.values)):
+            detail = f"{self.name}: `values` needs at least one value, all of them finite"
+            raise InvalidInputs([Fault(self.name, "values", detail)])
+
+    def at(self, u: Array) -> Array:
+        """The values at places `u` from 0 to 1: each has an equal share of them."""
+        index = np.minimum(np.floor(u * len(self.values)).astype(np.int64), len(self.values) - 1)
+        return np.array(self.values)[index]
+
+    def place(self, values: Array) -> Array:
+        """The middle of the share of the nearest value of the list."""
+        nearest = np.abs(values[..., None] - np.array(self.values)).argmin(axis=-1)
+        return np.asarray((nearest + 0.5) / len(self.values))
+
+    def steps(self, count: int) -> Array:
+        """All values, whatever the count."""
+        return np.array(self.values)
+
+
+Variable = Interval | Values
+
+
+@dataclass(frozen=True)
+class Space:
+    """The varied values of a study, in the order of the columns of its rows."""
+
+    variables: tuple[Variable, ...]
+
+    def __len__(self) -> int:
+        return len(self.variables)
+
+    @property
+    def names(self) -> list[str]:
+        """The names of the variables, in the order of the columns."""
+        return [variable.name for variable in self.variables]
+
+    @property
+    def continuous(self) -> Mask:
+        """Which variables take any value between two bounds, shape (d,)."""
+        return np.array([isinstance(variable, Interval) for variable in self.variables], dtype=bool)
+
+    def at(self, unit: Array) -> Array:
+        """Rows [SI] from rows of the unit cube, shape (N, d)."""
+        return _by_column([v.at(u) for v, u in zip(self.variables, unit.T, strict=True)], unit)
+
+    def place(self, rows: Array) -> Array:
+        """Rows of the unit cube from rows [SI], shape (N, d)."""
+        return _by_column([v.place(x) for v, x in zip(self.variables, rows.T, strict=True)], rows)
+
+
+def _by_column(columns: Sequence[Array], like: Array) -> Array:
+    return np.stack(columns, axis=-1) if columns else np.empty_like(like)
+
+
+def _bounds(name: str, detail: str) -> InvalidInputs:
+    return InvalidInputs([Fault(name, "bounds", f"{name}: {detail}")])

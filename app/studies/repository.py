@@ -1,0 +1,125 @@
+"""All SQL of studies. Every function runs in the transaction of its caller."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+from sqlalchemy import delete, func, select
+from sqlalchemy.orm import Session
+
+from app.jobs.turns import UNFINISHED
+from app.plain import JsonObject
+from app.storage.errors import NotFound
+from app.storage.identity import new_id, now
+from app.storage.tables import StudyChunkRow, StudyRow
+
+
+@dataclass(frozen=True)
+class New:
+    """A study as it is written first."""
+
+    design: str
+    revision: int
+    method: str
+    body: JsonObject
+    plan: JsonObject
+    seed: int
+    chunk: int
+    rows: int
+    table: str | None
+    client: str
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How many rows of a study were calculated, and how many of them were refused, by reason."""
+
+    rows: int
+    refused: dict[str, int]
+
+
+def add(session: Session, new: New) -> StudyRow:
+    """Write a study that is queued."""
+    row = StudyRow(
+        id=new_id(session), design_id=new.design, revision=new.revision, method=new.method, state="queued",
+        body=new.body, plan=new.plan, seed=new.seed, chunk=new.chunk, rows=new.rows, table_sha256=new.table,
+        client=new.client, job=None, result=None, problem=None, created=now(), updated=now(),
+    )  # fmt: skip
+    session.add(row)
+    session.flush()
+    return row
+
+
+def get(session: Session, id: str) -> StudyRow:
+    """A study.
+
+    Raises
+    ------
+    NotFound
+        If there is none.
+    """
+    row = session.get(StudyRow, id)
+    if row is None:
+        raise NotFound(f"there is no study {id[:80]!r}")
+    return row
+
+
+def page(session: Session, limit: int, before: str | None, design: str | None) -> list[StudyRow]:
+    """One page of studies, newest first, and one more if there are more."""
+    query = select(StudyRow).order_by(StudyRow.id.desc()).limit(limit + 1)
+    if design is not None:
+        query = query.where(StudyRow.design_id == design)
+    return list(session.scalars(query.where(StudyRow.id < before) if before else query))
+
+
+def chunks(session: Session, id: str) -> list[StudyChunkRow]:
+    """The chunks of a study that were calculated, in their order."""
+    query = select(StudyChunkRow).where(StudyChunkRow.study_id == id).order_by(StudyChunkRow.number)
+    return list(session.scalars(query))
+
+
+def done(session: Session, id: str, until: int | None = None) -> Progress:
+    """How far a study is, counting chunks with a number below `until`."""
+    which = [StudyChunkRow.study_id == id]
+    if until is not None:
+        which.append(StudyChunkRow.number < until)
+    rows = session.scalar(select(func.sum(StudyChunkRow.rows)).where(*which)) or 0
+    refused = Counter[str]()
+    for reasons in session.scalars(select(StudyChunkRow.refused).where(*which, StudyChunkRow.refused != {})):
+        refused.update(reasons)
+    return Progress(rows, dict(refused))
+
+
+def begin(session: Session, id: str) -> bool:
+    """Mark a study as running; whether it still is to run."""
+    row = session.get(StudyRow, id)
+    if row is None or row.state not in UNFINISHED:
+        return False
+    row.state, row.updated = "running", now()
+    return True
+
+
+def keep_chunk(session: Session, chunk: StudyChunkRow) -> bool:
+    """Record a chunk of a study that still runs; whether it did. A second record changes nothing."""
+    row = session.get(StudyRow, chunk.study_id)
+    if row is None or row.state != "running":
+        return False
+    if session.get(StudyChunkRow, (chunk.study_id, chunk.number)) is None:
+        session.add(chunk)
+        row.updated = now()
+        session.flush()
+    return True
+
+
+def end(session: Session, id: str, state: str, result: JsonObject | None, problem: JsonObject | None) -> None:
+    """Give a study its final state; one that has ended already keeps its own."""
+    row = session.get(StudyRow, id)
+    if row is not None and row.state in UNFINISHED:
+        row.state, row.result, row.problem, row.updated = state, result, problem, now()
+
+
+def remove(session: Session, id: str) -> None:
+    """Delete a study and its chunks; their files stay in the store, where nothing refers to them."""
+    session.execute(delete(StudyChunkRow).where(StudyChunkRow.study_id == id))
+    session.execute(delete(StudyRow).where(StudyRow.id == id))

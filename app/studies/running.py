@@ -1,0 +1,258 @@
+"""The job of a study: its chunks are calculated in the pool, stored, recorded; then the method concludes.
+
+A chunk's bytes are in the store before its row is written, in one transaction. So after a crash the rows say
+which chunks are left, and they are calculated to the same bytes.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Iterable
+from concurrent.futures import wait
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from sqlalchemy.orm import Session
+
+from app.calculations.pool import Calculation, CalculationPool
+from app.calculations.steps import Steps
+from app.catalogue.catalogues import Catalogues
+from app.designs import repository as designs
+from app.jobs.service import Completion, Job, JobContext, JobFailed, JobRests, Jobs
+from app.plain import JsonObject
+from app.schemas.studies import StudyResult
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild
+from app.storage.tables import StudyChunkRow, StudyRow
+from app.studies import repository
+from app.studies.archive import Archive
+from app.studies.chunks import Chunk, calculated, explored
+from app.studies.planning import Plan
+from app.studies.stored import Stored
+from app.studies.task import Task
+from app.workers.errors import DeadlineExceeded, JobCancelled, MemoryExceeded
+from templates.core.arrays import Array
+from templates.core.errors import TemplateError
+
+STUDY = "study"
+"""The kind of the jobs of studies, and their lane."""
+LANES = {STUDY: 4}
+"""Threads that wait for the chunks of studies: so many studies take turns in the pool."""
+GLANCE = 0.05  # how often a thread looks whether its study was cancelled [s]
+SHIFT = 5.0  # after which a study lets those that wait for its thread go first [s]
+FAILURES = (
+    TemplateError,
+    DeadlineExceeded,
+    MemoryExceeded,
+    CannotRebuild,
+    ArtifactMissing,
+    ArtifactDamaged,
+)
+"""What a study itself brings about, and rows that were lost while it ran."""
+
+Started = Callable[[int], Calculation]
+"""Submits the chunk of a number."""
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What of the service a run uses."""
+
+    database: Database
+    store: ArtifactStore
+    catalogues: Catalogues
+    pool: CalculationPool
+    jobs: Jobs
+    steps: Steps
+
+
+class Run:
+    """A study while a job works on it."""
+
+    def __init__(self, parts: Parts, row: StudyRow, task: Task, job: Job, context: JobContext) -> None:
+        self.parts, self.row, self.task = parts, row, task
+        self.plan = Plan.of(row.plan)
+        self.job, self.context = job, context
+        self._since = time.monotonic()
+
+    @property
+    def criteria(self) -> tuple[str, ...]:
+        """The criteria that are judged."""
+        return tuple(self.plan.criteria)
+
+    def chunks(self, until: int | None = None) -> list[StudyChunkRow]:
+        """The chunks that were calculated, with numbers below `until`."""
+        with self.parts.database.read() as session:
+            chunks = repository.chunks(session, self.row.id)
+        return chunks if until is None else [chunk for chunk in chunks if chunk.number < until]
+
+    def stored(self, until: int | None = None) -> Stored:
+        """The rows of these chunks."""
+        return Stored(self.parts.store, self.chunks(until))
+
+    def submit(self, function: Callable[..., object], *args: object) -> Calculation:
+        """Have something calculated for this study when its turn comes."""
+        return self.parts.pool.submit(f"study:{self.row.id}", function, *args, lane="jobs")
+
+    def result_of(self, calculation: Calculation) -> object:
+        """What a calculation returns; raises JobCancelled once the study is cancelled."""
+        while not wait([calculation.future], GLANCE).done:
+            if self.context.is_cancelled:
+                self.parts.pool.cancel(calculation)
+        result: object = calculation.future.result()
+        return result
+
+    def explore(self) -> None:
+        """Calculate all rows that the method knows beforehand."""
+        given = self._given()
+
+        def started(number: int) -> Calculation:
+            first = number * self.plan.chunk
+            last = min(first + self.plan.chunk, self.plan.rows)
+            if given is not None:
+                return self.submit(calculated, self.task, given[first:last], self.plan.levels, self.criteria)
+            return self.submit(explored, self.task, first, last, self.plan.levels, self.criteria)
+
+        self._all(range(self.plan.chunks), started)
+
+    def confirm(self, rows: Array) -> None:
+        """Calculate rows again at the levels of `confirm`, as chunks that follow those of the exploration."""
+        levels, size = self.plan.confirm or self.plan.levels, self.plan.confirm_chunk
+
+        def started(number: int) -> Calculation:
+            first = (number - self.plan.chunks) * size
+            return self.submit(calculated, self.task, rows[first : first + size], levels, self.criteria)
+
+        self._all(range(self.plan.chunks, self.plan.chunks - (-len(rows) // size)), started)
+
+    def _all(self, numbers: Iterable[int], started: Started) -> None:
+        """Have chunks calculated that are not yet, some at a time, and keep each as it comes."""
+        there = {chunk.number for chunk in self.chunks()}
+        waiting: deque[tuple[int, Calculation]] = deque()
+        try:
+            for number in numbers:
+                if number in there:
+                    continue
+                waiting.append((number, started(number)))
+                if len(waiting) > self.parts.pool.most_jobs:
+                    self._keep_first(waiting)
+                    self._rest(waiting)
+            while waiting:
+                self._keep_first(waiting)
+        finally:
+            for _, calculation in waiting:
+                self.parts.pool.cancel(calculation)
+
+    def _keep_first(self, waiting: deque[tuple[int, Calculation]]) -> None:
+        number, calculation = waiting[0]
+        chunk = self.result_of(calculation)
+        waiting.popleft()
+        assert isinstance(chunk, Chunk)
+        self.keep(number, chunk)
+
+    def keep(self, number: int, chunk: Chunk) -> None:
+        """Store a chunk, then record it.
+
+        Raises
+        ------
+        JobCancelled
+            The study no longer runs.
+        """
+        row = StudyChunkRow(
+            study_id=self.row.id,
+            number=number,
+            state="done",
+            attempt=self.job.attempt,
+            rows=chunk.rows,
+            refused=chunk.refused,
+            sha256=self.parts.store.put(*chunk.content),
+        )
+        if not self.parts.database.write(lambda session: repository.keep_chunk(session, row)):
+            raise JobCancelled
+        self._report()
+
+    def _report(self) -> None:
+        with self.parts.database.read() as session:
+            done = repository.done(session, self.row.id, self.plan.chunks).rows
+        self.context.progress(min(1.0, done / self.plan.rows), f"{done} rows are calculated")
+
+    def _rest(self, waiting: deque[tuple[int, Calculation]]) -> None:
+        """Keep what is being calculated, then let others go first, if it is time."""
+        if self._is_due():
+            while waiting:
+                self._keep_first(waiting)
+            raise JobRests
+
+    def rest_if_due(self) -> None:
+        """Let the studies of others go first; raises JobRests if any waits and it is time."""
+        if self._is_due():
+            raise JobRests
+
+    def _is_due(self) -> bool:
+        return time.monotonic() - self._since > SHIFT and self.parts.jobs.others_wait(STUDY)
+
+    def _given(self) -> Array | None:
+        """The rows that the user of a table gave [SI]."""
+        if self.row.table_sha256 is None:
+            return None
+        try:
+            with Archive(self.parts.store.fetch(self.row.table_sha256)) as archive:
+                return archive["rows"].astype(np.float64)
+        except (ArtifactMissing, ArtifactDamaged) as error:
+            detail = "the rows of the table were lost; start the study again"
+            raise CannotRebuild("answer_lost", detail) from error
+
+
+R = TypeVar("R", bound=Run)
+Conclude = Callable[[Run], StudyResult]
+"""Calculates what a method needs, and says what it found."""
+
+
+class Studying:
+    """The handler of the jobs of studies."""
+
+    def __init__(self, parts: Parts, conclude: Conclude) -> None:
+        self.parts, self._conclude = parts, conclude
+
+    def __call__(self, job: Job, context: JobContext) -> Completion:
+        """Calculate what is left of a study, and conclude.
+
+        Raises
+        ------
+        JobFailed
+            With the problem, for anything that the study itself brings about.
+        JobRests
+            Another study waits for the thread.
+        """
+        id: str = job.payload["study"]
+        if not self.parts.database.write(lambda session: repository.begin(session, id)):
+            raise JobCancelled
+        try:
+            result = self._conclude(run_of(self.parts, id, job, context, Run)).plain()
+        except FAILURES as error:
+            raise JobFailed(error) from error
+
+        def completion(session: Session) -> str:
+            repository.end(session, id, "done", result, None)
+            return f"/api/v1/studies/{id}"
+
+        return completion
+
+    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
+        """Record why a study failed, or that it was cancelled; in the transaction that ends its job."""
+        cancelled = str(problem.get("type", "")).endswith("/cancelled")
+        state = "cancelled" if cancelled else "failed"
+        repository.end(session, job.payload["study"], state, None, problem)
+
+
+def run_of(parts: Parts, id: str, job: Job, context: JobContext, kind: type[R]) -> R:
+    """A study from its row, for a job to work on."""
+    with parts.database.read() as session:
+        row = repository.get(session, id)
+        document = designs.document(session, row.design_id, row.revision)
+    plan = Plan.of(row.plan)
+    task = Task.of(document, row.body, plan.places, plan.measured, parts.catalogues)
+    return kind(parts, row, task, job, context)

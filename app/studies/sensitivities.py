@@ -1,0 +1,101 @@
+"""Slopes, Morris' effects and Sobol' indices of a study's rows, in a calculation process."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from app.designs.reference import Reference
+from app.designs.slopes import Local, slope_in
+from app.schemas.answers import Quantity
+from app.schemas.studies import Index
+from app.studies.methods.points import Points
+from app.studies.methods.sensitivity import (
+    MorrisPoints,
+    SobolPoints,
+    effects,
+    indices,
+    slopes,
+)
+from app.studies.task import Task, prepared
+from templates.core.arrays import Array
+from templates.core.errors import InvalidInputs
+from templates.core.units.quotient import difference
+from templates.core.units.units import unit
+
+
+@dataclass(frozen=True)
+class Shares:
+    """Indices by output and place, and why an output has none."""
+
+    indices: dict[str, dict[str, Index]]
+    notes: list[str]
+
+
+def sensitivities(task: Task, columns: Mapping[str, Array]) -> Shares:
+    """The sensitivities of outputs from their values [SI] at all rows.
+
+    Raises
+    ------
+    InvalidInputs
+        If rows are refused: their share, and that the bounds are to be narrowed.
+    """
+    ready = prepared(task)
+    points = ready.asked.points
+    units = {name: ready.net.unit(Reference.parse(name)) for name in (*task.varied, *columns)}
+    shares, notes = dict[str, dict[str, Index]](), list[str]()
+    for output, values in columns.items():
+        try:
+            listed = _indices(points, output, values, task.varied, units)
+        except InvalidInputs as error:
+            if any(fault.code != "constant" for fault in error.faults):
+                raise
+            notes += [fault.detail for fault in error.faults]
+        else:
+            shares[output] = dict(zip(task.varied, listed, strict=True))
+    return Shares(shares, notes)
+
+
+def _indices(
+    points: Points | None, output: str, y: Array, places: tuple[str, ...], units: Mapping[str, str]
+) -> list[Index]:
+    match points:
+        case Local():
+            slope = slopes(points, output, y)
+            pairs = zip(places, slope.slopes.tolist(), slope.elasticities.tolist(), strict=True)
+            return [
+                _present(slope=slope_in(units[output], units[place], value), elasticity=share)
+                for place, value, share in pairs
+            ]
+        case MorrisPoints():
+            effect = effects(points, output, y)
+            shown = _difference(units[output])
+            both = zip(effect.mean_absolute.tolist(), effect.spread.tolist(), strict=True)
+            return [_present(mu_star=shown(mean), sigma=shown(spread)) for mean, spread in both]
+        case SobolPoints():
+            share = indices(points, output, y)
+            return [
+                _present(first=first, first_error=one, total=total, total_error=all_of_it)
+                for first, one, total, all_of_it in zip(
+                    share.first.tolist(),
+                    share.first_confidence.tolist(),
+                    share.total.tolist(),
+                    share.total_confidence.tolist(),
+                    strict=True,
+                )
+            ]
+    raise AssertionError("these rows belong to no sensitivity")
+
+
+def _difference(declared: str) -> Callable[[float], Quantity]:
+    """Shows a change [SI] of something declared in a unit."""
+    factor, name = unit(declared).factor, difference(declared)
+    return lambda change: Quantity(value=change / factor, unit=name)
+
+
+def _present(**values: Quantity | float | None) -> Index:
+    """An index without the numbers that do not exist."""
+    there = {n: v for n, v in values.items() if v is not None}
+    finite = {n: v for n, v in there.items() if not isinstance(v, float) or math.isfinite(v)}
+    return Index.model_validate(finite)

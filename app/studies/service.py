@@ -1,0 +1,207 @@
+"""What can be done with studies: begin, look, choose a row, cancel, remove."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from sqlalchemy.orm import Session
+
+from app.catalogue.catalogues import Catalogues
+from app.designs import repository as designs
+from app.designs.service import Designs, Saved
+from app.jobs.errors import JobFinished, JobNotFound
+from app.jobs.service import Jobs
+from app.plain import JsonObject
+from app.schemas.jobs import State
+from app.solids.models import BUILD
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.storage.errors import ArtifactDamaged, ArtifactMissing
+from app.storage.idempotency import Once
+from app.storage.tables import StudyRow
+from app.studies import repository
+from app.studies.archive import packed
+from app.studies.given import Rows, columns_named
+from app.studies.measured import measured_in
+from app.studies.planning import Plan
+from app.studies.running import STUDY
+from app.studies.schemas import StudyIn
+from app.studies.stored import PLACE, Stored
+from app.studies.task import Task
+from templates.core.arrays import Array
+from templates.core.errors import Fault, InvalidInputs
+from templates.core.units.units import unit
+
+Lost = Callable[[str], Exception]
+"""What to raise when rows of a study cannot be read."""
+ENDED: tuple[State, ...] = ("done", "failed", "cancelled")
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A study that was asked for, before its plan is made."""
+
+    design: str
+    revision: int
+    body: JsonObject
+    rows: Rows | None
+    task: Task
+    solid_seconds: float  # that jobs have taken lately, such as those that build solids [s]
+
+
+class Studies:
+    """Studies of designs."""
+
+    def __init__(
+        self,
+        database: Database,
+        store: ArtifactStore,
+        jobs: Jobs,
+        catalogues: Catalogues,
+        designs: Designs,
+        lost: Lost,
+    ) -> None:
+        self.database, self.store, self.jobs = database, store, jobs
+        self.catalogues, self.designs = catalogues, designs
+        self._lost = lost
+
+    def begun_before(self, once: Once) -> str | None:
+        """The study that this very request has begun before."""
+        if not once.key:
+            return None
+        with self.database.read() as session:
+            return _begun_before(session, once)
+
+    def draft(self, body: StudyIn) -> Draft:
+        """A study of a revision, as a process can plan it.
+
+        Raises
+        ------
+        NotFound
+            There is no such design or revision.
+        InvalidInputs
+            The rows of a table do not fit together.
+        """
+        with self.database.read() as session:
+            number = designs.design(session, body.design).head if body.revision is None else body.revision
+            document = designs.document(session, body.design, number)
+        plain = body.model_dump(mode="json", exclude_unset=True, exclude={"rows"})
+        varied = columns_named(body.rows) if body.method == "table" else list(body.vary)
+        measured = measured_in(self.designs, document)
+        task = Task.of(document, plain, varied, measured, self.catalogues)
+        return Draft(body.design, number, plain, body.rows, task, self.jobs.usual_seconds(BUILD))
+
+    def begin(self, draft: Draft, plan: Plan, given: Array | None, once: Once) -> str:
+        """Write a study and queue its job.
+
+        Raises
+        ------
+        QueueFull
+            Too many jobs are waiting.
+        """
+        table = None if given is None else self.store.put(*packed({"rows": given}))
+        seed = int(draft.body.get("seed", 1))
+        new = repository.New(
+            draft.design, draft.revision, draft.body["method"], draft.body, plan.plain(), seed,
+            plan.chunk, plan.rows, table, once.client,
+        )  # fmt: skip
+
+        def unit_of_work(session: Session) -> str:
+            if before := _begun_before(session, once):
+                return before
+            row = repository.add(session, new)
+            row.job = self.jobs.enqueue(session, STUDY, {"study": row.id}, client=once.client)
+            once.keep(session, 202, {"study": row.id})
+            return row.id
+
+        id = self.database.write(unit_of_work)
+        self.jobs.wake(STUDY)
+        return id
+
+    def choose(self, id: str, row: int, note: str | None, expected: str | None, once: Once) -> Saved:
+        """A new revision of the design with the values of a row.
+
+        Raises
+        ------
+        InvalidInputs
+            The row has not been calculated.
+        StaleRevision
+            `expected` (an If-Match) is not the newest revision.
+        """
+        with self.database.read() as session:
+            study = repository.get(session, id)
+            document = designs.document(session, study.design_id, study.revision)
+        patch = patch_of(document, Plan.of(study.plan).units, self.values(study, row))
+        words = note or f"row {row} of study {id}, revision {study.revision}"
+        return self.designs.change(study.design_id, patch, words, expected, once)
+
+    def values(self, study: StudyRow, number: int) -> dict[str, float]:
+        """The values [SI] of the places in a row that was calculated; raises InvalidInputs."""
+        with self.database.read() as session:
+            stored = Stored(self.store, repository.chunks(session, study.id))
+        part = next((p for p in stored.parts if p.first <= number < p.first + p.count), None)
+        if part is None:
+            detail = f"the study has calculated {stored.count} rows so far, numbered from 0"
+            raise InvalidInputs([Fault("row", "unknown_row", detail)])
+        places = Plan.of(study.plan).places
+        with self.reading(study.id), stored.archive(part) as archive:
+            return {name: float(archive[f"{PLACE}{name}"][number - part.first]) for name in places}
+
+    @contextmanager
+    def reading(self, id: str) -> Iterator[None]:
+        """While rows of a study are read.
+
+        Raises
+        ------
+        RowsLost
+            Some are missing or damaged, and are calculated again.
+        CannotRebuild
+            They cannot be.
+        """
+        try:
+            yield
+        except (ArtifactMissing, ArtifactDamaged) as error:
+            raise self._lost(id) from error
+
+    def end(self, id: str) -> StudyRow | None:
+        """Cancel a study that waits or runs, and return it; remove one that has ended, and return None.
+
+        Raises
+        ------
+        NotFound
+            There is no such study.
+        """
+        with self.database.read() as session:
+            row = repository.get(session, id)
+        if row.state in ENDED:
+            self.database.write(lambda session: repository.remove(session, id))
+            return None
+        try:
+            self.jobs.cancel(row.job or "")
+        except (JobFinished, JobNotFound):  # it has just ended, or its job was deleted
+            problem = {"type": "/problems/cancelled", "title": "The work was cancelled", "status": 409,
+                       "detail": "The study was cancelled."}  # fmt: skip
+            self.database.write(lambda session: repository.end(session, id, "cancelled", None, problem))
+        with self.database.read() as session:
+            return repository.get(session, id)
+
+
+def patch_of(document: JsonObject, units: Mapping[str, str], values: Mapping[str, float]) -> JsonObject:
+    """A merge patch that gives places of a document their values [SI], in these units."""
+    patch: JsonObject = {}
+    for name, value in values.items():
+        quantity = {"value": float(unit(units[name]).from_si(value)), "unit": units[name]}
+        block, _, member = name.partition(".")
+        if not member:
+            patch.setdefault("parameters", {})[name] = quantity
+            continue
+        group, part = ("models", "parameters") if block in document.get("models", {}) else ("steps", "inputs")
+        patch.setdefault(group, {}).setdefault(block, {part: {}})[part][member] = quantity
+    return patch
+
+
+def _begun_before(session: Session, once: Once) -> str | None:
+    location = once.find(session)
+    return str(location["study"]) if location else None

@@ -1,0 +1,91 @@
+"""The rows of a study as a spreadsheet's file: CSV, or the first sheet of an XLSX file. In a process.
+
+A cell that is no number, or that holds a formula, is refused with its row and column.
+"""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Iterator, Mapping
+from itertools import islice
+from typing import Literal
+
+from openpyxl import load_workbook  # type: ignore[import-untyped]
+
+from app.calculations.tables import read_table
+from app.plain import Raw
+from app.studies.schemas import MOST_ROWS
+from app.workers.pieces import Pieces
+from templates.core.errors import Fault, InvalidInputs
+
+FileKind = Literal["csv", "xlsx"]
+
+MOST_CHARACTERS = 16_000_000
+MOST_UNPACKED, MOST_PARTS = 200_000_000, 500
+"""Of an XLSX file: bytes, and files within it."""
+MOST_COLUMNS = 40
+DAMAGED = "this file cannot be read as XLSX; save it again in a spreadsheet, or send CSV"
+
+
+def read_rows(content: Pieces, kind: FileKind) -> Mapping[str, Raw]:
+    """The columns of a file by name, each with its numbers and its unit.
+
+    Raises
+    ------
+    InvalidInputs
+        Naming every cell that is wrong, up to twenty.
+    """
+    text = _of_xlsx(content.joined()) if kind == "xlsx" else _of_csv(content.joined())
+    columns = read_table(text, most_rows=MOST_ROWS["table"], most_characters=MOST_CHARACTERS)
+    names = [column.name for column in columns]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise _wrong("twice", f"{', '.join(twice)[:200]} names two columns")
+    return {
+        column.name: {"value": list(column.values), **({"unit": column.unit} if column.unit else {})}
+        for column in columns
+    }
+
+
+def _of_csv(content: bytes) -> str:
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise _wrong("not_utf8", "save the file as CSV in UTF-8") from None
+
+
+def _of_xlsx(content: bytes) -> str:
+    """The first visible sheet as text, a row a line, its cells separated by tabs."""
+    _check_size(content)
+    try:
+        book = load_workbook(io.BytesIO(content), read_only=True, keep_links=False)
+        sheet = next((s for s in book.worksheets if s.sheet_state == "visible"), None)
+        if sheet is None:
+            raise _wrong("no_sheet", "the file has no visible sheet")
+        sheet.reset_dimensions()  # what the file says of its own size may be wrong
+        rows = sheet.iter_rows(values_only=True, max_col=MOST_COLUMNS)
+        return "\n".join(_lines(islice(rows, MOST_ROWS["table"] + 4)))
+    except InvalidInputs:
+        raise
+    except Exception:  # openpyxl raises whatever a damaged file makes of it
+        raise _wrong("damaged", DAMAGED) from None
+
+
+def _lines(rows: Iterator[tuple[object, ...]]) -> Iterator[str]:
+    for row in rows:
+        yield "\t".join("" if value is None else " ".join(str(value).split()) for value in row)
+
+
+def _check_size(content: bytes) -> None:
+    """Refuse what would unpack to more than any table; `zipfile` unpacks no more than the archive says."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            parts = archive.infolist()
+    except (zipfile.BadZipFile, ValueError, NotImplementedError, EOFError):
+        raise _wrong("damaged", DAMAGED) from None
+    if len(parts) > MOST_PARTS or sum(part.file_size for part in parts) > MOST_UNPACKED:
+        raise _wrong("too_large", "the file unpacks to too much; keep the one sheet with the rows only")
+
+
+def _wrong(code: str, detail: str) -> InvalidInputs:
+    return InvalidInputs([Fault("file", code, detail)])

@@ -1,0 +1,179 @@
+"""Studies and their rows as the interface shows them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from sqlalchemy.orm import Session
+
+from app.presentation.units import System
+from app.schemas.studies import Estimate, Refused, Study, StudyResult, StudyRow, StudyRows
+from app.storage.tables import StudyRow as Row
+from app.studies import repository
+from app.studies.archive import AnyArray, Archive
+from app.studies.planning import Plan
+from app.studies.stored import CONFIRM, ERROR, OUTPUT, PLACE, VERDICT, Part, Stored
+from templates.core.arrays import Array, Integers
+from templates.core.errors import InvalidInputs, unknown_names
+from templates.core.judging.comparison import NOT_CHECKED, WORST_FIRST
+from templates.core.units.units import unit
+
+MOST_REASONS = 20
+
+Where = Literal["met", "not_met", "undecided", "not_checked", "refused"]
+"""Which rows are listed: by their worst verdict, or those without values."""
+
+
+def study(session: Session, row: Row) -> Study:
+    """A study as it stands."""
+    plan = Plan.of(row.plan)
+    progress = repository.done(session, row.id, plan.chunks)
+    frequent = sorted(progress.refused.items(), key=lambda pair: (-pair[1], pair[0]))[:MOST_REASONS]
+    shown = {
+        "id": row.id,
+        "design": row.design_id,
+        "revision": row.revision,
+        "method": row.method,
+        "state": row.state,
+        "seed": row.seed,
+        "progress": 1.0 if row.state == "done" else min(1.0, progress.rows / max(1, row.rows)),
+        "rows": row.rows,
+        "done": progress.rows,
+        "refused": Refused(count=sum(progress.refused.values()), reasons=dict(frequent)),
+        "varied": plan.places,
+        "outputs": plan.outputs,
+        "criteria": plan.criteria,
+        "units": plan.units,
+        "levels": {step: level for step, level in plan.levels.items() if level is not None},
+        "estimate": Estimate(seconds=plan.seconds, solids=0),
+        "created": row.created,
+        "changed": row.updated,
+    }
+    if row.result is not None:
+        shown["result"] = StudyResult.model_validate(row.result)
+    if row.problem is not None:
+        shown["problem"] = row.problem
+    if row.job is not None:
+        shown["job"] = f"/api/v1/jobs/{row.job}"
+    return Study.model_validate(shown)
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Which rows and columns are listed, in which order."""
+
+    columns: tuple[str, ...] = ()  # all, if none is named
+    where: Where | None = None
+    sort: str | None = None  # a column; with `-` before it the largest first
+
+
+class Listing:
+    """The rows of a study that were calculated, filtered and sorted."""
+
+    def __init__(self, row: Row, stored: Stored, wanted: Wanted) -> None:
+        self.plan, self.stored, self.wanted = Plan.of(row.plan), stored, wanted
+        known = [*self.plan.places, *self.plan.outputs]
+        sort = (wanted.sort or "").removeprefix("-")
+        if unknown := [
+            *dict.fromkeys(n for n in (*wanted.columns, *([sort] if sort else [])) if n not in known)
+        ]:
+            raise InvalidInputs(f.within("columns") for f in unknown_names(unknown, known, "column"))
+        self.names = list(wanted.columns) or known
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The unit of each column."""
+        return {name: self.plan.units[name] for name in self.names}
+
+    def numbers(self) -> Integers:
+        """The rows that fit, in their order."""
+        numbers = np.arange(self.stored.count)
+        if self.wanted.where is not None:
+            numbers = np.flatnonzero(self._fits())
+        if self.wanted.sort is not None:
+            values = self.stored.values(self._array(self.wanted.sort.removeprefix("-")))[numbers]
+            keys = -values if self.wanted.sort.startswith("-") else values
+            numbers = numbers[np.argsort(keys, kind="stable")]
+        return numbers
+
+    def page(self, limit: int, start: int, system: System = "si") -> StudyRows:
+        """A page of rows that begins with one of those that fit."""
+        numbers = self.numbers()
+        following = str(start + limit) if start + limit < len(numbers) else None
+        items = self.rows(numbers[start : start + limit])
+        page = StudyRows(items=items, next=following, units=self.units, count=len(numbers))
+        return page.in_units(system)
+
+    def rows(self, numbers: Integers) -> list[StudyRow]:
+        """Some rows, in this order."""
+        shown: dict[int, StudyRow] = {}
+        for part in self.stored.parts:
+            inside = numbers[(numbers >= part.first) & (numbers < part.first + part.count)]
+            if len(inside):
+                with self.stored.archive(part) as archive:
+                    shown |= self._of_part(archive, part, inside)
+        return [shown[number] for number in numbers.tolist()]
+
+    def column(self, name: str) -> Array:
+        """A column of all rows, in its unit."""
+        return self._in_unit(name, self.stored.values(self._array(name)))
+
+    def _in_unit(self, name: str, values: AnyArray) -> Array:
+        """Values [SI] in the unit of a column."""
+        return np.asarray(unit(self.plan.units[name]).from_si(values.astype(np.float64)))
+
+    def _of_part(self, archive: Archive, part: Part, numbers: Integers) -> dict[int, StudyRow]:
+        about, local = archive.about(), numbers - part.first
+        columns = {n: self._in_unit(n, archive[self._array(n)][local]) for n in self.names}
+        errors = {n: archive[f"{ERROR}{n}"][local] for n in self.names if f"{ERROR}{n}" in archive}
+        verdicts = {
+            n: archive[f"{VERDICT}{n}"][local] for n in self.plan.criteria if f"{VERDICT}{n}" in archive
+        }
+        reasons, levels = archive["reason"][local], archive["level"][local]
+        shown = {}
+        for place, number in enumerate(numbers.tolist()):
+            reason = int(reasons[place])
+            codes = {name: int(codes[place]) for name, codes in verdicts.items()}
+            row = {
+                "row": number,
+                "values": {name: _finite(values[place]) for name, values in columns.items()},
+                "level": {k: v for k, v in about["levels"][int(levels[place])].items() if v is not None},
+            }
+            if stated := {n: float(e[place]) for n, e in errors.items() if np.isfinite(e[place])}:
+                row["errors"] = stated
+            if codes:
+                row["verdicts"] = {name: WORST_FIRST[code] for name, code in codes.items()}
+            if self.plan.required:
+                row["verdict"] = WORST_FIRST[min(codes.get(name, NOT_CHECKED) for name in self.plan.required)]
+            if self._is_confirmed(number, int(levels[place])):
+                row["confirmed"] = True
+            if reason >= 0:
+                where, _, detail = about["reasons"][reason]
+                row["reason"] = f"{where}: {detail}"
+            shown[number] = StudyRow.model_validate(row)
+        return shown
+
+    def _is_confirmed(self, number: int, level: int) -> bool:
+        """Whether a row was calculated again, or confirms what a search promised."""
+        return level == CONFIRM if self.plan.searched else number >= self.plan.rows
+
+    def _fits(self) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+        if self.wanted.where == "refused":
+            return self.stored.is_refused
+        code = WORST_FIRST.index(self.wanted.where or "met")
+        fits: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = self.stored.worst(self.plan.required) == code
+        return fits
+
+    def _array(self, name: str) -> str:
+        return f"{PLACE}{name}" if name in self.plan.places else f"{OUTPUT}{name}"
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def start_of(cursor: str | None) -> int:
+    """The place in a list at which a page begins."""
+    return int(cursor) if cursor and cursor.isdecimal() and len(cursor) < 9 else 0

@@ -1,0 +1,258 @@
+"""The tolerance analysis of one design: checks the question, then limits, scatter, yields and shares.
+
+Runs in a calculation process. One level of each step serves all rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from app.designs.document import Document
+from app.designs.graph import Catalogues, Graph, build_graph, raise_if
+from app.designs.net import Net, Refusal, Table
+from app.designs.reference import Reference
+from app.designs.rows_needed import needs
+from app.schemas.answers import Warning
+from app.tolerances.criteria import Demanded, demanded
+from app.tolerances.factors import Factor
+from app.tolerances.question import Question
+from app.tolerances.scatter import SCRAMBLINGS, Rows, Scatter, scatter
+from app.tolerances.shares import Shares, shares
+from app.tolerances.toleranced import Varied, faults, varied
+from app.tolerances.worst import Worst, worst
+from templates.core.arrays import Array
+from templates.core.errors import Fault, unknown_name, unknown_names
+from templates.core.language.spec import Choice, Curve, Profile, Text
+from templates.core.language.spec import Table as TableInput
+from templates.core.progress import report
+
+LEAST_POINTS, USUAL_POINTS, MOST_POINTS = 1024, 16_384, 131_072
+MOST_OUTPUTS = 30
+ABOUT = "analysis"  # beside the outputs of an answer
+PATIENCE = 20.0
+"""For further points where none were asked for, by their estimate [s]."""
+LONGEST = 600.0
+"""By its estimate, an analysis that takes longer is refused [s]."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """What an analysis found, in SI."""
+
+    nominal: Table
+    worst: Worst
+    scatter: Scatter
+    shares: Shares
+    errors: Mapping[Reference, float]
+
+
+@dataclass
+class Analysis:
+    """A checked question about a checked design.
+
+    Attributes
+    ----------
+    outputs
+        What is analysed, in the order of the answer.
+    demands
+        The criteria that are judged, by name.
+    warnings
+        About tolerances that have no part in it.
+    """
+
+    graph: Graph
+    net: Net
+    question: Question
+    outputs: list[Reference]
+    demands: dict[str, Demanded]
+    varied: list[Varied]
+    warnings: list[Warning]
+    first_refusal: Refusal | None = None
+    stated: dict[str, bool] = field(default_factory=dict)  # by criterion: the errors of all models behind it
+    _errors: dict[Reference, float] = field(default_factory=dict)
+    _levels: dict[str, str | None] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, document: Document, catalogues: Catalogues, question: Question) -> Analysis:
+        """The analysis of a design.
+
+        Raises
+        ------
+        InvalidInputs
+            With everything that is wrong with the design or the question.
+        """
+        graph, wrong = build_graph(document, catalogues)
+        raise_if(wrong)
+        every = demanded(graph)
+        raise_if([*_faults(graph, question, every)])
+        named = every if question.criteria is None else {n: every[n] for n in question.criteria}
+        outputs = _outputs(graph, question, named)
+        wanted = {*outputs, *(r for demand in named.values() for r in demand.references)}
+        chosen, warnings = varied(graph, needs(graph, wanted, ()).cells)
+        raise_if(list(faults(chosen, warnings)))
+        net = Net.of(document, catalogues, [v.reference for v in chosen], wanted=wanted, pending=True)
+        return cls(graph, net, question, outputs, named, chosen, warnings)
+
+    @cached_property
+    def factors(self) -> list[Factor]:
+        """The toleranced values as random numbers."""
+        return [one.factor for one in self.varied]
+
+    @property
+    def levels(self) -> dict[str, str]:
+        """The level of each step that has any."""
+        return {step: level for step, level in self._levels.items() if level is not None}
+
+    @property
+    def base(self) -> int:
+        """Rows of each sample for the shares."""
+        return (self.question.points or USUAL_POINTS) // SCRAMBLINGS
+
+    def found(self) -> Found:
+        """Calculate everything.
+
+        Raises
+        ------
+        InvalidInputs
+            If an output is no single value, or the levels of the design take too long.
+        """
+        most = self._most_points()  # by the tables of costs: a measured pace is another one every time
+        nominal = self._nominal()
+        self._require_single(nominal)
+        self._require_time()
+        report(0.05, "the limits are searched")
+        ends = worst(self.factors, self._outputs, self.question.seed)
+        report(0.4, "products are sampled")
+        question = self.question
+        spread = scatter(self.factors, self._judged, question.points or USUAL_POINTS, question.seed, most)
+        report(0.7, "shares are estimated")
+        causes = shares(self.factors, self._outputs, self.base, self.question.seed)
+        return Found(nominal, ends, spread, causes, self._errors)
+
+    def _nominal(self) -> Table:
+        """The values of the design itself, at the levels that all rows have from here on."""
+        self._levels = dict(self.question.levels)
+        row = np.array([[factor.nominal for factor in self.factors]])
+        table = self._table(row, judge=True)
+        self._levels |= table.levels
+        return table
+
+    def _outputs(self, rows: Array) -> Array:
+        return _stacked(self._table(rows), self.outputs)
+
+    def _judged(self, rows: Array) -> Rows:
+        table = self._table(rows, judge=True)
+        for output, errors in table.errors.items():
+            if np.isfinite(errors).any():
+                self._errors[output] = max(self._errors.get(output, 0.0), float(np.nanmax(errors)))
+        for name, column in table.judged.items():
+            self.stated[name] = self.stated.get(name, True) and column.is_stated
+        margins = {name: column.margin for name, column in table.judged.items()}
+        return Rows(_stacked(table, self.outputs), table.verdicts, margins)
+
+    def _table(self, rows: Array, *, judge: bool = False) -> Table:
+        """The outputs, and with `judge` the verdicts, of rows of factors."""
+        given = {one.reference: rows[:, column] for column, one in enumerate(self.varied)}
+        criteria = list(self.demands) if judge else []
+        table = self.net(given, self.outputs, levels=self._levels, judge=judge, criteria=criteria)
+        if self.first_refusal is None and table.refusals:
+            self.first_refusal = table.refusals[min(table.refusals)]
+        return table
+
+    def _require_single(self, nominal: Table) -> None:
+        raise_if(
+            [
+                Fault(
+                    f"outputs.{output}", "shape", "it is a curve or an array; an analysis takes single values"
+                )
+                for output in self.outputs
+                if nominal.columns[output].ndim > 1
+            ]
+        )
+
+    def _most_points(self) -> int | None:
+        """Up to how many products are sampled where yields need them; None if their number was given."""
+        if self.question.points is not None:
+            return None
+        self._levels = dict(self.question.levels)
+        most = USUAL_POINTS
+        while 2 * most <= MOST_POINTS and self._seconds(2 * most) <= PATIENCE:
+            most *= 2
+        return most
+
+    def _seconds(self, rows: int) -> float:
+        return self.net.seconds(rows, self.outputs, self._levels, criteria=list(self.demands))
+
+    def _require_time(self) -> None:
+        """Refuse what takes too long at these levels, naming one that takes long."""
+        rows = 2000 + (self.question.points or USUAL_POINTS) + self.base * (len(self.factors) + 2)
+        seconds = self._seconds(rows)
+        if seconds > LONGEST:
+            levels = ", ".join(f"{step}: {level}" for step, level in self.levels.items())
+            remedy = 'name cheaper ones, as in "levels": {"film": "map"}, or ask for fewer points'
+            detail = f"{rows} rows at these levels ({levels}) take about {seconds:.2g} s; {remedy}"
+            raise_if([Fault("levels", "too_expensive", detail)])
+
+
+def _stacked(table: Table, outputs: Sequence[Reference]) -> Array:
+    """Columns side by side, of the shape (rows, outputs)."""
+    return np.stack([table.columns[output] for output in outputs], axis=1)
+
+
+def _faults(graph: Graph, question: Question, every: Mapping[str, Demanded]) -> Iterator[Fault]:
+    """What is wrong with the names and numbers of a question."""
+    unknown = [name for name in question.criteria or () if name not in every]
+    yield from (fault.within("criteria") for fault in unknown_names(unknown, every, "criterion"))
+    wanted = [name for name in question.outputs or () if not _is_quantity(graph, Reference.parse(name))]
+    known = [n for n in graph.names() if _is_quantity(graph, Reference.parse(n))]
+    yield from (fault.within("outputs") for fault in unknown_names(wanted, known, "output"))
+    if ABOUT in (question.outputs or ()):
+        detail = f"{ABOUT} is where the answer says what was analysed; give this parameter another name"
+        yield Fault(f"outputs.{ABOUT}", "reserved", detail)
+    points = question.points
+    if points is not None and not (LEAST_POINTS <= points <= MOST_POINTS and points & (points - 1) == 0):
+        detail = f"points is a power of two from {LEAST_POINTS} to {MOST_POINTS}, such as 16384"
+        yield Fault("points", "out_of_range", detail)
+    for step, level in question.levels:
+        yield from _level_faults(graph, step, level)
+
+
+def _level_faults(graph: Graph, step: str, level: str) -> Iterator[Fault]:
+    block = graph.blocks.get(step)
+    if block is None or block.is_model:
+        steps = [name for name, block in graph.blocks.items() if not block.is_model]
+        yield unknown_name(step, steps, "step").within("levels")
+    elif level not in block.cls.levels:
+        yield unknown_name(level, block.cls.levels, "level").within(f"levels.{step}")
+
+
+def _is_quantity(graph: Graph, reference: Reference) -> bool:
+    """Whether a name means a value that a row of the design can have."""
+    if graph.node(reference) is None and not graph.cell(reference):
+        return False
+    block = graph.blocks.get(reference.block)
+    declared = block and (block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member))
+    return not isinstance(declared, (Choice, Text, TableInput))
+
+
+def _outputs(graph: Graph, question: Question, demands: Mapping[str, Demanded]) -> list[Reference]:
+    """The outputs asked for; else those that criteria hold against limits; else all of the steps."""
+    if question.outputs is not None:
+        return [Reference.parse(name) for name in dict.fromkeys(question.outputs)]
+    subjects = [demand.alone for demand in demands.values() if demand.alone is not None]
+    outputs = list(dict.fromkeys([r for r in subjects if graph.cell(r) is None] or _all_outputs(graph)))
+    return outputs[:MOST_OUTPUTS]
+
+
+def _all_outputs(graph: Graph) -> Iterator[Reference]:
+    for name, block in graph.blocks.items():
+        if not block.is_model:
+            formulas = block.cls.formulas.items()
+            single = [n for n, f in formulas if not isinstance(f, (Text, Profile, Curve))]
+            yield from (
+                Reference(name, None, n) for n in single if block.outputs is None or n in block.outputs
+            )

@@ -1,0 +1,64 @@
+"""The criteria of a design of which an analysis states the yield."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from app.designs.network import Graph
+from app.designs.reference import Reference
+from app.designs.subjects import Subject, subjects
+from templates.core.judging.criterion import Criterion
+
+
+@dataclass(frozen=True)
+class Demanded:
+    """A criterion, as an analysis sees it."""
+
+    subject: Subject
+
+    @property
+    def criterion(self) -> Criterion:
+        """What is compared."""
+        return self.subject.criterion
+
+    @property
+    def references(self) -> frozenset[Reference]:
+        """The values that it names, without limits."""
+        return frozenset(self.subject.references.values())
+
+    @cached_property
+    def judged(self) -> frozenset[Reference]:
+        """The values on the side that is held against the limit."""
+        named = self.criterion.value.names
+        return frozenset(of for name, of in self.subject.references.items() if name in named)
+
+    @property
+    def alone(self) -> Reference | None:
+        """The value that is judged, where it stands alone."""
+        name = self.criterion.subject
+        return None if name is None else self.subject.references.get(name)
+
+    @property
+    def has_one_limit(self) -> bool:
+        """Whether the limit is the same for every product: no value of the design stands in it."""
+        return self.subject.references.keys().isdisjoint(self.criterion.limit.names)
+
+    @property
+    def missing(self) -> list[str]:
+        """Limits that nobody has given."""
+        block = self.subject.block
+        if block is None:
+            return []
+        given = {*block.limits, *block.related}
+        return [f"{block.name}.{one.name}" for one in self.criterion.limits if one.name not in given]
+
+
+def demanded(graph: Graph) -> dict[str, Demanded]:
+    """Every criterion of a design that is judged and not waived."""
+    return {name: Demanded(one) for name, one in subjects(graph).items() if _counts(graph, name, one)}
+
+
+def _counts(graph: Graph, name: str, subject: Subject) -> bool:
+    is_waived = name in graph.demands and graph.demands[name].written.waived is not None
+    return subject.is_due(graph) and not is_waived

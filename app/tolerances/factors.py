@@ -1,0 +1,86 @@
+"""Toleranced values as random numbers: quasi-random rows, and rows that search the limits.
+
+A *factor* is one toleranced value. Rows of factors are arrays of the shape (rows, factors) in SI.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+from scipy.stats import qmc
+
+from templates.core.arrays import Array
+from templates.core.units.tolerance import Distribution
+
+CUT = 3.0  # standard deviations at which a normal distribution has its limits, and is cut
+MOST_AT_THREE, MOST_AT_TWO = 6, 12  # factors of a lattice of three, and of two, values each
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A value that lies between limits.
+
+    Attributes
+    ----------
+    name
+        Of the value in its design.
+    nominal, low, high
+        Its value and its limits [SI].
+    distribution
+        Between the limits.
+    """
+
+    name: str
+    nominal: float
+    low: float
+    high: float
+    distribution: Distribution = "normal"
+
+
+def inverse(distribution: Distribution, share: Array) -> Array:
+    """Where, from −1 to 1 between the limits, a share (0 to 1) of the values lies below.
+
+    Normal: limits at ±3 standard deviations, cut there. Triangular: the peak is in the middle.
+    """
+    if distribution == "uniform":
+        return 2 * share - 1
+    if distribution == "triangular":
+        rising: Array = np.sqrt(2 * np.minimum(share, 1 - share)) - 1
+        return np.where(share < 0.5, rising, -rising)
+    below = ndtr(-CUT)
+    scaled: Array = np.clip(ndtri(below + share * (1 - 2 * below)) / CUT, -1, 1)
+    return scaled
+
+
+def placed(factors: Sequence[Factor], position: Array) -> Array:
+    """Values [SI] of positions from −1 (lower limits) to 1 (upper limits)."""
+    low, high = np.array([f.low for f in factors]), np.array([f.high for f in factors])
+    between: Array = np.clip(0.5 * ((1 - position) * low + (1 + position) * high), low, high)
+    return between
+
+
+def scattered(factors: Sequence[Factor], shares: Array) -> Array:
+    """Values [SI] of points of the unit cube, distributed as the factors are."""
+    columns = [inverse(f.distribution, shares[:, i]) for i, f in enumerate(factors)]
+    return placed(factors, np.stack(columns, axis=1))
+
+
+def sobol(dimensions: int, count: int, seed: Sequence[int]) -> Array:
+    """A scrambled Sobol' sequence of so many points (a power of two) in the unit cube."""
+    sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(list(seed)))
+    points: Array = sequence.random_base2(count.bit_length() - 1)
+    return points
+
+
+def lattice(count: int) -> Array:
+    """Positions on a lattice between the limits, so fine that so many factors allow it; always the middle."""
+    if count <= MOST_AT_THREE:
+        return np.array(list(product((-1.0, 0.0, 1.0), repeat=count)))
+    axes = np.vstack([np.zeros(count), np.eye(count), -np.eye(count)])
+    if count > MOST_AT_TWO:
+        return axes
+    return np.vstack([axes, np.array(list(product((-1.0, 1.0), repeat=count)))])

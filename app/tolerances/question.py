@@ -1,0 +1,21 @@
+"""What is asked of a tolerance analysis, as a calculation process takes it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked: outputs and criteria by name (None: those that the design suggests), points, seed.
+
+    Without `points`, there are as many as bring every standard error of a yield to that aimed at.
+
+    `levels` are pairs of a step and the level that it has instead of the design's.
+    """
+
+    outputs: tuple[str, ...] | None = None
+    criteria: tuple[str, ...] | None = None
+    points: int | None = None
+    seed: int = 1
+    levels: tuple[tuple[str, str], ...] = ()

@@ -1,0 +1,144 @@
+"""The least and the largest value of each output within the limits, interior extremes included.
+
+A lattice with all corners and 512 quasi-random rows find where to begin; L-BFGS-B climbs from the three best
+of them. Slopes and corners alone miss extremes within the limits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import fmin_l_bfgs_b
+
+from app.tolerances.factors import Factor, lattice, placed, sobol
+from templates.core.arrays import Array
+
+Outputs = Callable[[Array], Array]
+"""From rows of factors [SI] to outputs of the shape (rows, outputs) [SI]; NaN where a row is refused."""
+
+SCANNED = 512  # quasi-random rows beside the lattice
+STARTS = 3
+MOST_STEPS = 30  # of one climb
+STEP = 1e-3  # of a difference quotient, of half the width between the limits
+APART = 0.25  # of half the width: starts that are nearer find the same extreme
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """An end of the range of an output [SI], and the values of the factors [SI] there."""
+
+    value: float
+    at: Array
+
+
+@dataclass(frozen=True)
+class Worst:
+    """Both ends for each output (None of one that has no value anywhere), and what the search met.
+
+    Attributes
+    ----------
+    ends
+        Low and high for each output.
+    rows, refused
+        Rows that were calculated, and those of them that the design refused.
+    first_refused
+        The factors [SI] of one such row.
+    """
+
+    ends: Sequence[tuple[Extreme, Extreme] | None]
+    rows: int
+    refused: int
+    first_refused: Array | None
+
+
+def worst(factors: Sequence[Factor], outputs: Outputs, seed: int) -> Worst:
+    """Search the limits."""
+    search = _Search(factors, outputs)
+    nominal = np.array([[_position(f) for f in factors]])
+    random = 2 * sobol(len(factors), SCANNED, (seed, 1)) - 1
+    positions = np.vstack([nominal, lattice(len(factors)), random])
+    values = search.values(positions)
+    ends = [search.ends(positions, values[:, column], column) for column in range(values.shape[1])]
+    return Worst(ends, search.rows, search.refused, search.first_refused)
+
+
+def _position(factor: Factor) -> float:
+    """Where the value itself lies, from −1 to 1; outside, where both limits lie on one side of it."""
+    half = (factor.high - factor.low) / 2
+    return float(np.clip((factor.nominal - (factor.high + factor.low) / 2) / half, -1, 1))
+
+
+class _Search:
+    """One search: counts rows, and keeps a refused one."""
+
+    def __init__(self, factors: Sequence[Factor], outputs: Outputs) -> None:
+        self.factors, self.outputs = factors, outputs
+        self.rows = self.refused = 0
+        self.first_refused: Array | None = None
+
+    def values(self, positions: Array) -> Array:
+        """The outputs at some positions."""
+        rows = placed(self.factors, positions)
+        values = self.outputs(rows)
+        refused = np.isnan(values).all(axis=1)
+        self.rows += len(rows)
+        self.refused += int(refused.sum())
+        if self.first_refused is None and refused.any():
+            self.first_refused = rows[int(np.argmax(refused))]
+        return values
+
+    def ends(self, positions: Array, values: Array, column: int) -> tuple[Extreme, Extreme] | None:
+        """The least and the largest value of one output."""
+        if np.isnan(values).all():
+            return None
+        return self._end(positions, values, column, 1.0), self._end(positions, values, column, -1.0)
+
+    def _end(self, positions: Array, values: Array, column: int, sign: float) -> Extreme:
+        """The least value, or for the sign −1 the largest."""
+        best = int(np.nanargmin(sign * values))
+        found = values[best], positions[best]
+        scale = float(np.nanmax(values) - np.nanmin(values))
+        if scale > 0:
+            for start in _starts(positions, sign * values):
+                end = self._climb(positions[start], column, sign / scale)
+                if sign * end[0] < sign * found[0]:
+                    found = end
+        return Extreme(float(found[0]), placed(self.factors, found[1][np.newaxis])[0])
+
+    def _climb(self, start: Array, column: int, factor: float) -> tuple[float, Array]:
+        """A local extreme from a start; the best point that was met."""
+        best: list[tuple[float, Array]] = []
+
+        def function(position: Array) -> tuple[float, Array]:
+            value, slopes = self._slopes(position, column)
+            if np.isnan(value):
+                return np.inf, np.zeros_like(position)
+            best.append((value, position.copy()))
+            return factor * value, factor * slopes
+
+        bounds = [(-1.0, 1.0)] * len(start)
+        fmin_l_bfgs_b(function, start, bounds=bounds, maxiter=MOST_STEPS, maxfun=2 * MOST_STEPS)
+        return min(best, key=lambda one: factor * one[0])
+
+    def _slopes(self, position: Array, column: int) -> tuple[float, Array]:
+        """An output and its slopes, from one call of 1 + 2k rows; 0 where a neighbour is refused."""
+        count = len(position)
+        steps = STEP * np.eye(count)
+        beside = np.clip(np.vstack([position + steps, position - steps]), -1, 1)
+        values = self.values(np.vstack([position, beside]))[:, column]
+        widths = (beside[:count] - beside[count:]).diagonal()
+        slopes = (values[1 : count + 1] - values[count + 1 :]) / widths
+        return float(values[0]), np.where(np.isnan(slopes), 0.0, slopes)
+
+
+def _starts(positions: Array, values: Array) -> list[int]:
+    """The rows with the least values, apart from each other."""
+    chosen: list[int] = []
+    for row in np.argsort(values, kind="stable")[: 20 * STARTS]:
+        if np.isnan(values[row]) or len(chosen) == STARTS:
+            break
+        if all(np.max(np.abs(positions[row] - positions[other])) > APART for other in chosen):
+            chosen.append(int(row))
+    return chosen

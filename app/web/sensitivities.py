@@ -1,0 +1,62 @@
+"""The sensitivities of an explanation as its page shows them: slope, elasticity and a bar for each place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from app.presentation import numbers
+from app.schemas.designs import Sensitivity
+
+WIDTH = 100  # of the picture of a bar, whose middle is no change
+HELPS = {"increase": "raise it", "decrease": "lower it"}
+
+
+@dataclass(frozen=True)
+class Bar:
+    """Where the bar of an elasticity begins, and how long it is."""
+
+    begin: float
+    length: float
+    sign: str  # a class: rises or falls
+
+
+@dataclass(frozen=True)
+class SensitivityLine:
+    """A line of the table."""
+
+    name: str
+    slope: str
+    elasticity: str
+    bar: Bar | None
+    helps: str
+    reason: str
+
+
+def sensitivity_lines(items: Sequence[Sensitivity]) -> list[SensitivityLine]:
+    """All lines; the longest bar is that of the largest elasticity."""
+    largest = max((abs(item.elasticity or 0.0) for item in items), default=0.0)
+    return [_line(item, largest) for item in items]
+
+
+def _line(item: Sensitivity, largest: float) -> SensitivityLine:
+    slope = item.slope
+    return SensitivityLine(
+        item.name,
+        "–" if slope is None else numbers.told({"value": _digits(slope.value), "unit": slope.unit}),
+        "–" if item.elasticity is None else numbers.plain(_digits(item.elasticity)),
+        _bar(item.elasticity, largest) if item.elasticity else None,
+        HELPS[item.helps] if item.helps else "",
+        item.reason or "",
+    )
+
+
+def _bar(elasticity: float, largest: float) -> Bar:
+    length = WIDTH / 2 * abs(elasticity) / largest
+    begin = WIDTH / 2 if elasticity > 0 else WIDTH / 2 - length
+    return Bar(round(begin, 2), round(length, 2), "rises" if elasticity > 0 else "falls")
+
+
+def _digits(value: float) -> float:
+    """Four digits: differences give no more."""
+    return float(f"{value:.4g}")

@@ -1,0 +1,153 @@
+"""The form of a new study: what is varied, by which method, and what is wanted of the rows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from fastapi import Request, Response
+from pydantic import JsonValue
+
+from app.presentation.typed import value_of
+from app.schemas.designs import Design, RevisionWorksheet
+from app.schemas.networks import DesignNetwork, NetworkName
+from app.web.api import Api, Refused
+from app.web.places import outputs, suggested, varied
+from app.web.rendering import show
+
+LINES = 4
+"""Places that the form can vary; the interface takes more."""
+METHODS = {
+    "grid": "every combination of evenly spaced values (sweeps, contours)",
+    "sample": "rows spread over all intervals (histograms, parallel coordinates)",
+    "sensitivity": "how much each input moves each output",
+    "optimise": "the best row that meets the criteria",
+}
+STEPS, POINTS = "21", "1024"
+ON = "on"
+
+
+@dataclass(frozen=True)
+class Typed:
+    """What stands in the form, and what is wrong with it."""
+
+    fields: Mapping[str, str]
+    faults: Mapping[str, str] = field(default_factory=dict)
+    notice: str | None = None
+
+    def text(self, name: str, default: str = "") -> str:
+        """What a field holds."""
+        return self.fields.get(name, default)
+
+    def is_on(self, name: str) -> bool:
+        """Whether a box is ticked."""
+        return self.fields.get(name) == ON
+
+    def ticked(self, group: str) -> list[str]:
+        """The names of the boxes of a group that are ticked."""
+        head = f"{group}."
+        return [name.removeprefix(head) for name in self.fields if name.startswith(head) and self.is_on(name)]
+
+    def body(self, design: str) -> dict[str, JsonValue]:
+        """The study as the interface takes it; fields that are empty are left out."""
+        method = self.text("method", "grid")
+        body: dict[str, JsonValue] = {"design": design, "method": method, "vary": self._vary()}
+        body |= {group: list[JsonValue](names) for group in ("outputs",) if (names := self.ticked(group))}
+        if self.is_on("choose_criteria"):
+            body["hold"] = list[JsonValue](self.ticked("hold"))
+        body |= {
+            stage: {"tolerance": value} for stage in ("explore", "confirm") if (value := self._share(stage))
+        }
+        return body | self._of_method(method)
+
+    def _vary(self) -> dict[str, JsonValue]:
+        """What each place takes: values, or two bounds."""
+        vary: dict[str, JsonValue] = {}
+        for line in range(LINES):
+            place, values = self.text(f"place.{line}"), self.text(f"values.{line}").strip()
+            ends: list[JsonValue] = [value_of(self.text(f"{end}.{line}")) for end in ("low", "high")]
+            if place and values:
+                vary[place] = {"values": [value_of(text) for text in values.split(";")]}
+            elif place:
+                vary[place] = {"between": ends}
+        return vary
+
+    def _of_method(self, method: str) -> dict[str, JsonValue]:
+        match method:
+            case "grid":
+                chosen = {self.text(f"place.{n}"): self.text(f"steps.{n}") for n in range(LINES)}
+                steps: dict[str, JsonValue] = {p: _whole(text) for p, text in chosen.items() if p and text}
+                return {"steps": steps}
+            case "sample":
+                return {
+                    "points": _whole(self.text("points", POINTS)),
+                    "sequence": self.text("sequence", "sobol"),
+                }
+            case "sensitivity":
+                points: JsonValue = _whole(self.text("points", POINTS))
+                kind = self.text("kind", "local")
+                return {"kind": kind} if kind == "local" else {"kind": kind, "points": points}
+            case "optimise":
+                goals = {goal: self._goals(goal) for goal in ("minimise", "maximise")}
+                wanted: dict[str, JsonValue] = {goal: names for goal, names in goals.items() if names}
+                return wanted | ({"build": build} if (build := self.text("build")) else {})
+        return {}
+
+    def _goals(self, goal: str) -> list[JsonValue]:
+        return [
+            name for n in range(2) if self.text(f"goal.{n}") == goal and (name := self.text(f"objective.{n}"))
+        ]
+
+    def _share(self, name: str) -> JsonValue:
+        """A tolerance typed in per cent, as a share; a text that is no number as it is."""
+        text = self.text(name).strip().removesuffix("%").strip()
+        try:
+            return float(text) / 100 if text else None
+        except ValueError:
+            return text
+
+
+def _whole(text: str) -> JsonValue:
+    """A whole number; the interface says what is wrong with a text that is none."""
+    return int(text) if text.isascii() and text.strip().isdecimal() and len(text) < 12 else text
+
+
+async def study_form(request: Request, api: Api, id: str, typed: Typed, status: int = 200) -> Response:
+    """The form, with what was typed."""
+    design = await api.get(f"/designs/{id}", Design)
+    network = await api.get(f"/designs/{id}/network", DesignNetwork)
+    revision = await api.get(f"/designs/{id}/revisions/{design.revision}/worksheet", RevisionWorksheet)
+    places, named = varied(design, network), outputs(network)
+    criteria = {one.name: one.verdict != "not_checked" for one in revision.criteria or ()}
+    return show(
+        request,
+        "new_study.html",
+        status=status,
+        design=design,
+        places=places,
+        bounds={place.name: suggested(place) for place in places},
+        outputs=named,
+        judged=_judged(revision, named),
+        criteria=criteria,
+        methods=METHODS,
+        lines=range(LINES),
+        typed=typed,
+    )
+
+
+def _judged(revision: RevisionWorksheet, named: list[NetworkName]) -> set[str]:
+    """The outputs that criteria name, which a study keeps if nothing else is chosen."""
+    words = {word for c in revision.criteria or () for word in _words(c.name, c.require)}
+    return {name.name for name in named if name.name in words}
+
+
+def _words(criterion: str, require: str) -> set[str]:
+    """The names in a criterion, with the step in front where it belongs to a template."""
+    step, is_of_step, _ = criterion.rpartition(".")
+    bare = require.replace(">=", " ").replace("<=", " ").split()
+    return {f"{step}.{word}" if is_of_step else word for word in bare}
+
+
+def again(typed: Mapping[str, str], refused: Refused) -> Typed:
+    """What was typed, with why it was refused."""
+    return Typed(typed, refused.faults, None if refused.faults else refused.problem.detail)

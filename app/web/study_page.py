@@ -1,0 +1,146 @@
+"""The page of a study: how far it is, what it found, charts of its rows, and the row that is chosen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fastapi import Request, Response
+
+from app.presentation import numbers
+from app.schemas.criteria import Criterion
+from app.schemas.designs import Design, RevisionWorksheet
+from app.schemas.studies import Best, Index, Study, StudyList, StudyRows
+from app.web.api import Api, Scalar
+from app.web.rendering import show, units_of
+
+SHOWN = 20  # rows in the table
+UNFINISHED = ("queued", "running")
+
+
+async def study_page(request: Request, api: Api, id: str, notice: str | None = None) -> Response:
+    """A study, and the first of its rows."""
+    units = units_of(request)
+    study = await api.get(f"/studies/{id}", Study, units=units)
+    design = await api.get(f"/designs/{study.design}", Design)
+    cursor, sort, where = (request.query_params.get(name, "") for name in ("cursor", "sort", "where"))
+    query: dict[str, Scalar] = {"limit": SHOWN, "units": units}
+    query |= {name: text for name, text in (("cursor", cursor), ("sort", sort), ("where", where)) if text}
+    rows = await api.get(f"/studies/{id}/rows", StudyRows, **query)
+    return show(
+        request,
+        "study.html",
+        study=study,
+        design=design,
+        rows=rows,
+        names=[*study.varied, *study.outputs],
+        unfinished=study.state in UNFINISHED,
+        indices=_indices(study),
+        limits=await _limits(api, study, units),
+        notice=notice,
+        sort=sort,
+        where=where,
+        estimate=numbers.told({"value": float(f"{study.estimate.seconds:.2g}"), "unit": "s"}),
+    )
+
+
+async def _limits(api: Api, study: Study, units: str) -> dict[str, list[float]]:
+    """Limits of the study's criteria by output; a limit that itself follows from a row is no line."""
+    if not study.criteria:
+        return {}
+    path = f"/designs/{study.design}/revisions/{study.revision}/worksheet"
+    sheet = await api.find(path, RevisionWorksheet, units=units)
+    limits: dict[str, list[float]] = {}
+    for one in (sheet.criteria if sheet else None) or ():
+        if one.name in study.criteria and (line := _limit_of(study, one)):
+            limits.setdefault(line[0], []).append(line[1])
+    return limits
+
+
+def _limit_of(study: Study, one: Criterion) -> tuple[str, float] | None:
+    """The output that a criterion holds against a number written in it, and this number."""
+    left, _, right = one.require.replace(">=", "<=").partition("<=")
+    step, is_of_step, _ = one.name.rpartition(".")
+    name = f"{step}.{left.strip()}" if is_of_step else left.strip()
+    limit = one.limit.value if one.limit else None
+    if name not in study.outputs or not right.strip()[:1].isdigit() or not isinstance(limit, float | int):
+        return None
+    is_same_unit = one.limit is not None and one.limit.unit == study.units[name]
+    return (name, float(limit)) if is_same_unit else None
+
+
+async def studies_of(api: Api, design: str) -> list[Study]:
+    """The newest studies of a design."""
+    return (await api.get("/studies", StudyList, design=design, limit=10)).items
+
+
+@dataclass(frozen=True)
+class IndexLine:
+    """What moves an output by how much, as the page lists and draws it."""
+
+    place: str
+    cells: list[str]
+    value: float
+    low: float | None
+    high: float | None
+
+
+@dataclass(frozen=True)
+class IndexTable:
+    """The indices of one output, the largest first."""
+
+    output: str
+    heads: list[str]
+    words: str
+    lines: list[IndexLine]
+
+    def parts(self) -> list[dict[str, object]]:
+        """The bars of its tornado."""
+        return [
+            {"name": line.place, "value": line.value}
+            | ({} if line.low is None else {"low": line.low, "high": line.high})
+            for line in self.lines
+        ]
+
+
+def _indices(study: Study) -> list[IndexTable]:
+    found = (study.result.indices if study.result else None) or {}
+    return [_table(output, places) for output, places in found.items()]
+
+
+def _table(output: str, places: dict[str, Index]) -> IndexTable:
+    lines = [_line(place, index) for place, index in places.items()]
+    lines.sort(key=lambda line: -abs(line.value))
+    first = next(iter(places.values()), Index())
+    if first.total is not None:
+        heads, words = ["first order", "total"], "share of the variance, with all interactions"
+    elif first.mu_star is not None:
+        heads, words = ["mean effect", "scatter"], "mean size of elementary effects"
+    else:
+        heads, words = ["slope", "elasticity"], "relative change by relative change"
+    return IndexTable(output, heads, words, lines)
+
+
+def _line(place: str, index: Index) -> IndexLine:
+    if index.total is not None:
+        cells = [_with_error(index.first, index.first_error), _with_error(index.total, index.total_error)]
+        spread = index.total_error
+        low, high = (None, None) if spread is None else (index.total - spread, index.total + spread)
+        return IndexLine(place, cells, index.total, low, high)
+    if index.mu_star is not None:
+        cells = [numbers.told(index.mu_star), numbers.told(index.sigma)]
+        return IndexLine(place, cells, index.mu_star.value, None, None)
+    slope = numbers.told(index.slope) if index.slope else "–"
+    return IndexLine(place, [slope, _plain(index.elasticity)], index.elasticity or 0.0, None, None)
+
+
+def _with_error(value: float | None, error: float | None) -> str:
+    return _plain(value) + (f" ± {numbers.rough(error)}" if error is not None else "")
+
+
+def _plain(value: float | None) -> str:
+    return "–" if value is None else numbers.plain(float(f"{value:.4g}"))
+
+
+def values_of(best: Best) -> list[tuple[str, str]]:
+    """Where a row lies and what it gives, as texts."""
+    return [(name, numbers.told(quantity)) for name, quantity in {**best.at, **best.outputs}.items()]

@@ -1,0 +1,96 @@
+"""The pages of studies and of solving, and what their forms do."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Depends, Request, Response
+
+from app.schemas.studies import Study
+from app.web.actions import AT_ONCE, forms_only, tag_of
+from app.web.api import Api, Refused, TheApi, read
+from app.web.forms import fields
+from app.web.rendering import go
+from app.web.routes import Id
+from app.web.solve_page import solve_page
+from app.web.study_form import Typed, again, study_form
+from app.web.study_page import study_page
+
+router = APIRouter(include_in_schema=False)
+forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
+
+ILL_NAMED, STALE, ENDED = 422, 412, 409
+
+
+@router.get("/designs/{id}/solve")
+async def solve(id: Id, request: Request, api: TheApi) -> Response:
+    """Which value of one parameter gives a wanted output; the question stands in the address."""
+    return await solve_page(request, api, id)
+
+
+@router.get("/designs/{id}/studies/new")
+async def new_study(id: Id, request: Request, api: TheApi) -> Response:
+    """The form of a new study."""
+    return await study_form(request, api, id, Typed(dict(request.query_params)))
+
+
+@router.get("/designs/{id}/studies")
+async def after_a_new_study(id: Id) -> Response:
+    """The form of a new study: one that was refused is shown at the address to which it was sent."""
+    return go(f"/designs/{id}/studies/new")
+
+
+@router.get("/studies/{id}")
+async def study(id: Id, request: Request, api: TheApi) -> Response:
+    """A study: how far it is, and what it found."""
+    return await study_page(request, api, id)
+
+
+@router.get("/studies/{id}/choose")
+@router.get("/studies/{id}/cancel")
+async def after_a_form(id: Id) -> Response:
+    """The study: a form that was refused is shown at the address to which it was sent."""
+    return go(f"/studies/{id}")
+
+
+@forms.post("/designs/{id}/studies")
+async def start(id: Id, request: Request, api: TheApi) -> Response:
+    """A new study, shown at once; where it is refused, the form again with what is wrong."""
+    typed = await fields(request)
+    try:
+        response = await api.send("POST", "/studies", json=Typed(typed).body(id), headers=AT_ONCE)
+    except Refused as refused:
+        if refused.status != ILL_NAMED:
+            raise
+        return await study_form(request, api, id, again(typed, refused), ILL_NAMED)
+    return go(f"/studies/{read(response, Study).id}")
+
+
+@forms.post("/studies/{id}/choose")
+async def choose(id: Id, request: Request, api: TheApi) -> Response:
+    """The values of a row as a new revision of the design."""
+    typed = await fields(request)
+    headers = {**AT_ONCE, "If-Match": tag_of(typed.get("revision", ""))}
+    try:
+        body = {"row": int(typed["row"]) if typed.get("row", "").isdecimal() else typed.get("row", "")}
+        await api.send("POST", f"/studies/{id}/choose", json=body, headers=headers)
+    except Refused as refused:
+        if refused.status not in (ILL_NAMED, STALE):
+            raise
+        return await study_page(request, api, id, f"Nothing was saved: {refused.problem.detail}")
+    return go(f"/designs/{(await api.get(f'/studies/{id}', Study)).design}")
+
+
+@forms.post("/studies/{id}/cancel")
+async def cancel(id: Id, api: TheApi) -> Response:
+    """Stop a study; one that has ended meanwhile stays as it is."""
+    found = await api.get(f"/studies/{id}", Study)
+    if found.job is not None:
+        await _stop(api, found.job)
+    return go(f"/studies/{id}")
+
+
+async def _stop(api: Api, job: str) -> None:
+    try:
+        await api.send("DELETE", job.removeprefix("/api/v1"))
+    except Refused as refused:
+        if refused.status != ENDED:
+            raise

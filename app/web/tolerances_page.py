@@ -1,0 +1,101 @@
+"""Tolerances on the design page: whether there are any, and an analysis as a table with its pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from fastapi import Request, Response
+
+from app.presentation import bars
+from app.schemas.answers import Quantity
+from app.schemas.designs import Design
+from app.schemas.tolerances import OutputScatter, ToleranceAnalysis, Yield
+from app.web.api import Api, Refused, read
+from app.web.rendering import show, units_of
+from templates.core.units.tolerance import is_toleranced
+
+PATIENT = {"Prefer": "wait=60"}
+LOW, HIGH = "0.00135", "0.99865"
+
+
+@dataclass(frozen=True)
+class Line:
+    """One output in the table, and its pictures."""
+
+    name: str
+    output: OutputScatter
+    tornado: str
+    histogram: str
+
+    def quantity(self, value: float | None) -> Quantity | None:
+        """A number of the output with its unit."""
+        return None if value is None else Quantity(value=value, unit=self.output.unit)
+
+    @property
+    def low(self) -> Quantity | None:
+        """The least value of all but 0.135 % of the products."""
+        return self.quantity(self.output.quantiles.get(LOW))
+
+    @property
+    def high(self) -> Quantity | None:
+        """The largest value of all but 0.135 % of the products."""
+        return self.quantity(self.output.quantiles.get(HIGH))
+
+
+def toleranced(design: Design) -> bool:
+    """Whether any value of a design has a tolerance."""
+    groups = [design.parameters, *(step.inputs for step in design.steps.values())]
+    groups += [model.parameters for model in design.models.values()]
+    return any(is_toleranced(raw) for group in groups for raw in group.values())
+
+
+async def tolerances_page(request: Request, api: Api, id: str, job: str | None, *, is_part: bool) -> Response:
+    """The analysis of the newest revision, or that of a finished job; alone, or as a part of the page."""
+    design = await api.get(f"/designs/{id}", Design)
+    template = "tolerances_part.html" if is_part else "tolerances_page.html"
+    try:
+        analysis, later = await _analysis(request, api, id, job)
+    except Refused as refused:
+        wrong = [fault.detail for fault in refused.problem.errors] or [refused.problem.detail]
+        return show(request, template, refused.status, design=design, analysis=None, wrong=wrong, later=None)
+    lines = [_line(name, output) for name, output in analysis.outputs.items()] if analysis else []
+    return show(request, template, design=design, analysis=analysis, lines=lines, wrong=[], later=later)
+
+
+async def _analysis(
+    request: Request, api: Api, id: str, job: str | None
+) -> tuple[ToleranceAnalysis | None, str | None]:
+    """The analysis, or the job that still makes it."""
+    if job is not None:
+        return await api.get(f"/evaluations/{job}", ToleranceAnalysis), None
+    query = {"units": units_of(request)}
+    response = await api.send("POST", f"/designs/{id}/tolerance", json={}, params=query, headers=PATIENT)
+    if response.status_code == 202:
+        return None, response.headers["Location"].rpartition("/")[2]
+    return read(response, ToleranceAnalysis), None
+
+
+def _line(name: str, output: OutputScatter) -> Line:
+    shares = [bars.Bar(of, share.first, share.total) for of, share in output.shares.items()]
+    histogram = ""
+    if output.histogram is not None:
+        marks = list(_marks(output))
+        histogram = bars.histogram(output.histogram.edges, output.histogram.counts, marks, output.unit)
+    return Line(name, output, bars.tornado(shares), histogram)
+
+
+def _marks(output: OutputScatter) -> Iterator[bars.Mark]:
+    if output.nominal is not None:
+        yield bars.Mark("nominal", output.nominal, is_limit=False)
+    edges = output.histogram.edges if output.histogram else []
+    yield from (
+        bars.Mark(one.of, one.limit) for one in output.yields if one.limit is not None and _near(one, edges)
+    )
+
+
+def _near(one: Yield, edges: list[float]) -> bool:
+    """Whether a limit lies so near that the histogram is not squeezed by it."""
+    assert one.limit is not None
+    width = edges[-1] - edges[0]
+    return edges[0] - width <= one.limit <= edges[-1] + width

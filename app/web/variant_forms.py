@@ -1,0 +1,121 @@
+"""What the forms of the table of variants do: cells edited in place, a table pasted, a file uploaded.
+
+Each becomes one `PUT /designs/{id}/variants` of a sheet; where it is refused, the page shows the table as it
+was given, the message of each faulty cell beside it.
+"""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Depends, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from app.api.reading import FORM_TYPES, NotForm, check_type
+from app.designs.variant_sheets.grid import Grid
+from app.designs.variant_sheets.service import Kind, read_sheet
+from app.presentation.spreadsheets import XLSX
+from app.schemas.networks import DesignNetwork
+from app.schemas.problems import Fault
+from app.web.api import Api, Refused, TheApi
+from app.web.design_page import design_page
+from app.web.forms import fields
+from app.web.multipart import MEDIA_TYPE, read_parts
+from app.web.rendering import go
+from app.web.routes import Id
+from app.web.variant_cells import CsvFile, csv_of, grid_of_form, with_units
+from app.web.variants import EMPTY, RefusedTable
+from templates.core.errors import InvalidInputs
+
+STALE, WRONG = 412, 422
+MEDIA: dict[Kind, str] = {
+    "csv": "text/csv",
+    "xlsx": XLSX,
+}
+AT_ONCE = {"Prefer": "wait=1"}
+CHANGED = "Somebody else saved this design meanwhile: {}. Look at your table once more, then save it."
+
+
+async def forms_only(request: Request) -> None:
+    """Let bodies through only if they are forms, with files or without."""
+    check_type(request, FORM_TYPES | {MEDIA_TYPE}, NotForm)
+
+
+router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
+
+
+@router.post("/designs/{id}/variants")
+async def save_cells(id: Id, request: Request, api: TheApi) -> Response:
+    """Save the table as edited in place."""
+    typed = await fields(request)
+    network = await api.get(f"/designs/{id}/network", DesignNetwork)
+    units = {name.name: name.unit for name in network.names if name.unit != "1"}
+    grid = with_units(grid_of_form(typed), units)
+    file = csv_of(grid)
+    return await _saved(request, api, id, _Upload(file.content, "csv", typed.get("revision", "")), grid, file)
+
+
+@router.post("/designs/{id}/variants/pasted")
+async def save_pasted(id: Id, request: Request, api: TheApi) -> Response:
+    """Save a table pasted from a spreadsheet."""
+    typed = await fields(request)
+    content = typed.get("table", "").encode()
+    return await _saved(request, api, id, _Upload(content, "csv", typed.get("revision", "")))
+
+
+@router.post("/designs/{id}/variants/file")
+async def save_file(id: Id, request: Request, api: TheApi) -> Response:
+    """Save a file of a spreadsheet."""
+    parts = read_parts(await request.body(), request.headers.get("content-type", ""))
+    content = parts["file"].content if "file" in parts else b""
+    revision = parts["revision"].text if "revision" in parts else ""
+    return await _saved(
+        request, api, id, _Upload(content, "xlsx" if content[:2] == b"PK" else "csv", revision)
+    )
+
+
+class _Upload:
+    """A sheet, its kind, and the revision on which it is based."""
+
+    def __init__(self, content: bytes, kind: Kind, revision: str) -> None:
+        self.content, self.kind = content, kind
+        self.tag = f'"{revision if revision.isdecimal() and len(revision) < 7 else 0}"'
+
+
+async def _saved(
+    request: Request,
+    api: Api,
+    id: str,
+    upload: _Upload,
+    grid: Grid | None = None,
+    file: CsvFile | None = None,
+) -> Response:
+    """The design's page after a save, or with the table that was refused."""
+    headers = {**AT_ONCE, "If-Match": upload.tag, "Content-Type": MEDIA[upload.kind]}
+    try:
+        await api.send("PUT", f"/designs/{id}/variants", content=upload.content, headers=headers)
+    except Refused as refused:
+        if refused.status not in (STALE, WRONG):
+            raise
+        shown = await run_in_threadpool(_cells, upload) if grid is None else grid
+        errors = [file.on_page(fault) if file else fault for fault in refused.problem.errors]
+        return await _again(request, api, id, refused, RefusedTable(shown, _by_name(errors)))
+    return go(f"/designs/{id}#variants")
+
+
+def _by_name(errors: list[Fault]) -> dict[str, str]:
+    return {fault.name: fault.detail for fault in errors}
+
+
+def _cells(upload: _Upload) -> Grid:
+    """What can be shown of a file that was refused."""
+    try:
+        return read_sheet(upload.content, upload.kind)
+    except InvalidInputs:
+        return EMPTY
+
+
+async def _again(request: Request, api: Api, id: str, refused: Refused, table: RefusedTable) -> Response:
+    detail = refused.problem.detail
+    notice = CHANGED.format(detail) if refused.status == STALE else None
+    if notice is None and not table.faults:
+        notice = f"Nothing was saved: {detail}"
+    return await design_page(request, api, id, table=table, notice=notice, status=refused.status)

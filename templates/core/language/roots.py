@@ -1,0 +1,159 @@
+"""Every value of an unknown that gives a wanted output, with the curve between the bounds that shows them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array
+from templates.core.errors import Unreachable
+from templates.core.language.confirming import POLISHES, Root, confirmed
+from templates.core.language.crossings import Leap, Meetings, meetings
+from templates.core.language.ledger import Notice
+from templates.core.language.scan import SampledCurve, Samples
+
+NAMED = 10  # solutions that a warning names
+MISSED = 1e-6  # relative miss of a solution beyond which a warning says so
+
+
+@dataclass(frozen=True)
+class Jump:
+    """A value of the unknown at which the output jumps across the target, and the output on both sides.
+
+    In the declared units.
+    """
+
+    value: float
+    before: float
+    after: float
+
+
+@dataclass(frozen=True)
+class TracedCurve:
+    """The output over the unknown: even samples between the bounds at one level, in the declared units.
+
+    NaN where there is no value; `reasons` says why, None where there is one.
+    """
+
+    x: Array
+    y: Array
+    reasons: NDArray[np.object_]
+    level: str | None
+
+
+@dataclass(frozen=True)
+class Roots:
+    """All values of an unknown that give a target.
+
+    `roots` are all crossings, `touching` the extrema that just reach the target, each in ascending order;
+    `lowest` is the first of them that the level requested confirms.
+    """
+
+    lowest: Root
+    roots: list[Root]
+    touching: list[Root]
+    jumps: list[Jump]
+    curve: TracedCurve
+    warnings: list[Notice]
+
+
+def roots_of(requested: SampledCurve, cheap: SampledCurve, bounds: tuple[float, float]) -> Roots:
+    """Every solution between bounds [SI]: scanned on the cheap curve, confirmed on the one requested.
+
+    Raises
+    ------
+    InvalidInputs
+        If the level requested refuses every solution.
+    Unreachable
+        If no value between the bounds gives the target, with the range that is reachable.
+    """
+    scanned, even, samples = cheap.scan(*bounds)
+    found = meetings(scanned, samples)
+    places = sorted([*found.roots, *found.touching], key=lambda place: place.x)
+    if not places:
+        raise scanned.unreachable(samples)
+    roots = confirmed(requested, scanned, places, bounds)
+    lowest = next((root for root in roots if root.confirmed), None)
+    if lowest is None:
+        first = float(scanned.x.scale.to_si(roots[0].value))
+        raise _moved_away(scanned, samples, requested.level_at(first))
+    return Roots(
+        lowest,
+        [root for root in roots if not root.touches],
+        [root for root in roots if root.touches],
+        [_jump(scanned, leap) for leap in found.leaps],
+        _traced(scanned, even),
+        _warnings(scanned, samples, found, roots, lowest),
+    )
+
+
+def _warnings(
+    curve: SampledCurve, samples: Samples, found: Meetings, roots: list[Root], lowest: Root
+) -> list[Notice]:
+    return [
+        *_not_monotone(curve, samples.miss),
+        *_others(curve, lowest, roots, found.more),
+        *_unsettled(curve, roots),
+    ]
+
+
+def _moved_away(scanned: SampledCurve, samples: Samples, level: str | None) -> Unreachable:
+    """The error where the solutions of the scan are none between the bounds at the level requested."""
+    error = scanned.unreachable(samples)
+    there = scanned.level
+    detail = (
+        f"at level {level} no value between the bounds is found for the target; at level {there} there is"
+    )
+    return Unreachable(error.name, detail, error.reachable, error.unit)
+
+
+def _jump(curve: SampledCurve, leap: Leap) -> Jump:
+    """A leap in declared units."""
+    output = curve.y.scale
+    sides = (float(output.from_si(side)) for side in (leap.before, leap.after))
+    return Jump(float(curve.x.scale.from_si(leap.x)), *sides)
+
+
+def _traced(curve: SampledCurve, even: Samples) -> TracedCurve:
+    """The samples of the scan in declared units."""
+    x, y = curve.x.scale, curve.y.scale
+    return TracedCurve(
+        np.asarray(x.from_si(even.x)),
+        np.asarray(y.from_si(even.miss + curve.wanted)),
+        even.reasons,
+        curve.level,
+    )
+
+
+def _not_monotone(curve: SampledCurve, residual: Array) -> list[Notice]:
+    finite = residual[np.isfinite(residual)]
+    steps, rounding = np.diff(finite), 1e-12 * np.max(np.abs(finite), initial=0.0)
+    if (steps >= -rounding).all() or (steps <= rounding).all():
+        return []
+    detail = f"{curve.y.name} is not monotone in {curve.x.name} between the bounds, in this version"
+    return [Notice("not_monotone", curve.x.name, detail)]
+
+
+def _others(curve: SampledCurve, lowest: Root, roots: list[Root], more: int) -> list[Notice]:
+    """The warning that there are several solutions, which names the others."""
+    others = [root for root in roots if root is not lowest]
+    if not others:
+        return []
+    unit = curve.x.scale
+    names = ", ".join(curve.x.with_unit(float(unit.to_si(root.value))) for root in others[:NAMED])
+    rest = f" and {len(others) + more - NAMED} more" if len(others) + more > NAMED else ""
+    detail = f"{names}{rest} give the target too; the lowest is returned, see roots"
+    return [Notice("several_solutions", curve.x.name, detail)]
+
+
+def _unsettled(curve: SampledCurve, roots: list[Root]) -> list[Notice]:
+    """A warning if a finer level still misses the target after the last step."""
+    worst = max((root.miss for root in roots if root.confirmed), default=0.0)
+    if worst <= MISSED:
+        return []
+    detail = (
+        f"{curve.y.name} misses the target by {worst:.2g} of it after {POLISHES} steps at the finer level"
+    )
+    return [Notice("not_settled", curve.y.name, detail)]

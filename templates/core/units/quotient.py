@@ -1,0 +1,44 @@
+"""The unit of a change of one quantity for each unit of another: `um` and `N*m` give `um/(N*m)`."""
+
+from __future__ import annotations
+
+import re
+
+from templates.core.errors import FaultyText
+from templates.core.units.units import unit
+
+_PART = re.compile(r"([*·/]?)(?:\(([^)]*)\)|([^*·/()]+))")
+
+
+def quotient(over: str, under: str) -> str:
+    """A unit divided by another, as `units.unit` reads it; of temperatures by that of their difference.
+
+    In base units of SI, where the names of both are too long together.
+    """
+    text = _quotient(difference(over), difference(under))
+    try:
+        return unit(text).text
+    except FaultyText:
+        return _quotient(f"{unit(over).base:~C}" or "1", f"{unit(under).base:~C}" or "1")
+
+
+def difference(name: str) -> str:
+    """The unit of a change: of temperatures in a scale of their own, kelvin or its like."""
+    return f"delta_{name}" if unit(name).absolute else name
+
+
+def _quotient(over: str, under: str) -> str:
+    (top, bottom), (turned, up) = _parts(over), _parts(under)
+    above, below = "*".join(top + up) or "1", bottom + turned
+    if not below:
+        return above
+    return f"{above}/({'*'.join(below)})" if below[1:] else f"{above}/{below[0]}"
+
+
+def _parts(name: str) -> tuple[list[str], list[str]]:
+    """The factors above and below the line; `1` is none."""
+    top, bottom = list[str](), list[str]()
+    for sign, product, factor in _PART.findall(name.replace("**", "^")):
+        factors = re.split("[*·]", product) if product else [factor]
+        (bottom if sign == "/" else top).extend(f.replace("^", "**") for f in factors if f != "1")
+    return top, bottom

@@ -1,0 +1,300 @@
+"""Tolerances of quantities: `55 ± 5 um`, `55 +10/-5 um`, `48 mm H7`, or `plus` and `minus` of an object.
+
+A tolerance says between which limits a value lies and how it is distributed there. Nothing that calculates
+with the value alone reads it.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from templates.core.errors import FaultyText, excerpt
+from templates.core.units.fits import deviations, zones
+from templates.core.units.units import Unit, Value, require_same_kind, unit
+
+Distribution = Literal["normal", "uniform", "triangular"]
+DISTRIBUTIONS: tuple[Distribution, ...] = get_args(Distribution)
+FORMS = "55 ± 5 um, 55 +10/-5 um or 48 mm H7"
+KEYS = ("plus", "minus", "upper", "lower", "zone", "distribution")
+"""What may stand beside `value` and `unit` in an object."""
+
+LONGEST_TEXT = 200
+NUMBER = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?"
+_SIGN = r"[+\-−]"
+_FIRST = re.compile(r"(?:1(?=[/*·]))?(?![0-9.+\-−±])[^\s±+−]*")  # the unit before it; there may be none
+_SAME = re.compile(rf"(?:±|\+\s?/?\s?[-−])\s*({NUMBER})\s*(.*)", re.DOTALL)
+_TWO = re.compile(rf"({_SIGN}?)\s*({NUMBER})\s*/\s*({_SIGN}?)\s*({NUMBER})\s*(.*)", re.DOTALL)
+_ZONE = re.compile(r"[A-Za-z]{1,2}[0-9]{1,2}")
+_FIT = re.compile(rf"{_ZONE.pattern}\s*/\s*{_ZONE.pattern}")
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Between which limits a value lies.
+
+    Attributes
+    ----------
+    lower, upper
+        Deviations of the limits from the value [SI, a difference]; one for all points, or one for each.
+    distribution
+        Between the limits: `normal` with the limits at three standard deviations and cut there, `uniform`, or
+        `triangular`; the mean, and the peak, stand in the middle of the limits.
+    zone
+        That of ISO 286 from which the limits come.
+    """
+
+    lower: Value
+    upper: Value
+    distribution: Distribution = "normal"
+    zone: str | None = None
+
+
+@dataclass(frozen=True)
+class Written:
+    """A tolerance as it stands in a text: the unit of the value, and what follows it."""
+
+    unit: str
+    lower: float
+    upper: float
+    scale: str
+    zone: str | None = None
+
+    def of(self, si: float, name: str, declared: str) -> tuple[Tolerance, dict[str, Any]]:
+        """The tolerance of a value [SI] in the unit `name`, and how an answer states it.
+
+        Raises
+        ------
+        FaultyText
+            If the limits make no sense.
+        """
+        if self.zone is not None:
+            return in_zone(self.zone, si, name)
+        factor = _difference(self.scale, declared).factor
+        tolerance = _between(self.lower * factor, self.upper * factor)
+        return tolerance, stated(tolerance, require_same_kind(name, declared))
+
+
+def split(text: str) -> Written | None:
+    """What follows the number of a quantity, where it holds a tolerance; None where it does not.
+
+    Raises
+    ------
+    FaultyText
+        If it begins as a tolerance does, but is none.
+    """
+    first = match[0] if (match := _FIRST.match(text)) else ""
+    rest = text[len(first) :].strip()
+    if not rest:
+        return None
+    if same := _SAME.fullmatch(rest):
+        half = float(same[1])
+        return _written(first, -half, half, same[2])
+    if two := _TWO.fullmatch(rest):
+        one, other = _signed(two[1], two[2]), _signed(two[3], two[4])
+        return _written(first, min(one, other), max(one, other), two[5])
+    if first and _ZONE.fullmatch(rest):
+        return Written(first, 0.0, 0.0, first, rest)
+    if _FIT.fullmatch(rest):
+        detail = "a fit names two parts: give the bore the first zone, and the shaft the second"
+        raise FaultyText("not_a_tolerance", f"{excerpt(rest)} is no tolerance of one value; {detail}")
+    if rest[0] in "±+−":
+        raise FaultyText("not_a_tolerance", f"{excerpt(rest)} is no tolerance; write it as in {FORMS}")
+    return None
+
+
+def _written(first: str, lower: float, upper: float, last: str) -> Written:
+    """Limits in the unit that stands last, or else in that of the value; the value likewise."""
+    last = last.strip()
+    return Written(first or last or "1", lower, upper, last or first or "1")
+
+
+def _signed(sign: str, number: str) -> float:
+    """A deviation; only nothing needs no sign."""
+    size = float(number)
+    if not sign and size:
+        raise FaultyText("not_a_tolerance", f"give {number} a sign, as in {FORMS}")
+    return size if sign == "+" or not size else -size
+
+
+def is_toleranced(raw: Any) -> bool:
+    """Whether a quantity as its user wrote it, or any of a list, has a tolerance."""
+    match raw:
+        case str():
+            return _has_tolerance(raw)
+        case Mapping():
+            return not raw.keys().isdisjoint(KEYS)
+        case list() | tuple():
+            return any(isinstance(item, (str, Mapping)) and is_toleranced(item) for item in raw)
+    return False
+
+
+_QUANTITY = re.compile(rf"\s*[+-]?{NUMBER}\s*(.*)", re.DOTALL)
+
+
+def _has_tolerance(text: str) -> bool:
+    match = _QUANTITY.fullmatch(text) if len(text) <= LONGEST_TEXT else None
+    try:
+        return match is not None and split(match[1].strip()) is not None
+    except FaultyText:
+        return False
+
+
+def is_zone(text: str) -> bool:
+    """Whether a text names a zone that is shipped."""
+    return text in zones()
+
+
+def from_object(raw: Mapping[str, Any], name: str, declared: str, si: Value) -> Tolerance | None:
+    """The tolerance of an object whose value is `si` [SI] in the unit `name`; None if it has none.
+
+    `plus` and `minus` are how far the value may lie above and below; `upper` and `lower` are deviations with
+    their sign, for limits that lie on one side. Each is a number in the value's unit, or a text.
+
+    Raises
+    ------
+    FaultyText
+        With a code and a remedy.
+    """
+    given = raw.keys() & KEYS
+    if not given:
+        return None
+    distribution = _distribution(raw.get("distribution", "normal"))
+    limits = {key: _deviation(raw[key], name, declared) for key in given & {*KEYS[:4]}}
+    if "zone" in raw:
+        return _of_zone(raw["zone"], limits, si, name, distribution)
+    if not limits:
+        raise FaultyText("not_a_tolerance", "a distribution has no limits alone; give plus, minus or a zone")
+    return _between(*_ends(limits), distribution)
+
+
+def _distribution(raw: Any) -> Distribution:
+    for name in DISTRIBUTIONS:
+        if raw == name:
+            return name
+    choices = ", ".join(DISTRIBUTIONS)
+    raise FaultyText("not_an_option", f"{excerpt(raw)} is no distribution of a tolerance; give {choices}")
+
+
+def _deviation(raw: Any, name: str, declared: str) -> float:
+    """A deviation [SI], from a number in the value's unit or from a text."""
+    if isinstance(raw, str):
+        match = re.fullmatch(rf"([+\-−]?)\s*({NUMBER})\s*(.*)", raw.strip(), re.DOTALL)
+        if not match or len(raw) > LONGEST_TEXT:
+            raise FaultyText("not_a_quantity", f"{excerpt(raw)} is no tolerance; write it as in 5 {name}")
+        return float(match[1].replace("−", "-") + match[2]) * _of_text(match[3], declared).factor
+    if isinstance(raw, bool) or not isinstance(raw, (int, float)):
+        raise FaultyText("not_a_number", f"{excerpt(raw)} is no number; write it as in 1.5, without quotes")
+    try:
+        return float(raw) * require_same_kind(name, declared).factor
+    except OverflowError:
+        return math.inf
+
+
+def _of_text(name: str, declared: str) -> Unit:
+    """The unit of a tolerance in a text of its own, where a temperature is a difference: not degC."""
+    if not name and declared != "1":
+        raise FaultyText("missing_unit", f'the tolerance has no unit; add it, as in "5 {declared}"')
+    scale = unit(name or "1")
+    if scale.absolute and unit(declared).absolute:
+        raise FaultyText("wrong_unit", f"a tolerance is a difference: give it in K or delta_{name}")
+    return _difference(name or "1", declared)
+
+
+def _difference(name: str, declared: str) -> Unit:
+    """The unit of a deviation; 5 degC beside a temperature are 5 K."""
+    scale = unit(name)
+    return scale if scale.difference and _is_temperature(declared) else require_same_kind(name, declared)
+
+
+def _is_temperature(declared: str) -> bool:
+    return unit(declared).base == unit("K").base
+
+
+def _ends(limits: Mapping[str, float]) -> tuple[float, float]:
+    """Lower and upper deviation, from `plus` and `minus`, or from `lower` and `upper`."""
+    if limits.keys() <= {"plus", "minus"}:
+        for key, size in limits.items():
+            if size < 0:
+                hint = "for limits on one side give upper and lower with their signs"
+                raise FaultyText("out_of_range", f"{key} is how far the value may lie off: 0 or more; {hint}")
+        return 0.0 - limits.get("minus", 0.0), limits.get("plus", 0.0)
+    if limits.keys() != {"upper", "lower"}:
+        raise FaultyText("not_a_tolerance", "give plus and minus, or both upper and lower")
+    return limits["lower"], limits["upper"]
+
+
+def _of_zone(
+    zone: Any, limits: Mapping[str, float], si: Value, name: str, distribution: Distribution
+) -> Tolerance:
+    if not isinstance(zone, str):
+        raise FaultyText("unknown_zone", f"{excerpt(zone)} is no tolerance zone; write it as in H7")
+    if not isinstance(si, float):
+        raise FaultyText("not_single", "a zone is that of one size; give each item its own, as in 48 mm H7")
+    tolerance, _ = in_zone(zone, si, name, distribution)
+    if limits and not np.allclose(_ends(limits), deviations(zone, si), rtol=1e-6, atol=1e-12):
+        raise FaultyText("not_a_tolerance", f"these are not the limits of {zone}; give the zone alone")
+    return tolerance
+
+
+def in_zone(
+    zone: str, si: float, name: str, distribution: Distribution = "normal"
+) -> tuple[Tolerance, dict[str, Any]]:
+    """The tolerance of a nominal size [m] in a zone of ISO 286, and how an answer states it.
+
+    Raises
+    ------
+    FaultyText
+        If the zone is not shipped, or not for this size; if the quantity is no length.
+    """
+    scale = unit(name)
+    if scale.base != unit("m").base:
+        raise FaultyText("wrong_unit", f"{zone} is a tolerance zone of lengths, not of a quantity in {name}")
+    tolerance = Tolerance(*deviations(zone, si), distribution, zone)
+    return tolerance, {**stated(tolerance, scale), "zone": zone}
+
+
+def _between(lower: float, upper: float, distribution: Distribution = "normal") -> Tolerance:
+    if not (math.isfinite(lower) and math.isfinite(upper)):
+        raise FaultyText("not_finite", "a tolerance must be finite: not NaN, infinity or above 1.8e308")
+    if lower > upper:
+        raise FaultyText("not_a_tolerance", "the lower limit lies above the upper one; exchange them")
+    return Tolerance(lower, upper, distribution)
+
+
+def stated(tolerance: Tolerance, scale: Unit) -> dict[str, Any]:
+    """A tolerance in a unit, as an answer states it: `plus`, `minus`; `upper`, `lower` on one side."""
+    lower, upper = (_short(float(end) / scale.factor) for end in (tolerance.lower, tolerance.upper))
+    if lower <= 0 <= upper:
+        return {"plus": upper, "minus": 0.0 if lower == 0 else -lower}
+    return {"upper": upper, "lower": lower}
+
+
+def _short(number: float) -> float:
+    """A number without the last digits, which come from conversions."""
+    return float(f"{number:.12g}")
+
+
+def joined(tolerances: list[Tolerance | None]) -> Tolerance | None:
+    """The tolerances of the items of a list as one; None if no item has any.
+
+    Raises
+    ------
+    FaultyText
+        If the items are distributed in several ways.
+    """
+    present = [one for one in tolerances if one is not None]
+    if not present:
+        return None
+    if len({one.distribution for one in present}) > 1:
+        raise FaultyText("not_a_tolerance", "the items of a list have one distribution; give all the same")
+    lower, upper = (
+        np.array([0.0 if one is None else getattr(one, end) for one in tolerances])
+        for end in ("lower", "upper")
+    )
+    return Tolerance(lower, upper, present[0].distribution)

@@ -1,0 +1,451 @@
+"""A design as a function of N rows: equal to each row as a design of its own, and what it refuses."""
+
+import copy
+
+import numpy as np
+import pytest
+from row_designs import (
+    BEARING,
+    CATALOGUES,
+    CURVES,
+    FILM,
+    LOSS,
+    assert_equal_to_designs,
+    calculated,
+    net_of,
+    ref,
+    spread,
+)
+
+from app.designs.columns import Column, aligned, scattered
+from app.designs.document import Document
+from app.designs.net import Net
+from templates.core.errors import InvalidInputs
+from templates.core.language.evaluate import evaluate
+from templates.door import built_in
+
+
+def changed(raw, **steps):
+    """A document with other inputs of steps; None removes one."""
+    plain = copy.deepcopy(raw)
+    for name, inputs in steps.items():
+        merged = {**plain["steps"][name]["inputs"], **inputs}
+        plain["steps"][name]["inputs"] = {n: v for n, v in merged.items() if v is not None}
+    return plain
+
+
+def codes(raw, *varied, **options):
+    with pytest.raises(InvalidInputs) as refused:
+        net_of(raw, *varied, **options)
+    return {fault.name: fault.code for fault in refused.value.faults}, str(refused.value)
+
+
+def test_rows_of_a_bearing_equal_designs():
+    net = net_of(BEARING, "diameter", "width", "clearance")
+    rows = spread(net, 30)
+    wanted = [FILM, LOSS, ref("idle.power_loss"), ref("film.bearing_width"), ref("clearance"), ref("load")]
+    table = net(rows, wanted)
+    assert assert_equal_to_designs(BEARING, net, rows, wanted, table) == 0
+    assert np.isnan(table.errors[ref("idle.power_loss")]).all()
+    assert (table.errors[FILM] > 0).all()
+
+
+@pytest.mark.parametrize("count", [1, 5, 24])
+def test_rows_of_curves_equal_designs(count):
+    """24 rows are as many as a curve has places."""
+    wanted = [
+        ref(name)
+        for name in (
+            "loads.main_load_x",
+            "loads.wall_force_max",
+            "loads.crank_angle",
+            "film.load_x",
+            "film.load_y",
+            "film.film_thickness",
+            "film.power_loss",
+            "factor",
+        )
+    ]
+    net = net_of(CURVES, "speed", "factor", "clearance")
+    rows = spread(net, count)
+    table = net(rows, wanted)
+    assert assert_equal_to_designs(CURVES, net, rows, wanted, table) == 0
+    assert table.columns[ref("film.film_thickness")].shape == (count, 24)
+    assert table.columns[ref("loads.crank_angle")].shape == (count, 24)
+
+
+def test_varied_curve_and_varied_constant_curve():
+    """Speed is a curve that may be one value; here it is an input of the step, not of the design."""
+    raw = changed(CURVES, film={"load_x": "= loads.main_load_x", "speed": "3000 rpm"})
+    net = net_of(raw, "film.speed", "bore")
+    rows = spread(net, 24)
+    wanted = [ref("film.film_thickness"), ref("film.speed")]
+    assert assert_equal_to_designs(raw, net, rows, wanted, net(rows, wanted)) == 0
+    speeds = rows[ref("film.speed")][:, None] * np.linspace(0.99, 1.01, 24)
+    table = net({**rows, ref("film.speed"): speeds}, wanted)
+    np.testing.assert_array_equal(table.columns[ref("film.speed")], speeds)
+
+
+def test_lists_of_relations_equal_designs():
+    template = built_in().get("torsional_vibration", 1)
+    raw = {
+        "name": "shaft",
+        "parameters": {"k": "60 kN*m/rad", "j": "0.012 kg*m**2"},
+        "steps": {
+            "shaft": {
+                "template": "torsional_vibration",
+                "version": 1,
+                "outputs": ["natural_frequencies", "mode_shapes"],
+                "inputs": {
+                    **template.example,
+                    "inertias": ["= j", "0.0046 kg*m**2", "= 2 * j", "0.1 kg*m**2"],
+                    "stiffnesses": ["= k", "188.2 kN*m/rad", "20 kN*m/rad"],
+                },
+            }
+        },
+    }
+    net = net_of(raw, "k", "j")
+    wanted = [ref("shaft.natural_frequencies"), ref("shaft.mode_shapes"), ref("shaft.inertias")]
+    for count in (3, 4):  # the numbers of frequencies and of inertias
+        rows = spread(net, count)
+        assert assert_equal_to_designs(raw, net, rows, wanted, net(rows, wanted)) == 0
+
+
+def test_masked_rows_are_refused_with_place_and_code():
+    """Width below zero is out of range; no film bears 1e8 N."""
+    net = net_of(BEARING, "width", "load")
+    width, load = np.array([18, -1, 18, 18]) / 1e3, np.array([25e3, 25e3, 1e9, 20e3])
+    rows, wanted = {ref("width"): width, ref("load"): load}, [FILM, ref("idle.power_loss")]
+    table = net(rows, wanted)
+    assert assert_equal_to_designs(BEARING, net, rows, wanted, table) == 2
+    assert "bearing_width must be > 0" in table.refusals[1].detail
+    assert np.isnan(table.columns[FILM]).tolist() == [False, True, True, False]
+    assert np.isnan(table.errors[FILM]).tolist() == [False, True, True, False]
+    assert np.isnan(table.columns[ref("idle.power_loss")]).tolist() == [False, True, True, False]
+
+
+def test_refusing_call_is_halved_and_rows_keep_the_text():
+    """A load that is too large for the arithmetic refuses a curve as a whole."""
+    raw = changed(CURVES, film={"crank_angle": "= angle * 1 deg", "load_x": "= loads.main_load_x"})
+    raw["parameters"]["angle"] = {"value": (np.arange(24) * 30.0).tolist(), "unit": "1"}
+    net = net_of(raw, "angle")
+    angle = np.tile(net.nominal(ref("angle")), (9, 1))
+    angle[4] *= 10
+    wanted = [ref("film.minimum_film_thickness")]
+    rows = {ref("angle"): angle}
+    table = net(rows, wanted)
+    assert table.refusals.keys() == {4}
+    assert assert_equal_to_designs(raw, net, rows, wanted, table) == 1
+    one = calculated({**raw, "parameters": {**raw["parameters"], "angle": angle[4].tolist()}})
+    assert table.refusals[4].detail == one.faults[0].detail
+    assert np.isfinite(np.delete(table.columns[wanted[0]], 4)).all()
+
+
+def test_relation_without_a_value_refuses_its_row():
+    raw = changed(BEARING, film={"radial_load": "= 25 kN * sqrt(1 - (clearance / 60 um)**2)"})
+    net = net_of(raw, "clearance")
+    rows = {ref("clearance"): np.array([50e-6, 70e-6, np.nan])}
+    table = net(rows, [FILM])
+    assert table.refusals[1].place == "film.radial_load"
+    assert table.refusals[1].code == table.refusals[2].code == "not_finite"
+    assert table.refusals[2].place == "clearance"
+    assert np.isnan(table.columns[FILM]).tolist() == [False, True, True]
+
+
+def test_what_is_wrong_with_the_design_is_said_of_every_row_once():
+    raw = changed(BEARING, film={"speed": "0 rpm"})
+    table = net_of(raw, "clearance")({ref("clearance"): np.linspace(40e-6, 60e-6, 5000)}, [FILM])
+    assert len(table.refusals) == 5000
+    assert {refusal.place for refusal in table.refusals.values()} == {"film.hydrodynamic_speed"}
+    assert np.isnan(table.columns[FILM]).all()
+
+
+def test_only_what_is_wanted_is_calculated():
+    raw = changed(BEARING, idle={"speed": "= 5000 rpm * sqrt(0 - clearance / 1 m)"})
+    net, rows = net_of(raw, "clearance"), {ref("clearance"): np.array([50e-6, 60e-6])}
+    table = net(rows, [FILM])
+    assert not table.refusals
+    assert table.levels == {"film": "map"}
+    assert net(rows, [ref("idle.power_loss")]).refusals.keys() == {0, 1}
+
+
+def test_values_that_do_not_follow_from_rows_are_one_view():
+    table = net_of(BEARING, "clearance")({ref("clearance"): np.array([50e-6, 60e-6])}, [ref("load")])
+    assert table.columns[ref("load")].tolist() == [25e3, 25e3]
+    assert table.columns[ref("load")].strides == (0,)
+
+
+def test_absent_output_is_no_refusal():
+    raw = changed(BEARING, film={"supply_temperature": None, "dynamic_viscosity": "10 mPa*s"})
+    wanted = [FILM, ref("film.film_temperature")]
+    table = net_of(raw, "clearance")({ref("clearance"): np.array([50e-6, 60e-6])}, wanted)
+    assert not table.refusals
+    assert np.isnan(table.columns[wanted[1]]).all()
+    assert table.absent == {wanted[1]: "no temperature is given; the dynamic viscosity is"}
+
+
+def test_single_input_varies_by_groups():
+    """The number of cylinders is one value for all points of a call."""
+    template = built_in().get("engine", 1)
+    given = {n: v for n, v in template.example.items() if n not in ("firing_order", "cylinder_positions")}
+    given |= {"firing_order": [1], "cylinder_positions": "0 m"}
+    raw = {"name": "engine", "steps": {"engine": {"template": "engine", "version": 1, "inputs": given}}}
+    raw["steps"]["engine"]["outputs"] = ["mean_torque"]
+    net = net_of(raw, "engine.cylinders", "engine.bore")
+    rows = {
+        ref("engine.cylinders"): np.array([1.0, 2.0, 1.0]),
+        ref("engine.bore"): np.array([0.1, 0.1, 0.11]),
+    }
+    wanted = [ref("engine.mean_torque")]
+    table = net(rows, wanted)
+    assert assert_equal_to_designs(raw, net, rows, wanted, table) == 1
+    assert np.isfinite(table.columns[wanted[0]]).tolist() == [True, False, True]
+
+
+def test_defaults_may_vary():
+    net = net_of(BEARING, "film.sleeve_speed", "film.dynamic_viscosity")
+    assert net.unit(ref("film.sleeve_speed")) == "rpm"
+    assert net.nominal(ref("film.sleeve_speed")) == 0
+    one = calculated(BEARING)
+    viscosity = ref("film.dynamic_viscosity")
+    assert net.nominal(viscosity) == one.value(viscosity)
+    rows = {
+        ref("film.sleeve_speed"): np.array([0.0, 10.0]),
+        ref("film.dynamic_viscosity"): np.array([0.01, 0.02]),
+    }
+    table = net(rows, [FILM])
+    assert assert_equal_to_designs(BEARING, net, rows, [FILM], table) == 0
+
+
+def test_units_and_nominal_values():
+    net = net_of(CURVES, "speed")
+    assert net.unit(ref("speed")) == "rpm"
+    assert net.unit(ref("film.minimum_film_thickness")) == "um"
+    assert net.nominal(ref("speed")) == pytest.approx(3000 * np.pi / 30, rel=1e-15)
+    assert np.shape(net.nominal(ref("factor"))) == (24,)
+    one = calculated(CURVES)
+    np.testing.assert_array_equal(net.nominal(ref("film.load_y")), one.value(ref("film.load_y")))
+    assert net.nominal(ref("film.minimum_film_thickness")) == one.value(ref("film.minimum_film_thickness"))
+
+
+@pytest.mark.parametrize("place", ["nothing", "film.nothing", "film.power_loss", "film.mass"])
+def test_unknown_places_are_refused(place):
+    faults, message = codes(BEARING, place)
+    assert faults == {place: "unknown_name"}
+    assert "unknown" in message
+
+
+def test_relations_are_not_varied():
+    faults, message = codes(BEARING, "film.radial_load", "idle.radial_clearance", "film.oil_grade")
+    assert faults == {"film.radial_load": "follows_from", "idle.radial_clearance": "follows_from"} | {
+        "film.oil_grade": "not_a_number"
+    }
+    assert "vary load instead" in message
+
+
+def test_lists_of_points_are_refused_beside_rows():
+    raw = changed(BEARING, film={"speed": {"value": [4000, 5000], "unit": "rpm"}})
+    assert codes(raw, "clearance")[0] == {"film.speed": "shape"}
+    raw = {**BEARING, "parameters": {**BEARING["parameters"], "load": ["25 kN", "20 kN"]}}
+    assert codes(raw, "clearance")[0] == {"film.radial_load": "shape"}
+    assert net_of(raw, "clearance", wanted=[ref("load")])
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        {},
+        {ref("clearance"): np.array(1.0)},
+        {ref("clearance"): np.ones((2, 3))},
+        {ref("clearance"): np.ones(2), ref("width"): np.ones(2)},
+    ],
+)
+def test_wrong_columns_are_refused(rows):
+    with pytest.raises(InvalidInputs) as refused:
+        net_of(BEARING, "clearance")(rows, [FILM])
+    assert {fault.code for fault in refused.value.faults} <= {"missing", "shape", "unknown_name"}
+
+
+def test_wrong_names_of_outputs_are_refused():
+    net = net_of(BEARING, "clearance")
+    with pytest.raises(InvalidInputs, match=r"film\.minimum_film_thickness"):
+        net({ref("clearance"): np.ones(2)}, [ref("film.minimum_film_thicknes")])
+    with pytest.raises(InvalidInputs, match="reynolds"):
+        net({ref("clearance"): np.ones(2)}, [FILM], levels={"film": "reynold"})
+    with pytest.raises(InvalidInputs, match="no quantity"):
+        net({ref("clearance"): np.ones(2)}, [ref("film.lubrication_regime")])
+
+
+SHELL = {
+    "name": "shell",
+    "parameters": {"bore": "48 mm", "wall": "2.5 mm"},
+    "steps": {
+        "film": {
+            "template": "oil_film",
+            "version": 2,
+            "inputs": {
+                **built_in().get("oil_film", 2).example,
+                "bearing_diameter": "= shell.inner_diameter",
+                "bearing_width": "= shell.width",
+                "radial_load": "= 20 kN + shell.mass * 10 m/s**2",
+            },
+            "outputs": ["minimum_film_thickness"],
+        },
+        "other": {
+            "template": "journal_friction",
+            "version": 1,
+            "inputs": {**built_in().get("journal_friction", 1).example, "bearing_width": "= shell.width"},
+            "outputs": ["power_loss"],
+        },
+    },
+    "models": {"shell": {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "= bore"}}},
+}
+
+
+def test_measures_that_follow_from_varied_names_need_solids():
+    faults, message = codes(SHELL, "bore")
+    assert faults == {"bore": "needs_solids"}
+    assert "bore → shell.inner_diameter → shell → shell.mass → film.radial_load" in message
+    assert codes(SHELL, "shell.wall")[0] == {"shell.wall": "needs_solids"}
+    assert codes(SHELL, "bore", measured={ref("shell.mass"): 0.1})[0] == {"bore": "needs_solids"}
+    assert net_of(SHELL, "bore", wanted=[ref("other.power_loss")])
+
+
+def test_measures_that_are_known_are_used():
+    net = net_of(SHELL, "film.speed", measured={ref("shell.mass"): 0.1})
+    rows = {ref("film.speed"): np.array([400.0, 500.0])}
+    table = net(rows, [FILM, ref("shell.mass"), ref("film.radial_load")])
+    assert table.columns[ref("film.radial_load")].tolist() == [20001.0, 20001.0]
+    assert np.isfinite(table.columns[FILM]).all()
+
+
+def test_measures_may_come_with_the_rows():
+    net = net_of(SHELL, "bore", "shell.mass")
+    rows = {ref("bore"): np.array([0.048, 0.05]), ref("shell.mass"): np.array([0.1, 0.2])}
+    table = net(rows, [FILM, ref("film.radial_load")])
+    assert table.columns[ref("film.radial_load")].tolist() == [20001.0, 20002.0]
+    assert np.isfinite(table.columns[FILM]).all()
+
+
+def test_what_waits_for_a_solid_is_no_refusal():
+    net = net_of(SHELL, "bore", pending=True)
+    wanted = [FILM, ref("other.power_loss"), ref("shell.width"), ref("shell.mass")]
+    table = net({ref("bore"): np.array([0.048, 0.05])}, wanted)
+    assert not table.refusals
+    assert [bool(np.isnan(table.columns[name]).all()) for name in wanted] == [True, False, False, True]
+    widths = [calculated({**SHELL, "parameters": {"bore": b}}).value(wanted[2]) for b in ("48 mm", "50 mm")]
+    np.testing.assert_allclose(table.columns[wanted[2]], widths, rtol=1e-12)
+
+
+def test_levels_for_a_tolerance_at_a_share_of_the_rows():
+    net = net_of(BEARING, "diameter", "width", "clearance")
+    rows = spread(net, 40, 0.5, 1.5)
+    errors = {
+        level: net(rows, [FILM], levels={"film": level}).errors[FILM]
+        for level in ("short_bearing", "fit", "map")
+    }
+    for tolerance in (0.5, 0.2, 0.05, 1e-3):
+        for share in (0.5, 0.95, 1.0):
+            level = net.levels_for(rows, [FILM], tolerance, share)["film"]
+            met = {name: np.mean(error <= tolerance) for name, error in errors.items()}
+            cheapest = next((name for name in errors if met[name] >= share), None)
+            assert level == cheapest
+    assert net.levels_for(rows, [ref("idle.power_loss")], 1e-3) == {"film": "map", "idle": None}
+
+
+def test_levels_of_the_design_are_kept():
+    raw = copy.deepcopy(BEARING)
+    raw["steps"]["film"]["level"] = "fit"
+    net = net_of(raw, "clearance")
+    rows = spread(net, 5)
+    assert net.levels_for(rows, [FILM], 1e-3) == {"film": "fit"}
+    assert net(rows, [FILM]).levels == {"film": "fit"}
+    assert net(rows, [FILM], levels={"film": "map"}).levels == {"film": "map"}
+
+
+def test_tolerance_of_the_design_chooses_one_level():
+    raw = copy.deepcopy(BEARING)
+    raw["steps"]["film"]["tolerance"] = 0.06
+    net = net_of(raw, "clearance")
+    rows = spread(net, 6)
+    table = net(rows, [FILM])
+    expected = evaluate(
+        built_in().get("oil_film", 2),
+        {
+            **{n: v for n, v in raw["steps"]["film"]["inputs"].items() if not str(v).startswith("=")},
+            "radial_load": "25 kN",
+            "bearing_diameter": "48 mm",
+            "bearing_width": "18 mm",
+            "diametral_clearance": {"value": rows[ref("clearance")].tolist(), "unit": "m"},
+        },
+        outputs=["minimum_film_thickness"],
+        tolerance=0.06,
+    )
+    assert table.levels == {"film": expected.level}
+
+
+def test_one_level_serves_all_rows_whichever_start_finer():
+    """Supply pressure is known to level mass_conserving alone; one such row takes the others with it."""
+    net = net_of(BEARING, "film.supply_pressure")
+    pressure = np.array([0.0, 0.0, 1e5])
+    table = net({ref("film.supply_pressure"): pressure}, [FILM], chunk=1)
+    assert table.levels == {"film": "mass_conserving"}
+    whole = net({ref("film.supply_pressure"): pressure}, [FILM])
+    np.testing.assert_allclose(table.columns[FILM], whole.columns[FILM], rtol=1e-8)
+
+
+def test_chunks_are_bounded_and_make_no_difference():
+    net = net_of(CURVES, "speed")
+    wanted = [ref("film.film_thickness"), ref("loads.main_load_x")]
+    assert net.rows_at_once(wanted, {}) <= 4096
+    assert net.rows_at_once(wanted, {"film": "transient"}) == 1
+    assert net.rows_at_once([ref("speed")], {}) == 4096
+    assert net.rows_at_once([ref("factor")], {}, chunk=10**9) == 2_000_000 // 24
+    rows = spread(net, 10)
+    whole, parts = net(rows, wanted), net(rows, wanted, chunk=3)
+    for name in wanted:
+        np.testing.assert_allclose(parts.columns[name], whole.columns[name], rtol=1e-12, atol=1e-12)
+
+
+def test_estimated_seconds_grow_with_rows_and_levels():
+    net = net_of(BEARING, "clearance")
+    cheap = net.seconds(1000, [FILM], {"film": "map"})
+    assert 5 * cheap < net.seconds(10_000, [FILM], {"film": "map"}) < 20 * cheap
+    assert net.seconds(1000, [FILM], {"film": "reynolds"}) > 10 * cheap
+    assert net.seconds(1000, [ref("load")], {}) == 0
+    net(spread(net, 200), [FILM], levels={"film": "map"})
+    known = net.seconds(1000, [FILM], {"film": "map"})
+    assert known > 0
+    assert net.seconds(10_000, [FILM], {"film": "map"}) == pytest.approx(10 * known)
+    assert net.seconds(1000, [FILM], {"film": "reynolds"}) > 10 * cheap
+
+
+def test_columns_align_rows_first():
+    rows, curve, both = (
+        Column(np.arange(3.0), is_row=True),
+        Column(np.ones(3)),
+        Column(np.ones((3, 3)), is_row=True),
+    )
+    values, is_row = aligned({"rows": rows, "curve": curve, "both": both})
+    assert is_row
+    assert {name: np.shape(value) for name, value in values.items()} == {
+        "rows": (3, 1),
+        "curve": (3,),
+        "both": (3, 3),
+    }
+    whole = scattered(
+        4, [(np.array([0, 2]), Column(np.array([1.0, 2.0]), is_row=True)), (np.array([3]), Column(5.0))]
+    )
+    np.testing.assert_array_equal(whole.value, [1.0, np.nan, 2.0, 5.0])
+
+
+def test_faulty_documents_are_refused():
+    raw = changed(BEARING, film={"radial_load": "= lod"})
+    with pytest.raises(InvalidInputs, match="lod"):
+        Net.of(Document.model_validate(raw), CATALOGUES, [ref("clearance")])
+
+
+def test_no_rows_give_empty_columns():
+    table = net_of(BEARING, "clearance")({ref("clearance"): np.empty(0)}, [FILM], judge=True)
+    assert table.count == 0
+    assert table.columns[FILM].shape == (0,)

@@ -1,0 +1,58 @@
+"""Every template and every model as a design of many rows, equal to each row as a design of its own."""
+
+import numpy as np
+import pytest
+from row_designs import CATALOGUES, assert_equal_to_designs, net_of, ref
+
+from templates.core.language.intake import is_single
+from templates.core.language.spec import Choice, Table, Text
+
+TEMPLATES = sorted(CATALOGUES.templates.versions)
+MODELS = sorted(CATALOGUES.models.versions)
+
+
+def quantities(cls):
+    """The inputs of the example that may be any number."""
+    return [
+        name
+        for name in cls.example
+        if not isinstance(cls.inputs[name], (Choice, Table))
+        and not cls.inputs[name].meaning.integer
+        and not is_single(cls.inputs[name])
+    ]
+
+
+def varied(net, count):
+    """Rows of nominal values that differ by up to one per cent."""
+    random, rows = np.random.default_rng(5), {}
+    for place in sorted(net.varied, key=str):
+        nominal = np.asarray(net.nominal(place))
+        share = random.uniform(0.999, 1.001, (count,) + (1,) * nominal.ndim)
+        rows[place] = nominal * share
+    return rows
+
+
+@pytest.mark.parametrize("template", TEMPLATES, ids=lambda key: f"{key[0]} {key[1]}")
+@pytest.mark.parametrize("count", [2, 5])
+def test_property_rows_of_a_template_equal_designs(template, count):
+    cls = CATALOGUES.templates.get(*template)
+    step = {"template": template[0], "version": template[1], "inputs": dict(cls.example)}
+    raw = {"name": cls.id, "steps": {"step": step}}
+    net = net_of(raw, *(f"step.{name}" for name in quantities(cls)))
+    rows = varied(net, count)
+    wanted = [ref(f"step.{name}") for name, one in cls.formulas.items() if not isinstance(one, Text)]
+    table = net(rows, wanted, levels={"step": cls.default_level or None})
+    assert assert_equal_to_designs(raw, net, rows, wanted, table, within=cls.precision) == 0
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda key: f"{key[0]} {key[1]}")
+def test_property_rows_of_a_model_equal_designs(model):
+    cls = CATALOGUES.models.get(*model)
+    raw = {"name": cls.id, "models": {"part": {"id": model[0], "version": model[1]}}}
+    raw["models"]["part"]["parameters"] = dict(cls.example)
+    net = net_of(raw, *(f"part.{name}" for name in quantities(cls)))
+    rows = varied(net, 4)
+    names = [n for n, one in cls.inputs.items() if not isinstance(one, (Choice, Table))]
+    wanted = [ref(f"part.{name}") for name in names]
+    table = net(rows, wanted)
+    assert assert_equal_to_designs(raw, net, rows, wanted, table) == 0

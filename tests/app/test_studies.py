@@ -1,0 +1,390 @@
+"""Studies over the interface: rows are those of single calculations, faults have names."""
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+from openpyxl import load_workbook
+from patience import patient, until
+from serving import API, faults, heard, problem
+from study_helpers import (
+    CLEARANCE,
+    FILM,
+    LOSS,
+    OUT,
+    THICKNESS,
+    TWICE,
+    asked,
+    begun,
+    content,
+    done,
+    ended,
+    new_design,
+    rows,
+)
+
+WORST = ["not_met", "undecided", "not_checked", "met"]
+LENGTHS = {"length": {"between": ["0 mm", "10 mm"]}}
+
+
+@pytest.fixture(scope="module")
+def twice(http):
+    return new_design(http, TWICE)
+
+
+@pytest.fixture(scope="module")
+def film(http):
+    return new_design(http, FILM)
+
+
+@pytest.fixture(scope="module")
+def sampled(http, film):
+    return done(
+        http, film, method="sample", points=200, vary=CLEARANCE, outputs=[THICKNESS, LOSS],
+        hold=["thick_enough"],
+    )  # fmt: skip
+
+
+def test_a_grid_has_each_combination_and_the_values_of_the_formula(http, twice):
+    vary = {**LENGTHS, "double.length": {"values": ["1 mm"]}}
+    assert faults(asked(http, twice, method="grid", vary=vary, steps=3, outputs=[OUT])) == {
+        "double.length": "follows_from"
+    }
+    study = done(http, twice, method="grid", vary=LENGTHS, steps=5, outputs=[OUT])
+    assert (study["rows"], study["done"], study["progress"]) == (5, 5, 1.0)
+    page = rows(http, study)
+    assert page["units"] == {"length": "mm", OUT: "mm"}
+    assert [row["values"]["length"] for row in page["items"]] == pytest.approx([0, 2.5, 5, 7.5, 10])
+    for row in page["items"]:
+        assert row["values"][OUT] == pytest.approx(2 * row["values"]["length"])
+        assert "reason" not in row
+
+
+def test_a_row_is_what_the_template_calculates_alone(http, film, sampled):
+    row = rows(http, sampled)["items"][17]
+    inputs = {
+        **FILM["steps"]["film"]["inputs"],
+        "bearing_diameter": "48 mm",
+        "bearing_width": "18 mm",
+        "diametral_clearance": f"{row['values']['clearance']!r} mm",
+    }
+    asked_for = {"inputs": inputs, "outputs": ["power_loss"], "level": row["level"]["film"]}
+    alone = http.post(f"{API}/templates/oil_film/versions/2/evaluate", json=asked_for).json()
+    assert row["values"][LOSS] == pytest.approx(alone["outputs"]["power_loss"]["value"], rel=1e-12)
+
+
+def test_equal_seeds_give_equal_bytes_and_other_seeds_others(http, film, sampled):
+    body = {"method": "sample", "points": 200, "vary": CLEARANCE, "outputs": [THICKNESS, LOSS]}
+    body["hold"] = ["thick_enough"]
+    again, other = done(http, film, **body), done(http, film, **body, seed=2)
+    assert content(http, again, "npz") == content(http, sampled, "npz")
+    assert content(http, other, "npz") != content(http, sampled, "npz")
+
+
+@pytest.mark.parametrize("sequence", ["sobol", "lhs"])
+def test_samples_lie_within_the_bounds(http, twice, sequence):
+    study = done(http, twice, method="sample", points=64, sequence=sequence, vary=LENGTHS, outputs=[OUT])
+    values = sorted(row["values"]["length"] for row in rows(http, study)["items"])
+    assert len(values) == 64
+    assert 0 <= values[0] < 1
+    assert 9 < values[-1] <= 10
+
+
+def test_a_table_takes_columns_or_rows_in_any_unit(http, twice):
+    by_column = {"length": {"value": [1, 2], "unit": "cm"}}
+    by_row = [{"length": "10 mm"}, {"length": "0.02 m"}]
+    for given in (by_column, by_row):
+        study = done(http, twice, method="table", rows=given, outputs=[OUT])
+        assert [row["values"][OUT] for row in rows(http, study)["items"]] == pytest.approx([20, 40])
+
+
+def test_refused_rows_say_why_and_the_others_have_values(http, twice):
+    vary = {"length": {"between": ["-10 mm", "10 mm"]}}
+    study = done(http, twice, method="grid", vary=vary, steps=5, outputs=[OUT])
+    assert study["refused"] == {"count": 2, "reasons": {"double.length: out_of_range": 2}}
+    refused = rows(http, study, where="refused")
+    assert [row["row"] for row in refused["items"]] == [0, 1]
+    assert all(row["values"][OUT] is None and "double.length" in row["reason"] for row in refused["items"])
+    assert rows(http, study)["items"][4]["values"][OUT] == pytest.approx(20)
+
+
+def test_verdicts_stand_in_the_rows_and_filter_them(http, film, sampled):
+    assert "thick_enough" in sampled["criteria"]
+    everything = rows(http, sampled)["items"]
+    met = rows(http, sampled, where="met")
+    assert 0 < met["count"] < 200
+    assert met["count"] == sum(row["verdicts"]["thick_enough"] == "met" for row in everything)
+    assert sampled["result"]["share"] == pytest.approx(met["count"] / 200)
+    for row in met["items"]:
+        assert row["verdict"] == "met"
+        assert row["values"][THICKNESS] >= 1.8
+
+
+def test_criteria_whose_limits_nobody_gave_hold_no_row_back(http, film):
+    study = done(http, film, method="grid", steps=5, vary=CLEARANCE, outputs=[THICKNESS])
+    assert {"thick_enough", "film.film_exists"} <= set(study["criteria"])
+    for row in rows(http, study)["items"]:
+        words = set(row["verdicts"].values())
+        assert row["verdict"] == ("met" if words <= {"met", "not_checked"} else min(words, key=WORST.index))
+
+
+def test_the_best_row_is_confirmed_and_meets_what_is_held(http, film):
+    study = done(
+        http, film, method="sample", points=256, vary=CLEARANCE, minimise=[LOSS], outputs=[THICKNESS],
+        hold=["thick_enough"], explore={"tolerance": 0.05}, confirm={"tolerance": 0.001},
+    )  # fmt: skip
+    best, (trade,) = study["result"]["best"], study["result"]["trade"]
+    assert best["confirmed"]
+    assert best["verdicts"] == {"thick_enough": "met"}
+    met = [row for row in rows(http, study, where="met")["items"] if row.get("confirmed")]
+    assert best["row"] in [row["row"] for row in met]
+    assert best["outputs"][LOSS]["value"] == pytest.approx(min(row["values"][LOSS] for row in met))
+    assert trade["level"] == study["levels"]
+    assert trade["confirmed"][LOSS] == best["outputs"][LOSS]
+
+
+@pytest.fixture(scope="module")
+def held(http):
+    """Twice a length, which must be at least 5 mm; and twice what is left of 10 mm."""
+    steps = {
+        **TWICE["steps"],
+        "rest": {"template": "double", "version": 1, "inputs": {"length": "= 10 mm - length"}},
+    }
+    criteria = {"long_enough": {"require": f"{OUT} >= 5 mm"}}
+    return new_design(http, {**TWICE, "steps": steps, "criteria": criteria})
+
+
+def test_the_search_ends_at_the_limit_that_it_holds(http, held):
+    search = {"method": "optimise", "vary": LENGTHS, "minimise": [OUT], "hold": ["long_enough"]}
+    study = done(http, held, **search, build="best")
+    result, best = study["result"], study["result"]["best"]
+    assert (result["settled"], result["global"]) == (True, "not proven")
+    assert best["at"]["length"]["value"] == pytest.approx(2.5, rel=1e-6)
+    assert best["verdicts"] == {"long_enough": "met"}
+    assert result["trade"][0]["confirmed"][OUT]["value"] == pytest.approx(5, rel=1e-6)
+    row = rows(http, study, sort=OUT, where="met", limit=1)["items"][0]
+    assert row["values"][OUT] == pytest.approx(best["outputs"][OUT]["value"])
+    assert list(http.get(f"{API}/designs/{result['design']}").json()["variants"]) == ["best"]
+
+
+def test_a_search_that_needs_too_many_rows_says_so(http, held):
+    search = {"method": "optimise", "vary": LENGTHS, "minimise": [OUT], "points": 4000}
+    study = ended(http, begun(http, held, **search))
+    assert study["state"] == "failed"
+    assert study["problem"]["errors"][0]["code"] == "too_many_rows"
+
+
+@pytest.mark.slow
+def test_the_front_of_two_objectives(http, held):
+    pytest.importorskip("pymoo")
+    other = "rest.twice_the_length"
+    search = {"method": "optimise", "vary": LENGTHS, "minimise": [OUT, other], "hold": ["long_enough"]}
+    front = done(http, held, **search)["result"]["front"]
+    assert len(front) > 5
+    for best in front:
+        assert best["outputs"][OUT]["value"] + best["outputs"][other]["value"] == pytest.approx(20)
+        assert best["verdicts"] == {"long_enough": "met"}
+
+
+def test_local_slopes_of_an_exact_formula(http, twice):
+    study = done(http, twice, method="sensitivity", kind="local", vary=LENGTHS, outputs=[OUT])
+    index = study["result"]["indices"][OUT]["length"]
+    assert index["slope"]["value"] == pytest.approx(2)
+    assert index["slope"]["unit"] == "mm/mm"
+    assert index["elasticity"] == pytest.approx(1)
+
+
+@pytest.mark.parametrize("kind", ["morris", "sobol"])
+def test_global_sensitivities(http, film, kind):
+    pytest.importorskip("SALib")
+    vary = {**CLEARANCE, "width": {"between": ["17.9 mm", "18.1 mm"]}}
+    points = {"morris": 10, "sobol": 64}[kind]
+    study = done(http, film, method="sensitivity", kind=kind, points=points, vary=vary, outputs=[LOSS])
+    clearance, width = (study["result"]["indices"][LOSS][name] for name in ("clearance", "width"))
+    if kind == "sobol":
+        assert clearance["first"] > 0.8 > 0.2 > width["first"]
+    else:
+        assert clearance["mu_star"]["unit"] == "W"
+        assert clearance["mu_star"]["value"] > 3 * width["mu_star"]["value"]
+
+
+def test_refused_rows_make_no_sensitivities(http, twice):
+    pytest.importorskip("SALib")
+    vary = {"length": {"between": ["-10 mm", "10 mm"]}}
+    study = ended(
+        http, begun(http, twice, method="sensitivity", kind="sobol", points=16, vary=vary, outputs=[OUT])
+    )
+    assert study["state"] == "failed"
+    assert study["problem"]["errors"][0]["code"] == "refused_rows"
+
+
+@pytest.mark.parametrize(
+    ("body", "codes"),
+    [
+        ({"vary": {"clear": {"between": ["1 mm", "2 mm"]}}, "steps": 3}, {"clear": "unknown_name"}),
+        (
+            {"vary": {"clearance": {"between": ["1 mm", "1 mm"]}}, "steps": 3},
+            {"vary.clearance": "empty_interval"},
+        ),
+        ({"vary": {"clearance": {"between": ["2 mm", "1 mm"]}}, "steps": 3}, {"vary.clearance": "bounds"}),
+        ({"vary": {"clearance": {"between": ["1 N", "1 mm"]}}, "steps": 3}, {"vary.clearance": "wrong_unit"}),
+        ({"vary": {"clearance": {"between": [1, 2]}}, "steps": 3}, {"vary.clearance": "missing_unit"}),
+        ({"vary": CLEARANCE, "steps": 10**6 + 1}, {"steps": "too_many_rows"}),
+        ({"vary": CLEARANCE}, {"steps": "missing"}),
+        ({"vary": {}, "steps": 3}, {"vary": "missing"}),
+        ({"vary": CLEARANCE, "steps": 3, "outputs": []}, {"outputs": "missing"}),
+        ({"vary": CLEARANCE, "steps": 3, "outputs": ["film.loss"]}, {"film.loss": "unknown_name"}),
+        ({"vary": CLEARANCE, "steps": 3, "hold": ["thin"]}, {"hold.thin": "unknown_name"}),
+        ({"vary": CLEARANCE, "steps": 300, "build": "all"}, {"build": "too_many_rows"}),
+        ({"vary": CLEARANCE, "steps": 3, "build": [3]}, {"build": "unknown_row"}),
+        ({"vary": CLEARANCE, "steps": 3, "build": "best"}, {"build": "missing"}),
+        ({"method": "sample", "vary": CLEARANCE}, {"points": "missing"}),
+        ({"method": "sample", "vary": CLEARANCE, "points": 10**6 + 1}, {"points": "too_many_rows"}),
+        ({"method": "optimise", "vary": CLEARANCE}, {"minimise": "missing"}),
+        ({"method": "table"}, {"rows": "missing"}),
+        ({"method": "table", "rows": {"clearance": ["1 mm"], "width": ["1 mm", "2 mm"]}}, {"rows": "uneven"}),
+        ({"method": "table", "rows": [{"clearance": "1 mm"}, {"width": "1 mm"}]}, {"rows.1": "uneven"}),
+        ({"method": "table", "rows": [{"clearance": "1 kg"}]}, {"rows.0.clearance": "wrong_unit"}),
+    ],
+)
+def test_what_is_wrong_is_named(http, film, body, codes):
+    assert faults(asked(http, film, **{"method": "grid", "outputs": [LOSS], **body})) == codes
+
+
+def test_unknown_designs_and_studies(http):
+    assert asked(http, {"id": "none"}, method="grid", vary=LENGTHS, steps=3, outputs=[OUT]).status_code == 404
+    for path in ("", "/rows", "/rows.csv", "/rows.xlsx", "/rows.npz", "/events"):
+        problem(http.get(f"{API}/studies/none{path}"), 404, "not-found")
+
+
+def test_one_key_makes_one_study(http, twice):
+    body = {"design": twice["id"], "method": "grid", "vary": LENGTHS, "steps": 3, "outputs": [OUT]}
+    answers = [
+        http.post(f"{API}/studies", json=body, headers={"Idempotency-Key": f"study-{twice['id']}"})
+        for _ in range(2)
+    ]
+    assert [answer.status_code for answer in answers] == [202, 202]
+    assert answers[0].json()["id"] == answers[1].json()["id"]
+    other = http.post(
+        f"{API}/studies", json={**body, "steps": 4}, headers={"Idempotency-Key": f"study-{twice['id']}"}
+    )
+    problem(other, 422, "idempotency-key-reused")
+
+
+def test_studies_of_a_design_are_listed_newest_first(http):
+    design = new_design(http, TWICE)
+    ids = [begun(http, design, method="grid", vary=LENGTHS, steps=3, outputs=[OUT])["id"] for _ in range(3)]
+    first = http.get(f"{API}/studies", params={"design": design["id"], "limit": 2}).json()
+    rest = http.get(f"{API}/studies", params={"design": design["id"], "cursor": first["next"]}).json()
+    assert [one["id"] for one in (*first["items"], *rest["items"])] == ids[::-1]
+
+
+def test_pages_of_rows_sorted_by_a_column(http, sampled):
+    collected, cursor = [], None
+    while True:
+        query = {"sort": f"-{LOSS}", "columns": LOSS, "limit": 90, **({"cursor": cursor} if cursor else {})}
+        page = rows(http, sampled, **query)
+        collected += [row["values"][LOSS] for row in page["items"]]
+        if not (cursor := page["next"]):
+            break
+    assert len(collected) == 200
+    assert collected == sorted(collected, reverse=True)
+    assert list(page["items"][0]["values"]) == [LOSS]
+    assert faults(http.get(f"{API}/studies/{sampled['id']}/rows", params={"sort": "x"})) == {
+        "columns.x": "unknown_name"
+    }
+
+
+def test_us_units(http, sampled):
+    page, us = rows(http, sampled), rows(http, sampled, units="us")
+    assert us["units"]["clearance"] == "inch"
+    one, other = page["items"][3]["values"]["clearance"], us["items"][3]["values"]["clearance"]
+    assert one == pytest.approx(25.4 * other)
+    assert http.get(f"{API}/studies/{sampled['id']}", params={"units": "us"}).json()["units"][LOSS] == "hp"
+
+
+def test_files_hold_the_rows(http, sampled):
+    items = rows(http, sampled)["items"]
+    expected = [row["values"][LOSS] for row in items]
+    table = list(csv.reader(io.StringIO(content(http, sampled, "csv").decode())))
+    assert table[0] == ["row", "clearance", THICKNESS, LOSS, "thick_enough", "verdict", "level", "reason"]
+    assert table[1][:4] == ["", "mm", "um", "W"]
+    assert [float(line[3]) for line in table[2:]] == expected
+    sheet = load_workbook(io.BytesIO(content(http, sampled, "xlsx"))).active
+    assert [cell.value for cell in sheet["D"][2:]] == pytest.approx(expected)
+    arrays = np.load(io.BytesIO(content(http, sampled, "npz")))
+    assert arrays[LOSS].tolist() == expected
+    assert json.loads(arrays["about"].tobytes())["units"][LOSS] == "W"
+    met = len(content(http, sampled, "csv", where="met").splitlines()) - 2
+    assert met == rows(http, sampled, where="met")["count"]
+
+
+def test_a_chosen_row_becomes_a_revision(http):
+    design = new_design(http, TWICE)
+    study = done(http, design, method="grid", vary=LENGTHS, steps=5, outputs=[OUT])
+    path, body = f"{API}/studies/{study['id']}/choose", {"row": 3}
+    problem(http.post(path, json=body), 428, "precondition-required")
+    problem(http.post(path, json=body, headers={"If-Match": '"7"'}), 412, "stale-revision")
+    answer = http.post(path, json={"row": 5}, headers={"If-Match": '"1"'})
+    assert faults(answer) == {"row": "unknown_row"}
+    chosen = http.post(path, json=body, headers={"If-Match": '"1"'})
+    assert chosen.status_code == 200, chosen.text
+    assert chosen.json()["parameters"]["length"] == {"value": 7.5, "unit": "mm"}
+    revision = http.get(f"{API}/designs/{design['id']}/revisions/2").json()
+    assert study["id"] in revision["note"]
+    assert revision["steps"]["double"]["outputs"]["twice_the_length"]["value"] == pytest.approx(15)
+
+
+def test_inputs_of_steps_vary_and_are_chosen(http):
+    document = {
+        **TWICE,
+        "steps": {"double": {"template": "double", "version": 1, "inputs": {"length": "1 mm"}}},
+    }
+    design = new_design(http, document)
+    vary = {"double.length": {"values": ["3 mm", "4 mm"]}}
+    study = done(http, design, method="grid", vary=vary, outputs=[OUT])
+    chosen = http.post(
+        f"{API}/studies/{study['id']}/choose", json={"row": 1, "note": "thicker"}, headers={"If-Match": '"1"'}
+    ).json()
+    assert chosen["steps"]["double"]["inputs"]["length"] == {"value": 4.0, "unit": "mm"}
+
+
+def test_rows_become_variants_of_a_new_design(http, twice):
+    study = done(http, twice, method="grid", vary=LENGTHS, steps=5, outputs=[OUT], build=[1, 3])
+    built = http.get(f"{API}/designs/{study['result']['design']}").json()
+    assert built["name"] == "twice (study)"
+    assert built["variants"] == {
+        "row_1": {"length": {"value": 2.5, "unit": "mm"}},
+        "row_3": {"length": {"value": 7.5, "unit": "mm"}},
+    }
+
+
+def test_a_study_is_watched_to_its_end(http, twice):
+    study = begun(http, twice, method="sample", points=20_000, vary=LENGTHS, outputs=[OUT])
+    with http.stream("GET", f"{API}/studies/{study['id']}/events") as stream:
+        events = list(heard(stream))
+    assert events[-1][0] == "done"
+    assert events[-1][1]["id"] == study["id"]
+    assert {name for name, _ in events} <= {"queued", "running", "progress", "done"}
+
+
+def test_a_cancelled_study_stops_and_is_removed(http, served, twice):
+    study = begun(http, twice, method="sample", points=10**6, vary=LENGTHS, outputs=[OUT])
+    until(lambda: rows(http, study, limit=1)["items"], bool, patient(60))
+    cancelled = http.delete(f"{API}/studies/{study['id']}")
+    assert (cancelled.status_code, cancelled.json()["state"]) == (200, "cancelled")
+    pool = served.app.state.services.calculations
+    until(lambda: pool.running + pool.waiting, lambda count: count == 0, patient(30))
+    now = http.get(f"{API}/studies/{study['id']}").json()
+    assert 0 < now["done"] < 10**6
+    assert http.delete(f"{API}/studies/{study['id']}").status_code == 204
+    problem(http.get(f"{API}/studies/{study['id']}"), 404, "not-found")
+
+
+def test_a_study_whose_job_is_cancelled_is_cancelled(http, twice):
+    study = begun(http, twice, method="sample", points=10**6, vary=LENGTHS, outputs=[OUT])
+    assert http.delete(study["job"]).status_code == 200
+    now = ended(http, study)
+    assert (now["state"], now["problem"]["type"]) == ("cancelled", "/problems/cancelled")

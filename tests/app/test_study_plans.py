@@ -1,0 +1,102 @@
+"""The plan of a study: what it refuses, that it is one for equal studies, and what it estimates."""
+
+import pytest
+from serving import problem
+from study_helpers import CLEARANCE, FILM, LOSS, THICKNESS, asked, new_design
+
+from app.catalogue.catalogues import loaded
+from app.studies.chunks import explored
+from app.studies.estimating import IN_CALL, Pace
+from app.studies.planning import planned
+from app.studies.task import Task
+from templates.core.errors import InvalidInputs
+
+TWO = {**CLEARANCE, "width": {"between": ["14 mm", "24 mm"]}}
+FILM_STEP = FILM["steps"]["film"]
+SHELL = {
+    **FILM,
+    "steps": {
+        "film": {
+            **FILM_STEP,
+            "inputs": {**FILM_STEP["inputs"], "radial_load": "= 20 kN + shell.mass * 10 m/s**2"},
+        }
+    },
+    "models": {
+        "shell": {
+            "id": "plain_bearing",
+            "version": 1,
+            "parameters": {"inner_diameter": "= diameter", "width": "18 mm"},
+        }
+    },
+}
+BORE = {"diameter": {"between": ["46 mm", "50 mm"]}}
+
+
+def task(document, **body):
+    """A study as a process plans it, and the rows of a table."""
+    rows = body.pop("rows", None)
+    varied = list(rows if rows is not None else body["vary"])
+    return Task.of(document, {"design": "x", "outputs": [LOSS], **body}, varied, {}, loaded(())), rows
+
+
+@pytest.mark.parametrize(
+    ("body", "count", "hours"),
+    [
+        (
+            {"method": "grid", "vary": {**BORE, **CLEARANCE}, "steps": {"diameter": 9, "clearance": 4}},
+            36,
+            "0.1",
+        ),
+        ({"method": "grid", "vary": {"diameter": {"values": ["46 mm", "48 mm"]}}}, 2, "0.0056"),
+        ({"method": "sample", "vary": BORE, "points": 720}, 720, "2"),
+        ({"method": "table", "rows": {"diameter": {"value": [46, 47, 48], "unit": "mm"}}}, 3, "0.0083"),
+        ({"method": "sensitivity", "vary": BORE}, 3, "0.0083"),
+        ({"method": "optimise", "vary": BORE, "minimise": [LOSS], "points": 36}, 36, "0.1"),
+    ],
+    ids=["grid", "values", "sample", "table", "local", "optimise"],
+)
+def test_a_study_that_needs_solids_says_how_many_and_how_long(body, count, hours):
+    with pytest.raises(InvalidInputs) as refused:
+        planned(*task(SHELL, **body), 10.0)
+    (fault,) = refused.value.faults
+    assert (fault.name, fault.code) == ("diameter", "needs_solids")
+    assert f"{count} rows are up to {count} solids, about {hours} h at 10 s each" in fault.detail
+
+
+@pytest.mark.parametrize("steps", [None, -(10**400), 10**400])
+def test_a_number_of_rows_that_no_study_takes_is_not_counted(steps):
+    with pytest.raises(InvalidInputs) as refused:
+        planned(*task(SHELL, method="grid", vary=BORE, steps=steps), 10.0)
+    assert [fault.code for fault in refused.value.faults] == ["needs_solids"]
+    assert "solids," not in refused.value.faults[0].detail
+
+
+def test_the_interface_says_how_many_solids(http):
+    answer = asked(http, new_design(http, SHELL), method="sample", vary=BORE, points=720, outputs=[LOSS])
+    (fault,) = problem(answer, 422, "invalid-inputs")["errors"]
+    assert fault["code"] == "needs_solids"
+    assert "720 rows are up to 720 solids" in fault["detail"]
+
+
+def test_a_plan_does_not_follow_from_what_was_measured_before():
+    asked_for, rows = task(
+        FILM, method="sample", points=9000, vary=TWO, outputs=[THICKNESS], confirm={"tolerance": 0.001}
+    )
+    first, _ = planned(asked_for, rows, 10.0)
+    explored(asked_for, 0, 4096, first.levels, tuple(first.criteria))
+    again, _ = planned(asked_for, rows, 10.0)
+    assert (again.chunk, again.confirm_chunk) == (first.chunk, first.confirm_chunk)
+    assert again.levels == first.levels
+
+
+def test_a_pace_counts_calls_and_rows():
+    pace = Pace(call=0.5, row=0.001)
+    assert pace.seconds(2 * IN_CALL + 1) == pytest.approx(1.5 + 0.001 * (2 * IN_CALL + 1))
+    assert pace.seconds(800, 100) == pytest.approx(50.8)
+
+
+def test_more_rows_are_estimated_to_take_longer():
+    def seconds(points):
+        return planned(*task(FILM, method="sample", points=points, vary=TWO), 10.0)[0].seconds
+
+    assert seconds(10**6) > 10 * seconds(1000)

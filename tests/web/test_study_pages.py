@@ -1,0 +1,79 @@
+"""Studies by mouse: a refused form, a contour whose rows become revisions, the limit in a histogram."""
+
+import pytest
+from browsing import CHROMIUM
+from patience import patient, until
+from playwright.sync_api import expect
+from serving import API
+
+FILM = "film.minimum_film_thickness"
+CLEARANCE, WIDTH = "film.diametral_clearance", "film.bearing_width"
+ENDED = ("done", "failed", "cancelled")
+
+
+@pytest.fixture
+def bearing(http):
+    """The address of a design of one oil film with a criterion of its own."""
+    inputs = http.get(f"{API}/templates/oil_film/versions/2").json()["example"]
+    step = {"template": "oil_film", "version": 2, "level": "map", "inputs": inputs}
+    criteria = {"thick_enough": {"require": f"{FILM} >= 2.6 um"}}
+    document = {"name": "studied", "steps": {"film": step}, "criteria": criteria}
+    made = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"})
+    return f"/designs/{made.json()['id']}"
+
+
+@pytest.fixture
+def grid(http, bearing):
+    """The address of a finished grid over two inputs, and its design."""
+    vary = {CLEARANCE: {"between": ["30 um", "90 um"]}, WIDTH: {"between": ["18 mm", "26 mm"]}}
+    body = {"design": bearing.rpartition("/")[2], "method": "grid", "steps": 5, "vary": vary}
+    body |= {"outputs": [FILM, "film.power_loss"], "hold": ["thick_enough"]}
+    study = http.post(f"{API}/studies", json=body).json()["id"]
+    until(lambda: http.get(f"{API}/studies/{study}").json()["state"] in ENDED)
+    return f"/studies/{study}", bearing
+
+
+def test_a_refused_form_keeps_what_was_typed_and_names_the_fault(http, bearing):
+    typed = {"method": "grid", "place.0": CLEARANCE, "low.0": "30 kN", "high.0": "60 um", "steps.0": "7"}
+    typed[f"outputs.{FILM}"] = "on"
+    answer = http.post(f"{bearing}/studies", data=typed)
+    assert answer.status_code == 422
+    assert 'value="30 kN"' in answer.text
+    assert 'role="alert"' in answer.text
+    assert "kN" in answer.text.partition('role="alert"')[2].partition("</p>")[0]
+    again = http.get(f"{bearing}/studies")
+    assert again.headers["location"] == f"{bearing}/studies/new"
+
+
+@pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
+def test_a_grid_of_two_shows_a_contour_and_a_chosen_row_becomes_a_revision(plotted, watched, http, grid):
+    study, design = grid
+    page = watched.page
+    watched.open(study)
+    expect(page.locator("[data-chart]")).to_have_value("contour", timeout=patient(20_000))
+    page.locator(".rows").get_by_role("button", name="Use row 7", exact=True).click()
+    page.wait_for_url(f"**{design}")
+    row = http.get(f"{API}{study}/rows?limit=25").json()["items"][7]["values"]
+    sheet = http.get(f"{API}{design}").json()
+    assert sheet["revision"] == 2
+    assert sheet["steps"]["film"]["inputs"]["bearing_width"] == {"value": row[WIDTH], "unit": "mm"}
+    assert watched.faults() == []
+
+
+@pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
+def test_histogram_and_parallel_coordinates(plotted, watched, grid):
+    page = watched.page
+    watched.open(grid[0])
+    page.locator("[data-x]").select_option(FILM)
+    page.locator("[data-chart]").select_option("histogram")
+    expect(page.locator("[data-charted]")).to_contain_text("dashed: the limit of a criterion")
+    page.locator("[data-chart]").select_option("parallel")
+    expect(page.locator("[data-charted]")).to_contain_text("25 of 25 rows kept")
+    box = page.locator(".parallel .track").first.bounding_box()
+    middle = box["x"] + box["width"] / 2
+    page.mouse.move(middle, box["y"] + 2)
+    page.mouse.down()
+    page.mouse.move(middle, box["y"] + box["height"] * 0.4)
+    page.mouse.up()
+    expect(page.locator("[data-charted]")).to_contain_text("5 of 25 rows kept")
+    assert watched.faults() == []
