@@ -82,9 +82,11 @@ class Relation:
             With code `unit_mismatch`, where units do not go together; `no_truth`, where conditions and
             quantities do not.
         """
-        told = tuple((name, (options or {}).get(name, ())) for name in sorted(self.choices))
         measured = tuple((name, kinds[name]) for name in sorted(self.names - self.choices))
-        return _checked(self.text, measured, told)
+        if not self.choices:
+            return _checked(self.text, measured, ())
+        tested = tuple((name, (options or {}).get(name, ())) for name in sorted(self.choices))
+        return _checked(self.text, measured, tested)
 
     def value(self, values: Mapping[str, Value]) -> Value:
         """The value in SI, from the SI values of its names; not finite where the arithmetic is not.
