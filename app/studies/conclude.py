@@ -6,6 +6,7 @@ import numpy as np
 
 from app.schemas.studies import StudyResult, Trade
 from app.studies.asking import directions
+from app.studies.archive import AnyArray
 from app.studies.building import Building
 from app.studies.finding import MOST_CONFIRMED, front, ranked, signed
 from app.studies.optimising import optimised
@@ -70,7 +71,7 @@ def _chosen(run: Run) -> StudyResult:
     return _result(run, stored, explored, numbers, met, several=len(names) > 1)
 
 
-def _shares_met(run: Run, stored: Stored, worst: Integers) -> dict[str, object]:
+def _shares_met(run: Run, stored: Stored, worst: AnyArray) -> dict[str, object]:
     """The share of the rows that meet all criteria, and each of them; nothing where there are none."""
     if not run.plan.required:
         return {}
