@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from app.schemas.studies import StudyResult, Trade
-from app.studies.asking import directions
 from app.studies.archive import AnyArray
+from app.studies.asking import directions
 from app.studies.building import Building
 from app.studies.finding import MOST_CONFIRMED, front, ranked, signed
 from app.studies.optimising import optimised
