@@ -43,7 +43,9 @@ def arguments() -> argparse.Namespace:
         help="try these test files instead of the related ones, and record what they kill",
     )
     parser.add_argument(
-        "--quick", action="store_true", help="only the first pass: the nearest test file of each, for a minute"
+        "--quick",
+        action="store_true",
+        help="only the first pass: the nearest test file of each, for a minute",
     )
     parser.add_argument("--named", action="store_true", help="try the named mutants instead of random ones")
     parser.add_argument("--record", type=Path, help="file of results, one JSON object a line; is appended to")
