@@ -36,11 +36,13 @@ test "paper" with F = 25 kN gives p = 57 MPa within 1 %
 # Title
 > Prose, **bold**
 // remark""".split("\n")
-PIECES = """given choice curve solve require check test from to so that over with gives within if then else and
-or not is published example source symbol remedy also held whole min( max( sum( mean( count( sqrt( log10( f( mu(
-g[ [ ] ( ) { } + - * / ** < <= > >= == != = := -> : ; , . | " ' ` # > // \\ % $ & ~ ^ @ ! ? _ pi F D B T g
-law p q eta s x y cycle 1 2.5 1e308 1e-320 -7 0 9 10**10 mm N MPa degC K 1/K mm**2/s [mm] [N] [1] [degC] [MPa] "words" "" "a"
-over cycle in inch é 名 \u202e \u2028 \ud800 \x00 \x1b \u00a0""".split()
+PIECES = """
+given choice curve solve require check test from to so that over with gives within if then else and or not
+is published example source symbol remedy also held whole min( max( sum( mean( count( sqrt( log10( f( mu( g[
+[ ] ( ) { } + - * / ** < <= > >= == != = := -> : ; , . | " ' ` # > // \\ % $ & ~ ^ @ ! ? _ pi F D B T g law
+p q eta s x y cycle 1 2.5 1e308 1e-320 -7 0 9 10**10 mm N MPa degC K 1/K mm**2/s [mm] [N] [1] [degC] [MPa]
+"words" "" "a" over cycle in inch é 名 \u202e \u2028 \ud800 \x00 \x1b \u00a0
+""".split()
 
 
 def sheet(random):
