@@ -1,4 +1,4 @@
-"""Where a process finds a template: by the file that declares it, as it was when the server read it."""
+"""Where a process finds a template: by the file or the worksheet that declares it, as the server read it."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from pathlib import Path
 from templates.core.catalogue.finding import declared_in, declared_in_file
 from templates.core.catalogue.loading import load, origin
 from templates.core.language.template import Template
+from templates.core.sheets.classes import from_text
 
 
 @dataclass(frozen=True)
-class Source:
+class FileSource:
     """The file of a template; the content of a team's file goes with it, of a built-in one nothing."""
 
     path: str
@@ -21,11 +22,25 @@ class Source:
     content: bytes = field(default=b"", compare=False)
 
 
+@dataclass(frozen=True)
+class SheetSource:
+    """The worksheet of a template: its text, and under which id and version it is read."""
+
+    id: str
+    version: int
+    text: str
+
+
+Source = FileSource | SheetSource
+
+
 def source_of(cls: type[Template]) -> Source:
     """The source of a template, with the code that this process calculates by."""
+    if cls.sheet:
+        return SheetSource(cls.id, cls.version, cls.sheet.text)
     module, path = inspect.getmodule(cls), inspect.getfile(cls)
     made = origin(module) if module else None
-    return Source(path, made[1], made[0]) if made else Source(path)
+    return FileSource(path, made[1], made[0]) if made else FileSource(path)
 
 
 @lru_cache(maxsize=1024)
@@ -37,6 +52,8 @@ def loaded(source: Source) -> type[Template]:
     UnusableFile
         If it cannot be imported here.
     """
+    if isinstance(source, SheetSource):
+        return from_text(source.text, source.id, source.version)
     path = Path(source.path)
     if not source.digest:
         return declared_in_file(path)
