@@ -19,7 +19,7 @@ def html_of(markdown: str) -> str:
 class _Prose(MarkdownIt):
     """Markdown as users may write it."""
 
-    def validateLink(self, url: str) -> bool:  # noqa: N802 - so the library calls it
+    def validateLink(self, url: str) -> bool:
         """Whether a link may lead there."""
         return _LINK.fullmatch(url) is not None
 
