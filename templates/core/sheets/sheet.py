@@ -10,7 +10,8 @@ from functools import cached_property
 from typing import Any
 
 from templates.core.language.template import Template
-from templates.core.sheets.building import Builder, Built
+from templates.core.sheets.building import Builder
+from templates.core.sheets.built import Built
 from templates.core.sheets.classes import made
 from templates.core.sheets.faults import SheetRefused
 from templates.core.sheets.grammar import LANGUAGE
