@@ -10,7 +10,7 @@ from app.worksheets.importing.expressions import MOST_ITEMS, Expressions
 from app.worksheets.importing.judge import Judge, Sort, sort_of, unit_for
 from app.worksheets.importing.names import Names, key_of, legal, look, symbol
 from app.worksheets.importing.outcome import Outcome, one_line
-from app.worksheets.importing.quantities import Scaled, result_of, scaled
+from app.worksheets.importing.quantities import Scaled, is_infinite, result_of, scaled
 from app.worksheets.importing.regions import Original, OriginalSheet
 from app.worksheets.importing.said import LOOSE, Axis, Said, listed, number
 from app.worksheets.importing.scope import Choice, Failed, Function, Range, Scope, Value, Written
@@ -54,6 +54,7 @@ class Definitions:
         """
         self._now = outcome
         self._owners[outcome.original.number] = outcome
+        self._expect(outcome, math.parts[1] if math.tag == "define" and len(math.parts) > 1 else math)
         match math.tag, math.parts:
             case "define" | "globalDefine", [target, value]:
                 self._define(outcome, target, value)
@@ -125,6 +126,7 @@ class Definitions:
         function.names[units] = ""  # a function that calls itself is written out, and refused as too deep
         bound = {name: sort_of(unit) for name, unit in zip(parameters, units, strict=True)}
         before, self.judge.bound = self.judge.bound, bound
+        caller, self._now = self._now, self._owners[function.region]
         try:
             body = Expressions(self, inner).value(function.body)
             if body.axis is not None or not parameters:
@@ -132,7 +134,7 @@ class Definitions:
             sort = self.judge.sort(body.text, bound)
             unit = unit_for(sort, self._asked(function.body))
         finally:
-            self.judge.bound = before
+            self.judge.bound, self._now = before, caller
         name = self.names.take(function.key)
         function.names[units] = name
         self.judge.functions[name] = len(parameters), sort_of(unit)
@@ -144,15 +146,19 @@ class Definitions:
         """The name of a curve through the points of two lists that are written out."""
         assert self._now is not None
         points = list(zip(_items(across), _items(up), strict=False))
-        if not points or across.axis is None or up.axis is None or across.axis.length != up.axis.length:
+        if len(points) < 2 or across.axis is None or up.axis is None or across.axis.length != up.axis.length:
             raise Untranslatable("interpolation in calculated lists", "write the points as a curve")
         x_unit = unit_for(self.judge.sort(_items(across)[0], self.judge.bound), [])
         y_unit = unit_for(self.judge.sort(_items(up)[0], self.judge.bound), [])
         name = self.names.take("interpolation")
         rows = [f"  {_in(x, x_unit)} -> {_in(y, y_unit)}" for x, y in points]
-        head = f'curve {name}(x [{x_unit}]) [{y_unit}] "{self._said(name)}":'
+        heights = [row.rpartition(" ")[2] for row in rows]
+        is_flat = heights[0] == heights[1] and heights[-1] == heights[-2]
+        held = " (held)" if is_flat else ""  # where the ends are level, Mathcad's straight lines are so too
+        head = f'curve {name}(x [{x_unit}]) [{y_unit}] "{self._said(name)}"{held}:'
         self._now.lines.append("\n".join([head, *rows]))
-        self._now.notes.append("outside its points a curve has no value; Mathcad goes on along its last line")
+        if not is_flat:
+            self._now.notes.append("outside its points the curve has no value; Mathcad goes on along its ends")
         self.judge.functions[name] = 1, sort_of(y_unit)
         return name
 
@@ -186,14 +192,26 @@ class Definitions:
         is_given = literal is not None and self._is_input(outcome.original, key)
         said = self._expression(inner)
         self._declare(outcome, key, said, self._asked(value, literal), is_given=is_given)
-        self._expect(outcome, value)
 
     def _is_input(self, region: Original, key: str) -> bool:
         return region.tag == "input" if self._has_tags else key not in self._fixed and not region.tag
 
     def _expression(self, node: Node) -> Said:
         at = Expressions(self, self.scope)
+        if node.tag in ("matrix", "parens", "transpose"):
+            return at.value(node)
+        at.keep = self._keep
         return at.quantity(node) or at.value(node)
+
+    def _keep(self, said: Said) -> Said:
+        """A list within a formula gets a line of its own: only lists over one axis meet."""
+        assert self._now is not None
+        sort = self.judge.sort(said.text, None)
+        unit, name = unit_for(sort, []), self.names.take("items")
+        assert said.axis is not None
+        self._now.lines.append(f'{name} [{unit}] over {said.axis.name} = {said.text} "{self._said(name)}"')
+        self.judge.sorts[name] = sort_of(unit, said.axis.name)
+        return replace(said, text=name)
 
     def _declare(
         self, outcome: Outcome, key: str, said: Said, wanted: Sequence[str], *, is_given: bool = False, words: str = ""
@@ -245,10 +263,20 @@ class Definitions:
         return units
 
     def _expect(self, outcome: Outcome, value: Node) -> None:
-        """Keep Mathcad's own result, to be held against the value here."""
+        """Keep Mathcad's own result, to be held against the value here.
+
+        Raises
+        ------
+        Untranslatable
+            It is a complex number, or infinity.
+        """
         cached = outcome.original.cached
         if cached is None:
             return
+        if any(part.tag in ("complex", "imag") for part in cached.parts):
+            raise Untranslatable("complex number", "calculate with real and imaginary part")
+        if any(part.tag == "real" and is_infinite(part.text) for part in cached.parts):
+            raise Untranslatable("infinity", "give a number")
         asked = value.first("unitOverride") if value.tag == "eval" else None
         unit = asked.parts[0] if asked is not None and asked.parts else None
         outcome.cached = result_of(cached, unit, self.sheet.results_carry_units)
@@ -286,7 +314,6 @@ class Definitions:
         said = Said(f"[{', '.join(number(n).text for n in numbers)}]", axis=axis)
         value = self._declare(outcome, key, said, ["1"])
         self.scope[key] = Range(value.name, axis)
-        self._expect(outcome, node)
 
     def _numbers(self, node: Node) -> tuple[float, ...]:
         if len(node.parts) != 2:
@@ -307,6 +334,9 @@ class Definitions:
 
     def _items_of(self, outcome: Outcome, target: Node, value: Node) -> None:
         """Items of a list along a range: all of them at once."""
+        if len(target.parts) == 3 and target.parts[1].tag == "id" and target.parts[2].tag == "real":
+            self._one_item(outcome, target, value)
+            return
         if len(target.parts) != 3 or target.parts[1].tag != "id" or target.parts[2].tag != "id":
             raise Untranslatable("single items defined one by one", "write the list with all its items")
         key, along = key_of(target.parts[1]), self.scope.get(key_of(target.parts[2]))
@@ -326,7 +356,23 @@ class Definitions:
             said = listed((said,) * along.axis.length, along.axis)
         axis = replace(along.axis, numbers=())
         self._declare(outcome, key, replace(said, axis=axis, is_vector=True), self._asked(value))
-        self._expect(outcome, value)
+
+    def _one_item(self, outcome: Outcome, target: Node, value: Node) -> None:
+        """Another value for one item of a list that is there: the list is written anew, and so is its name."""
+        key = key_of(target.parts[1])
+        whole = self.scope.get(key)
+        if isinstance(whole, Failed):
+            raise Unnamed(key, whole.region)
+        at = Expressions(self, self.scope).said(target.parts[2]).number
+        if not isinstance(whole, Value) or whole.axis is None or at is None or whole.axis.length > 100:
+            raise Untranslatable("single items defined one by one", "write the list with all its items")
+        place = int(at) - whole.axis.start
+        if not 0 <= place < whole.axis.length:
+            raise Untranslatable("list that grows", "write the list with all its items")
+        items = [Said(f"{whole.name}[{n}]") for n in range(1, whole.axis.length + 1)]
+        items[place] = self._expression(_without_result(value))
+        self._declare(outcome, key, listed(tuple(items), whole.axis), self._asked(value))
+        outcome.name = ""
 
     def _several(self, outcome: Outcome, target: Node, value: Node) -> None:
         """Several names at once: of the items of a list, or of the columns of a combo box."""
@@ -390,13 +436,10 @@ class Definitions:
         if inner.tag == "id" and isinstance(value := self.scope.get(key_of(inner)), Value):
             if inner.attributes.get("labels") not in ("CONSTANT", "UNIT"):
                 outcome.name = value.name
-                outcome.lines = []
-                self._expect(outcome, math)
                 return
         said = at.quantity(inner) or at.value(inner)
         self._declare(outcome, f"result_{outcome.original.number}", said, self._asked(math))
         del self.scope[f"result_{outcome.original.number}"]
-        self._expect(outcome, math)
 
 
 class _Trial:

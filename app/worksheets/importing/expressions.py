@@ -86,11 +86,12 @@ class Expressions:
     scope: Scope
     is_vectorised: bool = False
     depth: int = 0
+    keep: Callable[[Said], Said] | None = None
 
     def within(self, scope: Scope, *, is_vectorised: bool | None = None, depth: int = 0) -> Expressions:
         """The same with other meanings of names."""
         vectorised = self.is_vectorised if is_vectorised is None else is_vectorised
-        return Expressions(self.sheet, scope, vectorised, self.depth + depth)
+        return Expressions(self.sheet, scope, vectorised, self.depth + depth, self.keep)
 
     def said(self, node: Node) -> Said:
         """The expression of a tree.
@@ -180,10 +181,10 @@ class Expressions:
         raise Unnamed(key)
 
     def _unit(self, key: str) -> Said:
-        unit = unit_named(key)
-        if unit is None:
+        made = unit_named(key)
+        if made is None:
             raise Untranslatable(f"unit {look(key)[:30]}", "write the quantity in another unit")
-        return Said(f"1 {unit}", POWER)
+        return Said(f"{number(made.number).text} {made.unit}", POWER)
 
     def _matrix(self, node: Node) -> Said:
         parts = [part for part in node.parts if part.tag != "display"]
@@ -198,7 +199,8 @@ class Expressions:
         if any(item.axis for item in items):
             raise Untranslatable("list of lists", "write each as a list of its own")
         made = listed(items, self.sheet.axis(len(items)))
-        return replace(made, is_row=columns != "1")
+        made = replace(made, is_row=columns != "1")
+        return made if self.keep is None else self.keep(made)
 
     def _applied(self, node: Node, operator: Node, parts: list[Node]) -> Said:
         if operator.tag in REFUSED and operator.tag not in ("transpose", "determinant"):
@@ -388,7 +390,7 @@ class Expressions:
             return self._extreme(key, parts)
         if key in functions.COUNTS and len(parts) == 1:
             return self._count(key, parts[0])
-        if key in ("log", "ln0") and len(parts) <= 2:
+        if key == "log" and len(parts) <= 2:
             base = [called("log", parts[1])] if len(parts) == 2 else []
             return binary(called("log", parts[0]), "/", base[0], PRODUCT) if base else called("log10", parts[0])
         if key in functions.SAME and len(parts) == 1:
@@ -421,7 +423,9 @@ class Expressions:
         return number(count + part.axis.start - 1 if key == "last" else count)
 
     def _interpolated(self, arguments: list[Node]) -> Said:
-        across, up, at = (self.quantity(part) or self.said(part) for part in arguments)
+        literal = replace(self, keep=None)
+        across, up = (literal.quantity(part) or literal.said(part) for part in arguments[:2])
+        at = self.quantity(arguments[2]) or self.said(arguments[2])
         if across.axis is None or up.axis is None or at.is_vector:
             raise Untranslatable("interpolation in what are no lists", "write a curve")
         return called(self.sheet.curve(across, up), at)

@@ -40,19 +40,19 @@ def look(key: str) -> str:
 
 
 class Names:
-    """Makes legal names, each once; names that differ by case only are kept apart as well."""
+    """Makes legal names, each once."""
 
     def __init__(self, reserved: frozenset[str]) -> None:
-        self._used = {name.casefold() for name in reserved}
+        self._used = set(reserved)
 
     def take(self, key: str) -> str:
         """A name for something that Mathcad calls `key`; the second of one name is `x_2`."""
         wanted = legal(key)
         count, name = 1, wanted
-        while name.casefold() in self._used:
+        while name in self._used:
             count += 1
             name = f"{wanted}_{count}"
-        self._used.add(name.casefold())
+        self._used.add(name)
         return name
 
 

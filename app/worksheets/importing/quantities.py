@@ -14,15 +14,16 @@ from templates.core.errors import FaultyText
 from templates.core.units.units import unit
 
 _OURS: Mapping[str, str] = {
-    "μm": "um", "µm": "um", "min": "min", "hr": "hr", "yr": "", "year": "", "mil": "thou", "in": "inch",
-    "lb": "lb", "lbm": "lb", "lbf": "lbf", "tonf": "", "ton": "ton", "tonne": "tonne", "gm": "g",
-    "Ω": "ohm", "ohm": "ohm", "°": "deg", "deg": "deg", "%": "%", "L": "L", "l": "L", "sec": "s", "s": "s",
-    "kgf": "kgf", "BTU": "BTU", "hp": "hp", "rpm": "rpm", "RPM": "rpm", "gal": "gal", "R": "degR", "°R": "degR",
-    "g": "", "C": "coulomb", "F": "farad", "H": "henry", "Å": "angstrom", "ksf": "", "pcf": "", "plf": "",
+    "μm": "um", "mil": "thou", "in": "inch", "lbm": "lb", "gm": "g", "Ω": "ohm", "°": "deg", "l": "L",
+    "sec": "s", "RPM": "rpm", "R": "degR", "°R": "degR", "C": "coulomb", "F": "farad", "H": "henry",
+    "Å": "angstrom", "meter": "m", "kilogram": "kg", "second": "s", "kelvin": "K",
 }  # fmt: skip
-"""Where the names differ, or mean something else here; empty where there is no unit of that size."""
+"""Where the names differ."""
 
-_REFERENCES: Mapping[str, str] = {"meter": "m", "kilogram": "kg", "second": "s", "kelvin": "K"}
+_SIZES: Mapping[str, tuple[float, str]] = {
+    "yr": (31556925.9747, "s"), "year": (31556925.9747, "s"), "tonf": (2000.0, "lbf"),
+}  # fmt: skip
+"""Where a name means a unit of another size here: Mathcad's year is the tropical one of 1900."""
 
 PI, EULER = math.pi, math.e
 CONSTANTS: Mapping[str, tuple[float, str]] = {
@@ -93,16 +94,16 @@ def _factor(name: str, power: int) -> str:
     return name if power == 1 else f"{name}**{power}"
 
 
-def unit_named(name: str) -> str | None:
-    """The unit of ours that has the size of Mathcad's unit of this name."""
-    ours = _OURS.get(name, _REFERENCES.get(name, name))
-    if not ours:
-        return None
+def unit_named(name: str) -> Scaled | None:
+    """Mathcad's unit of this name in ours; None if there is none."""
+    if name == "g":
+        return Scaled(9.80665, (("m", Fraction(1)), ("s", Fraction(-2))))
+    size, ours = _SIZES.get(name, (1.0, _OURS.get(name, name)))
     try:
         scale = unit(ours)
     except FaultyText:
         return None
-    return ours if not scale.absolute else None
+    return None if scale.absolute else Scaled(size, ((ours, Fraction(1)),))
 
 
 def scaled(node: Node, is_unit: bool = False) -> Scaled | None:
@@ -117,8 +118,7 @@ def scaled(node: Node, is_unit: bool = False) -> Scaled | None:
         case "placeholder":
             return Scaled() if is_unit else None
         case "id" if is_unit or node.attributes.get("labels") == "UNIT":
-            name = unit_named(key_of(node))
-            return None if name is None else Scaled(1.0, ((name, Fraction(1)),))
+            return unit_named(key_of(node))
         case "parens" if len(parts) == 1:
             return scaled(parts[0], is_unit)
         case "apply" if len(parts) == 2 and parts[0].tag in ("neg", "percent"):
@@ -136,7 +136,7 @@ def _combined(sign: str, left: Scaled | None, right: Scaled | None) -> Scaled | 
     try:
         if sign != "pow":
             made = left.times(right, -1 if sign == "div" else 1)
-        elif right.powers or abs(right.number) > 12:
+        elif right.powers or abs(right.number) > (12 if left.powers else 300):
             return None
         else:
             made = left.raised(Fraction(right.number).limit_denominator(100))
@@ -213,13 +213,21 @@ def _size(node: Node, name: str) -> int:
 def _monomial(node: Node) -> Scaled:
     made = Scaled()
     for part in node.parts:
-        name = unit_named(part.attributes.get("unit", ""))
-        if name is None:
+        named = unit_named(part.attributes.get("unit", ""))
+        if named is None:
             raise ValueError("a unit that there is not here")
         over = int(part.attributes.get("power-numerator", "1"))
         under = int(part.attributes.get("power-denominator", "1")) or 1
-        made = made.times(Scaled(1.0, ((name, Fraction(over, under)),)))
+        made = made.times(named.raised(Fraction(over, under)))
     return made
+
+
+def is_infinite(text: str) -> bool:
+    """Whether a stored number stands for infinity."""
+    try:
+        return not abs(float(text)) < BEYOND
+    except ValueError:
+        return True
 
 
 def close(ours: Iterable[float], theirs: Iterable[float], within: float = 1e-9) -> bool:
