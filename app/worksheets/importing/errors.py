@@ -18,6 +18,6 @@ class Untranslatable(Exception):
 class Unnamed(Exception):
     """A name that no region above defines, or one whose region was not translated."""
 
-    def __init__(self, name: str, region: int | None = None) -> None:
+    def __init__(self, name: str, region: str | None = None) -> None:
         self.name, self.region = name, region
         super().__init__(name)

@@ -124,7 +124,7 @@ def unit_for(sort: Sort, wanted: Sequence[str]) -> str:
     if found:
         return found
     powers = tuple(
-        (_SHORT.get(name, name), Fraction(float(power)).limit_denominator(100))
+        (_SHORT.get(name, name), Fraction(str(power)).limit_denominator(100))
         for name, power in registry.Quantity(1.0, sort.kind.base).unit_items()
     )
     return Scaled(1.0, powers).unit

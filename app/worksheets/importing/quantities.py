@@ -87,7 +87,8 @@ class Scaled:
     @property
     def si(self) -> float:
         """The factor to SI."""
-        return float(self.number) * math.prod(unit(name).factor ** float(power) for name, power in self.powers)
+        factors = (float(unit(name).factor ** float(power)) for name, power in self.powers)
+        return float(self.number) * math.prod(factors)
 
 
 def _factor(name: str, power: int) -> str:

@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from app.plain import JsonObject
+from app.storage.tables import WorksheetVersionRow as Row
+from app.worksheets.errors import Unresolved
 from app.worksheets.importing.outcome import UNRESOLVED, Outcome
 from app.worksheets.importing.regions import MATHEMATICAL, OriginalSheet
 
@@ -42,7 +44,7 @@ def _region(outcome: Outcome, lines: dict[str, int], owners: dict[str, Outcome])
         "name": outcome.name,
         "line": first,
         "lines": own,
-        "construct": outcome.construct,
+        "reason": outcome.construct,
         "remedy": outcome.remedy,
         "blocked_by": outcome.blocked_by,
         "mathcad": [value / factor for value in cached.values] if cached else [],
@@ -68,6 +70,23 @@ def _stands(region: JsonObject, present: set[str]) -> bool:
         return False
     lines = [_plain(part) for line in region["lines"] for part in line.split("\n")]
     return all(line in present for line in lines)
+
+
+def require_resolved(row: Row) -> None:
+    """Return if no region of the import of a version forbids its release.
+
+    Raises
+    ------
+    Unresolved
+        With each region that does.
+    """
+    if row.imported is not None and (found := unresolved(row.imported, row.text)):
+        raise Unresolved([_told(region) for region in found])
+
+
+def _told(region: JsonObject) -> str:
+    what = "its result differs from Mathcad's" if region["state"] == "differs" else region["reason"]
+    return f"region {region['region']} ({region['state']}: {what})"
 
 
 def counted(record: JsonObject) -> dict[str, int]:

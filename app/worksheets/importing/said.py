@@ -54,22 +54,15 @@ class Said:
 
     def shaped(self, *others: Said) -> Said:
         """The same text with the shape that it gets from what it is made of."""
-        return replace(self, **_shape(others))
-
-
-def _shape(parts: tuple[Said, ...]) -> dict[str, object]:
-    lists = [part for part in parts if part.axis is not None]
-    if not lists:
-        return {}
-    first = lists[0]
-    assert first.axis is not None
-    for other in lists[1:]:
-        assert other.axis is not None
-        if other.axis.length != first.axis.length:
+        lists = [(part, part.axis) for part in others if part.axis is not None]
+        if not lists:
+            return self
+        if len({axis.length for _, axis in lists}) > 1:
             remedy = "give both as many items, or write the formula for each item"
             raise Untranslatable("lists of different lengths in one formula", remedy)
-    axis = next((part.axis for part in lists if not part.is_vector), first.axis)
-    return {"axis": axis, "is_vector": all(p.is_vector for p in lists), "is_row": all(p.is_row for p in lists)}
+        axis = next((axis for part, axis in lists if not part.is_vector), lists[0][1])
+        is_vector, is_row = (all(getattr(p, name) for p, _ in lists) for name in ("is_vector", "is_row"))
+        return replace(self, axis=axis, is_vector=is_vector, is_row=is_row)
 
 
 def binary(left: Said, sign: str, right: Said, tight: int) -> Said:
