@@ -47,6 +47,7 @@ from app.studies.running import LANES, Parts
 from app.tolerances.process import analysed
 from app.workers.base import Limits, Worker
 from app.workers.local import LocalProcesses
+from app.worksheets.importing.service import IMPORT, Imports
 from app.worksheets.published import Published
 from app.worksheets.service import Worksheets
 from cad.catalogue import models as find_models
@@ -89,6 +90,9 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     designs = Designs(database, jobs, catalogues, recent)
     parts = Parts(database, store, catalogues, calculations.pool, jobs, calculations.steps)
     studies = assemble_studies(parts, designs)
+    worksheets = Worksheets(database, catalogues, calculations.pool, published)
+    imports = Imports(database, store, jobs, catalogues, worksheets)
+    jobs.register(IMPORT, imports, imports.failed)
     jobs.start({**calculations.lanes, **LANES})
     stack.callback(jobs.stop)
     models = Models(database, store, jobs, catalogues)
@@ -108,7 +112,8 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         previews=previews,
         decisions=decisions,
         studies=studies,
-        worksheets=Worksheets(database, catalogues, calculations.pool, published),
+        worksheets=worksheets,
+        imports=imports,
         solving=solving,
         tolerances=tolerances,
         impacts=impacts,

@@ -1,0 +1,121 @@
+"""The worksheet is read and calculated; its values are held against those that Mathcad stored.
+
+The language has the last word: a line that it refuses is a region that is refused, and what needs it is blocked.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from app.worksheets.importing.outcome import Outcome
+from app.worksheets.importing.quantities import close
+from templates.core.errors import TemplateError
+from templates.core.language.template import Template
+from templates.core.sheets import Sheet, SheetFault, SheetRefused, read
+
+MOST_ROUNDS = 40
+FOLLOWS = "unknown_name"
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+
+def text_of(title: str, outcomes: Iterable[Outcome]) -> str:
+    """The text of the worksheet: its title, then the lines of the regions in the order of the page."""
+    return "\n".join(line for line, _ in _lines(title, outcomes)) + "\n"
+
+
+def verified(title: str, outcomes: Sequence[Outcome]) -> str:
+    """The text of a worksheet without faults; each outcome is held against Mathcad's result.
+
+    Regions whose lines the language refuses become remarks, and so do those that need them.
+    """
+    sheet = _readable(title, outcomes)
+    template = _calculated(sheet) if sheet else None
+    for outcome in outcomes:
+        _judge(outcome, template)
+    return text_of(title, outcomes)
+
+
+def _readable(title: str, outcomes: Sequence[Outcome]) -> Sheet | None:
+    gone: dict[str, str] = {}  # names without a line, by the region that had it
+    for left in reversed(range(MOST_ROUNDS)):
+        lines = list(_lines(title, outcomes))
+        try:
+            return read("\n".join(line for line, _ in lines) + "\n")
+        except SheetRefused as refused:
+            _take_out(refused.faults, _owners(lines), gone, outcomes if not left else ())
+    return None
+
+
+def _lines(title: str, outcomes: Iterable[Outcome]) -> Iterator[tuple[str, Outcome | None]]:
+    yield f"# {title}", None
+    for outcome in outcomes:
+        for line in outcome.lines:
+            yield line, outcome
+
+
+def _owners(lines: Iterable[tuple[str, Outcome | None]]) -> dict[int, Outcome]:
+    """Outcomes by the numbers of their lines."""
+    owners, number = dict[int, Outcome](), 1
+    for line, outcome in lines:
+        height = line.count("\n") + 1
+        if outcome is not None:
+            owners.update(dict.fromkeys(range(number, number + height), outcome))
+        number += height
+    return owners
+
+
+def _take_out(
+    faults: Sequence[SheetFault], owners: Mapping[int, Outcome], gone: dict[str, str], rest: Sequence[Outcome]
+) -> None:
+    """Turn faulty lines into remarks; those that only lack a name that is gone are blocked."""
+    found = False
+    for fault in faults:
+        outcome = owners.get(fault.line)
+        if outcome is None or outcome.state in ("refused", "blocked"):
+            continue
+        found = True
+        names = [_NAME.search(line.removeprefix("given ").removeprefix("choice ")) for line in outcome.lines]
+        lacking = next((name for name in _used(outcome) if name in gone), None) if fault.code == FOLLOWS else None
+        if lacking:
+            outcome.block(lacking, gone[lacking])
+        else:
+            outcome.refuse(f"formula that the language refuses ({fault.message})", fault.remedy or "write it by hand")
+        gone.update({match[0]: outcome.original.number for match in names if match})
+    if not found:  # what is wrong is no single line, such as the number of them
+        for outcome in rest or list({id(o): o for o in owners.values()}.values())[-20:]:
+            if outcome.state == "unverified":
+                outcome.refuse("worksheet that is too large", "import a part of the sheet")
+
+
+def _used(outcome: Outcome) -> Iterator[str]:
+    for line in outcome.lines:
+        yield from _NAME.findall(line)
+
+
+def _calculated(sheet: Sheet) -> Template | None:
+    cls = sheet.template("imported", 1)
+    try:
+        return cls.from_quantities(cls.example)
+    except TemplateError:
+        return None
+
+
+def _judge(outcome: Outcome, template: Template | None) -> None:
+    if outcome.state != "unverified" or not outcome.name or outcome.cached is None:
+        return
+    outcome.ours = tuple(_value(template, outcome.name))
+    outcome.state = "verified" if close(outcome.ours, outcome.cached.values) else "differs"
+
+
+def _value(template: Template | None, name: str) -> Iterator[float]:
+    """A value of the worksheet in SI, item by item; NaN where there is none."""
+    with np.errstate(all="ignore"):
+        try:
+            value = getattr(template, name)
+        except (TemplateError, ArithmeticError, AttributeError):
+            value = math.nan
+    yield from (float(item) for item in np.ravel(value))
