@@ -1,0 +1,32 @@
+// What the text of a worksheet completes: its own names, functions, units and keywords.
+import { replace } from "./sheet_text.js";
+import { completions, wordAt } from "./sheet_tokens.js";
+
+export class SheetNames {
+  constructor(text) {
+    this.text = text;
+    this.names = [];
+  }
+
+  // The names that the service read; those of before where it could read none.
+  update(names) {
+    if (names.length) this.names = names;
+  }
+
+  takes = (field) => field === this.text.area;
+
+  word = (field) => (field.selectionStart === field.selectionEnd ? wordAt(field.value, field.selectionStart) : null);
+
+  start = (field) => this.word(field)?.start ?? -1;
+
+  matching(field) {
+    const word = this.word(field);
+    return word ? completions(word, this.names) : [];
+  }
+
+  fits = () => true;
+
+  put = (field, name, start, end) => replace(field, name, start, end);
+
+  box = () => this.text.caretBox();
+}
