@@ -21,7 +21,7 @@ export class SheetNames {
 
   matching(field) {
     const word = this.word(field);
-    return word ? completions(word, this.names) : [];
+    return word ? completions(word, [...this.names, ...declared(field.value, new Set(this.names.map(({ name }) => name)), word)]) : [];
   }
 
   fits = () => true;
@@ -29,4 +29,12 @@ export class SheetNames {
   put = (field, name, start, end) => replace(field, name, start, end);
 
   box = () => this.text.caretBox();
+}
+
+const DECLARATION = /^(?:(?:given|choice|curve|solve)\s+)?([\p{L}_][\p{L}\p{N}_]*)(?:\s*\[([^\]]*)\]|\s*[(=])[^"\n]*(?:"([^"\n]*)")?/gmu;
+
+// Names that the service has not read yet, because the text is not whole.
+function declared(text, known, { start }) {
+  const found = [...text.matchAll(DECLARATION)].filter(({ index, 1: name }) => !known.has(name) && (index > start || index + name.length < start));
+  return found.map(([, name, unit = "", words = ""]) => ({ name, unit, words }));
 }

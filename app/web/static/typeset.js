@@ -46,6 +46,18 @@ export class Typeset {
   }
 }
 
+// The lines of the last sheet without faults that stand in the text as they did: where they stand now.
+export function stillThere(lines, old, texts) {
+  let head = 0, tail = 0;
+  const most = Math.min(old.length, texts.length), shift = texts.length - old.length;
+  while (head < most && old[head] === texts[head]) head += 1;
+  while (tail < most - head && old.at(-1 - tail) === texts.at(-1 - tail)) tail += 1;
+  return lines.flatMap((line) => {
+    if (line.last_line <= head) return [line];
+    return line.line > old.length - tail ? [{ ...line, line: line.line + shift, last_line: line.last_line + shift }] : [];
+  });
+}
+
 // One row a statement: with what the service says of it, of its faults and of its test.
 export function rowsOf(lines, faults, tests) {
   const byLine = new Map();

@@ -8,7 +8,7 @@ import { drawDiff } from "./line_diff.js";
 import { live } from "./live.js";
 import { SheetNames } from "./sheet_names.js";
 import { SheetText, replace } from "./sheet_text.js";
-import { Typeset } from "./typeset.js";
+import { Typeset, stillThere } from "./typeset.js";
 
 const PAUSE = 300; // ms without a key
 const STALE = 412;
@@ -20,17 +20,26 @@ const text = new SheetText(area, find("[data-lines]")), typeset = new Typeset(fi
 const state = find("[data-state]"), trouble = find("[data-trouble]"), notice = find("[data-draft]"), theirs = find("[data-theirs]");
 const isWide = matchMedia("(min-width: 62.01rem)");
 let tag = form.dataset.tag, saved = area.defaultValue, draft = draftOf(tag);
+let sound = { lines: [], texts: [] }; // the last answer without faults, and its text
 
 const checking = live(
-  (signal) => call("POST", "/api/v1/worksheets/check", { text: area.value, id }, { signal }),
-  ({ told }) => show(told),
+  async (signal) => {
+    const sent = area.value, { told } = await call("POST", "/api/v1/worksheets/check", { text: sent, id }, { signal });
+    return { sent, checked: told };
+  },
+  ({ sent, checked }) => sent === area.value && show(checked), // else a newer one is about to be asked for
   (error) => (find("[data-sheet-faults]").textContent = error instanceof Refused ? error.message : "The service does not answer; the sheet is as it was."),
   PAUSE,
 );
 
+// Of a text with faults the service answers the faults alone: lines that have not changed stay, with values of before.
 function show(checked) {
+  const isSound = checked.faults.length === 0;
+  if (isSound) sound = { ...checked, texts: text.texts };
+  const lines = isSound ? checked.lines : stillThere(sound.lines, sound.texts, text.texts);
   text.showFaults(checked.faults);
-  typeset.show(checked);
+  typeset.show({ ...checked, lines });
+  typeset.list.classList.toggle("outdated", !isSound);
   names.update(checked.names);
   align();
   find("[data-sheet-faults]").textContent = faultsIn(checked.faults);
