@@ -37,18 +37,23 @@ from app.solids.healing import Healing
 from app.solids.models import BUILD, ModelBuild, Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.storage.engines import sqlite_file
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.storage.migrations import migrate
 from app.studies.assembly import assemble_studies
 from app.studies.running import LANES, Parts
 from app.tolerances.process import analysed
+from app.worksheets.published import Published
+from app.worksheets.service import Worksheets
 from app.workers.base import Limits, Worker
 from app.workers.local import LocalProcesses
 from cad.catalogue import models as find_models
 
 NETWORK = ("app.designs.net", "app.studies.planning", "app.studies.searching", "app.studies.sensitivities")
 """What processes have loaded that calculate rows of designs."""
+SHEETS = ("app.worksheets.checking",)
+"""What all calculation processes have loaded to read worksheets."""
 
 
 def assemble(settings: Settings, stack: ExitStack) -> Services:
@@ -66,7 +71,8 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     catalogues = find_catalogues(settings, worker)
     stack.callback(catalogues.close)
     jobs = Jobs(database, worker, settings, problems.describe)
-    calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs, NETWORK)
+    published = published_worksheets(settings, database, catalogues, stack)
+    calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs, NETWORK, SHEETS)
     recent = Recent()
     register_jobs(settings, jobs, database, store, catalogues, calculations, recent)
     about = database, catalogues, store, jobs, calculations.steps
@@ -95,6 +101,7 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         previews=previews,
         decisions=decisions,
         studies=studies,
+        worksheets=Worksheets(database, catalogues, calculations.pool, published),
         solving=solving,
         tolerances=tolerances,
         models=models,
@@ -133,6 +140,18 @@ def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
         return Catalogues(find_templates(()), find_models())
     limits = Limits(settings.template_seconds, settings.job_memory_mb)
     return TeamCatalogues(settings.template_folders, CheckInProcess(worker, limits))
+
+
+def published_worksheets(
+    settings: Settings, database: Database, catalogues: Catalogues, stack: ExitStack
+) -> Published:
+    """The released worksheets among the templates; a SQLite file has one server, which releases them all."""
+    url = settings.database_url
+    is_shared = url is not None and sqlite_file(url) is None
+    published = Published(database, catalogues, is_shared=is_shared)
+    published.start()
+    stack.callback(published.stop)
+    return published
 
 
 def opened_database(settings: Settings, folder: DataFolder, stack: ExitStack) -> Database:

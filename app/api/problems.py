@@ -41,6 +41,7 @@ from app.storage import errors as storage
 from app.storage.errors import CannotRebuild
 from app.studies.errors import RowsLost
 from app.workers import errors as workers
+from app.worksheets import errors as worksheets
 from cad.errors import AnalysisError, GeometryError, UnreadableStep
 from templates.core import errors as templates
 from templates.library.tables import UnknownTable
@@ -74,12 +75,34 @@ TABLE: dict[type[Exception], Kind] = {
     templates.QuarantinedTemplate: Kind(
         "quarantined", 404, "The version is quarantined", "correct its file: GET /api/v1/catalogue/faults"
     ),
+    templates.UnreleasedTemplate: Kind(
+        "unreleased",
+        404,
+        "The version is a draft",
+        "release the worksheet first; until then only previews and `evaluate` take it",
+    ),
     templates.UnknownTemplate: Kind("unknown-template", 404, "No such version", "GET the list of versions"),
     UnknownTable: Kind("unknown-table", 404, "No such table", "GET /api/v1/library lists them"),
     templates.Unreachable: Kind("unreachable", 422, "The target is out of reach", "see `reachable`"),
     templates.TemplateError: Kind("refused", 422, "The calculation refuses", "see `detail`"),
     storage.NotFound: Kind("not-found", 404, "Not found", "GET the list to see what there is"),
     designs.StaleRevision: Kind("stale-revision", 412, "The design has changed", "read it again, then retry"),
+    worksheets.StaleWorksheet: Kind(
+        "stale-worksheet", 412, "The worksheet has changed", "read it again, then retry"
+    ),
+    worksheets.IdTaken: Kind("id-taken", 409, "The id is taken", "choose another id; see `detail`"),
+    worksheets.OwnReview: Kind(
+        "own-review", 403, "Authors do not review their own worksheets", "let another person review it"
+    ),
+    worksheets.OtherText: Kind(
+        "other-text", 409, "The review is of another text", "read the worksheet again, then review it"
+    ),
+    worksheets.TestsFailed: Kind(
+        "tests-failed", 409, "The worksheet is not sound", "correct each of `errors`"
+    ),
+    worksheets.OutOfOrder: Kind(
+        "out-of-order", 409, "The worksheet is in another state", "draft → test → review → release → withdraw"
+    ),
     storage.KeyReused: Kind("idempotency-key-reused", 422, "Idempotency-Key reused", "take a new key"),
     designs.NotConverged: Kind("not-converged", 422, "The iteration did not settle", "see `rounds`"),
     PreconditionRequired: Kind("precondition-required", 428, "If-Match is needed", "send the design's ETag"),
@@ -216,6 +239,11 @@ def _geometry(error: GeometryError) -> JsonObject:
     return {"errors": [{"name": name, "code": error.code, "detail": error.detail} for name in names]}
 
 
+def _untested(error: worksheets.TestsFailed) -> JsonObject:
+    listed: list[Json] = [{"name": "text", "code": "test_failed", "detail": text} for text in error.reasons]
+    return {"errors": listed}
+
+
 _CARRIED: dict[type[Exception], Callable[..., JsonObject]] = {
     templates.InvalidInputs: _faults,
     RequestValidationError: _validation,
@@ -226,6 +254,7 @@ _CARRIED: dict[type[Exception], Callable[..., JsonObject]] = {
         "errors": [{"name": error.name, "code": error.code, "detail": error.detail}]
     },
     designs.NotConverged: lambda error: {"rounds": error.rounds},
+    worksheets.TestsFailed: _untested,
     RowsLost: lambda error: {"job": f"/api/v1/jobs/{error.job}"},
     CannotRebuild: lambda error: {
         **error.links,

@@ -134,7 +134,7 @@ class StrictRoute(APIRoute):
         async def strict(request: Request) -> Response:
             await _refreshed(request)
             if is_change and "if-match" not in request.headers:
-                raise PreconditionRequired('send If-Match with the ETag of the design you read, such as "3"')
+                raise PreconditionRequired('send If-Match with the ETag of what you read, such as "3"')
             strictly = StrictRequest(request.scope, request.receive)
             if takes_json:
                 check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)

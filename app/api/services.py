@@ -28,6 +28,7 @@ from app.solids.models import Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.studies.service import Studies
+from app.worksheets.service import Worksheets
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,7 @@ class Services:
     previews: Previews
     decisions: Decisions
     studies: Studies
+    worksheets: Worksheets
     solving: Asking[DesignSolution]
     tolerances: Asking[ToleranceAnalysis]
     models: Models

@@ -29,9 +29,10 @@ def faults_of_release(cls: type[Template], path: Path) -> Iterator[FileFault]:
     for file in records(path):
         if file.is_file():
             yield from _against(cls, file)
-    recorded = _read(release_file(cls))
-    if recorded is not None and recorded.get("content_digest") != content_digest(cls):
-        what = f"the code is not that of the release: {release_file(cls).name} holds another digest"
+    release = release_file(cls)
+    recorded = _read(release) if release else None
+    if release and recorded is not None and recorded.get("content_digest") != content_digest(cls):
+        what = f"the code is not that of the release: {release.name} holds another digest"
         yield FileFault("released", what, NEW_VERSION, quarantines=False)
 
 

@@ -10,6 +10,7 @@ import ast
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from templates.core.language.body import Body
 from templates.core.language.spec import Formula
 from templates.core.language.syntax import returned
 from templates.core.language.template import Template
@@ -30,6 +31,8 @@ def right_side(
 def _words(cls: type[Template], formula: Formula[Any], level: str) -> str | None:
     """How a result is calculated, if no formula says so."""
     if formula.latex is not None and not formula.latex.startswith(rf"{symbol(formula)}\left("):
+        return None
+    if isinstance(formula.function, Body):
         return None
     node, scope = formula.expression, formula.function.__globals__
     maker = _maker(cls, node, scope)

@@ -1,0 +1,38 @@
+"""The lines of a worksheet as LaTeX."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from templates.core.language.template import Template
+from templates.core.paper.mathml import from_attribute, symbols
+from templates.core.sheets._expressions import latex
+from templates.core.sheets.body import names_in
+from templates.core.sheets.building import Built
+from templates.core.sheets.grammar import Parsed
+
+
+def latex_of(cls: type[Template], built: Built) -> dict[int, str]:
+    """The LaTeX of every statement that has a formula or a symbol, by line."""
+    letters = symbols(cls)
+    return {s.chunk.line: _written(s, built, letters) for s in built.statements}
+
+
+def _written(statement: Parsed, built: Built, letters: Mapping[str, str]) -> str:
+    line = statement.chunk.line
+    node, name = built.trees.get(line), built.called.get(line, "")
+    right = ""
+    if node is not None:
+        own = {used: from_attribute(used) for used in names_in(node)}
+        right = latex(node, {**own, **letters} if statement.kind != "function" else {**letters, **own}, r"\,")
+    if statement.kind in ("require", "check"):
+        return right
+    return "=".join(filter(None, (_left(statement, name, letters), right)))
+
+
+def _left(statement: Parsed, name: str, letters: Mapping[str, str]) -> str:
+    if statement.kind != "function":
+        return letters.get(name, "")
+    parameters = statement.parts[1:-2]
+    listed = ", ".join(from_attribute(str(part.children[0])) for part in parameters)
+    return rf"{from_attribute(name)}\left({listed}\right)"
