@@ -44,10 +44,10 @@ from app.storage.migrations import migrate
 from app.studies.assembly import assemble_studies
 from app.studies.running import LANES, Parts
 from app.tolerances.process import analysed
-from app.worksheets.published import Published
-from app.worksheets.service import Worksheets
 from app.workers.base import Limits, Worker
 from app.workers.local import LocalProcesses
+from app.worksheets.published import Published
+from app.worksheets.service import Worksheets
 from cad.catalogue import models as find_models
 
 NETWORK = ("app.designs.net", "app.studies.planning", "app.studies.searching", "app.studies.sensitivities")

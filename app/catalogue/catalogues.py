@@ -41,7 +41,8 @@ class Catalogues:
 
     def __init__(self, templates: Catalogue[Template], models: Catalogue[CadModel]) -> None:
         self.files = self.snapshot = Snapshot(templates, models)
-        self._sheets, self._drafts = Sheets(), _no_drafts
+        self._sheets = Sheets()
+        self._drafts: Drafts = _no_drafts
         self._joining = threading.Lock()
 
     @property

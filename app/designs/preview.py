@@ -96,7 +96,8 @@ def preview(
 
 def _steps_of(document: Document) -> list[tuple[str, int]]:
     """The versions that the steps of a document name."""
-    return [(step.template, step.version) for step in document.steps.values() if isinstance(step.version, int)]
+    named = ((step.template, step.version) for step in document.steps.values())
+    return [(template, version) for template, version in named if isinstance(version, int)]
 
 
 def _variants(

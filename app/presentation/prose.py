@@ -16,13 +16,14 @@ def html_of(markdown: str) -> str:
     return rendered.strip()
 
 
+class _Prose(MarkdownIt):
+    """Markdown as users may write it."""
+
+    def validateLink(self, url: str) -> bool:
+        """Whether a link may lead there."""
+        return _LINK.fullmatch(url) is not None
+
+
 @cache
 def _renderer() -> MarkdownIt:
-    renderer = MarkdownIt("commonmark", {"html": False}).disable(["image", "html_block", "html_inline"])
-    renderer.validateLink = _may_link  # type: ignore[method-assign] # so its documentation says
-    return renderer
-
-
-def _may_link(address: str) -> bool:
-    """Whether a link may lead there."""
-    return _LINK.fullmatch(address) is not None
+    return _Prose("commonmark", {"html": False}).disable(["image", "html_block", "html_inline"])

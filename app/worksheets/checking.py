@@ -21,7 +21,8 @@ from templates.core.language.spec import Requirement
 from templates.core.language.template import Template
 from templates.core.paper.mathml import mathml
 from templates.core.paper.schema import describe
-from templates.core.sheets import LANGUAGE, Sheet, SheetRefused, Statement, read, run_tests
+from templates.core.sheets import Sheet, SheetRefused, Statement, read, run_tests
+from templates.core.sheets.grammar import LANGUAGE
 
 UNNAMED = "worksheet"
 """The id under which a text without one is described."""
@@ -92,7 +93,7 @@ def _lines(sheet: Sheet, cls: type[Template]) -> Iterator[SheetLine]:
         yield SheetLine(
             line=statement.line,
             last_line=statement.last_line,
-            kind=statement.kind,  # type: ignore[arg-type] # the language's kinds are those of the model
+            kind=statement.kind,
             name=statement.name,
             words=statement.words,
             mathml=mathml(statement.latex) if statement.latex else "",

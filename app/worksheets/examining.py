@@ -14,7 +14,8 @@ from templates.core.catalogue.golden import record
 from templates.core.checking.golden import differences
 from templates.core.errors import InvalidInputs, TemplateError
 from templates.core.language.template import Template
-from templates.core.sheets import LANGUAGE, SheetFault, SheetRefused, read, run_tests
+from templates.core.sheets import SheetFault, SheetRefused, read, run_tests
+from templates.core.sheets.grammar import LANGUAGE
 
 LONGEST_TITLE = 200
 

@@ -118,5 +118,4 @@ def _verified(row: Row) -> ReleasedSheet | str:
     if reason := difference(cls, row.digest, row.record):
         logger.error("Worksheet %s version %d is broken: %s", row.id, row.number, reason)
         return reason
-    state = "withdrawn" if row.withdrawn else "released"
-    return ReleasedSheet(cls, state, row.author, row.reviewer)
+    return ReleasedSheet(cls, "withdrawn" if row.withdrawn else "released", row.author, row.reviewer)

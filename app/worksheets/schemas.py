@@ -78,6 +78,4 @@ class WithdrawIn(Asked):
     """Why a released version shall not be used any longer."""
 
     reason: str = Field(min_length=1, max_length=1000, pattern=NAME)
-    version: int | None = Field(
-        None, ge=1, le=10**6, description="the newest released one, if none is named"
-    )
+    version: int | None = Field(None, ge=1, le=10**6, description="the newest released one, if none is named")

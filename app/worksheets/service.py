@@ -161,9 +161,7 @@ class Worksheets:
         _require(row, "reviewed")
         require_free(id, self.catalogues)
         result = self._tried(client, row)
-        return self._saved(
-            row, state="released", tests=result.tests, record=result.record, released=now()
-        )
+        return self._saved(row, state="released", tests=result.tests, record=result.record, released=now())
 
     def withdraw(self, id: str, body: WithdrawIn, expected: str | None) -> Row:
         """Say why a released version shall not be used any longer; designs that use it still calculate.

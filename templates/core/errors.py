@@ -88,7 +88,7 @@ class QuarantinedTemplate(UnknownTemplate):
 
 
 class UnreleasedTemplate(UnknownTemplate):
-    """This version is the draft of a worksheet: it can be tried, and nothing that is kept may use it."""
+    """The version is the draft of a worksheet: it can be tried, and nothing that is kept may use it."""
 
     code = "unreleased"
 

@@ -86,9 +86,7 @@ def listed(
     return page_of(TemplateList, list(catalogue), limit, cursor, lambda cls: summary(cls, catalogue, marked))
 
 
-def versions_of(
-    catalogue: Catalogue[T], id: str, marked: Marks = MappingProxyType({})
-) -> TemplateVersions:
+def versions_of(catalogue: Catalogue[T], id: str, marked: Marks = MappingProxyType({})) -> TemplateVersions:
     """All versions of one template or model.
 
     Raises

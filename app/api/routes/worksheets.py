@@ -121,9 +121,7 @@ async def try_worksheet(
 
 
 @router.post("/{id}/review", response_model=Sheet, responses={**STEP, **refusals(403)})
-def review_worksheet(
-    id: Id, body: ReviewIn, worksheets: TheWorksheets, if_match: IfMatch = None
-) -> Response:
+def review_worksheet(id: Id, body: ReviewIn, worksheets: TheWorksheets, if_match: IfMatch = None) -> Response:
     """Note who reviewed the text of this digest: tested → reviewed. The typed name is not verified."""
     return _shown(worksheets, worksheets.review(id, body, if_match))
 

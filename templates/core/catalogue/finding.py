@@ -11,7 +11,13 @@ from types import ModuleType
 from typing import Generic, TypeVar
 
 from templates.core.catalogue.loading import failing_line, load
-from templates.core.errors import QuarantinedTemplate, UnknownTemplate, UnreleasedTemplate, UnusableFile, plain
+from templates.core.errors import (
+    QuarantinedTemplate,
+    UnknownTemplate,
+    UnreleasedTemplate,
+    UnusableFile,
+    plain,
+)
 from templates.core.language.template import VERSIONED, Template
 
 T = TypeVar("T", bound=Template)
@@ -21,7 +27,7 @@ T = TypeVar("T", bound=Template)
 class Catalogue(Generic[T]):
     """All versions of all templates (or models) in the folders; `kind` names them in messages.
 
-    `quarantined` says why a version cannot be used whose file has faults, `unreleased` the same of one that is
+    `quarantined` says why a version cannot be used whose file has faults, `unreleased` why one cannot that is
     the draft of a worksheet.
     """
 

@@ -2,21 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import operator
+from collections.abc import Callable, Iterator, Mapping
+from functools import reduce
 from typing import Any
 
+import numpy as np
+
 from templates.core.language.body import Body
-from templates.core.sheets._expressions import closure, latex
-from templates.core.units.operations import Name
+from templates.core.paper.expressions import latex
+from templates.core.units.closures import closure
+from templates.core.units.operations import Apply, Name
+from templates.core.units.walking import nodes_of
+
+_SIGNS = {
+    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq,
+    "!=": operator.ne,
+}  # fmt: skip
+_JOINED = {"and": np.logical_and, "or": np.logical_or}
 
 
 class TreeBody(Body):
-    """A tree whose units were checked; `sentence` is what a rule says."""
+    """A tree whose units were checked."""
 
-    def __init__(self, node: Any, line: int, sentence: str | None = None) -> None:
+    def __init__(self, node: Any, line: int) -> None:
         self.node, self.line = node, line
         self.uses = tuple(dict.fromkeys(names_in(node)))
-        self.__doc__ = sentence
+        self.__doc__ = None
         self.__qualname__ = f"line {line}"
         self._run = closure(node)
 
@@ -29,12 +41,27 @@ class TreeBody(Body):
         return latex(self.node, symbols, times)
 
 
+class RuleBody(TreeBody):
+    """A condition, whose comparisons a report can record; `sentence` is what the rule says."""
+
+    def __init__(self, node: Any, line: int, sentence: str) -> None:
+        super().__init__(node, line)
+        self.__doc__ = sentence
+        self._run = _truth(node)
+
+
+def _truth(node: Any) -> Callable[[Any], Any]:
+    """A condition as a function, its comparisons made by Python's operators, which records follow."""
+    sign = node.operation.sign if isinstance(node, Apply) else ""
+    if sign in _SIGNS:
+        compare, left, right = _SIGNS[sign], *map(closure, node.arguments)
+        return lambda template: compare(left(template), right(template))
+    if sign in _JOINED:
+        join, parts = _JOINED[sign], [_truth(part) for part in node.arguments]
+        return lambda template: reduce(join, (part(template) for part in parts))
+    return closure(node)
+
+
 def names_in(node: Any) -> Iterator[str]:
     """The names that a tree reads, in order of appearance."""
-    waiting = [node]
-    while waiting:
-        match waiting.pop():
-            case Name(name=name):
-                yield name
-            case other:
-                waiting += reversed(getattr(other, "arguments", ()))
+    return (part.name for part in nodes_of(node) if isinstance(part, Name))

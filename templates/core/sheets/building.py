@@ -12,7 +12,7 @@ import lark
 from templates.core.errors import FaultyText
 from templates.core.language.meaning import Meaning
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given, Requirement
-from templates.core.sheets.body import TreeBody
+from templates.core.sheets.body import RuleBody, TreeBody
 from templates.core.sheets.clauses import meaning_of, said_in, words_of
 from templates.core.sheets.criteria import criterion_of
 from templates.core.sheets.expecting import test_of
@@ -134,7 +134,7 @@ class Builder:
         tree, words, clauses = statement.parts
         node = self._condition(statement, tree)
         said = said_in(statement, clauses, self.reader)
-        body = TreeBody(node, statement.chunk.line, words_of(statement, words).rstrip("."))
+        body = RuleBody(node, statement.chunk.line, words_of(statement, words).rstrip("."))
         blamed = self._inputs_beneath(body.uses)
         if not blamed:
             remedy = "compare a given with something"

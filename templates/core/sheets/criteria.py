@@ -10,7 +10,6 @@ from templates.core.judging.criterion import read_criterion
 from templates.core.language.criteria import known_names
 from templates.core.language.meaning import api_name
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given
-from templates.core.sheets._expressions import Typed
 from templates.core.sheets.clauses import Said
 from templates.core.sheets.grammar import Parsed
 from templates.core.units.operations import CONSTANTS, Apply, Constant, Name
@@ -56,7 +55,7 @@ def relation_text(node: Any, names: Mapping[str, str]) -> str:
         With code `check`, for what a criterion cannot say.
     """
     match node:
-        case Typed(text=text):
+        case Constant(text=text) if text:
             return text
         case Constant():
             return next(name for name, constant in CONSTANTS.items() if constant == node)

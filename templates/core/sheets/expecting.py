@@ -11,10 +11,11 @@ import numpy as np
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given, Text
 from templates.core.sheets.body import TreeBody
 from templates.core.sheets.clauses import words_of
-from templates.core.sheets.expressions import Reader, is_number
+from templates.core.sheets.expressions import Reader
 from templates.core.sheets.faults import FollowsFromFault
 from templates.core.sheets.grammar import Parsed
 from templates.core.sheets.testing import Expected, SheetTest
+from templates.core.units.rules import is_number
 
 Made = Mapping[str, Any]
 

@@ -7,11 +7,13 @@ from typing import Any
 import lark
 
 from templates.core.errors import FaultyText
-from templates.core.sheets._expressions import Sort, checked
 from templates.core.sheets.grammar import Parsed
-from templates.core.sheets.names import Names, Part, sort_of
-from templates.core.units.operations import Constant, Kind
-from templates.core.units.units import compatible, registry, unit
+from templates.core.sheets.names import Names, sort_of
+from templates.core.units.expressions import FaultyPlace, checked
+from templates.core.units.operations import Constant
+from templates.core.units.rules import is_number, told
+from templates.core.units.sorts import Part
+from templates.core.units.units import compatible, unit
 
 
 class Reader:
@@ -32,8 +34,8 @@ class Reader:
         """
         try:
             return checked(tree, self.names)
-        except FaultyText as error:
-            raise statement.at(error.code, str(error), getattr(error, "meta", tree.meta)) from None
+        except FaultyPlace as error:
+            raise statement.at(error.code, str(error), error.meta) from None
 
     def fitting(self, statement: Parsed, part: Part, unit_text: str, name: str, at: Any) -> Any:
         """The tree of an expression that gives what is declared.
@@ -49,7 +51,7 @@ class Reader:
             message = f"{name} is a quantity, but this is a condition"
             raise statement.refuse("no_truth", message, at, "write if … then … else …")
         if not compatible(got.kind.base, wanted.kind.base):
-            message = f"{name} is declared in {unit_text}, but this gives {measured(got.kind)}"
+            message = f"{name} is declared in {unit_text}, but this gives {told(got.kind)}"
             raise statement.refuse("unit_mismatch", message, at, "correct the unit or the formula")
         if unit(unit_text).absolute and abs((got.weight or 0.0) - 1) > 1e-9:
             message = f"{name} is a difference of temperatures, or no plain one"
@@ -87,16 +89,3 @@ class Reader:
         except FaultyText as error:
             raise statement.refuse(error.code, str(error), text) from None
         return name
-
-
-def is_number(kind: Kind) -> bool:
-    """Whether a value has no dimension."""
-    return bool(registry.get_dimensionality(kind.base) == registry.get_dimensionality(Kind().base))
-
-
-def measured(kind: Kind) -> str:
-    """What a value is in, in words."""
-    return f"{kind.base:~P}" or "a pure number"
-
-
-__all__ = ["Part", "Reader", "Sort", "is_number", "measured"]

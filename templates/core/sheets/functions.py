@@ -8,11 +8,13 @@ from typing import Any
 import lark
 
 from templates.core.errors import FaultyText
-from templates.core.sheets._expressions import Sort, checked
-from templates.core.sheets.expressions import Reader, measured
+from templates.core.sheets.expressions import Reader
 from templates.core.sheets.grammar import Parsed
-from templates.core.sheets.names import Names, Part, sort_of
+from templates.core.sheets.names import Names, sort_of
+from templates.core.units.expressions import FaultyPlace, checked
 from templates.core.units.operations import Name
+from templates.core.units.rules import told
+from templates.core.units.sorts import Part, Sort
 from templates.core.units.units import compatible
 
 
@@ -41,7 +43,7 @@ class Function:
             raise FaultyText("unknown_function", detail)
         for (_, got), (_, wanted) in zip(arguments, self.parameters, strict=True):
             if got.truth or not compatible(got.kind.base, wanted.kind.base):
-                given = "a condition" if got.truth else measured(got.kind)
+                given = "a condition" if got.truth else told(got.kind)
                 raise FaultyText("unit_mismatch", f"{self.name} takes {self.takes}, not {given}")
         names = (name for name, _ in self.parameters)
         return self._written_out(dict(zip(names, arguments, strict=True)))
@@ -50,9 +52,8 @@ class Function:
         before, self.names.parameters = self.names.parameters, parameters
         try:
             return checked(self.tree, self.names)
-        except FaultyText as error:
-            vars(error).pop("meta", None)  # its place is that of the call
-            raise
+        except FaultyPlace as error:
+            raise FaultyText(error.code, str(error)) from None  # its place is that of the call
         finally:
             self.names.parameters = before
 

@@ -10,9 +10,9 @@ from typing import Any
 import lark
 
 from templates.core.errors import excerpt
-from templates.core.sheets._expressions import GRAMMAR
 from templates.core.sheets.faults import Refusal, SheetFault
 from templates.core.sheets.lines import Chunk
+from templates.core.units.expressions import GRAMMAR, height
 
 LANGUAGE = 1
 """The version of the language; a change of what a statement means makes another."""
@@ -85,7 +85,7 @@ def parsed(chunk: Chunk) -> Parsed:
         tree: lark.Tree[Any] = reader.feed_eof(tokens[-1] if tokens else None)  # type: ignore[no-untyped-call]
     except lark.exceptions.UnexpectedInput as error:
         raise Refusal(_not_understood(chunk, error)) from None
-    if _parts(tree) > MOST_PARTS or _height(tree) > MOST_DEPTH:
+    if _parts(tree) > MOST_PARTS or height(tree) > MOST_DEPTH:
         message = f"a statement has at most {MOST_PARTS} parts, {MOST_DEPTH} deep"
         remedy = "give its parts names of their own"
         raise Refusal(SheetFault(chunk.line, 1, "too_large", message, remedy=remedy))
@@ -100,14 +100,6 @@ def name_of(chunk: Chunk) -> str:
 
 def _parts(tree: lark.Tree[Any]) -> int:
     return sum(1 for _ in tree.iter_subtrees())
-
-
-def _height(tree: lark.Tree[Any]) -> int:
-    height, level = 0, [tree]
-    while level:
-        height += 1
-        level = [child for node in level for child in node.children if isinstance(child, lark.Tree)]
-    return height
 
 
 def _not_understood(chunk: Chunk, error: lark.exceptions.UnexpectedInput) -> SheetFault:

@@ -4,25 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 from templates.core.errors import FaultyText, unknown_name
 from templates.core.language.template import Template
-from templates.core.sheets._expressions import CALLED, NO_UNITS, Sort
 from templates.core.sheets.faults import FollowsFromFault
-from templates.core.units.operations import CONSTANTS, Kind, Name
+from templates.core.units.lists import OVER_LISTS
+from templates.core.units.operations import CONSTANTS, FUNCTIONS, Kind, Name
+from templates.core.units.sorts import Part, Sort
 from templates.core.units.units import unit
 
 FUEL = 10_000
 """Operations of a worksheet, its functions written out."""
 
 LONGEST_NAME = 60
-_WORDS = frozenset(NO_UNITS.split("|")) | {
+_WORDS = frozenset({
+    "then", "else", "and", "or", "is", "to", "so", "that", "over", "from", "with", "within", "gives",
     "if", "not", "given", "choice", "curve", "solve", "require", "check", "test",
     "level", "ledger", "held", "published", "example", "source", "symbol", "remedy", "also",
-}  # fmt: skip
+})  # fmt: skip
 
-Part = tuple[Any, Sort]
 Call = Callable[[list[Part]], Part]
 
 
@@ -102,7 +102,13 @@ class Names:
             raise FaultyText("name", f"{name[:LONGEST_NAME]} is declared above already")
         if len(name) > LONGEST_NAME or "." in name:
             raise FaultyText("name", f"a name has at most {LONGEST_NAME} letters, digits and _, and no dot")
-        if name in _WORDS or name in CONSTANTS or name in CALLED or hasattr(Template, name):
+        if (
+            name in _WORDS
+            or name in CONSTANTS
+            or name in FUNCTIONS
+            or name in OVER_LISTS
+            or hasattr(Template, name)
+        ):
             raise FaultyText("name", f"{name} has a meaning of its own")
 
 

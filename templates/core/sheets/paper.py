@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from templates.core.language.template import Template
-from templates.core.paper.mathml import from_attribute, symbols
-from templates.core.sheets._expressions import latex
+from templates.core.paper.expressions import latex
+from templates.core.paper.mathml import named_symbol, symbols
 from templates.core.sheets.body import names_in
 from templates.core.sheets.building import Built
 from templates.core.sheets.grammar import Parsed
@@ -23,7 +23,7 @@ def _written(statement: Parsed, built: Built, letters: Mapping[str, str]) -> str
     node, name = built.trees.get(line), built.called.get(line, "")
     right = ""
     if node is not None:
-        own = {used: from_attribute(used) for used in names_in(node)}
+        own = {used: named_symbol(used) for used in names_in(node)}
         right = latex(node, {**own, **letters} if statement.kind != "function" else {**letters, **own}, r"\,")
     if statement.kind in ("require", "check"):
         return right
@@ -34,5 +34,5 @@ def _left(statement: Parsed, name: str, letters: Mapping[str, str]) -> str:
     if statement.kind != "function":
         return letters.get(name, "")
     parameters = statement.parts[1:-2]
-    listed = ", ".join(from_attribute(str(part.children[0])) for part in parameters)
-    return rf"{from_attribute(name)}\left({listed}\right)"
+    listed = ", ".join(named_symbol(str(part.children[0])) for part in parameters)
+    return rf"{named_symbol(name)}\left({listed}\right)"
