@@ -83,6 +83,7 @@ async def editor_page(
         theirs=sheet.text if unsaved and unsaved.is_conflict else None,
         notice=unsaved.notice if unsaved else notice,
         checked=checked,
+        checked_json=checked.model_dump_json(exclude={"template"}),
         rows=rows(checked),
         listing=listing(text, checked.faults),
         stages=stages(sheet),

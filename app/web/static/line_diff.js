@@ -3,7 +3,7 @@ const MOST = 1_000_000; // pairs of lines that are compared; beyond, all lines b
 
 // Lines in order, each as [sign, text]: " " in both, "-" in the old one, "+" in the new one.
 export function lineDiff(old, now) {
-  const [before, after] = [old.split("\n"), now.split("\n")];
+  const [before, after] = [linesOf(old), linesOf(now)];
   let head = 0, tail = 0;
   const most = Math.min(before.length, after.length);
   while (head < most && before[head] === after[head]) head += 1;
@@ -12,6 +12,8 @@ export function lineDiff(old, now) {
   const middle = changes(before.slice(head, before.length - tail), after.slice(head, after.length - tail));
   return [...before.slice(0, head).map(both), ...middle, ...before.slice(before.length - tail).map(both)];
 }
+
+const linesOf = (text) => text.replace(/\n$/, "").split("\n");
 
 // By the longest common subsequence.
 function changes(old, now) {

@@ -77,5 +77,6 @@ export function completions({ kind, typed }, names) {
     if (name.startsWith(wanted)) begins.push(item);
     else if (kind === "name" && (name.includes(wanted) || (wanted.length > 1 && item.words.toLowerCase().includes(wanted)))) holds.push(item);
   }
-  return all.some(({ name }) => name === typed) ? [] : [...begins, ...holds]; // a whole name: Enter begins the next line
+  const isWhole = kind !== "unit" && all.some(({ name }) => name === typed); // Enter begins the next line
+  return isWhole ? [] : [...begins, ...holds];
 }

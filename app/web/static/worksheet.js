@@ -32,10 +32,10 @@ const checking = live(
   PAUSE,
 );
 
-// Of a text with faults the service answers the faults alone: lines that have not changed stay, with values of before.
-function show(checked) {
+// What the service says of a text. With faults it answers these alone: unchanged lines stay, with values of before.
+function show(checked, texts = text.texts) {
   const isSound = checked.faults.length === 0;
-  if (isSound) sound = { ...checked, texts: text.texts };
+  if (isSound) sound = { ...checked, texts };
   const lines = isSound ? checked.lines : stillThere(sound.lines, sound.texts, text.texts);
   text.showFaults(checked.faults);
   typeset.show({ ...checked, lines });
@@ -211,7 +211,8 @@ function start() {
   isWide.addEventListener("change", align);
   new ResizeObserver(align).observe(find("[data-lines]"));
   document.fonts.ready.then(align);
-  checking.ask();
+  show(JSON.parse(find("[data-checked]").value), area.defaultValue.split("\n"));
+  if (area.value !== area.defaultValue) checking.ask();
   startDownloads();
 }
 
