@@ -19,6 +19,7 @@ class Body(ABC):
 
     uses: tuple[str, ...]
     line: int
+    has_numbers = True  # whether it is written once more with numbers in the place of attributes
 
     @abstractmethod
     def __call__(self, template: Any) -> Any:

@@ -25,7 +25,7 @@ def right_side(
     """What stands right of the sign of equality, as LaTeX, and whether it is words and no formula."""
     if words := _words(cls, formula, level):
         return rf"\text{{{words}}}", True
-    return expression(formula, symbols), False
+    return expression(formula, symbols), not getattr(formula.function, "has_numbers", True)
 
 
 def _words(cls: type[Template], formula: Formula[Any], level: str) -> str | None:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator, Mapping
-from functools import reduce
+from functools import cached_property, reduce
 from typing import Any
 
 import numpy as np
 
+from templates.core.errors import Fault, InvalidInputs
 from templates.core.language.body import Body
 from templates.core.paper.expressions import latex
+from templates.core.paper.mathml import named_symbol
+from templates.core.sheets.partial import explain, explained_in
 from templates.core.units.closures import closure
 from templates.core.units.operations import Apply, Name
 from templates.core.units.walking import nodes_of
@@ -23,31 +26,60 @@ _JOINED = {"and": np.logical_and, "or": np.logical_or}
 
 
 class TreeBody(Body):
-    """A tree whose units were checked."""
+    """A tree whose units were checked; `name` is the attribute, `axes` how many its list runs over."""
 
-    def __init__(self, node: Any, line: int) -> None:
-        self.node, self.line = node, line
+    def __init__(self, node: Any, line: int, name: str = "", axes: int = 0) -> None:
+        self.node, self.line, self.name, self.axes = node, line, name, axes
         self.uses = tuple(dict.fromkeys(names_in(node)))
-        self.__doc__ = None
+        self.__doc__: str | None = None
         self.__qualname__ = f"line {line}"
         self._run = closure(node)
+        self._explained = explained_in(node)
 
     def __call__(self, template: Any) -> Any:
-        """The SI value for the values of a template."""
-        return self._run(template)
+        """The SI value for the values of a template.
+
+        Raises
+        ------
+        InvalidInputs
+            If lists of different lengths meet.
+        """
+        try:
+            value = self._run(template)
+        except ValueError:
+            raise InvalidInputs([self._unequal(template)]) from None
+        if self._explained and np.isnan(value).any() and hasattr(template, "ledger"):
+            explain(template, self.name, self._explained, self.axes)
+        return value
+
+    def _unequal(self, template: Any) -> Fault:
+        declared = getattr(template, "declarations", {}).get(self.name)
+        detail = "lists of different lengths meet here; give lists of one length"
+        return Fault(declared.name if declared else self.__qualname__, "shape", detail)
 
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
         """How it is written, with symbols or numbers in the place of attributes."""
-        return latex(self.node, symbols, times)
+        return latex(self.node, {**self._letters, **symbols}, times)
+
+    @cached_property
+    def _letters(self) -> dict[str, str]:
+        """The symbols of curves, which are called by their names."""
+        return {one.sign: named_symbol(one.sign) for one, _ in self._explained}
 
 
 class RuleBody(TreeBody):
     """A condition, whose comparisons a report can record; `sentence` is what the rule says."""
 
-    def __init__(self, node: Any, line: int, sentence: str) -> None:
-        super().__init__(node, line)
+    def __init__(self, node: Any, line: int, sentence: str, axes: int = 0) -> None:
+        super().__init__(node, line, axes=axes)
         self.__doc__ = sentence
-        self._run = _truth(node)
+        self._run = _everywhere(_truth(node)) if axes else _truth(node)
+        self._explained = []
+
+
+def _everywhere(run: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """A condition on a list: it holds at all its places."""
+    return lambda template: np.all(run(template), axis=-1)
 
 
 def _truth(node: Any) -> Callable[[Any], Any]:

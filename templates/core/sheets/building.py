@@ -1,62 +1,41 @@
-"""From the statements of a worksheet to the declarations of a class; every fault is collected."""
+"""From the statements of a worksheet to what its class is made of; every fault is collected."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from copy import copy
-from dataclasses import dataclass, field
 from typing import Any
 
 import lark
 
 from templates.core.errors import FaultyText
 from templates.core.language.meaning import Meaning
-from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given, Requirement
+from templates.core.language.spec import (
+    Choice,
+    Curve,
+    Declaration,
+    Derived,
+    Formula,
+    Given,
+    Profile,
+    Requirement,
+)
 from templates.core.sheets.body import RuleBody, TreeBody
+from templates.core.sheets.built import RULE, Built
 from templates.core.sheets.clauses import meaning_of, said_in, words_of
 from templates.core.sheets.criteria import criterion_of
+from templates.core.sheets.curves import curve_of, points_of
 from templates.core.sheets.expecting import test_of
 from templates.core.sheets.expressions import Reader
-from templates.core.sheets.faults import FollowsFromFault, Refusal, SheetFault
+from templates.core.sheets.faults import FollowsFromFault, Refusal
 from templates.core.sheets.functions import function_of
 from templates.core.sheets.grammar import Parsed, name_of, parsed
 from templates.core.sheets.lines import Chunk
-from templates.core.sheets.names import Named, Names, sort_of
-from templates.core.sheets.testing import SheetTest
-from templates.core.sheets.typed import default_of
+from templates.core.sheets.names import Names, sort_of
+from templates.core.sheets.solving import SolveBody, equation_of
+from templates.core.units.sorts import Sort
 
-Made = Declaration | Requirement
-UNNAMED = "line"  # a rule stands in the class under its line: `line 14`, which no user can write
-
-
-@dataclass
-class Built:
-    """What the statements of a worksheet make; `faults` are all that is wrong with them.
-
-    Attributes
-    ----------
-    made
-        Declarations and rules by attribute.
-    criteria
-        As a template declares them, by name.
-    example
-        By API name, as typed.
-    """
-
-    statements: list[Parsed] = field(default_factory=list)
-    faults: list[SheetFault] = field(default_factory=list)
-    made: dict[str, Made] = field(default_factory=dict)
-    criteria: dict[str, dict[str, str]] = field(default_factory=dict)
-    called: dict[int, str] = field(default_factory=dict)  # names of declarations by line, rules included
-    example: dict[str, Any] = field(default_factory=dict)
-    tests: list[SheetTest] = field(default_factory=list)
-    named: dict[str, Named] = field(default_factory=dict)
-    trees: dict[int, Any] = field(default_factory=dict)  # what is written on paper, by line
-    said: dict[int, str] = field(default_factory=dict)  # words and sentences, by line
-
-    def declarations(self) -> dict[str, Made]:
-        """Declarations and rules for another class: a class keeps names in those that it is made of."""
-        return {name: copy(made) for name, made in self.made.items()}
+_ORDER = (("function", "curve"), ("choice", "given", "formula", "solve"), ("require", "check"), ("test",))
+"""Functions are known to all others, rules know all quantities, tests know everything."""
 
 
 class Builder:
@@ -65,12 +44,11 @@ class Builder:
     def __init__(self, chunks: list[Chunk]) -> None:
         self.built, self.names = Built(), Names()
         self.reader = Reader(self.names)
-        self.lines: dict[str, int] = {}  # of API names
         for chunk in chunks:
             self._try(self._parse, chunk)
         for statement in self.built.statements:
             self._try(self._announce, statement)
-        for kinds in (("function",), ("given", "formula"), ("require", "check"), ("test",)):
+        for kinds in _ORDER:
             for statement in self.built.statements:
                 if statement.kind in kinds and self.names.fuel >= 0:
                     self._try(getattr(self, f"_{statement.kind}"), statement)
@@ -85,130 +63,171 @@ class Builder:
             pass
         else:
             return
-        name = name_of(statement.chunk if isinstance(statement, Parsed) else statement)
-        self.names.broken.add(name)
+        self.names.broken.add(name_of(statement.chunk if isinstance(statement, Parsed) else statement))
 
     def _parse(self, chunk: Chunk) -> None:
         self.built.statements.append(parsed(chunk))
 
     def _announce(self, statement: Parsed) -> None:
         """Let other statements use a name before the formula behind it is read."""
-        if statement.kind not in ("given", "formula"):
-            return
-        name, unit_text = statement.declared
+        match statement.kind:
+            case "given" | "formula":
+                name, unit_text, axis = statement.parts[:3]
+                sort = self._sort(statement, unit_text, str(axis or ""))
+            case "solve":
+                name, unit_text = statement.parts[:2]
+                sort = self._sort(statement, unit_text, "")
+            case "choice":
+                name, options = statement.parts[0], statement.parts[3].children
+                sort = Sort(words=tuple(map(str, options)))
+            case _:
+                return
+        self._check_new(statement, name, str(name))
+        self.names.sorts[str(name)] = sort
+
+    def _sort(self, statement: Parsed, unit_text: lark.Token, axis: str) -> Sort:
+        wanted = sort_of(self.reader.declared_unit(statement, unit_text))
+        return Sort(wanted.kind, wanted.weight, axis=axis)
+
+    def _check_new(self, statement: Parsed, at: lark.Token, name: str) -> None:
         try:
-            self.names.check_new(str(name))
+            self.names.check_new(name)
         except FaultyText as error:
             remedy = "choose another name, as in p_max"
-            raise statement.refuse(error.code, str(error), name, remedy) from None
-        self.names.sorts[str(name)] = sort_of(self.reader.declared_unit(statement, unit_text))
+            raise statement.refuse(error.code, str(error), at, remedy) from None
 
     def _function(self, statement: Parsed) -> None:
+        self._check_new(statement, statement.parts[0], statement.parts[0][:-1])
         function = function_of(statement, self.reader)
         self.names.functions[function.name] = function.call
-        self.built.trees[statement.chunk.line] = function.node
-        self._note(statement, function.name, function.unit, "")
+        self.built.note(statement, function.name, function.unit, "", function.node)
+
+    def _curve(self, statement: Parsed) -> None:
+        called, parameter, unit_text, words, clauses, *rest = statement.parts
+        name = str(called)[:-1]
+        self._check_new(statement, called, name)
+        texts = (parameter.children[1], unit_text)
+        along, of = (self.reader.declared_unit(statement, text) for text in texts)
+        said = said_in(statement, clauses, self.reader)
+        call = curve_of(statement, self.reader, name, (along, of), points_of(rest), said)
+        self.names.functions[name] = call
+        self.built.note(statement, name, of, words_of(statement, words))
+
+    def _choice(self, statement: Parsed) -> None:
+        name, default, words, options, *clauses = statement.parts
+        names = tuple(map(str, options.children))
+        if len(set(names)) < len(names) or any("." in option for option in names):
+            raise statement.refuse("choice", "each option is one word, and stands once", options)
+        if default is not None and str(default) not in names:
+            message = f"the default {default} is no option"
+            raise statement.refuse("choice", message, default, f"write one of {', '.join(names)}")
+        keywords: dict[str, Any] = {}
+        for clause in clauses:
+            self._choose(statement, clause, names, keywords)
+        meant = self._meant(statement, "1", words, lark.Tree("clauses", keywords.pop("said", [])))
+        if "example" in keywords:
+            self.built.example[meant.name] = keywords["example"]
+        self._make(statement, str(name), Choice(meant, names, str(default) if default else None), None)
+
+    def _choose(
+        self, statement: Parsed, clause: Any, options: tuple[str, ...], found: dict[str, Any]
+    ) -> None:
+        """Sort a clause of a choice: an option as its example, or words."""
+        if clause.data != "example":
+            found.setdefault("said", []).append(clause)
+            return
+        tree = clause.children[0]
+        word = str(tree.children[0]) if tree.data == "name" else ""
+        if word not in options:
+            raise statement.refuse(
+                "choice", "the example is no option", tree, f"write one of {', '.join(options)}"
+            )
+        found["example"] = word
 
     def _given(self, statement: Parsed) -> None:
-        name, unit_text, tree, words, clauses = statement.parts
-        meant = self._meaning(statement, name, unit_text, words, clauses)
-        if tree is None:
-            self._make(statement, name, Given(meant))
-            return
-        part = self.reader.part(statement, tree)
-        node = self.reader.fitting(statement, part, meant.unit, str(name), tree)
-        body = TreeBody(node, statement.chunk.line)
-        self.built.trees[statement.chunk.line] = node
-        made = Derived(body, meant) if body.uses else Given(meant, default_of(node, meant, body))
-        self._make(statement, name, made)
+        name, unit_text, axis, tree, words, clauses = statement.parts
+        meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
+        node, default = None, None
+        if tree is not None:
+            node = self._node(statement, str(name), meant, str(axis or ""), tree)
+            body = TreeBody(node, statement.chunk.line, str(name), axes=int(axis is not None))
+            if body.uses and axis is None:
+                self._make(statement, str(name), Derived(body, meant), node)
+                return
+            default = self.reader.number(statement, node, tree, meant.unit, f"the default of {name}")
+        made = Given(meant, default) if axis is None else Curve(meant, default, along=str(axis))
+        self._make(statement, str(name), made, node)
 
     def _formula(self, statement: Parsed) -> None:
-        name, unit_text, tree, words, clauses = statement.parts
-        meant = self._meaning(statement, name, unit_text, words, clauses)
-        part = self.reader.part(statement, tree)
-        node = self.reader.fitting(statement, part, meant.unit, str(name), tree)
-        self.built.trees[statement.chunk.line] = node
-        self._make(statement, name, Formula(TreeBody(node, statement.chunk.line), meant))
+        name, unit_text, axis, tree, words, clauses = statement.parts
+        meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
+        node = self._node(statement, str(name), meant, str(axis or ""), tree)
+        body = TreeBody(node, statement.chunk.line, str(name), axes=int(axis is not None))
+        made = Formula(body, meant) if axis is None else Profile(body, meant, None, str(axis), 1)
+        self._make(statement, str(name), made, node)
+
+    def _solve(self, statement: Parsed) -> None:
+        name, unit_text, low, high, tree, words, clauses = statement.parts
+        meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
+        bounds = tuple(self._node(statement, f"a bound of {name}", meant, "", end) for end in (low, high))
+        equation = equation_of(statement, self.reader, tree, str(name))
+        lists = frozenset(n for n, sort in self.names.sorts.items() if sort.axis)
+        body = SolveBody(str(name), equation, bounds, statement.chunk.line, meant.words, lists)
+        self._make(statement, str(name), Formula(body, meant), equation)
 
     def _require(self, statement: Parsed) -> None:
         tree, words, clauses = statement.parts
-        node = self._condition(statement, tree)
-        said = said_in(statement, clauses, self.reader)
-        body = RuleBody(node, statement.chunk.line, words_of(statement, words).rstrip("."))
-        blamed = self._inputs_beneath(body.uses)
+        node, axes = self._condition(statement, tree)
+        remedy = said_in(statement, clauses, self.reader).keywords.get("remedy")
+        body = RuleBody(node, statement.chunk.line, words_of(statement, words).rstrip("."), axes)
+        blamed = self.built.inputs_beneath(body.uses)
         if not blamed:
-            remedy = "compare a given with something"
-            raise statement.refuse("no_truth", "the rule is about no input", tree, remedy)
-        remedy = said.keywords.get("remedy") or "change one of them"
-        rule = Requirement(body, blamed, remedy, False, "")
-        self.built.made[f"{UNNAMED} {statement.chunk.line}"] = rule
-        self.built.called[statement.chunk.line] = f"{UNNAMED} {statement.chunk.line}"
-        self.built.said[statement.chunk.line] = rule.sentence
+            advice = "compare a given with something"
+            raise statement.refuse("no_truth", "the rule is about no input", tree, advice)
+        rule = Requirement(body, blamed, remedy or f"change {' or '.join(blamed)}", False, "")
+        self.built.made[f"{RULE} {statement.chunk.line}"] = rule
+        self.built.note(statement, f"{RULE} {statement.chunk.line}", "", rule.sentence, node)
 
     def _check(self, statement: Parsed) -> None:
         tree, words, clauses = statement.parts
-        node = self._condition(statement, tree)
-        said = said_in(statement, clauses, self.reader)
-        text = words_of(statement, words)
+        node, _ = self._condition(statement, tree)
+        said, text = said_in(statement, clauses, self.reader), words_of(statement, words)
         name, criterion = criterion_of(statement, node, text, said, self.built.made)
         if name in self.built.criteria:
             raise statement.refuse("name", f"another check is named {name}", words, "say it in other words")
         self.built.criteria[name] = criterion
-        self.built.called[statement.chunk.line] = name
-        self.built.said[statement.chunk.line] = text
+        self.built.note(statement, name, "", text, node)
 
     def _test(self, statement: Parsed) -> None:
         test = test_of(statement, self.reader, self.built.made)
         self.built.tests.append(test)
-        self.built.said[statement.chunk.line] = test.words
+        self.built.note(statement, "", "", test.words)
 
-    def _condition(self, statement: Parsed, tree: lark.Tree[Any]) -> Any:
+    def _condition(self, statement: Parsed, tree: lark.Tree[Any]) -> tuple[Any, int]:
         node, sort = self.reader.part(statement, tree)
         if not sort.truth:
             remedy = "write it as in p <= 30 MPa"
             raise statement.refuse("no_truth", "this is a quantity, not a condition", tree, remedy)
-        self.built.trees[statement.chunk.line] = node
-        return node
+        return node, int(bool(sort.axis))
 
-    def _meaning(
-        self, statement: Parsed, name: lark.Token, unit_text: lark.Token, words: lark.Token, clauses: Any
-    ) -> Meaning:
-        """The meaning of a declaration whose API name is no other's."""
-        if str(name) not in self.names.sorts:
-            raise FollowsFromFault(str(name))
-        unit_name = self.reader.declared_unit(statement, unit_text)
-        meant, said = meaning_of(statement, unit_name, words, clauses, self.reader)
-        self._check_words(statement, meant.name, words)
+    def _node(self, statement: Parsed, name: str, meant: Meaning, axis: str, tree: lark.Tree[Any]) -> Any:
+        """The tree of a value that is a list over an axis exactly where that is declared."""
+        part = self.reader.part(statement, tree)
+        return self.reader.fitting(statement, part, meant.unit, name, tree, axis)
+
+    def _meant(self, statement: Parsed, unit_text: str, words: lark.Token, clauses: Any) -> Meaning:
+        """The meaning of a declaration whose API name is no other's; its example is noted."""
+        if str(statement.parts[0]) not in self.names.sorts:
+            raise FollowsFromFault(str(statement.parts[0]))
+        meant, said = meaning_of(statement, unit_text, words, clauses, self.reader)
+        other = self.built.lines.setdefault(meant.name, statement.chunk.line)
+        if other != statement.chunk.line:
+            message = f"line {other} has the same words, or words that make the name {meant.name} as well"
+            raise statement.refuse("name", message, words, "say it in other words")
         if said.example is not None and statement.kind == "given":
             self.built.example[meant.name] = said.example
-        self._note(statement, str(name), meant.unit, meant.words)
         return meant
 
-    def _check_words(self, statement: Parsed, name: str, words: lark.Token) -> None:
-        """Refuse words that make the API name of another declaration."""
-        other = self.lines.setdefault(name, statement.chunk.line)
-        if other != statement.chunk.line:
-            message = f"line {other} has the same words, or the name {name}"
-            raise statement.refuse("name", message, words, "say it in other words")
-
-    def _note(self, statement: Parsed, name: str, unit_text: str, words: str) -> None:
-        self.built.named[name] = Named(name, unit_text, words, statement.kind)
-        self.built.called[statement.chunk.line] = name
-        self.built.said[statement.chunk.line] = words
-
-    def _make(self, statement: Parsed, name: lark.Token, made: Declaration) -> None:
-        self.built.made[str(name)] = made
-
-    def _inputs_beneath(self, names: tuple[str, ...]) -> tuple[str, ...]:
-        """The API names of inputs from which names follow, those nearest first."""
-        found: dict[str, None] = {}
-        waiting, seen = list(names), set(names)
-        for name in waiting:
-            made = self.built.made.get(name)
-            if isinstance(made, (Given, Choice, Derived)):
-                found[made.name] = None
-            elif isinstance(made, Formula):
-                new = [used for used in made.uses if used not in seen]
-                seen.update(new)
-                waiting += new
-        return tuple(found)
+    def _make(self, statement: Parsed, name: str, made: Declaration, node: Any) -> None:
+        self.built.made[name] = made
+        self.built.note(statement, name, made.meaning.unit, made.meaning.words, node)

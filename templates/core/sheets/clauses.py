@@ -28,8 +28,8 @@ class Said:
     """What the clauses of a statement say."""
 
     keywords: Keywords = field(default_factory=lambda: Keywords())
-    example: str | None = None
-    options: tuple[str, ...] = ()
+    example: Any = None
+    is_held: bool = False
 
 
 def meaning_of(
@@ -83,7 +83,9 @@ def said_in(
                 raise statement.refuse("clause", f"{clause_name(clause)} is said twice", clause)
             keys.add(key)
             if key == "example":
-                said.example = str(value)
+                said.example = value
+            elif key == "held":
+                said.is_held = True
             else:
                 said.keywords[key] = value  # type: ignore[literal-required]
     return said
@@ -99,13 +101,16 @@ def _clause(
 ) -> tuple[str, Any]:
     if clause.data == "said":
         return _said(statement, clause)
-    if unit_text is None:
+    if clause.data == "held" and statement.kind == "curve":
+        return "held", True
+    if unit_text is None or clause.data == "held":
         message = f"{clause_name(clause)} has no place here"
         raise statement.refuse("clause", message, clause, 'write (source "…") or (remedy "…")')
     numbers = [part for part in clause.children if isinstance(part, lark.Tree)]
+    if clause.data == "whole":
+        return "integer", True
     if clause.data == "example":
-        reader.limit(statement, numbers[0], unit_text)
-        return "example", statement.text_of(numbers[0])
+        return "example", reader.typed(statement, numbers[0], unit_text, "the example")
     limits = [reader.limit(statement, part, unit_text) for part in numbers]
     if clause.data == "published":
         return "published", tuple(limits)

@@ -12,6 +12,7 @@ from templates.core.language.meaning import api_name
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given
 from templates.core.sheets.clauses import Said
 from templates.core.sheets.grammar import Parsed
+from templates.core.units.lists import TRAILING
 from templates.core.units.operations import CONSTANTS, Apply, Constant, Name
 
 WARNING = "check_not_met"
@@ -61,6 +62,8 @@ def relation_text(node: Any, names: Mapping[str, str]) -> str:
             return next(name for name, constant in CONSTANTS.items() if constant == node)
         case Name(name=name) if name in names:
             return names[name]
+        case Apply(arguments=(part,)) if node.operation is TRAILING:
+            return relation_text(part, names)
         case Apply(operation=operation, arguments=arguments):
             return _applied(operation.sign, [(part, relation_text(part, names)) for part in arguments])
     raise FaultyText("check", "a check compares quantities; give this one a name of its own")

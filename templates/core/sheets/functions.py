@@ -68,7 +68,6 @@ def function_of(statement: Parsed, reader: Reader) -> Function:
     """
     called, *parameters, unit_text, tree = statement.parts
     name, unit_name = str(called)[:-1], reader.declared_unit(statement, unit_text)
-    _check_new(statement, called, name, reader.names)
     sorts = {}
     for parameter in parameters:
         own, text = parameter.children
@@ -83,10 +82,3 @@ def function_of(statement: Parsed, reader: Reader) -> Function:
     finally:
         names.parameters = before
     return Function(name, unit_name, tuple(sorts.items()), takes, tree, names, node)
-
-
-def _check_new(statement: Parsed, called: lark.Token, name: str, names: Names) -> None:
-    try:
-        names.check_new(name)
-    except FaultyText as error:
-        raise statement.refuse(error.code, str(error), called, "choose another name") from None

@@ -41,12 +41,6 @@ class Parsed:
         return str(self.tree.data)
 
     @property
-    def declared(self) -> tuple[lark.Token, lark.Token]:
-        """The name that it declares, and its unit in brackets."""
-        name, unit = self.parts[:2]
-        return name, unit
-
-    @property
     def parts(self) -> list[Any]:
         """Its words and parts that say something, None where an optional one is left out."""
         return self.tree.children

@@ -8,13 +8,13 @@ from templates.core.language.template import Template
 from templates.core.paper.expressions import latex
 from templates.core.paper.mathml import named_symbol, symbols
 from templates.core.sheets.body import names_in
-from templates.core.sheets.building import Built
+from templates.core.sheets.built import Built
 from templates.core.sheets.grammar import Parsed
 
 
 def latex_of(cls: type[Template], built: Built) -> dict[int, str]:
     """The LaTeX of every statement that has a formula or a symbol, by line."""
-    letters = symbols(cls)
+    letters = {name: named_symbol(name) for name in built.named} | symbols(cls)
     return {s.chunk.line: _written(s, built, letters) for s in built.statements}
 
 
@@ -27,6 +27,8 @@ def _written(statement: Parsed, built: Built, letters: Mapping[str, str]) -> str
         right = latex(node, {**own, **letters} if statement.kind != "function" else {**letters, **own}, r"\,")
     if statement.kind in ("require", "check"):
         return right
+    if statement.kind == "solve":
+        right = rf"\text{{root of }}\ {right}"
     return "=".join(filter(None, (_left(statement, name, letters), right)))
 
 

@@ -10,7 +10,8 @@ from functools import cached_property
 from typing import Any
 
 from templates.core.language.template import Template
-from templates.core.sheets.building import Builder, Built
+from templates.core.sheets.building import Builder
+from templates.core.sheets.built import Built
 from templates.core.sheets.classes import made
 from templates.core.sheets.faults import SheetRefused
 from templates.core.sheets.grammar import LANGUAGE
@@ -74,6 +75,10 @@ class Sheet:
 
     def digest(self) -> str:
         """SHA-256 of the statements and the version of the language; prose and layout do not count."""
+        return self._digest
+
+    @cached_property
+    def _digest(self) -> str:
         statements = [statement.words for statement in self.built.statements]
         content = json.dumps([self.language, statements], separators=(",", ":"))
         return hashlib.sha256(content.encode()).hexdigest()
