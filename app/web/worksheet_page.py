@@ -12,8 +12,8 @@ from app.schemas.templates import TemplateList
 from app.schemas.worksheets import Sheet, SheetCheck, SheetFault, SheetLine, SheetList, SheetSummary
 from app.web.api import Api, read
 from app.web.rendering import show
-from app.web.sheet_examples import examples, title_of
 from app.web.stages import begins_next, newest_released, stages
+from templates.examples.listing import examples
 
 PAGE, MOST_PAGES = 500, 10  # worksheets of one answer, and answers that a list or a search reads
 
@@ -51,12 +51,11 @@ async def start_page(
     request: Request, api: Api, typed: Mapping[str, str], notice: str = "", status: int = 200
 ) -> Response:
     """The form of a new worksheet: empty, from an example, or from a copy."""
-    offered = {name: title_of(text) or name for name, text in examples().items()}
     return show(
         request,
         "new_worksheet.html",
         status,
-        examples=offered,
+        examples=examples(),
         sheets=await _all(api),
         typed=typed,
         notice=notice,

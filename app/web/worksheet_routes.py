@@ -11,8 +11,8 @@ from app.web.api import Api, Refused, TheApi
 from app.web.forms import fields
 from app.web.rendering import go
 from app.web.routes import Id, Text
-from app.web.sheet_examples import examples
 from app.web.worksheet_page import Unsaved, editor_page, list_page, start_page
+from templates.examples.listing import examples
 
 router = APIRouter(include_in_schema=False)
 forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
@@ -71,8 +71,8 @@ async def create(request: Request, api: TheApi) -> Response:
 async def _start(api: Api, start: str, typed: dict[str, str]) -> str:
     """The text with which a worksheet begins: of an example, of another worksheet, or its title alone."""
     group, _, name = start.partition(":")
-    if group == "example" and name in examples():
-        return examples()[name]
+    if group == "example" and (text := next((one.text for one in examples() if one.id == name), "")):
+        return text
     if group == "copy" and name.isidentifier():
         return (await api.get(f"/worksheets/{name}", Sheet)).text
     title = typed.get("title", "").strip()

@@ -83,5 +83,7 @@ def test_a_released_worksheet_shows_its_text_and_its_review_on_its_template_page
     page.get_by_text("Withdraw version 1 …").click()
     page.get_by_label("Reason").fill("the length was wrong")
     page.get_by_role("button", name="Withdraw", exact=True).click()
-    expect(page.locator("[data-part=stages] .notice.bad").first).to_have_text("Withdrawn: the length was wrong")
+    expect(page.locator("[data-part=stages] .notice.bad").first).to_have_text(
+        "Withdrawn: the length was wrong"
+    )
     assert [fault for fault in watched.faults() if "403" not in str(fault)] == []
