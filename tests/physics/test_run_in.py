@@ -80,7 +80,7 @@ def test_shear_and_side_flow_of_a_full_film_of_even_pressure(ratio, eps):
 
 @pytest.mark.parametrize("turns", [1, 2])
 def test_analytic_work_of_a_force_along_a_circle(turns):
-    """A force of 1 along the path of a journal that circles 0.4 from the middle: power 0.4 a radian and turn."""
+    """A force of 1 along the path of a journal on a circle of radius 0.4: power 0.4 a radian and turn."""
     angle = np.radians(np.arange(360.0))
     circle, ahead = (np.stack([f(turns * angle), g(turns * angle)]) for f, g in CIRCLE)
     nothing = np.zeros(360)
