@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -118,6 +119,14 @@ def _outputs(before: Outcome, after: Outcome) -> Iterator[tuple[str, float]]:
 
 def change_size(old: Value, new: Value) -> float:
     """The largest change by the largest old value; infinite where a value appears, vanishes or leaves 0."""
+    if (
+        isinstance(old, float)
+        and isinstance(new, float)
+        and old
+        and math.isfinite(old)
+        and math.isfinite(new)
+    ):
+        return abs(new - old) / abs(old)
     one, other = _together(old, new)
     if one.shape != other.shape or not np.array_equal(np.isnan(one), np.isnan(other)):
         return INFINITE
