@@ -79,11 +79,15 @@ def _take_out(
             continue
         found = True
         names = [_NAME.search(line.removeprefix("given ").removeprefix("choice ")) for line in outcome.lines]
-        lacking = next((name for name in _used(outcome) if name in gone), None) if fault.code == FOLLOWS else None
+        lacking = (
+            next((name for name in _used(outcome) if name in gone), None) if fault.code == FOLLOWS else None
+        )
         if lacking:
             outcome.block(lacking, gone[lacking])
         else:
-            outcome.refuse(f"formula that the language refuses ({fault.message})", fault.remedy or "write it by hand")
+            outcome.refuse(
+                f"formula that the language refuses ({fault.message})", fault.remedy or "write it by hand"
+            )
         gone.update({match[0]: outcome.original.number for match in names if match})
     if not found:  # what is wrong is no single line, such as the number of them
         for outcome in rest or list({id(o): o for o in owners.values()}.values())[-20:]:
