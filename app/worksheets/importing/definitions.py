@@ -419,8 +419,7 @@ class Definitions:
 
     def _choose(self, outcome: Outcome, targets: Sequence[Node], control: Node) -> None:
         """A combo box: a choice among its rows, and the values of the chosen row."""
-        rows, columns = (int(control.attributes.get(n, "0") or 0) for n in ("rows", "cols"))
-        chosen = int(control.attributes.get("SelectedRow", "0") or 0)
+        rows, columns, chosen = (_count(control, key) for key in ("rows", "cols", "SelectedRow"))
         holder = control.first("ComboBoxValues")
         cells = list(holder.parts) if holder else []
         if not 1 < rows <= 50 or columns != len(targets) or len(cells) != rows * columns or chosen >= rows:
@@ -531,6 +530,11 @@ def _structural(sheet: OriginalSheet) -> Iterator[str]:
         for node in region.math.all("apply"):
             if len(node.parts) == 3 and node.parts[0].tag == "indexer":
                 yield from (key_of(name) for name in node.parts[2].all("id"))
+
+
+def _count(node: Node, key: str) -> int:
+    text = node.attributes.get(key, "")
+    return int(text) if text.isdecimal() and text.isascii() and len(text) < 7 else 0
 
 
 def _parameter_unit(sort: Sort) -> str:

@@ -13,7 +13,7 @@ from xml.parsers import expat
 from app.worksheets.importing.errors import SheetNotRead
 
 DEEPEST = 200
-MOST_NODES = 400_000
+MOST_NODES = 150_000
 _SEPARATOR = "\n"  # no name has one
 
 
