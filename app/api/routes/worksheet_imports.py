@@ -22,7 +22,9 @@ router = APIRouter(prefix="/api/v1/worksheets", tags=["worksheets"], route_class
 
 BINARY = {"schema": {"type": "string", "format": "binary"}}
 BODY = {"requestBody": {"required": True, "content": dict.fromkeys(sorted(SHEET_TYPES), BINARY)}}
-NewId = Annotated[str, Query(max_length=64, pattern=ID, description="of the worksheet", examples=["bush_duty"])]
+NewId = Annotated[
+    str, Query(max_length=64, pattern=ID, description="of the worksheet", examples=["bush_duty"])
+]
 FileName = Annotated[str, Query(max_length=200, pattern=NAME, description="how the file is called")]
 
 

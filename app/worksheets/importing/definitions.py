@@ -10,7 +10,7 @@ from app.worksheets.importing.expressions import MOST_ITEMS, Expressions
 from app.worksheets.importing.judge import Judge, sort_of, unit_for
 from app.worksheets.importing.names import Names, key_of, legal, look, symbol
 from app.worksheets.importing.outcome import Outcome, one_line
-from app.worksheets.importing.quantities import Scaled, is_infinite, result_of, scaled
+from app.worksheets.importing.quantities import Scaled, is_infinite, result_of, scaled, unit_named
 from app.worksheets.importing.regions import Original, OriginalSheet
 from app.worksheets.importing.said import LOOSE, Axis, Said, listed, number
 from app.worksheets.importing.scope import Choice, Failed, Function, Range, Scope, Value, Written
@@ -55,6 +55,8 @@ class Definitions:
         """
         self._now = outcome
         self._owners[outcome.original.number] = outcome
+        if not self.is_labelled:
+            _label_units(math, self.scope)
         self._expect(outcome, math.parts[1] if math.tag == "define" and len(math.parts) > 1 else math)
         match math.tag, math.parts:
             case "define" | "globalDefine", [target, value]:
@@ -104,7 +106,9 @@ class Definitions:
                 pass
             if not outcome.lines:
                 what = f"function {look(function.key)} whose units no call tells"
-                outcome.refuse(one_line(what), f"write it with its units: {legal(function.key)}(x [mm]) [1] = …")
+                outcome.refuse(
+                    one_line(what), f"write it with its units: {legal(function.key)}(x [mm]) [1] = …"
+                )
 
     # Sheets, which expressions ask
 
@@ -115,7 +119,10 @@ class Definitions:
     def function(self, function: Function, arguments: Sequence[Said]) -> str | None:
         """The name of the statement of a function for arguments of these units; written at its first call."""
         sorts = [self.judge.sort(part.text, self.judge.bound) for part in arguments]
-        units = tuple("1" if part.is_truth else _parameter_unit(sort) for part, sort in zip(arguments, sorts, strict=True))
+        units = tuple(
+            "1" if part.is_truth else _parameter_unit(sort)
+            for part, sort in zip(arguments, sorts, strict=True)
+        )
         if units in function.names:
             return function.names[units] or None
         keys = function.parameters
@@ -159,7 +166,9 @@ class Definitions:
         head = f'curve {name}(x [{x_unit}]) [{y_unit}] "{self._said(name)}"{held}:'
         self._now.lines.append("\n".join([head, *rows]))
         if not is_flat:
-            self._now.notes.append("outside its points the curve has no value; Mathcad goes on along its ends")
+            self._now.notes.append(
+                "outside its points the curve has no value; Mathcad goes on along its ends"
+            )
         self.judge.functions[name] = 1, sort_of(y_unit)
         return name
 
@@ -215,7 +224,14 @@ class Definitions:
         return replace(said, text=name)
 
     def _declare(
-        self, outcome: Outcome, key: str, said: Said, wanted: Sequence[str], *, is_given: bool = False, words: str = ""
+        self,
+        outcome: Outcome,
+        key: str,
+        said: Said,
+        wanted: Sequence[str],
+        *,
+        is_given: bool = False,
+        words: str = "",
     ) -> Value:
         """Write the line of a value, and let the name mean it from here on."""
         sort = self.judge.sort(said.text, None)
@@ -232,7 +248,9 @@ class Definitions:
         outcome.name = name
         self.judge.sorts[name] = sort_of(unit, axis.name if axis else "")
         known = None if is_given else said.number
-        value = Value(name, axis, said.is_vector or axis is not None, said.is_row, known, outcome.original.number)
+        value = Value(
+            name, axis, said.is_vector or axis is not None, said.is_row, known, outcome.original.number
+        )
         self.scope[key] = value
         return value
 
@@ -288,7 +306,9 @@ class Definitions:
         parameters = tuple(key_of(part) for part in bound.parts) if bound else ()
         if len(set(parameters)) != len(parameters) or not all(parameters):
             raise Untranslatable("function without parameters", "write a formula")
-        function = Function(key, parameters, _without_result(value), dict(self.scope), outcome.original.number)
+        function = Function(
+            key, parameters, _without_result(value), dict(self.scope), outcome.original.number
+        )
         self._refuse_if_hopeless(function)
         self.scope[key] = function
         self._functions.append(function)
@@ -391,21 +411,25 @@ class Definitions:
             said = self._declare(outcome, "items", said, self._asked(value)).said()
         for place, part in enumerate(targets, 1):
             text = said.text if said.text.isidentifier() else f"({said.text})"
-            item = Said(f"{text}[{place}]") if said.text.isidentifier() else Said(_items(said)[place - 1], LOOSE)
+            item = (
+                Said(f"{text}[{place}]") if said.text.isidentifier() else Said(_items(said)[place - 1], LOOSE)
+            )
             self._declare(outcome, key_of(part), item, self._asked(value))
         outcome.name = ""
 
     def _choose(self, outcome: Outcome, targets: Sequence[Node], control: Node) -> None:
         """A combo box: a choice among its rows, and the values of the chosen row."""
-        rows, columns = (int(control.attributes.get(n, "0") or 0) for n in ("rows", "cols"))
-        chosen = int(control.attributes.get("SelectedRow", "0") or 0)
+        rows, columns, chosen = (_count(control, key) for key in ("rows", "cols", "SelectedRow"))
         holder = control.first("ComboBoxValues")
         cells = list(holder.parts) if holder else []
         if not 1 < rows <= 50 or columns != len(targets) or len(cells) != rows * columns or chosen >= rows:
             raise Untranslatable("combo box without rows", "write a choice")
         names = control.first("ComboBoxRowNames")
         given = [part.whole_text.strip() for part in names.parts] if names else []
-        texts = [given[row] if row < len(given) and given[row] else cells[row * columns].text for row in range(rows)]
+        texts = [
+            given[row] if row < len(given) and given[row] else cells[row * columns].text
+            for row in range(rows)
+        ]
         own = Names(frozenset(RESERVED))
         words = [own.take(_word(text)) for text in texts]
         key = "_".join(key_of(part) for part in targets)
@@ -466,6 +490,17 @@ _HOPELESS = frozenset({
 })  # fmt: skip
 
 
+def _label_units(math: Node, scope: Scope) -> None:
+    """Say which names are units, as Mathcad Prime does: those that nothing defines, above or in the region."""
+    own = set(_defined(math.parts[0])) if math.tag == "define" and math.parts else set[str]()
+    for tag in ("boundVars", "localDefine"):
+        own.update(key_of(name) for node in math.all(tag) for name in node.parts if name.tag == "id")
+    for node in math.all("id"):
+        key = key_of(node)
+        if key not in scope and key not in own and unit_named(key) is not None:
+            node.attributes.setdefault("labels", "UNIT")
+
+
 def _without_result(node: Node) -> Node:
     return node.parts[0] if node.tag == "eval" and node.parts else node
 
@@ -495,6 +530,11 @@ def _structural(sheet: OriginalSheet) -> Iterator[str]:
         for node in region.math.all("apply"):
             if len(node.parts) == 3 and node.parts[0].tag == "indexer":
                 yield from (key_of(name) for name in node.parts[2].all("id"))
+
+
+def _count(node: Node, key: str) -> int:
+    text = node.attributes.get(key, "")
+    return int(text) if text.isdecimal() and text.isascii() and len(text) < 7 else 0
 
 
 def _parameter_unit(sort: Sort) -> str:

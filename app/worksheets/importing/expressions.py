@@ -377,7 +377,9 @@ class Expressions:
             case Value() | Range() | Written() | Choice():
                 raise Untranslatable("call of what is no function", "write a product with *")
         if key in functions.REFUSED:
-            raise Untranslatable(functions.REFUSED[key], "write the formula by hand, or give its value as an input")
+            raise Untranslatable(
+                functions.REFUSED[key], "write the formula by hand, or give its value as an input"
+            )
         if key == "if" and len(arguments) == 3:
             return self._either(self.condition(arguments[0]), arguments[1], arguments[2])
         if key == "linterp" and len(arguments) == 3:
@@ -392,7 +394,9 @@ class Expressions:
             return self._count(key, parts[0])
         if key == "log" and len(parts) <= 2:
             base = [called("log", parts[1])] if len(parts) == 2 else []
-            return binary(called("log", parts[0]), "/", base[0], PRODUCT) if base else called("log10", parts[0])
+            return (
+                binary(called("log", parts[0]), "/", base[0], PRODUCT) if base else called("log10", parts[0])
+            )
         if key in functions.SAME and len(parts) == 1:
             return called(functions.SAME[key], parts[0])
         pattern = functions.WRITTEN_OUT.get(key)
@@ -455,7 +459,9 @@ class Expressions:
         """A tree as a condition; of a number, whether it is not 0."""
         if node.tag == "parens" and node.parts:
             return self.condition(node.parts[0])
-        operator, parts = (node.parts[0].tag, node.parts[1:]) if node.tag == "apply" and node.parts else ("", [])
+        operator, parts = (
+            (node.parts[0].tag, node.parts[1:]) if node.tag == "apply" and node.parts else ("", [])
+        )
         match operator, parts:
             case sign, [left, right] if sign in COMPARED:
                 return self._compared(COMPARED[sign], left, right)
@@ -466,7 +472,9 @@ class Expressions:
             case "xor", [left, right]:
                 one, other = (self.condition(part) for part in (left, right))
                 a, b = one.bound(ATOM), other.bound(ATOM)
-                return Said(f"({a} and not {b}) or ({b} and not {a})", LOOSE, is_truth=True).shaped(one, other)
+                return Said(f"({a} and not {b}) or ({b} and not {a})", LOOSE, is_truth=True).shaped(
+                    one, other
+                )
             case "not", [part]:
                 inner = self.condition(part)
                 return Said(f"not {inner.bound(ATOM)}", LOOSE, is_truth=True).shaped(inner)
@@ -523,7 +531,9 @@ class Expressions:
             inner = {child.tag: child for child in part.parts}
             if part.tag in ("if", "elseif", "alsoif") and "test" in inner and "then" in inner:
                 branches.append((inner["test"].parts[0], inner["then"].parts[0]))
-                waiting = [child for child in part.parts if child.tag in ("elseif", "alsoif", "else")] + waiting
+                waiting = [
+                    child for child in part.parts if child.tag in ("elseif", "alsoif", "else")
+                ] + waiting
             elif part.tag == "else" and part.parts and not waiting:
                 return self._cases(branches, part.parts[0])
             else:

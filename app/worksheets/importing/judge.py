@@ -57,7 +57,9 @@ class Judge:
         try:
             made: Sort = checked(_parser().parse(text), self)[1]
         except FaultyText as error:
-            raise Untranslatable(f"formula that the language refuses ({error})", _remedy(error.code)) from None
+            raise Untranslatable(
+                f"formula that the language refuses ({error})", _remedy(error.code)
+            ) from None
         except lark.exceptions.LarkError:
             raise Untranslatable("formula that is not understood", "write it by hand") from None
         finally:

@@ -26,7 +26,9 @@ def read_legacy(content: bytes) -> OriginalSheet:
     root = read(content, "the file")
     if root.tag != "worksheet" or root.first("regions") is None:
         what = f"its outermost element is {root.tag[:40]!a}"
-        raise SheetNotRead("no_sheet", f"{what}: send a .mcdx of Mathcad Prime or a .xmcd of Mathcad 11 to 15")
+        raise SheetNotRead(
+            "no_sheet", f"{what}: send a .mcdx of Mathcad Prime or a .xmcd of Mathcad 11 to 15"
+        )
     regions = tuple(_regions(root))
     if len(regions) > MOST_REGIONS:
         raise SheetNotRead("too_large", f"it has more than {MOST_REGIONS} regions: split the sheet")

@@ -18,7 +18,9 @@ GREEK = {
 }  # fmt: skip
 _OTHER = {"Ø": "dia", "ø": "dia", "∅": "dia", "ß": "ss", "æ": "ae", "Æ": "Ae", "ℓ": "l", "∆": "Delta",
           "'": "_prime", "′": "_prime", "%": "_percent", "∞": "_inf", "ħ": "hbar", "ℏ": "hbar"}  # fmt: skip
-_TEX = frozenset(letter for letter, name in GREEK.items() if name not in ("pi_", "omicron", "iota", "upsilon"))
+_TEX = frozenset(
+    letter for letter, name in GREEK.items() if name not in ("pi_", "omicron", "iota", "upsilon")
+)
 
 
 def key_of(node: Node) -> str:

@@ -24,6 +24,10 @@ LONGEST_DIRECTORY = 2**18
 _END, _END_SIZE, _LONGEST_COMMENT = b"PK\x05\x06", 22, 2**16
 _PIECE = 2**16
 _ENCRYPTED = 0x1
+_DAMAGES = (
+    zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, struct.error, ValueError, OverflowError,
+)  # fmt: skip
+"""What `zipfile` raises for bytes that are no ZIP, or no longer one."""
 _METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 AGAIN = "save the sheet in Mathcad again, and send that file"
 
@@ -56,7 +60,7 @@ class Package:
         _check_directory(content)
         try:
             self._zip = zipfile.ZipFile(io.BytesIO(content))
-        except (zipfile.BadZipFile, ValueError, OSError, NotImplementedError, struct.error) as error:
+        except _DAMAGES as error:
             raise SheetNotRead("package", f"it is no whole ZIP package ({error}): {AGAIN}") from None
         self._parts = self._zip.infolist()
         if len(self._parts) > MOST_PARTS:
@@ -86,7 +90,7 @@ class Package:
                 while piece := part.read(_PIECE):
                     self._budget.spend(len(piece))
                     pieces.append(piece)
-        except (zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, struct.error) as error:
+        except _DAMAGES as error:
             what = f"its part {name[:60]!a} is damaged ({error})"
             raise SheetNotRead("package", f"{what}: {AGAIN}") from None
         return b"".join(pieces)

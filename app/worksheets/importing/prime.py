@@ -36,7 +36,9 @@ def read_prime(content: bytes) -> OriginalSheet:
     sheet = _part(package, WORKSHEET)
     if sheet is None or sheet.first("regions") is None:
         what = "it has no part mathcad/worksheet.xml with regions"
-        raise SheetNotRead("no_sheet", f"{what}: send a .mcdx of Mathcad Prime or a .xmcd of Mathcad 11 to 15")
+        raise SheetNotRead(
+            "no_sheet", f"{what}: send a .mcdx of Mathcad Prime or a .xmcd of Mathcad 11 to 15"
+        )
     reader = _Reader(package, budget, _results(package), *_tags(package), _targets(package))
     regions = tuple(reader.regions(sheet))
     return OriginalSheet("Mathcad Prime", regions, _origin(package))

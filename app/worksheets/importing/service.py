@@ -55,7 +55,9 @@ class Imports:
         """
         if not 0 < len(content) <= MOST_BYTES:
             what = "the body is empty" if not content else f"it has more than {MOST_BYTES // 2**20} MiB"
-            raise SheetNotRead("too_large" if content else "no_sheet", f"{what}: send one .mcdx or .xmcd file")
+            raise SheetNotRead(
+                "too_large" if content else "no_sheet", f"{what}: send one .mcdx or .xmcd file"
+            )
         require_free(id, self.catalogues)
         payload: JsonObject = {"file": self.store.put(content), "id": id, "name": file, "client": once.client}
 

@@ -75,7 +75,9 @@ def _solving(outcome: Outcome, work: Definitions) -> None:
         remedy = f"give it bounds, as in: solve {name} [1] from 0 to 1 so that {said}"
         outcome.refuse("solve block, whose unknown has a guess and no bounds", remedy)
     else:
-        outcome.refuse(f"solve block of {len(unknowns)} unknowns", "solve for one unknown, or calculate elsewhere")
+        outcome.refuse(
+            f"solve block of {len(unknowns)} unknowns", "solve for one unknown, or calculate elsewhere"
+        )
     work.fail(region.math, region.number)
 
 
@@ -88,6 +90,6 @@ def _sought(math: Node) -> list[Node]:
 
 
 def _prose(text: str) -> list[str]:
-    lines: Iterable[str] = (one_line(line) for line in text[:LONGEST_PROSE * 10].splitlines())
+    lines: Iterable[str] = (one_line(line) for line in text[: LONGEST_PROSE * 10].splitlines())
     kept: Sequence[str] = [line[:LONGEST_PROSE] for line in lines if line]
     return [f"> {line}" for line in kept[:50]]

@@ -13,7 +13,7 @@ from xml.parsers import expat
 from app.worksheets.importing.errors import SheetNotRead
 
 DEEPEST = 200
-MOST_NODES = 400_000
+MOST_NODES = 150_000
 _SEPARATOR = "\n"  # no name has one
 
 
@@ -35,9 +35,7 @@ class Node:
     @property
     def whole_text(self) -> str:
         """The text of this element and of all within it."""
-        return "".join(
-            piece if isinstance(piece, str) else piece.whole_text for piece in self.pieces
-        )
+        return "".join(piece if isinstance(piece, str) else piece.whole_text for piece in self.pieces)
 
     def first(self, tag: str) -> Node | None:
         """The first part of a name."""
@@ -93,7 +91,9 @@ class _Reader:
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         self._count += 1
         if self._count > MOST_NODES:
-            raise SheetNotRead("too_large", f"{self._name} has more than {MOST_NODES} elements: split the sheet")
+            raise SheetNotRead(
+                "too_large", f"{self._name} has more than {MOST_NODES} elements: split the sheet"
+            )
         if len(self._open) >= DEEPEST:
             what = f"{self._name} nests deeper than {DEEPEST} elements"
             raise SheetNotRead("too_deep", f"{what}: split the longest formula into several")

@@ -17,9 +17,11 @@ from templates.core.errors import TemplateError
 from templates.core.language.template import Template
 from templates.core.sheets import Sheet, SheetFault, SheetRefused, read
 
-MOST_ROUNDS = 40
+MOST_ROUNDS = 8
 FOLLOWS = "unknown_name"
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_KIND = re.compile(r"^(?:given|choice|curve) ")
+_SAID = re.compile(r'"[^"\n]*"|\[[^\[\]\n]*\](?= (?:=|over|")|[,)])')
 
 
 def text_of(title: str, outcomes: Iterable[Outcome]) -> str:
@@ -40,13 +42,17 @@ def verified(title: str, outcomes: Sequence[Outcome]) -> str:
 
 
 def _readable(title: str, outcomes: Sequence[Outcome]) -> Sheet | None:
+    """The worksheet, after what the language refuses has become remarks; None if that takes too many rounds."""
     gone: dict[str, str] = {}  # names without a line, by the region that had it
-    for left in reversed(range(MOST_ROUNDS)):
+    for _ in range(MOST_ROUNDS):
         lines = list(_lines(title, outcomes))
         try:
             return read("\n".join(line for line, _ in lines) + "\n")
         except SheetRefused as refused:
-            _take_out(refused.faults, _owners(lines), gone, outcomes if not left else ())
+            _take_out(refused.faults, _owners(lines), gone)
+    for outcome in outcomes:
+        if outcome.state == "unverified":
+            outcome.refuse("worksheet that is too large", "import a part of the sheet")
     return None
 
 
@@ -68,32 +74,44 @@ def _owners(lines: Iterable[tuple[str, Outcome | None]]) -> dict[int, Outcome]:
     return owners
 
 
-def _take_out(
-    faults: Sequence[SheetFault], owners: Mapping[int, Outcome], gone: dict[str, str], rest: Sequence[Outcome]
-) -> None:
+def _take_out(faults: Sequence[SheetFault], owners: Mapping[int, Outcome], gone: dict[str, str]) -> None:
     """Turn faulty lines into remarks; those that only lack a name that is gone are blocked."""
-    found = False
-    for fault in faults:
+    for fault in sorted(faults, key=lambda fault: fault.code == FOLLOWS):
         outcome = owners.get(fault.line)
         if outcome is None or outcome.state in ("refused", "blocked"):
             continue
-        found = True
-        names = [_NAME.search(line.removeprefix("given ").removeprefix("choice ")) for line in outcome.lines]
-        lacking = next((name for name in _used(outcome) if name in gone), None) if fault.code == FOLLOWS else None
+        names = _declared(outcome)
+        lacking = [name for name in _used(outcome) if name in gone] if fault.code == FOLLOWS else []
         if lacking:
-            outcome.block(lacking, gone[lacking])
+            outcome.block(lacking[0], gone[lacking[0]])
         else:
-            outcome.refuse(f"formula that the language refuses ({fault.message})", fault.remedy or "write it by hand")
-        gone.update({match[0]: outcome.original.number for match in names if match})
-    if not found:  # what is wrong is no single line, such as the number of them
-        for outcome in rest or list({id(o): o for o in owners.values()}.values())[-20:]:
-            if outcome.state == "unverified":
-                outcome.refuse("worksheet that is too large", "import a part of the sheet")
+            reason = f"formula that the language refuses ({fault.message})"
+            outcome.refuse(reason, fault.remedy or "write it by hand")
+        gone.update(dict.fromkeys(names, outcome.original.number))
+    _block_followers(owners, gone)
+
+
+def _block_followers(owners: Mapping[int, Outcome], gone: dict[str, str]) -> None:
+    """Block what needs names that are gone, in the order of the lines, without reading the sheet again."""
+    for outcome in {id(one): one for one in owners.values()}.values():
+        names = _declared(outcome) if outcome.state == "unverified" else []
+        lacking = [name for name in _used(outcome) if name in gone and name not in names] if names else []
+        if lacking:
+            outcome.block(lacking[0], gone[lacking[0]])
+            gone.update(dict.fromkeys(names, outcome.original.number))
+
+
+def _declared(outcome: Outcome) -> list[str]:
+    """The names that the lines of a region declare."""
+    found = (_NAME.search(_KIND.sub("", line)) for line in outcome.lines if not line.startswith((">", "/")))
+    return [match[0] for match in found if match]
 
 
 def _used(outcome: Outcome) -> Iterator[str]:
+    """The names in the lines of a region, but for those in words and in declared units."""
     for line in outcome.lines:
-        yield from _NAME.findall(line)
+        if not line.startswith((">", "/")):
+            yield from _NAME.findall(_SAID.sub(" ", line))
 
 
 def _calculated(sheet: Sheet) -> Template | None:
@@ -105,10 +123,15 @@ def _calculated(sheet: Sheet) -> Template | None:
 
 
 def _judge(outcome: Outcome, template: Template | None) -> None:
-    if outcome.state != "unverified" or not outcome.name or outcome.cached is None:
+    if outcome.state != "unverified" or not outcome.name:
         return
-    outcome.ours = tuple(_value(template, outcome.name))
-    outcome.state = "verified" if close(outcome.ours, outcome.cached.values) else "differs"
+    values = tuple(_value(template, outcome.name))
+    if not all(map(math.isfinite, values)):
+        outcome.state, outcome.ours = "differs", values
+        outcome.notes.append("the worksheet gives no value here")
+    elif outcome.cached is not None:
+        outcome.ours = values
+        outcome.state = "verified" if close(outcome.ours, outcome.cached.values) else "differs"
 
 
 def _value(template: Template | None, name: str) -> Iterator[float]:
