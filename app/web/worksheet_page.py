@@ -15,6 +15,7 @@ from app.web.rendering import show
 from app.web.stages import begins_next, newest_released, stages
 from templates.examples.listing import examples
 
+EQUALS = "<mo>&#x0003D;</mo>"  # in MathML
 PAGE, MOST_PAGES = 500, 10  # worksheets of one answer, and answers that a list or a search reads
 
 
@@ -100,6 +101,12 @@ class Row:
     faults: list[SheetFault]
     passed: bool | None
     message: str | None
+
+    @property
+    def says_its_value(self) -> bool:
+        """Whether it is a given quantity whose default is a constant: `T = 20 °C` needs no value beside it."""
+        _, is_equal, behind = (self.line.mathml if self.line else "").partition(EQUALS)
+        return bool(self.line and self.line.kind == "given" and is_equal and "<mi>" not in behind)
 
 
 def rows(checked: SheetCheck) -> list[Row]:

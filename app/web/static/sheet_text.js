@@ -70,7 +70,11 @@ export class SheetText {
   // Where the columns of a fault are; its line's end where nothing stands there.
   boxOf({ line, column, end_column: end }) {
     const text = this.texts[line - 1], from = inUnits(text, column - 1), to = end ? inUnits(text, end - 1) : wordEnd(text, from);
-    return this.range(line - 1, Math.min(from, Math.max(text.length - 1, 0)), Math.max(to, from + 1)).getClientRects()[0] ?? this.lines.children[line - 1].firstChild.getBoundingClientRect();
+    const rects = [...this.range(line - 1, Math.min(from, Math.max(text.length - 1, 0)), Math.max(to, from + 1)).getClientRects()];
+    const row = rects.filter(({ bottom }) => bottom === rects[0].bottom); // a long line is broken: its first part
+    if (row.length === 0) return this.lines.children[line - 1].firstChild.getBoundingClientRect();
+    const left = row[0].left, right = Math.max(...row.map((rect) => rect.right));
+    return { left, right, width: right - left, bottom: row[0].bottom };
   }
 
   // The letters of a line as they are drawn.

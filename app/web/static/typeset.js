@@ -8,6 +8,7 @@ function element(tag, className, ...inside) {
   return made;
 }
 
+const EQUALS = "<mo>&#x0003D;</mo>"; // as the service writes it
 const VERDICTS = { met: "met", not_met: "not met", true: "met", false: "not met" };
 
 export class Typeset {
@@ -94,7 +95,7 @@ function statement(row) {
     math.innerHTML = row.mathml; // MathML that the service escaped
     parts.push(math);
   } else if (row.kind !== "test" && row.name) parts.push(element("code", "", row.name));
-  const value = valueOf(row);
+  const value = saysItsValue(row) ? "" : valueOf(row);
   if (value) parts.push(element("span", "line-value", `= ${value}`));
   if (row.verdict !== null && row.verdict !== undefined) parts.unshift(verdictTag(VERDICTS[row.verdict] ?? String(row.verdict)));
   if (row.test) parts.unshift(element("span", `tag ${row.test.passed ? "met" : "not_met"}`, row.test.passed ? "passed" : "failed"));
@@ -103,6 +104,9 @@ function statement(row) {
   if (message) parts.push(element("span", "line-message", isolated(message)));
   return parts;
 }
+
+// A given quantity whose default is a constant: `T = 20 °C` needs no value beside it.
+const saysItsValue = ({ kind, mathml }) => kind === "given" && mathml.includes(EQUALS) && !mathml.split(EQUALS)[1].includes("<mi>");
 
 const verdictTag = (words) => element("span", `tag ${words.replace(" ", "_")}`, words);
 

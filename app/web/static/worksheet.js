@@ -64,7 +64,7 @@ const isChanged = () => area.value !== saved;
 function showDraft() {
   draft.keep();
   notice.hidden = !isChanged();
-  state.textContent = isChanged() ? "not saved" : "";
+  state.textContent = isChanged() ? "unsaved changes" : "";
 }
 
 area.addEventListener("input", () => {
@@ -84,7 +84,7 @@ async function save() {
     const answer = await call("PATCH", api, { text: sent }, { headers: { "If-Match": tag } });
     keepAs(sent, answer.tag ?? tag);
     await refresh();
-    state.textContent = isChanged() ? "not saved" : "saved";
+    if (!isChanged()) state.textContent = "saved";
     return true;
   } catch (error) {
     state.textContent = "not saved";
