@@ -35,6 +35,7 @@ class TreeBody(Body):
         self.__qualname__ = f"line {line}"
         self._run = closure(node)
         self._explained = explained_in(node)
+        self.first: tuple[str, ...] = ()  # the formulas of a long chain beneath it, the deepest first
 
     def __call__(self, template: Any) -> Any:
         """The SI value for the values of a template.
@@ -44,6 +45,8 @@ class TreeBody(Body):
         InvalidInputs
             If lists of different lengths meet.
         """
+        for name in self.first:
+            getattr(template, name)
         try:
             value = self._run(template)
         except ValueError:

@@ -44,6 +44,7 @@ class SolveBody(Body):
         words: str,
         lists: frozenset[str],
     ) -> None:
+        self.node, self.first = equation, tuple[str, ...]()
         self.name, self.line, self.equation, self.bounds, self._lists = name, line, equation, bounds, lists
         self.reason = f"there is no {words} {self._between()} for which the equation holds"
         self._sides = [closure(side) for side in equation.arguments]
@@ -56,6 +57,8 @@ class SolveBody(Body):
 
     def __call__(self, template: Any) -> Any:
         """The root [SI]; NaN where there is none, and the ledger says why."""
+        for name in self.first:
+            getattr(template, name)
         values = {name: attrgetter(name)(template) for name in self._known}
         low, high = (np.asarray(bound(template), dtype=float) for bound in self._bounds)
         singles = [value for name, value in values.items() if _is_number(value) and name not in self._lists]
