@@ -1,13 +1,16 @@
 """The impact of a version over HTTP: what is ranked, refused, cancelled; nothing is written."""
 
 import asyncio
+import json
 import threading
 
 import pytest
+from click.testing import CliRunner
 from impact_designs import at_points, loaded, paper, with_variants
 from serving import API, created, problem, revision
 from sqlalchemy import func, select
 
+from app.cli import main
 from app.client import AsyncClient
 from app.jobs.service import Job, JobContext
 from app.storage.tables import BuildRow, DesignRow, RevisionRow
@@ -172,3 +175,16 @@ def test_the_clients_ask_and_upgrade(http, client, served):
             return await other.impact("oil_film", 2, [design.id])
 
     assert asyncio.run(again()).concerned == 0
+
+
+def test_the_command_lists_the_worst_designs(bearings, served):
+    asked = ["impact", "oil_film", "2", "--tag", "impact", "--limit", "2", "--url", served.url]
+    told = CliRunner().invoke(main, asked)
+    assert told.exit_code == 0, told.output
+    assert "4 designs use another version (1 archived ones are left out): 4 move" in told.stdout
+    assert sum(line.startswith(tuple(d["id"] for d in bearings)) for line in told.stdout.splitlines()) == 2
+    shown = json.loads(CliRunner().invoke(main, [*asked, "--json"]).stdout)
+    assert (shown["moved"], len(shown["designs"])) == (4, 2)
+    wrong = CliRunner().invoke(main, ["impact", "oil_film", "9", "--url", served.url])
+    assert wrong.exit_code == 1
+    assert "no version 9" in wrong.output
