@@ -28,6 +28,7 @@ from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.study_commands import study_command, sweep_command
+from app.worksheet_commands import worksheet_command
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.catalogue.golden import freeze as freeze_template
@@ -123,6 +124,7 @@ main.add_command(restore_command)
 main.add_command(check_template_command)
 main.add_command(study_command)
 main.add_command(sweep_command)
+main.add_command(worksheet_command)
 main.add_command(impact_command)
 
 

@@ -1,4 +1,4 @@
-"""How commands reach a service: one that runs, or one that is started on a data folder."""
+"""How commands reach the service: one that runs, or one that is started on a data folder."""
 
 from __future__ import annotations
 
@@ -38,11 +38,12 @@ def connected(url: str | None, data: Path | None) -> Iterator[Client]:
             with Client(place, timeout=PATIENCE) as client:
                 yield client
     except Problem as problem:
-        raise click.ClickException(_reasons(problem)) from None
+        raise click.ClickException(reasons(problem)) from None
     except httpx.HTTPError as error:
         where = "the service on the data folder does not answer" if data else f"no service answers at {place}"
         raise click.ClickException(f"{where}: {error}") from None
 
 
-def _reasons(problem: Problem) -> str:
+def reasons(problem: Problem) -> str:
+    """A problem, and each of its faults on a line of its own."""
     return "\n".join([str(problem), *(f"  {fault.name}: {fault.detail}" for fault in problem.errors)])

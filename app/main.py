@@ -49,6 +49,8 @@ from app.api.routes.tolerances import router as tolerances
 from app.api.routes.variant_sheets import by_type as sheets_by_type
 from app.api.routes.variant_sheets import router as variant_sheets
 from app.api.routes.variants import router as variants
+from app.api.routes.worksheet_imports import router as worksheet_imports
+from app.api.routes.worksheets import router as written_worksheets
 from app.assembly import assemble
 from app.hosts import Hosts
 from app.jobs.shutdown import on_stop_signal
@@ -74,6 +76,8 @@ ROUTERS = (
     catalogue,
     impact,
     faults,
+    worksheet_imports,
+    written_worksheets,
     library,
     designs,
     decisions,

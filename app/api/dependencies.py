@@ -37,6 +37,8 @@ from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.studies.service import Studies
+from app.worksheets.importing.service import Imports
+from app.worksheets.service import Worksheets
 
 
 def services_of(request: Request) -> Services:
@@ -63,6 +65,8 @@ TheAnswering = Annotated[Answering, Depends(_part("answering"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
 TheLabelling = Annotated[Labelling, Depends(_part("labelling"))]
 TheStudies = Annotated[Studies, Depends(_part("studies"))]
+TheImports = Annotated[Imports, Depends(_part("imports"))]
+TheWorksheets = Annotated[Worksheets, Depends(_part("worksheets"))]
 ThePreviews = Annotated[Previews, Depends(_part("previews"))]
 TheDecisions = Annotated[Decisions, Depends(_part("decisions"))]
 TheSolving = Annotated[Asking[DesignSolution], Depends(_part("solving"))]

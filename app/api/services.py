@@ -29,6 +29,8 @@ from app.solids.models import Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.studies.service import Studies
+from app.worksheets.importing.service import Imports
+from app.worksheets.service import Worksheets
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,8 @@ class Services:
     previews: Previews
     decisions: Decisions
     studies: Studies
+    worksheets: Worksheets
+    imports: Imports
     solving: Asking[DesignSolution]
     tolerances: Asking[ToleranceAnalysis]
     impacts: Impacts

@@ -148,7 +148,7 @@ class CalculationJobs:
             question = question_of(job.payload, self.store)
         except (ArtifactMissing, ArtifactDamaged) as error:
             raise _lost(job) from error
-        cls = self.catalogue.get(question.template, question.version)
+        cls = self.catalogues.to_try(question.template, question.version)
         return self.pool.submit(f"job:{job.id}", answered, source_of(cls), question, lane="jobs")
 
     def _outcome(self, calculation: Calculation, context: JobContext) -> Pieces:

@@ -22,6 +22,7 @@ from app.web import (
     tables,
     upgrade_page,
     variant_forms,
+    worksheet_routes,
 )
 
 STATIC = Path(__file__).with_name("static")
@@ -78,6 +79,8 @@ def install(app: FastAPI) -> None:
     app.include_router(tables.router)
     app.include_router(study_routes.router)
     app.include_router(study_routes.forms)
+    app.include_router(worksheet_routes.router)
+    app.include_router(worksheet_routes.forms)
     for pages in (impact_page, upgrade_page):
         app.include_router(pages.router)
         app.include_router(pages.forms)
