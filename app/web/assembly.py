@@ -14,11 +14,13 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.web import (
     actions,
+    impact_page,
     organising,
     problems,
     routes,
     study_routes,
     tables,
+    upgrade_page,
     variant_forms,
     worksheet_routes,
 )
@@ -79,6 +81,9 @@ def install(app: FastAPI) -> None:
     app.include_router(study_routes.forms)
     app.include_router(worksheet_routes.router)
     app.include_router(worksheet_routes.forms)
+    for pages in (impact_page, upgrade_page):
+        app.include_router(pages.router)
+        app.include_router(pages.forms)
     app.mount("/static", Files(directory=STATIC), name="static")
     problems.install(app)
     app.add_middleware(Compression)
