@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 
+from app.calculations.sources import SheetSource, class_of
 from app.plain import JsonObject
+from templates.core.catalogue.digests import digest as digest_of
 from templates.core.catalogue.golden import record
 from templates.core.checking.golden import differences
 from templates.core.errors import InvalidInputs, TemplateError
@@ -75,17 +77,19 @@ def _unusable(cls: type[Template]) -> Iterator[str]:
             yield f"{name} has no example: write (example …) behind its words"
 
 
-def difference(cls: type[Template], digest: str | None, golden: JsonObject | None) -> str | None:
-    """Why a released text is not that of its release any more; None if it is."""
-    assert cls.sheet is not None
-    if cls.sheet.digest() != digest:
-        return "its text is not that of the release"
-    if golden is None:
-        return "its golden record is lost"
+def as_released(source: SheetSource, digest: str | None, golden: JsonObject | None) -> type[Template] | str:
+    """The class of a released text, or why it is not that of its release any more."""
     try:
-        return next((f"its results differ: {found}" for found in differences(cls, golden)), None)
+        cls = class_of(source)
+    except TemplateError as error:
+        return f"its text is not understood any more: {error}"
+    if digest_of(cls) != digest:
+        return "its text is not that of the release"
+    try:
+        found = next(differences(cls, golden or {}), None)
     except (TemplateError, LookupError, TypeError, ValueError, AttributeError) as error:
-        return f"its golden record cannot be compared: {type(error).__name__}: {error}"
+        return f"its golden record cannot be read: {type(error).__name__}: {error}"
+    return f"its results differ: {found}" if found else cls
 
 
 def title_of(text: str) -> str:

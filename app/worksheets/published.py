@@ -5,14 +5,14 @@ from __future__ import annotations
 import logging
 import threading
 
-from app.calculations.sources import SheetSource, class_of, loaded
+from app.calculations.sources import SheetSource, loaded
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.sheets import Key, ReleasedSheet, Sheets
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.tables import WorksheetVersionRow as Row
 from app.worksheets import repository
-from app.worksheets.examining import difference
+from app.worksheets.examining import as_released
 from app.worksheets.repository import RELEASED
 from templates.core.errors import TemplateError, UnreleasedTemplate
 from templates.core.language.template import Template
@@ -111,11 +111,8 @@ def _remedy(state: repository.State) -> str:
 
 def _verified(row: Row) -> ReleasedSheet | str:
     """A released version, or why it is broken."""
-    try:
-        cls = class_of(SheetSource(row.id, row.number, row.text, row.withdrawn))
-    except TemplateError as error:
-        return f"its text is not understood any more: {error}"
-    if reason := difference(cls, row.digest, row.record):
-        logger.error("Worksheet %s version %d is broken: %s", row.id, row.number, reason)
-        return reason
-    return ReleasedSheet(cls, "withdrawn" if row.withdrawn else "released", row.author, row.reviewer)
+    source = SheetSource(row.id, row.number, row.text, row.withdrawn)
+    if isinstance(found := as_released(source, row.digest, row.record), str):
+        logger.error("Worksheet %s version %d is broken: %s", row.id, row.number, found)
+        return found
+    return ReleasedSheet(found, "withdrawn" if row.withdrawn else "released", row.author, row.reviewer)

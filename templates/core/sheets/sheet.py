@@ -75,6 +75,10 @@ class Sheet:
 
     def digest(self) -> str:
         """SHA-256 of the statements and the version of the language; prose and layout do not count."""
+        return self._digest
+
+    @cached_property
+    def _digest(self) -> str:
         statements = [statement.words for statement in self.built.statements]
         content = json.dumps([self.language, statements], separators=(",", ":"))
         return hashlib.sha256(content.encode()).hexdigest()
