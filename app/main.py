@@ -33,6 +33,7 @@ from app.api.routes.design_files import router as design_files
 from app.api.routes.designs import router as designs
 from app.api.routes.evaluations import router as answers
 from app.api.routes.film_pressure import router as film_pressure
+from app.api.routes.impact import router as impact
 from app.api.routes.jobs import router as jobs
 from app.api.routes.labels import router as labels
 from app.api.routes.library import router as library
@@ -73,6 +74,7 @@ ROUTERS = (
     film_pressure,
     curves,
     catalogue,
+    impact,
     faults,
     worksheet_imports,
     written_worksheets,

@@ -16,6 +16,7 @@ from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.service import Designs
+from app.impact.service import Impacts
 from app.jobs.service import Jobs
 from app.reports.paper import Press
 from app.reports.service import Reports
@@ -54,6 +55,7 @@ class Services:
     imports: Imports
     solving: Asking[DesignSolution]
     tolerances: Asking[ToleranceAnalysis]
+    impacts: Impacts
     models: Models
     analyses: Analyses
     healing: Healing

@@ -44,14 +44,19 @@ class Builder:
     def __init__(self, chunks: list[Chunk]) -> None:
         self.built, self.names = Built(), Names()
         self.reader = Reader(self.names)
+        self.refused: set[int] = set()  # lines of statements with a fault
         for chunk in chunks:
             self._try(self._parse, chunk)
         for statement in self.built.statements:
             self._try(self._announce, statement)
         for kinds in _ORDER:
             for statement in self.built.statements:
-                if statement.kind in kinds and self.names.fuel >= 0:
+                if statement.kind in kinds and self._goes_on(statement):
                     self._try(getattr(self, f"_{statement.kind}"), statement)
+
+    def _goes_on(self, statement: Parsed) -> bool:
+        """Whether to read a statement on: one fault of it is enough, and so is a worksheet too large."""
+        return statement.chunk.line not in self.refused and self.names.fuel >= 0
 
     def _try(self, step: Callable[[Any], None], statement: Parsed | Chunk) -> None:
         """Take a step, and note the fault that it meets."""
@@ -63,7 +68,9 @@ class Builder:
             pass
         else:
             return
-        self.names.broken.add(name_of(statement.chunk if isinstance(statement, Parsed) else statement))
+        chunk = statement.chunk if isinstance(statement, Parsed) else statement
+        self.names.broken.add(name_of(chunk))
+        self.refused.add(chunk.line)
 
     def _parse(self, chunk: Chunk) -> None:
         self.built.statements.append(parsed(chunk))
@@ -106,6 +113,8 @@ class Builder:
         called, parameter, unit_text, words, clauses, *rest = statement.parts
         name = str(called)[:-1]
         self._check_new(statement, called, name)
+        if axis := parameter.children[2]:
+            raise statement.refuse("curve", "a curve takes a single value, or each of a list", axis)
         texts = (parameter.children[1], unit_text)
         along, of = (self.reader.declared_unit(statement, text) for text in texts)
         said = said_in(statement, clauses, self.reader)
@@ -180,7 +189,7 @@ class Builder:
         node, axes = self._condition(statement, tree)
         remedy = said_in(statement, clauses, self.reader).keywords.get("remedy")
         body = RuleBody(node, statement.chunk.line, words_of(statement, words).rstrip("."), axes)
-        blamed = self.built.inputs_beneath(body.uses)
+        blamed = body.inputs = self.built.inputs_beneath(body.uses)
         if not blamed:
             advice = "compare a given with something"
             raise statement.refuse("no_truth", "the rule is about no input", tree, advice)

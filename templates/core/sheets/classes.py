@@ -24,7 +24,7 @@ def made(sheet: Any, id: str, version: int, parts: Mapping[str, Any]) -> type[Te
     return cls
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=64)
 def from_text(text: str, id: str, version: int) -> type[Template]:
     """The class of a worksheet in this process, one for each text, id and version.
 

@@ -12,11 +12,11 @@ from templates.core.language.meaning import api_name
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given
 from templates.core.sheets.clauses import Said
 from templates.core.sheets.grammar import Parsed
-from templates.core.units.lists import TRAILING
-from templates.core.units.operations import CONSTANTS, Apply, Constant, Name
+from templates.core.units.lists import OVER_LISTS, TRAILING
+from templates.core.units.operations import CONSTANTS, FUNCTIONS, Apply, Constant, Name
 
 WARNING = "check_not_met"
-_TIGHTNESS = {"+": 0, "-": 0, "*": 1, "/": 1, "**": 2}
+_OPERATORS = frozenset({"+", "-", "*", "/", "**"})
 
 
 def criterion_of(
@@ -44,7 +44,7 @@ def criterion_of(
         read_criterion(api_name(words) or "check", content, known_names(inputs, formulas))
     except FaultyText as error:
         raise statement.refuse("check", str(error), at, remedy) from None
-    return api_name(words) or f"check {statement.chunk.line}", content
+    return api_name(words) or f"check_{statement.chunk.line}", content
 
 
 def relation_text(node: Any, names: Mapping[str, str]) -> str:
@@ -70,7 +70,9 @@ def relation_text(node: Any, names: Mapping[str, str]) -> str:
 
 
 def _applied(sign: str, parts: list[tuple[Any, str]]) -> str:
-    if sign not in _TIGHTNESS:
+    if sign not in _OPERATORS and sign not in FUNCTIONS and sign not in OVER_LISTS:
+        raise FaultyText("check", "a check compares quantities; give this one a name of its own")
+    if sign not in _OPERATORS:
         return f"{sign}({', '.join(text for _, text in parts)})"
     texts = [f"({text})" if isinstance(part, Apply) else text for part, text in parts]
     return f"-{texts[0]}" if len(texts) == 1 else f" {sign} ".join(texts)

@@ -20,7 +20,7 @@ LONGEST_NAME = 60
 _WORDS = frozenset({
     "then", "else", "and", "or", "is", "to", "so", "that", "over", "from", "with", "within", "gives",
     "if", "not", "given", "choice", "curve", "solve", "require", "check", "test",
-    "level", "ledger", "held", "published", "example", "source", "symbol", "remedy", "also",
+    "level", "ledger",
 })  # fmt: skip
 
 Call = Callable[[list[Part]], Part]

@@ -13,6 +13,7 @@ from templates.core.language.template import Template
 from templates.core.sheets.building import Builder
 from templates.core.sheets.built import Built
 from templates.core.sheets.classes import made
+from templates.core.sheets.depths import set_order
 from templates.core.sheets.faults import SheetRefused
 from templates.core.sheets.grammar import LANGUAGE
 from templates.core.sheets.lines import Chunk, chunks_of
@@ -127,6 +128,6 @@ def read(text: str) -> Sheet:
     text = text.removeprefix("\ufeff").replace("\r\n", "\n")
     chunks = chunks_of(text)
     built = Builder([chunk for chunk in chunks if not chunk.kind]).built
-    if faults := [*built.faults, *faults_of_loops(built)]:
+    if faults := [*built.faults, *faults_of_loops(built)] or [*set_order(built)]:
         raise SheetRefused(faults)
     return Sheet(text, tuple(chunks), built)

@@ -16,7 +16,7 @@ from scipy.optimize import elementwise
 from templates.core.language.body import Body
 from templates.core.language.ledger import Mask
 from templates.core.paper.expressions import latex
-from templates.core.sheets.body import names_in
+from templates.core.sheets.body import names_in, unequal_lengths
 from templates.core.sheets.expressions import Reader
 from templates.core.sheets.grammar import Parsed
 from templates.core.units.closures import closure
@@ -44,6 +44,7 @@ class SolveBody(Body):
         words: str,
         lists: frozenset[str],
     ) -> None:
+        self.node, self.first = equation, tuple[str, ...]()
         self.name, self.line, self.equation, self.bounds, self._lists = name, line, equation, bounds, lists
         self.reason = f"there is no {words} {self._between()} for which the equation holds"
         self._sides = [closure(side) for side in equation.arguments]
@@ -56,12 +57,17 @@ class SolveBody(Body):
 
     def __call__(self, template: Any) -> Any:
         """The root [SI]; NaN where there is none, and the ledger says why."""
+        for name in self.first:
+            getattr(template, name)
         values = {name: attrgetter(name)(template) for name in self._known}
         low, high = (np.asarray(bound(template), dtype=float) for bound in self._bounds)
         singles = [value for name, value in values.items() if _is_number(value) and name not in self._lists]
         firsts = [np.asarray(values[name])[..., 0] for name in self._lists & values.keys()]
         shape = np.broadcast_shapes(low.shape, high.shape, *(np.shape(v) for v in (*singles, *firsts)))
-        roots = self._roots(values, np.broadcast_to(low, shape), np.broadcast_to(high, shape))
+        try:
+            roots = self._roots(values, np.broadcast_to(low, shape), np.broadcast_to(high, shape))
+        except ValueError:
+            raise unequal_lengths(self, template) from None
         missing = np.isnan(roots)
         if missing.any() and (ledger := getattr(template, "ledger", None)):
             ledger.masks.append(Mask((self.name,), missing, self.reason, explains=True))

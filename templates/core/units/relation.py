@@ -10,7 +10,7 @@ curves it is one curve.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -18,8 +18,8 @@ import lark
 import numpy as np
 
 from templates.core.errors import FaultyText, excerpt
-from templates.core.units.conditions import CONDITIONS
-from templates.core.units.expressions import GRAMMAR, Sort, built, check_word, height
+from templates.core.units.conditions import CONDITIONS, IS
+from templates.core.units.expressions import GRAMMAR, Sort, built, height
 from templates.core.units.items import check_index, item_of
 from templates.core.units.operations import Apply, Constant, Item, Kind, Name, Word
 from templates.core.units.sorts import sorted_by
@@ -33,15 +33,13 @@ REMEMBERED = 1024  # trees of up to 50 kB
 
 _parser = lark.Lark(GRAMMAR, parser="lalr")
 
-Options = Mapping[str, tuple[str, ...]]
-"""The options of choices, by name."""
-
 
 @dataclass(frozen=True)
 class Relation:
     """A parsed relation: its text, the names it uses, and its tree.
 
     `choices` are those of its names that it tests, as in `film.oil is "SAE 30"`; all others are quantities.
+    In a relation that is `decided_by` some choices, words stand in their place.
     """
 
     text: str
@@ -50,6 +48,7 @@ class Relation:
     parts: int = 1
     items: tuple[Item, ...] = ()
     choices: frozenset[str] = frozenset()
+    decided_by: tuple[str, ...] = ()
 
     @cached_property
     def whole_names(self) -> frozenset[str]:
@@ -64,6 +63,22 @@ class Relation:
         return self.tree.name if isinstance(self.tree, Name) else None
 
     @cached_property
+    def tests(self) -> tuple[tuple[str, str], ...]:
+        """Each choice that it tests, with the word."""
+        nodes = (node.arguments for node in applied_in(self.tree) if node.operation is IS)
+        return tuple((choice.name, word.text) for choice, word in nodes if isinstance(choice, Name))
+
+    def decided(self, words: Mapping[str, str]) -> Relation:
+        """The relation with a word in place of each choice that it tests."""
+        return replace(
+            self,
+            names=self.names - self.choices,
+            tree=_decided(self.tree, words),
+            choices=frozenset(),
+            decided_by=tuple(sorted(self.choices)),
+        )
+
+    @cached_property
     def has_lists(self) -> bool:
         """Whether it makes or sums up lists; every other operation goes place by place."""
         return any(node.operation in LISTWISE for node in applied_in(self.tree))
@@ -73,8 +88,8 @@ class Relation:
         """Whether anything in it depends on a condition."""
         return any(node.operation in CONDITIONS for node in applied_in(self.tree))
 
-    def kind(self, kinds: Mapping[str, Kind], options: Options | None = None) -> Kind:
-        """What the relation gives, from what its names are, and the options of its choices.
+    def kind(self, kinds: Mapping[str, Kind]) -> Kind:
+        """What the relation gives, from what its names are.
 
         Raises
         ------
@@ -82,17 +97,12 @@ class Relation:
             With code `unit_mismatch`, where units do not go together; `no_truth`, where conditions and
             quantities do not.
         """
-        measured = tuple((name, kinds[name]) for name in sorted(self.names - self.choices))
-        if not self.choices:
-            return _checked(self.text, measured, ())
-        tested = tuple((name, (options or {}).get(name, ())) for name in sorted(self.choices))
-        return _checked(self.text, measured, tested)
+        return _checked(self.text, tuple((name, kinds[name]) for name in sorted(self.names - self.choices)))
 
     def value(self, values: Mapping[str, Value]) -> Value:
         """The value in SI, from the SI values of its names; not finite where the arithmetic is not.
 
-        Items that are known already stand among the values, by their text: `loads.main_load_x[2]`. Of a
-        choice it takes the word.
+        Items that are known already stand among the values, by their text: `loads.main_load_x[2]`.
 
         Raises
         ------
@@ -152,24 +162,25 @@ def parse(text: str) -> Relation:
 
 
 def _where(body: str, error: lark.exceptions.UnexpectedInput) -> str:
-    place = getattr(error, "pos_in_stream", None)
+    is_at_end = getattr(getattr(error, "token", None), "type", "") == "$END"
+    place = None if is_at_end else getattr(error, "pos_in_stream", None)
     near = body[place : place + 20] if isinstance(place, int) and place >= 0 else ""
     hint = "write units as in 48 mm, names as in film.bearing_diameter, operators + - * / **"
     return f"not understood at {excerpt(near)}; {hint}" if near else f"the relation ends too early; {hint}"
 
 
 @lru_cache(maxsize=REMEMBERED)
-def _checked(text: str, kinds: tuple[tuple[str, Kind], ...], options: tuple[tuple[str, Any], ...]) -> Kind:
+def _checked(text: str, kinds: tuple[tuple[str, Kind], ...]) -> Kind:
     """The kind of a relation, from those of its names; raises as `Relation.kind`."""
     forget_units()
-    sort = _sort(parse(text).tree, dict(kinds), dict(options))
+    sort = _sort(parse(text).tree, dict(kinds))
     if sort.truth:
         detail = f"{excerpt(text)} is a condition and no value; write if … then … else …"
         raise FaultyText("no_truth", detail)
     return sort.kind
 
 
-def _sort(node: Any, kinds: Mapping[str, Kind], options: Options) -> Sort:
+def _sort(node: Any, kinds: Mapping[str, Kind]) -> Sort:
     match node:
         case Constant(kind=kind):
             return Sort(kind)
@@ -178,8 +189,14 @@ def _sort(node: Any, kinds: Mapping[str, Kind], options: Options) -> Sort:
         case Item(name=name):
             check_index(node, kinds)
             return Sort(kinds[name])
-        case Apply(arguments=(Name(name=name), Word(text=word))):
-            check_word(name, word, options.get(name, ()))
-            return Sort(truth=True)
-    parts = [(argument, _sort(argument, kinds, options)) for argument in node.arguments]
-    return sorted_by(node.operation, parts)
+    if node.operation is IS:
+        return Sort(truth=True)
+    return sorted_by(node.operation, [(argument, _sort(argument, kinds)) for argument in node.arguments])
+
+
+def _decided(node: Any, words: Mapping[str, str]) -> Any:
+    if not isinstance(node, Apply):
+        return node
+    if node.operation is IS and isinstance(choice := node.arguments[0], Name):
+        return Apply(IS, (Word(words[choice.name]), *node.arguments[1:]))
+    return Apply(node.operation, tuple(_decided(argument, words) for argument in node.arguments))

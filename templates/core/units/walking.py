@@ -47,18 +47,27 @@ def listwise(operation: Operation, parts: list[Value], ranks: list[int]) -> Valu
     FaultyText
         With code `shape`.
     """
-    if operation is LIST:
-        if any(ranks):
-            detail = "each item of a list is a single value, but an expression in it gives an array"
-            raise FaultyText("shape", detail)
-    elif operation is ITEM:
-        if ranks[1]:
-            raise FaultyText("shape", "an index is a single number, not an array")
-    elif not ranks[0]:
-        if operation.sign in ("min", "max"):
-            return parts[0]
-        raise FaultyText("shape", f"{operation.sign} takes a list, and this is a single value")
+    check_ranks(operation, ranks)
+    if operation in OVER_LISTS.values() and not ranks[0]:
+        return parts[0]
     return operation.calculate(*parts)
+
+
+def check_ranks(operation: Operation, ranks: list[int]) -> None:
+    """Refuse single values in place of lists, and lists in place of single values.
+
+    Raises
+    ------
+    FaultyText
+        With code `shape`.
+    """
+    if operation is LIST and any(ranks):
+        detail = "each item of a list is a single value, but an expression in it gives an array"
+        raise FaultyText("shape", detail)
+    if operation is ITEM and ranks[1]:
+        raise FaultyText("shape", "an index is a single number, not an array")
+    if operation in OVER_LISTS.values() and not ranks[0] and operation.sign not in ("min", "max"):
+        raise FaultyText("shape", f"{operation.sign} takes a list, and this is a single value")
 
 
 def applied_in(node: Any) -> Iterator[Apply]:
@@ -72,3 +81,12 @@ def nodes_of(node: Any) -> Iterator[Any]:
     while left:
         yield (first := left.pop())
         left += reversed(getattr(first, "arguments", ()))
+
+
+def depth_of(node: Any) -> int:
+    """How deep a tree is."""
+    depth, level = 0, [node]
+    while level:
+        depth += 1
+        level = [argument for part in level for argument in getattr(part, "arguments", ())]
+    return depth
