@@ -33,7 +33,7 @@ KERNEL = "cadquery"
 class WithoutSpare(LocalProcesses):
     """Forks a process when a job comes instead of before."""
 
-    def _start(self, request: Request):  # noqa: ANN202 - as the method that it replaces
+    def started(self, request: Request):  # noqa: ANN202 - as the method that it replaces
         process = self._forkserver.fork()
         process.start(request)
         return process

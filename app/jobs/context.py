@@ -11,7 +11,7 @@ from app.jobs.events import Events
 from app.jobs.job import Job
 from app.observation import metrics
 from app.storage.database import Database
-from app.workers.base import Limits, Worker
+from app.workers.base import BatchWorker, Limits
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
@@ -23,13 +23,17 @@ _INTERVAL = 0.5  # between two times that progress is stored [s]
 
 
 class JobContext:
-    """Runs functions in the worker, and reports and stores how far the job is."""
+    """Runs functions in the worker, and reports and stores how far the job is.
+
+    All functions of a job share a process, as long as each comes to its end: a job that builds a hundred
+    solids pays once for what the kernel loads at first use.
+    """
 
     def __init__(
         self,
         job: Job,
         database: Database,
-        worker: Worker,
+        worker: BatchWorker,
         limits: Limits,
         events: Events,
         cancelled: threading.Event,
@@ -37,7 +41,7 @@ class JobContext:
         self.log: list[str] = []
         self._job = job
         self._database = database
-        self._worker = worker
+        self._batch = worker.batch()
         self._limits = limits
         self._events = events
         self._cancelled = cancelled
@@ -63,13 +67,17 @@ class JobContext:
         WorkerError
             See `Worker.run`.
         """
-        return self._worker.run(
+        return self._batch.run(
             function,
             *args,
             limits=limits or self._limits,
             on_progress=self.progress,
             cancelled=self._cancelled,
         )
+
+    def close(self) -> None:
+        """End the process of the job; called when its handler has ended."""
+        self._batch.close()
 
     def progress(self, fraction: float, text: str) -> None:
         """Publish how far the job is (0 to 1) and what it does next; store it now and then."""

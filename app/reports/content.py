@@ -98,6 +98,7 @@ class Identity:
     digest: str
     title: str
     withdrawn: str
+    review: str = ""  # of a worksheet
 
 
 @dataclass(frozen=True)

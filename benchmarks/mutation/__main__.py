@@ -42,6 +42,11 @@ def arguments() -> argparse.Namespace:
         nargs="+",
         help="try these test files instead of the related ones, and record what they kill",
     )
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="only the first pass: the nearest test file of each, for a minute",
+    )
     parser.add_argument("--named", action="store_true", help="try the named mutants instead of random ones")
     parser.add_argument("--record", type=Path, help="file of results, one JSON object a line; is appended to")
     parser.add_argument(
@@ -100,9 +105,8 @@ def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[
     with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
         kept = options.record and options.record.resolve().with_name("observations")
         copies = Copies(Path(folder), options.limit, options.nearest, kept, tuple(options.tests or ()))
-        for at_once in (
-            (True,) if options.tests else (True, False)
-        ):  # the nearest tests kill most: they come first
+        passes = (True,) if options.tests or options.quick else (True, False)
+        for at_once in passes:  # the nearest tests kill most: they come first
             attempt = partial(tried, copies, options.record, lock, at_once)
             results = filter(None, threads.map(attempt, [one for one in ahead if one.key not in rows]))
             rows |= {str(result["key"]): result for result in results}

@@ -152,7 +152,7 @@ class _Writer:
         if sign in _BRACKETS:
             before, behind = _BRACKETS[sign]
             return f"{before}{inside}{behind}", ATOM
-        name = _CALLED.get(sign) or rf"\operatorname{{{sign}}}"
+        name = _CALLED.get(sign) or self.symbols.get(sign) or rf"\operatorname{{{sign}}}"
         return rf"{name}\left({inside}\right)", ATOM
 
 

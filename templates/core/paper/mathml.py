@@ -16,6 +16,7 @@ from typing import Any
 import latex2mathml.converter
 from cachetools import LRUCache, cached
 
+from templates.core.language.body import Body
 from templates.core.language.spec import Declaration, Formula
 from templates.core.language.syntax import returned, syntax
 from templates.core.language.template import Template
@@ -95,6 +96,8 @@ def expression(formula: Formula[Any], symbols: Mapping[str, str], times: str = r
     """The right-hand side of a formula, as LaTeX, with the given symbols (or numbers) for its names."""
     if formula.latex is not None:
         return formula.latex
+    if isinstance(formula.function, Body):
+        return formula.function.latex(symbols, times)
     attributes = {name: (text, tightness(text)) for name, text in symbols.items()}
     return Writer(formula.function.__globals__, attributes, {}, times).write(formula.expression)[0]
 

@@ -24,7 +24,7 @@ def _quotient(over: Value, under: Value) -> Value:
 
 
 def _power(base: Value, exponent: Value) -> Value:
-    return (base if isinstance(base, np.ndarray) else np.float64(base)) ** exponent
+    return (np.float64(base) if type(base) is float else base) ** exponent
 
 
 _PLAIN: dict[

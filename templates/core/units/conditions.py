@@ -6,6 +6,7 @@ known decides nothing. So a formula has no value behind a condition that has non
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
 from functools import reduce
 from typing import Any
@@ -17,13 +18,17 @@ from templates.core.units.nodes import Kind, Operation
 from templates.core.units.rules import same, told
 from templates.core.units.units import Value, compatible
 
+_TRUE, _FALSE, _UNKNOWN = np.float64(1.0), np.float64(0.0), np.float64(np.nan)
+
 
 def _compared(test: Callable[[Value, Value], Any]) -> Callable[[Value, Value], Value]:
     def calculate(one: Value, other: Value) -> Value:
+        if isinstance(one, float) and isinstance(other, float):
+            if one != one or other != other:
+                return _UNKNOWN
+            return _TRUE if test(one, other) else _FALSE
         holds, unknown = test(one, other), np.not_equal(one, one) | np.not_equal(other, other)
-        if np.ndim(unknown):
-            return np.where(unknown, np.nan, holds)
-        return np.float64(np.nan if unknown else holds)
+        return np.where(unknown, np.nan, holds)[()] if np.any(unknown) else holds
 
     return calculate
 
@@ -38,7 +43,9 @@ def _any(*conditions: Value) -> Value:
 
 def _chosen(condition: Value, one: Value, other: Value) -> Value:
     """Either value, wherever the condition is known; both are calculated."""
-    if np.ndim(condition) or np.ndim(one) or np.ndim(other):
+    if isinstance(condition, np.ndarray) or isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        if isinstance(condition, np.ndarray) and condition.dtype == bool:  # all of it is known
+            return np.where(condition, one, other)
         holds = np.equal(condition, 1.0)
         return np.where(holds, one, np.where(np.equal(condition, 0.0), other, np.nan))
     return one if condition == 1.0 else other if condition == 0.0 else np.float64(np.nan)
@@ -64,12 +71,12 @@ def _either(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind
 COMPARISONS = {
     operation.sign: operation
     for operation in (
-        Operation("<", _compared(np.less), _compared_kind),
-        Operation("<=", _compared(np.less_equal), _compared_kind),
-        Operation(">", _compared(np.greater), _compared_kind),
-        Operation(">=", _compared(np.greater_equal), _compared_kind),
-        Operation("==", _compared(np.equal), _compared_kind),
-        Operation("!=", _compared(np.not_equal), _compared_kind),
+        Operation("<", _compared(operator.lt), _compared_kind),
+        Operation("<=", _compared(operator.le), _compared_kind),
+        Operation(">", _compared(operator.gt), _compared_kind),
+        Operation(">=", _compared(operator.ge), _compared_kind),
+        Operation("==", _compared(operator.eq), _compared_kind),
+        Operation("!=", _compared(operator.ne), _compared_kind),
     )
 }
 LOGIC = {

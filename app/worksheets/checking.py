@@ -1,0 +1,137 @@
+"""What `check` says of a text: its faults; without any, every line on paper with the example's numbers.
+
+It runs in a calculation process, as everything that reads a user's text does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field
+
+from app.calculations import rendering
+from app.plain import Json, JsonObject
+from app.presentation.prose import html_of
+from app.schemas.templates import Template as TemplateAnswer
+from app.schemas.worksheets import SheetCheck, SheetFault, SheetLine, SheetName, SheetTest
+from app.worksheets.examining import LONGEST_TITLE, fault_of, title_of
+from templates.core.errors import Fault, InvalidInputs, TemplateError
+from templates.core.judging.judgement import Judgement, sentence
+from templates.core.language.evaluate import Evaluation, evaluate
+from templates.core.language.spec import Requirement
+from templates.core.language.template import Template
+from templates.core.paper.mathml import mathml
+from templates.core.paper.schema import describe
+from templates.core.sheets import Sheet, SheetRefused, Statement, read, run_tests
+from templates.core.sheets.grammar import LANGUAGE
+
+UNNAMED = "worksheet"
+"""The id under which a text without one is described."""
+
+
+def checked(text: str, id: str | None) -> bytes:
+    """The answer to `check` as JSON."""
+    try:
+        answer = _sound(read(text), id or UNNAMED)
+    except SheetRefused as refused:
+        faults = [SheetFault(**fault_of(fault)) for fault in refused.faults]
+        answer = SheetCheck(
+            language=LANGUAGE,
+            digest=None,
+            title=title_of(text),
+            faults=faults,
+            lines=[],
+            names=[],
+            tests=[],
+            template=None,
+        )
+    return answer.model_dump_json(by_alias=True, exclude_unset=True).encode()
+
+
+def _sound(sheet: Sheet, id: str) -> SheetCheck:
+    cls = sheet.template(id, 1)
+    return SheetCheck(
+        language=sheet.language,
+        digest=sheet.digest(),
+        title=sheet.title[:LONGEST_TITLE],
+        faults=[],
+        lines=list(_lines(sheet, cls)),
+        names=[SheetName(**asdict(named)) for named in sheet.names],
+        tests=[SheetTest(**asdict(result)) for result in run_tests(cls)],
+        template=TemplateAnswer.model_validate({**describe(cls), "latest": True}),
+    )
+
+
+@dataclass(frozen=True)
+class _Example:
+    """The example as far as it was calculated: values by name, verdicts of checks, and what refuses it."""
+
+    values: Mapping[str, Mapping[str, Json]] = field(default_factory=dict)
+    judgements: Mapping[str, Judgement] = field(default_factory=dict)
+    faults: tuple[Fault, ...] = ()
+
+
+def _example(cls: type[Template]) -> _Example:
+    try:
+        evaluation = evaluate(cls, cls.example)
+    except InvalidInputs as refusal:
+        return _Example(faults=refusal.faults)
+    except TemplateError as refusal:
+        return _Example(faults=(Fault("", "refused", str(refusal)),))
+    judged = {judgement.name: judgement for judgement in evaluation.criteria}
+    return _Example(_values(evaluation), judged)
+
+
+def _values(evaluation: Evaluation) -> JsonObject:
+    """Inputs and outputs of an evaluation by name, as answers hold them."""
+    answer = rendering.evaluation(evaluation)
+    return {**answer["inputs"], **answer["outputs"]}
+
+
+def _lines(sheet: Sheet, cls: type[Template]) -> Iterator[SheetLine]:
+    example = _example(cls)
+    for statement in sheet.statements:
+        yield SheetLine(
+            line=statement.line,
+            last_line=statement.last_line,
+            kind=statement.kind,
+            name=statement.name,
+            words=statement.words,
+            mathml=mathml(statement.latex) if statement.latex else "",
+            html=html_of(statement.words) if statement.kind == "prose" else "",
+            **_result(statement, cls, example),
+        )
+
+
+def _result(statement: Statement, cls: type[Template], example: _Example) -> JsonObject:
+    """What the example gives in a line."""
+    nothing = dict.fromkeys(("value", "unit", "text", "verdict", "message"))
+    if statement.kind == "require":
+        return {**nothing, **_of_rule(vars(cls).get(statement.name), example)}
+    if statement.kind == "check":
+        return {**nothing, **_of_check(example.judgements.get(statement.name))}
+    declared = cls.declarations.get(statement.name)
+    return {**nothing, **(_of_value(declared.name, example) if declared else {})}
+
+
+def _of_value(name: str, example: _Example) -> JsonObject:
+    if (found := example.values.get(name)) is None:
+        return {"message": next((fault.detail for fault in example.faults if name in fault.names), None)}
+    if isinstance(found["value"], str):
+        return {"text": found["value"]}
+    return {"value": found["value"], "unit": found.get("unit"), "message": found.get("reason")}
+
+
+def _of_rule(rule: Requirement | None, example: _Example) -> JsonObject:
+    if rule is None:
+        return {}
+    told = f"{rule.sentence}, but "
+    broken = next((fault.detail for fault in example.faults if fault.detail.startswith(told)), None)
+    if broken is None and example.faults:
+        return {"verdict": "not_checked", "message": "the example is refused"}
+    return {"verdict": "not_met" if broken else "met", "message": broken}
+
+
+def _of_check(judgement: Judgement | None) -> JsonObject:
+    if judgement is None:
+        return {"verdict": "not_checked", "message": "the example is refused"}
+    return {"verdict": judgement.verdict, "message": sentence(judgement)}

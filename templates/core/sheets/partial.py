@@ -1,0 +1,44 @@
+"""Operations that give a value not everywhere, and say why: a curve has none outside its points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from templates.core.language.ledger import Mask
+from templates.core.units.closures import closure
+from templates.core.units.operations import Apply, Operation
+from templates.core.units.walking import nodes_of
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Partial(Operation):
+    """An operation without a value where `is_missing` holds of its arguments, for a reason."""
+
+    is_missing: Callable[..., Any]
+    reason: str
+
+
+Explained = tuple[Partial, list[Callable[[Any], Any]]]
+
+
+def explained_in(node: Any) -> list[Explained]:
+    """The partial operations of a tree, with functions for their arguments."""
+    applied = (part for part in nodes_of(node) if isinstance(part, Apply))
+    return [
+        (part.operation, [closure(argument) for argument in part.arguments])
+        for part in applied
+        if isinstance(part.operation, Partial)
+    ]
+
+
+def explain(template: Any, attribute: str, operations: list[Explained], axes: int) -> None:
+    """Note in the ledger of a template why a value does not exist; `axes` are those of a list."""
+    for operation, arguments in operations:
+        missing = np.asarray(operation.is_missing(*(argument(template) for argument in arguments)))
+        where = np.asarray(missing.any(axis=-1)) if axes and missing.ndim else missing
+        if where.any():
+            template.ledger.masks.append(Mask((attribute,), where, operation.reason, explains=True))
