@@ -139,7 +139,8 @@ class Reader:
         try:
             sort_of(name)
         except FaultyText as error:
-            raise statement.refuse(error.code, str(error), text) from None
+            message, _, remedy = str(error).partition("; ")
+            raise statement.refuse(error.code, message, text, remedy) from None
         return name
 
 

@@ -12,6 +12,7 @@ import lark
 
 from templates.core.errors import excerpt
 from templates.core.sheets.faults import Refusal, SheetFault
+from templates.core.sheets.hints import remedy_of
 from templates.core.sheets.lines import Chunk
 from templates.core.units.expressions import GRAMMAR, height
 
@@ -111,18 +112,11 @@ def _not_understood(chunk: Chunk, error: lark.exceptions.UnexpectedInput) -> She
     row, column = (
         (len(lines), len(lines[-1]) + 1) if is_at_end or error.line < 1 else (error.line, error.column)
     )
-    near = lines[row - 1][column - 1 :][:20]
-    message = f"not understood at {excerpt(near)}" if near else "the statement ends too early"
-    return SheetFault(chunk.line + row - 1, column, "syntax", message, remedy=_form(chunk))
-
-
-_FORMS = {
-    "given": 'write it as in: given D [mm] "bearing diameter" (> 0; example 48 mm)',
-    "require": 'write it as in: require B <= D "The bush is not longer than wide"',
-    "check": 'write it as in: check p <= 30 MPa "white metal carries it"',
-}
-
-
-def _form(chunk: Chunk) -> str:
-    first = chunk.text.split(maxsplit=1)[0]
-    return _FORMS.get(first, 'write it as in: p [MPa] = F / (D * B) "projected pressure"')
+    line = lines[row - 1]
+    before, there = line[: column - 1], line[column - 1 :]
+    message = f"not understood at {excerpt(there[:20])}" if there else "the statement ends too early"
+    expected = (
+        getattr(error, "accepts", None) or getattr(error, "expected", None) or getattr(error, "allowed", ())
+    )
+    remedy = remedy_of(chunk.text, before, there, expected or ())
+    return SheetFault(chunk.line + row - 1, column, "syntax", message, remedy=remedy)

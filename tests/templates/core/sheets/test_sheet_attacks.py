@@ -144,3 +144,23 @@ def test_a_long_chain_in_any_order_is_calculated():
     text = "\n".join(['require a390 > 0 mm "It is long"', *chain, 'given a0 [mm] "a0" (example 1 mm)'])
     film = read(text).template("chain", 1)
     assert film.from_quantities({"a0": "1 mm"}).a390 == pytest.approx(0.391)
+
+
+@pytest.mark.parametrize(
+    ("text", "column", "remedy"),
+    [
+        ("F = 25 kN", 3, "the unit is missing here"),
+        ("given F [kN] load", 14, "words between quotation marks are missing"),
+        ('given F [kN] "x" (exmple 25 kN)', 19, "clauses are"),
+        ('Given F [kN] "x"', 7, "write given in small letters"),
+        ('p [MPa] = 25kN "x"', 13, "put a blank between a number and its unit"),
+        ('p [mm] = 2,5 mm "x"', 11, "decimals take a point"),
+        ('p [mm**2] = W^2 "x"', 14, "a power is written **"),
+        ('p [mm] = if x > 1 then W "x"', 26, "every if has its else"),
+        ('p [mm] = W + "x"', 14, "write it as in: p [MPa]"),
+    ],
+)
+def test_a_slip_of_the_pen_is_met_with_what_would_be_right(text, column, remedy):
+    fault = faults(SHEET + text)[0]
+    assert (fault.code, fault.column) == ("syntax", column)
+    assert fault.remedy.startswith(remedy)
