@@ -24,6 +24,7 @@ from app.designs.recent import Recent
 from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.designs.solved import solved
+from app.impact.service import Impacts
 from app.jobs.service import Jobs
 from app.observation import metrics
 from app.reports.paper import Press
@@ -46,11 +47,18 @@ from app.studies.running import LANES, Parts
 from app.tolerances.process import analysed
 from app.workers.base import Limits, Worker
 from app.workers.local import LocalProcesses
+from app.worksheets.importing.service import IMPORT, Imports
 from app.worksheets.published import Published
 from app.worksheets.service import Worksheets
 from cad.catalogue import models as find_models
 
-NETWORK = ("app.designs.net", "app.studies.planning", "app.studies.searching", "app.studies.sensitivities")
+NETWORK = (
+    "app.designs.net",
+    "app.impact.process",
+    "app.studies.planning",
+    "app.studies.searching",
+    "app.studies.sensitivities",
+)
 """What processes have loaded that calculate rows of designs."""
 SHEETS = ("app.worksheets.checking",)
 """What all calculation processes have loaded to read worksheets."""
@@ -76,12 +84,15 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     recent = Recent()
     register_jobs(settings, jobs, database, store, catalogues, calculations, recent)
     about = database, catalogues, store, jobs, calculations.steps
-    previews, decisions = Previews(*about), Decisions(*about)
+    previews, decisions, impacts = Previews(*about), Decisions(*about), Impacts(*about)
     solving, tolerances = Asking(SOLUTION, solved, *about), Asking(TOLERANCE, analysed, *about)
-    register_answers(jobs, previews, decisions, solving, tolerances)
+    register_answers(jobs, previews, decisions, solving, tolerances, impacts)
     designs = Designs(database, jobs, catalogues, recent)
     parts = Parts(database, store, catalogues, calculations.pool, jobs, calculations.steps)
     studies = assemble_studies(parts, designs)
+    worksheets = Worksheets(database, catalogues, calculations.pool, published)
+    imports = Imports(database, store, jobs, catalogues, worksheets)
+    jobs.register(IMPORT, imports, imports.failed)
     jobs.start({**calculations.lanes, **LANES})
     stack.callback(jobs.stop)
     models = Models(database, store, jobs, catalogues)
@@ -101,9 +112,11 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         previews=previews,
         decisions=decisions,
         studies=studies,
-        worksheets=Worksheets(database, catalogues, calculations.pool, published),
+        worksheets=worksheets,
+        imports=imports,
         solving=solving,
         tolerances=tolerances,
+        impacts=impacts,
         models=models,
         analyses=analyses,
         healing=Healing(database, store, models, analyses),

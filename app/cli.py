@@ -1,4 +1,4 @@
-"""The command line: `crankwright serve | demo | download | study | sweep | evaluate | template | …`."""
+"""The command line: `crankwright serve | demo | study | sweep | impact | evaluate | template | …`."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from app.catalogue.commands import check_template_command
 from app.demo import demonstrate
 from app.downloads import download_command
 from app.hosts import is_loopback
+from app.impact_commands import impact_command
 from app.main import create_app
 from app.maintenance.commands import backup_command, check_command, restore_command
 from app.plain import Json, JsonObject, Raw
@@ -124,6 +125,7 @@ main.add_command(check_template_command)
 main.add_command(study_command)
 main.add_command(sweep_command)
 main.add_command(worksheet_command)
+main.add_command(impact_command)
 
 
 @main.command()

@@ -20,7 +20,7 @@ LAYERS: tuple[frozenset[str], ...] = tuple(
     for names in (
         "__main__",
         "cli",
-        "study_commands worksheet_commands",
+        "study_commands impact_commands worksheet_commands",
         "connecting",
         "main demo server downloads",
         "assembly",
@@ -28,7 +28,7 @@ LAYERS: tuple[frozenset[str], ...] = tuple(
         "api",
         "client maintenance",
         "reports retention",
-        "studies tolerances worksheets",
+        "studies tolerances impact worksheets",
         "designs",
         "solids",
         "calculations",

@@ -26,6 +26,7 @@ from app.api.reading import (
     NotCsv,
     NotForm,
     NotJson,
+    NotSheet,
     NotStep,
     PreconditionRequired,
     TooIntricate,
@@ -42,6 +43,7 @@ from app.storage.errors import CannotRebuild
 from app.studies.errors import RowsLost
 from app.workers import errors as workers
 from app.worksheets import errors as worksheets
+from app.worksheets.importing.errors import SheetNotRead
 from cad.errors import AnalysisError, GeometryError, UnreadableStep
 from templates.core import errors as templates
 from templates.library.tables import UnknownTable
@@ -100,6 +102,9 @@ TABLE: dict[type[Exception], Kind] = {
     worksheets.TestsFailed: Kind(
         "tests-failed", 409, "The worksheet is not sound", "correct each of `errors`"
     ),
+    worksheets.Unresolved: Kind(
+        "unresolved-import", 409, "Regions of the import are unresolved", "rewrite or remove each of `errors`"
+    ),
     worksheets.OutOfOrder: Kind(
         "out-of-order", 409, "The worksheet is in another state", "draft → test → review → release → withdraw"
     ),
@@ -108,6 +113,9 @@ TABLE: dict[type[Exception], Kind] = {
     PreconditionRequired: Kind("precondition-required", 428, "If-Match is needed", "send the design's ETag"),
     NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),
     NotCsv: Kind("not-csv", 415, "The body is not CSV", "send text/csv in UTF-8"),
+    NotSheet: Kind(
+        "not-sheet", 415, "The body is not said to be a file", "send the file as application/octet-stream"
+    ),
     NotStep: Kind("not-step", 415, "The body is not said to be STEP", "send the file as model/step"),
     NotForm: Kind("not-a-form", 415, "The body is not a form", "send application/x-www-form-urlencoded"),
     BadHost: Kind("bad-host", 400, "The request names no host", "send one header Host, and the path alone"),
@@ -149,6 +157,9 @@ TABLE: dict[type[Exception], Kind] = {
     GeometryError: Kind("geometry", 422, "No sound solid came out", "change the parameters in `errors`"),
     AnalysisError: Kind(
         "analysis", 422, "The solid could not be analysed", "see `errors`; fillets and less accuracy help"
+    ),
+    SheetNotRead: Kind(
+        "unreadable-sheet", 422, "The file is not taken as a sheet of Mathcad", "see `detail`"
     ),
     UnreadableStep: Kind("unreadable-step", 422, "Not a STEP file", "send a STEP file (ISO 10303-21)"),
     workers.DeadlineExceeded: Kind("deadline", 422, "The work took too long", "simplify the model"),
@@ -255,6 +266,9 @@ _CARRIED: dict[type[Exception], Callable[..., JsonObject]] = {
     },
     designs.NotConverged: lambda error: {"rounds": error.rounds},
     worksheets.TestsFailed: _untested,
+    worksheets.Unresolved: lambda error: {
+        "errors": [{"name": "text", "code": "unresolved", "detail": text} for text in error.reasons]
+    },
     RowsLost: lambda error: {"job": f"/api/v1/jobs/{error.job}"},
     CannotRebuild: lambda error: {
         **error.links,

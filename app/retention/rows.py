@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection
+from itertools import chain
 
 from sqlalchemy import ColumnElement, CursorResult, Result, Text, and_, cast, delete, exists, select
 from sqlalchemy.orm import Session
@@ -90,7 +91,8 @@ def _is_unwanted(session: Session, kept: float) -> ColumnElement[bool]:
 def _awaited(session: Session) -> set[str]:
     """The builds of which unfinished jobs make further files."""
     payloads = session.scalars(select(JobRow.payload).where(JobRow.state.in_(UNFINISHED)))
-    return {payload["build"] for payload in payloads if "build" in payload}
+    named = ([payload["build"]] if "build" in payload else payload.get("builds", ()) for payload in payloads)
+    return set(chain.from_iterable(named))
 
 
 def _count(result: Result[tuple[()]]) -> int:

@@ -11,7 +11,8 @@ from typing import Literal
 from pydantic import Field
 
 from app.schemas.answers import Answer, Page, Value
-from app.schemas.templates import Schema, Template
+from app.schemas.templates import Template
+from app.schemas.worksheet_imports import SheetOrigin
 
 State = Literal["draft", "tested", "reviewed", "released", "withdrawn", "broken"]
 """`broken`: the text or the results of a released version are not those of its release."""
@@ -139,4 +140,4 @@ class Sheet(Answer):
     updated: str
     released: str | None
     versions: list[SheetVersion]
-    import_: Schema | None = Field(alias="import", description="what it was imported from; null if typed")
+    import_: SheetOrigin | None = Field(alias="import", description="what it was imported from; null if typed")

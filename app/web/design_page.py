@@ -45,6 +45,7 @@ from app.web.names import names_json, values_of
 from app.web.rendering import show, units_of
 from app.web.study_page import studies_of
 from app.web.tolerances_page import toleranced
+from app.web.upgrades import upgrades_of
 from app.web.variants import RefusedTable, variants_table
 from app.web.verdict import banner, opened, with_keys
 from cad.export import MEDIA_TYPES
@@ -111,6 +112,7 @@ async def design_page(
         measures=list(measures(design, parts)),
         network=network,
         picture=drawing(network),
+        upgrades=await upgrades_of(api, {step.name: step.template for step in steps}),
         variants=variants,
         names=names_json(network, values_of(revision, preview, measured)),
     )

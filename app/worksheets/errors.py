@@ -4,6 +4,7 @@ WorksheetError
     IdTaken             a file, or another worksheet, has the id
     OutOfOrder          the state of the worksheet does not allow it
         OtherText       a review names another text than the one that is stored
+        Unresolved      regions of its import are not verified, and nobody has looked at them
         TestsFailed     the worksheet has faults, or its tests fail
     OwnReview           an author reviews their own worksheet
     StaleWorksheet      the worksheet has changed since the client read it
@@ -48,6 +49,16 @@ class TestsFailed(OutOfOrder):
         self.reasons = tuple(reasons)
         count = len(self.reasons)
         super().__init__(f"{count} {'fault' if count == 1 else 'faults'}: {'; '.join(self.reasons)}")
+
+
+class Unresolved(OutOfOrder):
+    """Regions of the import differ, are refused or blocked, and their lines stand as imported."""
+
+    def __init__(self, reasons: Sequence[str]) -> None:
+        self.reasons = tuple(reasons)
+        count, some = len(self.reasons), "; ".join(self.reasons[:5])
+        remedy = "rewrite or remove the lines that stand for them"
+        super().__init__(f"{count} {'region' if count == 1 else 'regions'} of the import unresolved: {some}: {remedy}")
 
 
 class OwnReview(WorksheetError):

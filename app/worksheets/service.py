@@ -23,6 +23,7 @@ from app.workers.errors import DeadlineExceeded
 from app.worksheets import repository
 from app.worksheets.errors import IdTaken, OtherText, OutOfOrder, OwnReview, StaleWorksheet, TestsFailed
 from app.worksheets.examining import Examined, Tried, examined, tried
+from app.worksheets.importing.record import require_resolved
 from app.worksheets.naming import is_same_person, require_free
 from app.worksheets.published import Published
 from app.worksheets.repository import RELEASED
@@ -154,12 +155,15 @@ class Worksheets:
         ------
         OutOfOrder
             If the newest version is not reviewed.
+        Unresolved
+            If regions of its import are not verified, and their lines stand as imported.
         TestsFailed
             If the tests fail by now, as after an update of the program.
         """
         row = self.newest(id, expected)
         _require(row, "reviewed")
         require_free(id, self.catalogues)
+        require_resolved(row)
         result = self._tried(client, row)
         return self._saved(row, state="released", tests=result.tests, record=result.record, released=now())
 

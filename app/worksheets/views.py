@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from app.catalogue.sheets import Key
 from app.schemas.worksheets import Sheet, SheetSummary, SheetVersion, State
 from app.storage.tables import WorksheetVersionRow as Row
+from app.worksheets.importing.views import origin
 
 Broken = Mapping[Key, str]
 """Why released versions are broken."""
@@ -36,7 +37,7 @@ def sheet(row: Row, versions: Sequence[Row], broken: Broken) -> Sheet:
             "updated": row.updated,
             "released": row.released,
             "versions": [_version(one, broken) for one in versions],
-            "import": row.imported,
+            "import": origin(row),
         }
     )
 

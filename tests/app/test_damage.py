@@ -81,7 +81,29 @@ class TestServed:
         stored = http.get(f"{API}/artifacts/{sha}").content
         assert hashlib.sha256(stored).hexdigest() == sha
         assert is_copy(again.content, stored)
-        assert http.get(refusal["job"]).json()["state"] == "done"
+        until(lambda: http.get(refusal["job"]).json()["state"] == "done")  # its file is there before it ends
+
+    @DAMAGES
+    def test_an_artifact_that_is_lost_again_while_it_is_made_comes_back(
+        self, served, http, design, damage, monkeypatch
+    ):
+        """The job that is under way has passed the file by then, and would be waited for in vain."""
+        store, sha = served.app.state.services.store, files(http, design)["step"]
+        put, times = store.put, []
+
+        def damaging(*parts):
+            name = put(*parts)
+            if name == sha and not times:
+                times.append(1)
+                damage(place(served, sha))
+            return name
+
+        monkeypatch.setattr(store, "put", damaging)
+        delete(place(served, sha))
+        answer = http.get(f"{API}/artifacts/{sha}", headers=WAIT)
+        assert answer.status_code == 200, answer.text[:500]
+        assert hashlib.sha256(answer.content).hexdigest() == sha
+        assert times == [1]
 
     def test_a_picture_is_made_again_although_the_step_file_is_lost_too(self, served, http, design):
         shas = files(http, design)

@@ -40,6 +40,12 @@ export class Names {
     return ranks.flat();
   }
 
+  start = (field) => startOfName(field.value, field.selectionStart);
+
+  put = insert;
+
+  box = (field) => field.getBoundingClientRect();
+
   // New values of a preview.
   update({ steps = {}, parameters = {} }) {
     const put = (name, quantity) => {

@@ -77,6 +77,12 @@ class Ladder(Template):
         return counted(self.holes)
 
 
+class Usual(Ladder):
+    """The same, of which the rough level is the usual one."""
+
+    default_level = "rough"
+
+
 @pytest.fixture
 def measured(monkeypatch):
     grid = np.array([0.0, 10.0, 100.0])
@@ -130,6 +136,25 @@ class TestLadder:
         """The breadth is twice the length, so both leave their grids together."""
         error = evaluated("size", level="rough", length=length).error["size"]
         assert np.isnan(error).tolist() == [value == 200 for value in length["value"]]
+
+    @pytest.mark.parametrize("cls", [Usual, Ladder])
+    def test_property_without_measured_errors_the_usual_level_answers(self, cls):
+        """Also where it is not the finest: nobody knows that a finer one would do."""
+        evaluation = evaluate(cls, cls.example, outputs=("size",), tolerance=0.1)
+        assert evaluation.level == cls.default_level
+
+    @pytest.mark.parametrize(
+        "rows",
+        [[[1, 2, 3]], [[1], [2]], [[1, 2]] * 13, [[1, -2]]],
+        ids=["three columns", "one column", "thirteen rows", "below its domain"],
+    )
+    def test_a_table_is_refused_with_its_columns_and_their_most_rows(self, rows):
+        with pytest.raises(InvalidInputs, match="at most 12 rows of place, width, each ≥ 0 m") as refusal:
+            evaluated("word", holes={"value": rows, "unit": "m"})
+        assert [(fault.name, fault.code) for fault in refusal.value.faults] == [("holes", "not_a_table")]
+
+    def test_a_table_takes_as_many_rows_as_it_says(self):
+        assert evaluated("word", holes={"value": [[1, 2]] * 12, "unit": "m"}).outputs["word"].value == "many"
 
     def test_property_unmeasured_is_reported(self):
         assert [w.code for w in evaluated("size", tolerance=0.1).warnings] == ["tolerance_unmet"]

@@ -1,0 +1,151 @@
+"""The impact of a version over HTTP: what is ranked, refused, cancelled; nothing is written."""
+
+import asyncio
+
+import pytest
+from impact_designs import at_points, loaded, paper, with_variants
+from serving import API, created, problem, revision
+from sqlalchemy import func, select
+
+from app.client import AsyncClient
+from app.storage.tables import BuildRow, DesignRow, RevisionRow
+
+IMPACT = f"{API}/templates/oil_film/versions/2/impact"
+TAGGED = {"tags": ["impact"]}
+
+
+@pytest.fixture(scope="module")
+def bearings(http):
+    """Five designs of mixed structure, one of them archived, under one tag."""
+    documents = [loaded("24 kN"), loaded("26 kN"), with_variants(), at_points(), loaded("30 kN")]
+    found = [created(http, {**document, "name": f"bearing {n}"}) for n, document in enumerate(documents)]
+    for design in found:
+        is_last = design is found[-1]
+        labels = {"add_tags": ["impact"], "archived": True if is_last else None}
+        assert http.post(f"{API}/designs/{design['id']}/labels", json=labels).is_success
+    return found
+
+
+@pytest.fixture
+def rows(served):
+    """How many designs, revisions and builds are stored."""
+
+    def rows():
+        with served.app.state.services.database.read() as session:
+            tables = (DesignRow, RevisionRow, BuildRow)
+            return [session.scalar(select(func.count()).select_from(table)) for table in tables]
+
+    return rows
+
+
+def test_designs_are_ranked_and_nothing_is_written(http, bearings, rows):
+    before = rows()
+    answer = http.post(IMPACT, json=TAGGED, headers={"Prefer": "wait=60"})
+    assert answer.status_code == 200, answer.text
+    found = answer.json()
+    assert rows() == before
+    assert found["template"] == {"id": "oil_film", "version": 2}
+    assert (found["concerned"], found["moved"], found["archived"]) == (4, 4, 1)
+    assert (found["variants"], found["unchanged"], found["refused"]) == (3, 0, 0)
+    assert {one["design"] for one in found["designs"]} == {design["id"] for design in bearings[:4]}
+    verdicts = [len([v for v in one["verdicts"] if v["new"] == "not_met"]) > 0 for one in found["designs"]]
+    assert verdicts == sorted(verdicts, reverse=True)
+    second = next(one for one in found["designs"] if one["design"] == bearings[1]["id"])
+    assert second["steps"] == [{"step": "film", "version": 1}]
+    assert [one["name"] for one in second["parameters"]] == ["shell.inner_diameter"]
+
+
+def test_the_values_are_those_of_the_upgrade_and_of_the_revision(http, bearings):
+    design = bearings[0]
+    found = http.post(IMPACT, json={"designs": [design["id"]]}, headers={"Prefer": "wait=60"}).json()
+    [impact] = found["designs"]
+    patch = {"steps": {"film": {"version": 2}}}
+    preview = http.post(f"{API}/designs/{design['id']}/preview", json=patch).json()
+    new = {criterion["name"]: criterion for criterion in preview["criteria"]}
+    old = {criterion["name"]: criterion for criterion in revision(http, design)["criteria"]}
+    for moved in impact["verdicts"]:
+        assert moved["new"] == new[moved["name"]]["verdict"]
+        assert moved["old"] == (old[moved["name"]]["verdict"] if moved["name"] in old else None)
+    margin = impact["margin"]
+    assert margin["old"] == pytest.approx(old[margin["name"]]["margin"])
+    assert margin["new"] == pytest.approx(new[margin["name"]]["margin"])
+    output = preview["outputs"][impact["output"]["name"]]
+    assert impact["output"]["new"]["value"] == pytest.approx(output["new"]["value"], rel=1e-9)
+    assert impact["output"]["old"]["value"] == pytest.approx(output["old"]["value"], rel=1e-9)
+    [parameter] = impact["parameters"]
+    assert parameter["new"]["value"] == pytest.approx(
+        preview["model_parameters"][parameter["name"]]["new"]["value"]
+    )
+
+
+def test_a_refused_upgrade_is_refused_in_the_words_of_the_save(http):
+    document = paper(oil_outlet_temperature=None, dynamic_viscosity="9 mPa*s")
+    document["steps"]["film"]["version"] = 2
+    design = created(http, document)
+    path = f"{API}/templates/oil_film/versions/1/impact"
+    [impact] = http.post(path, json={"designs": [design["id"]]}, headers={"Prefer": "wait=60"}).json()[
+        "designs"
+    ]
+    assert impact["effect"] == "refused"
+    assert impact["remove"] == ["film.dynamic_viscosity"]
+    patch = {"steps": {"film": {"version": 1}}}
+    headers = {"If-Match": f'"{design["revision"]}"'}
+    refused = http.patch(f"{API}/designs/{design['id']}", json=patch, headers=headers)
+    saved = problem(refused, 422, "invalid-inputs")["errors"]
+    assert [(one["name"], one["detail"]) for one in impact["refusals"]] == [
+        (one["name"], one["detail"]) for one in saved
+    ]
+
+
+def test_an_impact_that_nobody_waits_for_is_a_job_that_keeps_its_answer(http, bearings):
+    answer = http.post(IMPACT, json=TAGGED, headers={"Prefer": "respond-async"})
+    assert answer.status_code == 202
+    job = answer.headers["Location"]
+    http.get(f"{job}/events")  # until it ends
+    shown = http.get(job).json()
+    assert (shown["state"], shown["kind"]) == ("done", "impact")
+    stored = http.get(shown["result"])
+    assert stored.json() == http.post(IMPACT, json=TAGGED, headers={"Prefer": "wait=60"}).json()
+
+
+def test_a_cancelled_impact_leaves_nothing(http, bearings, served):
+    jobs = served.app.state.services.jobs
+    assert jobs is not None
+    job = http.post(IMPACT, json=TAGGED, headers={"Prefer": "respond-async"}).headers["Location"]
+    answer = http.delete(job)
+    assert answer.status_code in (200, 204, 409)
+    http.get(f"{job}/events")
+    assert http.get(job).json()["state"] in ("cancelled", "done")
+
+
+@pytest.mark.parametrize(("path", "body", "status", "slug"), [
+    ("templates/oil_film/versions/9/impact", {}, 404, "unknown-template"),
+    ("templates/nothing/versions/1/impact", {}, 404, "unknown-template"),
+    ("templates/oil_film/versions/2/impact", {"designs": ["none"]}, 404, "not-found"),
+    ("templates/oil_film/versions/2/impact", {"limit": 0}, 422, "invalid-inputs"),
+    ("templates/oil_film/versions/2/impact", {"name": "\n"}, 422, "invalid-inputs"),
+    ("templates/oil_film/versions/2/impact", {"more": 1}, 422, "invalid-inputs"),
+])  # fmt: skip
+def test_a_wrong_question_is_refused(http, path, body, status, slug):
+    problem(http.post(f"{API}/{path}", json=body), status, slug)
+
+
+def test_the_limit_shortens_the_list_and_not_the_counts(http, bearings):
+    found = http.post(IMPACT, json={**TAGGED, "limit": 1}, headers={"Prefer": "wait=60"}).json()
+    assert (found["moved"], len(found["designs"])) == (4, 1)
+
+
+def test_the_clients_ask_and_upgrade(http, client, served):
+    design = client.design(created(http, {**loaded("20 kN"), "name": "upgraded"})["id"])
+    heard = []
+    found = client.impact("oil_film", 2, [design.id], on_progress=lambda done, text: heard.append(done))
+    assert [one.design for one in found.designs] == [design.id]
+    newer = client.upgrade(design, "oil_film", 2)
+    assert (newer.revision, newer.steps["film"].version) == (design.revision + 1, 2)
+    assert newer.steps["film"].inputs == design.steps["film"].inputs
+
+    async def again():
+        async with AsyncClient(served.url) as other:
+            return await other.impact("oil_film", 2, [design.id])
+
+    assert asyncio.run(again()).concerned == 0
