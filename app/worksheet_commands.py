@@ -13,6 +13,7 @@ import click
 
 from app.client import Client
 from app.connecting import connected, data_option, url_option
+from app.schemas.worksheet_imports import ImportedRegion
 from app.schemas.worksheets import Sheet, SheetCheck
 from templates.core.errors import plain
 
@@ -74,6 +75,40 @@ def import_command(files: tuple[Path, ...], author: str | None, url: str | None,
             known.add(id)
             faults = f", {len(sheet.faults)} faults" if sheet.faults else ""
             click.echo(f"{sheet.id} version {sheet.version}: {sheet.state}{faults}")
+
+
+@worksheet_command.command("import")
+@click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option("--id", help="of the worksheet; the name of the file, if not given")
+@url_option
+@data_option
+@click.pass_context
+def import_sheet_command(ctx: click.Context, file: Path, id: str | None, url: str | None, data: Path | None) -> None:
+    """Import FILE, a sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd), as a draft.
+
+    Prints what became of its regions. The exit code is 1 if some of them forbid a release.
+    """
+    with connected(url, data) as client:
+        sheet = client.import_worksheet(id or _id_of(file), file.read_bytes(), file.name)
+        report = client.read_import(sheet.id)
+    counts = ", ".join(f"{count} {state}" for state, count in report.regions if count)
+    click.echo(f"{sheet.id} version {sheet.version}: {sheet.state}; mathematical regions: {counts or 'none'}")
+    for region in report.items:
+        if region.is_unresolved:
+            line = f"line {region.line}: " if region.line else ""
+            click.echo(plain(f"  {line}region {region.region} {region.state}: {region.reason or _values(region)}"))
+    ctx.exit(1 if report.unresolved else 0)
+
+
+def _values(region: ImportedRegion) -> str:
+    """Both values of a region that differs."""
+    return f"Mathcad {region.mathcad[:5]}, worksheet {region.worksheet[:5]} {region.unit or ''}"
+
+
+def _id_of(file: Path) -> str:
+    """An id from the name of a file."""
+    words = re.sub(r"[^a-z0-9]+", "_", file.stem.lower()).strip("_") or "sheet"
+    return (words if words[0].isalpha() else f"sheet_{words}")[:64]
 
 
 @worksheet_command.command("export")

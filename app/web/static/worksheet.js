@@ -70,7 +70,6 @@ function showDraft() {
 area.addEventListener("input", () => {
   text.draw();
   showDraft();
-  align();
   checking.ask();
 });
 
