@@ -25,6 +25,14 @@ _SIGNS = {
 _JOINED = {"and": np.logical_and, "or": np.logical_or}
 
 
+def unequal_lengths(body: Body, template: Any) -> InvalidInputs:
+    """The refusal where lists of different lengths meet: it names the result, or the inputs of a rule."""
+    made = getattr(template, "declarations", {}).get(body.name)
+    names = body.inputs or (made.name if made else f"line {body.line}",)
+    detail = "lists of different lengths meet here; give lists of one length"
+    return InvalidInputs([Fault(names[0], "shape", detail, names[1:])])
+
+
 class TreeBody(Body):
     """A tree whose units were checked; `name` is the attribute, `axes` how many its list runs over."""
 
@@ -50,15 +58,10 @@ class TreeBody(Body):
         try:
             value = self._run(template)
         except ValueError:
-            raise InvalidInputs([self._unequal(template)]) from None
+            raise unequal_lengths(self, template) from None
         if self._explained and np.isnan(value).any() and hasattr(template, "ledger"):
             explain(template, self.name, self._explained, self.axes)
         return value
-
-    def _unequal(self, template: Any) -> Fault:
-        declared = getattr(template, "declarations", {}).get(self.name)
-        detail = "lists of different lengths meet here; give lists of one length"
-        return Fault(declared.name if declared else self.__qualname__, "shape", detail)
 
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
         """How it is written, with symbols or numbers in the place of attributes."""

@@ -113,6 +113,8 @@ class Builder:
         called, parameter, unit_text, words, clauses, *rest = statement.parts
         name = str(called)[:-1]
         self._check_new(statement, called, name)
+        if axis := parameter.children[2]:
+            raise statement.refuse("curve", "a curve takes a single value, or each of a list", axis)
         texts = (parameter.children[1], unit_text)
         along, of = (self.reader.declared_unit(statement, text) for text in texts)
         said = said_in(statement, clauses, self.reader)
@@ -187,7 +189,7 @@ class Builder:
         node, axes = self._condition(statement, tree)
         remedy = said_in(statement, clauses, self.reader).keywords.get("remedy")
         body = RuleBody(node, statement.chunk.line, words_of(statement, words).rstrip("."), axes)
-        blamed = self.built.inputs_beneath(body.uses)
+        blamed = body.inputs = self.built.inputs_beneath(body.uses)
         if not blamed:
             advice = "compare a given with something"
             raise statement.refuse("no_truth", "the rule is about no input", tree, advice)

@@ -10,6 +10,7 @@ import numpy as np
 
 from templates.core.language.ledger import Mask
 from templates.core.units.closures import closure
+from templates.core.units.lists import ITEM
 from templates.core.units.operations import Apply, Operation
 from templates.core.units.walking import nodes_of
 
@@ -22,17 +23,23 @@ class Partial(Operation):
     reason: str
 
 
+def _no_item(values: Any, index: Any) -> Any:
+    return np.logical_or(index != np.floor(index), (index < 1) | (index > np.shape(values)[-1]))
+
+
+_ITEM = Partial(
+    ITEM.sign, ITEM.calculate, ITEM.kind, ITEM.arity,
+    is_missing=_no_item, reason="the list has no item of this index",
+)  # fmt: skip
+
 Explained = tuple[Partial, list[Callable[[Any], Any]]]
 
 
 def explained_in(node: Any) -> list[Explained]:
     """The partial operations of a tree, with functions for their arguments."""
     applied = (part for part in nodes_of(node) if isinstance(part, Apply))
-    return [
-        (part.operation, [closure(argument) for argument in part.arguments])
-        for part in applied
-        if isinstance(part.operation, Partial)
-    ]
+    found = ((_ITEM if part.operation is ITEM else part.operation, part.arguments) for part in applied)
+    return [(one, list(map(closure, arguments))) for one, arguments in found if isinstance(one, Partial)]
 
 
 def explain(template: Any, attribute: str, operations: list[Explained], axes: int) -> None:

@@ -143,6 +143,6 @@ class TestTheSameKindOfTemplate:
 
     def test_goes_to_processes_as_text(self, film):
         source = source_of(film)
-        assert source == SheetSource("oil_film", 1, TEXT)
+        assert source == SheetSource("oil_film", 1, TEXT, None)
         assert loaded(source).sheet.digest() == film.sheet.digest()
-        assert loaded(source) is loaded(SheetSource("oil_film", 1, TEXT))
+        assert loaded(source) is loaded(SheetSource("oil_film", 1, TEXT, None))
