@@ -169,9 +169,10 @@ document.addEventListener("submit", async (event) => {
 async function act(action, asked) {
   try {
     const body = Object.keys(asked).length ? asked : undefined;
-    await call("POST", `${api}/${action}`, body);
+    await call("POST", `${api}/${action}`, body, { headers: { "If-Match": tag } });
     await refresh(action);
   } catch (error) {
+    if (error.status === STALE) return conflict();
     await refresh();
     tell(error, find("[data-life-trouble]"));
   }
