@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from app.worksheets.importing.errors import Unnamed, Untranslatable
-from app.worksheets.importing.expressions import MOST_ITEMS, Expressions
+from app.worksheets.importing.expressions import Expressions
 from app.worksheets.importing.judge import Judge, sort_of, unit_for
 from app.worksheets.importing.names import Names, key_of, legal, look, symbol
 from app.worksheets.importing.outcome import Outcome, one_line
@@ -15,6 +15,7 @@ from app.worksheets.importing.regions import Original, OriginalSheet
 from app.worksheets.importing.said import LOOSE, Axis, Said, listed, number
 from app.worksheets.importing.scope import Choice, Failed, Function, Range, Scope, Value, Written
 from app.worksheets.importing.trees import Node
+from app.worksheets.importing.writer import MOST_ITEMS
 from templates.core.language.template import Template
 from templates.core.units.expressions import Sort
 from templates.core.units.units import registry
