@@ -52,11 +52,15 @@ async def import_file(request: Request, api: TheApi) -> Response:
     id = parts["id"].text.strip() if "id" in parts else ""
     chosen = parts.get("file")
     if chosen is None or not chosen.content:
-        return _form(request, id, "choose a file: a .mcdx of Mathcad Prime or a .xmcd of Mathcad 11 to 15", 422)
+        return _form(
+            request, id, "choose a file: a .mcdx of Mathcad Prime or a .xmcd of Mathcad 11 to 15", 422
+        )
     name = "".join(sign for sign in (chosen.file or "") if sign.isprintable())[-200:].strip()
     query = {"id": id, **({"file": name} if name else {})}
     try:
-        answer = await api.send("POST", "/worksheets/import", content=chosen.content, params=query, headers=BINARY)
+        answer = await api.send(
+            "POST", "/worksheets/import", content=chosen.content, params=query, headers=BINARY
+        )
     except Refused as refused:
         if refused.status not in MISSED:
             raise

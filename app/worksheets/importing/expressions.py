@@ -1,7 +1,7 @@
 """Mathcad's trees as expressions of worksheets.
 
-A vector of Mathcad is a list. A range variable stands for its values, one by one, and so does what it indexes.
-What worksheets do not have is refused by its name.
+A vector of Mathcad is a list. A range variable stands for its values, one by one, and so does what it
+indexes. What worksheets do not have is refused by its name.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from app.worksheets.importing.lists import Lists
 from app.worksheets.importing.names import key_of, look
 from app.worksheets.importing.quantities import CONSTANTS, unit_named
 from app.worksheets.importing.said import POWER, Said, number
-from app.worksheets.importing.scope import Choice, Failed, Function, Meant, Range, Value, Written
+from app.worksheets.importing.scope import Choice, Failed, Meant, Range, Value, Written
 from app.worksheets.importing.trees import Node
 
 REFUSED = {

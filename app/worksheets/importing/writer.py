@@ -36,8 +36,8 @@ class Sheets(Protocol):
 class Writer:
     """Writes expressions at one place of a sheet.
 
-    `keep` gives a list within a formula a line of its own. `is_counting` says that the index of a sum is a number
-    in its term.
+    `keep` gives a list within a formula a line of its own. `is_counting` says that the index of a sum is a
+    number in its term.
     """
 
     sheet: Sheets
