@@ -13,7 +13,8 @@ from app.client import AsyncClient, Client, Problem
 
 OPERATIONS = (
     "worksheets", "read_worksheet", "worksheet_text", "check_worksheet", "create_worksheet",
-    "change_worksheet", "test_worksheet", "review_worksheet", "release_worksheet", "withdraw_worksheet", "delete_worksheet",
+    "change_worksheet", "test_worksheet", "review_worksheet", "release_worksheet", "withdraw_worksheet",
+    "delete_worksheet",
 )  # fmt: skip
 
 
