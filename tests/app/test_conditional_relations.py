@@ -11,6 +11,7 @@ from app.designs.calculate import calculate
 from app.designs.document import Document
 from app.designs.explained import explained
 from app.designs.graph import build_graph
+from app.designs.judging import Judging
 
 THIN = "= if film.minimum_film_thickness < 3 um then 22 mm else 20 mm"
 SHELL = {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "= diameter", "width": THIN}}
@@ -149,6 +150,21 @@ def faulty(raw):
     graph, faults = build_graph(Document.model_validate(raw), CATALOGUES)
     assert not faults
     return calculate(graph, lambda shape: None, lambda *question: None)
+
+
+class TestErrors:
+    @pytest.mark.parametrize(
+        ("share", "verdict"), [(0.5, "not_met"), (0.9999, "undecided"), (1.0001, "undecided"), (1.5, "met")]
+    )
+    def test_analytic_a_decision_within_the_error_is_open(self, share, verdict):
+        """The film has an error: where its band holds the threshold, both widths are possible."""
+        film = calculated(bearing()).value(ref("film.minimum_film_thickness"))
+        test = f"film.minimum_film_thickness < {share * film * 1e6:.9f} um"
+        wanted = f"= if {test} then 18 mm else 22 mm"
+        criteria = {"narrow": {"require": "wanted <= 20 mm"}}
+        judging = Judging(calculated(bearing({"wanted": wanted}, criteria=criteria)))
+        (judged,) = judging.some(["narrow"])
+        assert judged.verdict == verdict
 
 
 class TestChoices:

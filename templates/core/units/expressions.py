@@ -39,7 +39,7 @@ GRAMMAR = files(__package__).joinpath("relation.lark").read_text(encoding="utf-8
 
 MAX_INDEX = 10**9
 RESERVED = frozenset({"if", "then", "else", "and", "or", "not", "is"})
-"""Words of the grammar; `if` and `not` are no names."""
+"""Words of the grammar; only `if` and `not` may not stand for names in front of a value."""
 
 _OPERATIONS = {**OPERATORS, **LOGIC, "if": IF, "list": LIST}
 

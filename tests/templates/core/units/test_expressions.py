@@ -232,7 +232,19 @@ class TestRefusals:
 
     @pytest.mark.parametrize(
         "text",
-        ["10 then", "1 if", "a or", "if a then b", "[]", "x[", "a is", "a is 3", "(a < b", "a = b", "not"],
+        [
+            "10 then",
+            "1 if",
+            "a or",
+            "if a then b",
+            "[]",
+            "x[",
+            "a is",
+            "a is 3",
+            "(a < b",
+            "a = b",
+            "not a <",
+        ],
     )
     def test_property_what_is_no_expression(self, text):
         with pytest.raises(lark.exceptions.UnexpectedInput):
@@ -260,6 +272,12 @@ class TestNames:
     )
     def test_property_words_behind_values_are_names_elsewhere(self, word):
         assert parse(f"= {word} + 1").names == {word}
+
+    @pytest.mark.parametrize("word", ["if", "not"])
+    @pytest.mark.parametrize("text", ["{}", "{} * 2", "2 / {}", "max({}, 1)", "({}) ** 2", "{}[2]", "{}.x"])
+    def test_property_words_before_values_are_names_elsewhere(self, word, text):
+        (name,) = parse(f"= {text.format(word)}").names
+        assert name.removesuffix(".x") == word
 
     def test_property_a_choice_is_no_quantity_beside(self):
         relation = parse('= if film.oil is "SAE 30" then a else 2')
