@@ -113,6 +113,9 @@ def _clause(
         return "example", reader.typed(statement, numbers[0], unit_text, "the example")
     limits = [reader.limit(statement, part, unit_text) for part in numbers]
     if clause.data == "published":
+        if not limits[0] < limits[1]:
+            remedy = "write the smaller one first"
+            raise statement.refuse("limit", "the published range is empty", clause, remedy)
         return "published", tuple(limits)
     sign = str(clause.children[0])
     if sign not in _BOUNDS:

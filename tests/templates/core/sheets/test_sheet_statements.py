@@ -256,6 +256,7 @@ class TestText:
         ('given a [1] "a"\ncheck a < 3 "c"', "check"),
         ('given a [1] "a"\ncheck a <= 3 and a >= 1 "c"', "check"),
         ('given a [1] "a" (held)', "clause"),
+        ('given a [1] "a" (published 40 to 1)', "limit"),
         ('given a [1] "a"\nrequire a > 1 "r" (> 3)', "clause"),
         ('given a [1] "a"\ntest "t" with b = 1 gives a = 1 within 1 %', "unknown_name"),
         ('given a [1] = 1 "a"\nb [mm] = 1 mm "b"\ntest "t" gives b = 1 N within 1 %', "unit_mismatch"),
