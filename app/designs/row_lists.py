@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from app.designs.columns import Column, aligned, stacked
 from templates.core.units.lists import ITEM, LIST
-from templates.core.units.nodes import Constant, Item, Name, Operation, Word
+from templates.core.units.nodes import Constant, Item, Name, Node, Operation, Word
 from templates.core.units.walking import LISTWISE, check_ranks, listwise
 
 
-def column_of(node: Any, columns: Mapping[str, Column]) -> Column:
+def column_of(node: Node, columns: Mapping[str, Column]) -> Column:
     """The value of a tree in all rows, from the columns of its names and of items by their text.
 
     Raises
@@ -43,7 +42,7 @@ def _applied(operation: Operation, parts: list[Column]) -> Column:
     return Column(operation.calculate(*values.values()), has_rows)
 
 
-def rank_of(node: Any, ranks: Mapping[str, int]) -> int:
+def rank_of(node: Node, ranks: Mapping[str, int]) -> int:
     """How many axes a tree has in one row, from those of its names and of items by their text."""
     match node:
         case Constant() | Word():

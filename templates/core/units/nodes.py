@@ -73,3 +73,7 @@ class Operation:
     calculate: Callable[..., Any]
     kind: Callable[[Operation, list[Kind], tuple[Any, ...]], Kind]
     arity: int | None = None  # any number of arguments, if None
+
+
+Node = Constant | Word | Name | Item | Apply
+"""A node of a tree."""
