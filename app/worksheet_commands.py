@@ -83,7 +83,9 @@ def import_command(files: tuple[Path, ...], author: str | None, url: str | None,
 @url_option
 @data_option
 @click.pass_context
-def import_sheet_command(ctx: click.Context, file: Path, id: str | None, url: str | None, data: Path | None) -> None:
+def import_sheet_command(
+    ctx: click.Context, file: Path, id: str | None, url: str | None, data: Path | None
+) -> None:
     """Import FILE, a sheet of Mathcad Prime (.mcdx) or Mathcad 11 to 15 (.xmcd), as a draft.
 
     Prints what became of its regions. The exit code is 1 if some of them forbid a release.
@@ -96,7 +98,9 @@ def import_sheet_command(ctx: click.Context, file: Path, id: str | None, url: st
     for region in report.items:
         if region.is_unresolved:
             line = f"line {region.line}: " if region.line else ""
-            click.echo(plain(f"  {line}region {region.region} {region.state}: {region.reason or _values(region)}"))
+            click.echo(
+                plain(f"  {line}region {region.region} {region.state}: {region.reason or _values(region)}")
+            )
     ctx.exit(1 if report.unresolved else 0)
 
 

@@ -21,6 +21,7 @@ from app.calculations.pool import Calculation, CalculationPool
 from app.calculations.steps import Steps
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository as designs
+from app.designs.document import Document
 from app.jobs.service import Completion, Job, JobContext, JobFailed, JobRests, Jobs
 from app.plain import JsonObject
 from app.schemas.studies import StudyResult
@@ -304,4 +305,5 @@ def run_of(parts: Parts, id: str, job: Job, context: JobContext, kind: type[R]) 
         document = designs.document(session, row.design_id, row.revision)
     plan = Plan.of(row.plan)
     task = Task.of(document, row.body, plan.places, plan.measured, parts.catalogues)
-    return kind(parts, row, task, parts.solids.of(document, parts.catalogues, context), job, context)
+    solids = parts.solids.of(Document.model_validate(document), parts.catalogues, context)
+    return kind(parts, row, task, solids, job, context)

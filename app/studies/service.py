@@ -92,12 +92,10 @@ class Studies:
         varied = columns_named(body.rows) if body.method == "table" else list(body.vary)
         measured = measured_in(self.designs, document)
         task = Task.of(document, plain, varied, measured, self.catalogues)
-        return Draft(body.design, number, plain, body.rows, task, self._solid_seconds(document))
-
-    def _solid_seconds(self, document: JsonObject) -> float:
-        """How long a solid of a design takes [s], as jobs have taken lately."""
-        analysed = any(model.get("analyses") for model in document.get("models", {}).values())
-        return self.jobs.usual_seconds(BUILD) + (self.jobs.usual_seconds(ANALYSIS) if analysed else 0.0)
+        seconds = self.jobs.usual_seconds(BUILD)
+        if any(model.get("analyses") for model in document.get("models", {}).values()):
+            seconds += self.jobs.usual_seconds(ANALYSIS)
+        return Draft(body.design, number, plain, body.rows, task, seconds)
 
     def begin(self, draft: Draft, plan: Plan, given: Array | None, once: Once) -> str:
         """Write a study and queue its job.

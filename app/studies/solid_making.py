@@ -21,7 +21,6 @@ from app.designs.reference import Reference
 from app.designs.row_refusals import refusal_of
 from app.designs.service import analysed, built
 from app.jobs.service import JobContext
-from app.plain import JsonObject
 from app.solids.builds import Builds
 from app.solids.finding import Analysing
 from app.solids.questions import in_order
@@ -57,9 +56,9 @@ class SolidMaking:
         self.database, self.builds, self.analysing = database, builds, analysing
         self._turns = threading.BoundedSemaphore(most)
 
-    def of(self, document: JsonObject, catalogues: Catalogues, context: JobContext) -> StudySolids:
+    def of(self, document: Document, catalogues: Catalogues, context: JobContext) -> StudySolids:
         """The solids of one study."""
-        return StudySolids(self, Document.model_validate(document), catalogues, context)
+        return StudySolids(self, document, catalogues, context)
 
     @contextmanager
     def turn(self, context: JobContext) -> Iterator[None]:

@@ -90,7 +90,7 @@ async def _page(
 ) -> Response:
     number = _number(template, version)
     design = await api.get(f"/designs/{id}", Design)
-    newer = await api.get(f"/templates/{template}/versions/{number}", Template)
+    newer = await api.find(f"/templates/{template}/versions/{number}", Template)  # not of a draft
     used = {name: step.version for name, step in design.steps.items() if step.template == template}
     if not used:
         raise Refused.because(MISSING, f"no step of the design uses {template}")
@@ -109,7 +109,10 @@ async def _page(
         "upgrade.html",
         status=refused.status if refused else 200,
         design=design,
-        template=newer,
+        template=template,
+        version=number,
+        is_released=newer is not None,
+        withdrawn=newer.withdrawn if newer else None,
         used=used,
         is_due=any(one != number for one in used.values()),
         preview=preview,

@@ -22,28 +22,64 @@ from templates.core.paper.mathml import mathml
 from templates.core.paper.schema import describe
 from templates.core.sheets import Sheet, SheetRefused, Statement, read, run_tests
 from templates.core.sheets.grammar import LANGUAGE
+from templates.core.sheets.lines import chunks_of, normal
 
 UNNAMED = "worksheet"
 """The id under which a text without one is described."""
 
+ROUNDS = 4
+"""How often a faulty text is read again without its faulty statements."""
+
 
 def checked(text: str, id: str | None) -> bytes:
-    """The answer to `check` as JSON."""
+    """The answer to `check` as JSON.
+
+    Where statements are faulty, the lines show what the others give without them.
+    """
     try:
         answer = _sound(read(text), id or UNNAMED)
     except SheetRefused as refused:
-        faults = [SheetFault(**asdict(fault)) for fault in refused.faults]
-        answer = SheetCheck(
-            language=LANGUAGE,
-            digest=None,
-            title=title_of(text),
-            faults=faults,
-            lines=[],
-            names=[],
-            tests=[],
-            template=None,
-        )
+        answer = _faulty(text, refused)
     return answer.model_dump_json(by_alias=True, exclude_unset=True).encode()
+
+
+def _faulty(text: str, refused: SheetRefused) -> SheetCheck:
+    rest = without_faults(text, refused)
+    return SheetCheck(
+        language=LANGUAGE,
+        digest=None,
+        title=title_of(text),
+        faults=[SheetFault(**asdict(fault)) for fault in refused.faults],
+        lines=list(_lines(rest, rest.template(UNNAMED, 1))) if rest else [],
+        names=_names(rest) if rest else [],
+        tests=[],
+        template=None,
+    )
+
+
+def without_faults(text: str, refused: SheetRefused) -> Sheet | None:
+    """The sheet that the sound statements make, each in its line; None where even these make none.
+
+    Statements that use a faulty one are faulty without it, so the text is read at most `ROUNDS` times more.
+    """
+    for _ in range(ROUNDS):
+        try:
+            text = _blanked(text, refused)
+            return read(text)
+        except SheetRefused as again:
+            refused = again
+    return None
+
+
+def _blanked(text: str, refused: SheetRefused) -> str:
+    """A text with empty lines in the place of its faulty statements."""
+    text = normal(text)
+    lines, faulty = text.split("\n"), {fault.line for fault in refused.faults}
+    for chunk in chunks_of(text):
+        places = range(chunk.line, chunk.last_line + 1)
+        if not faulty.isdisjoint(places):
+            lines[chunk.line - 1 : chunk.last_line] = [""] * len(places)
+    return "\n".join(lines)
 
 
 def _sound(sheet: Sheet, id: str) -> SheetCheck:
@@ -54,10 +90,14 @@ def _sound(sheet: Sheet, id: str) -> SheetCheck:
         title=sheet.title[:LONGEST_TITLE],
         faults=[],
         lines=list(_lines(sheet, cls)),
-        names=[SheetName(**asdict(named)) for named in sheet.names],
+        names=_names(sheet),
         tests=[SheetTest(**asdict(result)) for result in run_tests(cls)],
         template=TemplateAnswer.model_validate({**describe(cls), "latest": True}),
     )
+
+
+def _names(sheet: Sheet) -> list[SheetName]:
+    return [SheetName(**asdict(named)) for named in sheet.names]
 
 
 @dataclass(frozen=True)

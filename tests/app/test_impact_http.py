@@ -8,6 +8,8 @@ import pytest
 from click.testing import CliRunner
 from impact_designs import at_points, loaded, paper, with_variants
 from serving import API, created, problem, revision
+from sheets import WIDER, edited, place, released, reviewed
+from sheets import step as step_of
 from sqlalchemy import func, select
 
 from app.cli import main
@@ -188,3 +190,30 @@ def test_the_command_lists_the_worst_designs(bearings, served):
     wrong = CliRunner().invoke(main, ["impact", "oil_film", "9", "--url", served.url])
     assert wrong.exit_code == 1
     assert "no version 9" in wrong.output
+
+
+def test_a_worksheet_is_held_against_designs_before_its_release(http):
+    sheet = released(http)
+    step = {
+        "template": sheet["id"],
+        "version": 1,
+        "inputs": {"radial_load": "25 kN", "bearing_diameter": "48 mm"},
+    }
+    criteria = {"tight": {"require": "duty.finished_bore <= 48.055 mm"}}
+    made = [{"name": f"duty {n}", "steps": {"duty": step}, "criteria": criteria} for n in range(3)]
+    made[2] = {**made[2], "criteria": {}}
+    ids = [created(http, document)["id"] for document in made]
+    draft = edited(http, http.get(place(sheet["id"])).json(), WIDER)
+    assert (draft["version"], draft["state"]) == (2, "draft")
+    path = f"{API}/templates/{sheet['id']}/versions/2/impact"
+    before = http.post(path, headers={"Prefer": "wait=60"}).json()
+    assert (before["concerned"], before["moved"]) == (3, 3)
+    assert before["designs"][-1]["design"] == ids[2]
+    for impact in before["designs"][:2]:
+        assert impact["verdicts"] == [{"name": "tight", "old": "met", "new": "not_met"}]
+        assert impact["output"]["name"] == "duty.finished_bore"
+        assert impact["output"]["new"]["value"] == pytest.approx(48.06)
+        assert impact["margin"]["relative"] == pytest.approx(0.01 / 0.005)
+    reviewed(http, sheet["id"])
+    step_of(http, sheet["id"], "release")
+    assert http.post(path, headers={"Prefer": "wait=60"}).json() == before

@@ -83,7 +83,8 @@ def builds(served):
 
 
 def current(http, design):
-    ask = lambda: http.get(f"{API}/designs/{design['id']}").json()  # noqa: E731
+    """The first revision of a design, once it is current."""
+    ask = lambda: http.get(f"{API}/designs/{design['id']}/revisions/1").json()  # noqa: E731
     return until(ask, lambda now: now["state"] == "current")
 
 
@@ -177,8 +178,9 @@ def test_held_criteria_and_the_best_row_count_with_solids(http):
     assert masses == [None] * 5  # not asked for
     best = study["result"]["best"]
     assert best["row"] == verdicts.count("met") - 1
-    built = current(http, {"id": study["result"]["design"]})
-    assert set(built["variants"]) == {"best"}
+    current(http, {"id": study["result"]["design"]})
+    table = http.get(f"{API}/designs/{study['result']['design']}/variants").json()
+    assert [row["name"] for row in table["rows"]] == ["best"]
 
 
 def test_slopes_of_a_measure(http):
@@ -212,3 +214,24 @@ def test_progress_counts_solids_and_cancelling_stops_between_them(served, http):
     assert len(there) < 200
     again = done(http, new_design(http, BLOCK), method="table", rows=TABLE, outputs=["cube.mass"])
     assert again["refused"]["count"] == 0
+
+
+def test_finite_elements_on_the_solid_of_each_row(http):
+    """The stiffness of a round bar grows with the fourth power of its diameter."""
+    bar = {"id": "bar", "version": 1, "parameters": {"diameter": "= size", "length": "40 mm"}}
+    models = {"bar": {**bar, "analyses": {"torsion": {"level": "coarse"}}}}
+    parameters = {"size": "20 mm", "length": "= size"}
+    design = new_design(http, {**TWICE, "parameters": parameters, "models": models})
+    table = {"size": {"value": [16, 20, 16], "unit": "mm"}}
+    study = begun(http, design, method="table", rows=table, outputs=["bar.torsion.stiffness", "bar.mass"])
+    assert study["estimate"]["solids"] == 2
+    assert ended(http, study)["state"] == "done"
+    thin, thick, again = (row["values"]["bar.torsion.stiffness"] for row in rows(http, study)["items"])
+    assert thin == again
+    assert thick / thin == pytest.approx((20 / 16) ** 4, rel=0.02)
+    many = {"size": {"value": np.linspace(16, 20, 101).tolist(), "unit": "mm"}}
+    (fault,) = asked(http, design, method="table", rows=many, outputs=["bar.torsion.stiffness"]).json()[
+        "errors"
+    ]
+    assert fault["code"] == "needs_solids"
+    assert "at most 100 by finite elements" in fault["detail"]

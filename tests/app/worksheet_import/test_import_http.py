@@ -1,4 +1,4 @@
-"""Import over REST: a job, a draft, its regions, the original; what forbids a release, and what is refused."""
+"""Import over REST: a job, a draft, its regions; what forbids a release, and what is refused."""
 
 import asyncio
 
@@ -125,7 +125,9 @@ def test_a_typed_worksheet_has_no_import(http):
 def test_one_key_makes_one_import(http):
     headers = {**BINARY, "Idempotency-Key": "import once"}
     places = {
-        http.post("/api/v1/worksheets/import?id=import_once", content=SOUND, headers=headers).headers["Location"]
+        http.post("/api/v1/worksheets/import?id=import_once", content=SOUND, headers=headers).headers[
+            "Location"
+        ]
         for _ in range(3)
     }
     assert len(places) == 1
