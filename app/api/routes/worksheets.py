@@ -10,6 +10,7 @@ from typing import Annotated
 from fastapi import APIRouter, Header, Path, Query, Response
 from fastapi.responses import PlainTextResponse
 from pydantic.config import JsonDict
+from starlette.convertors import StringConvertor, register_url_convertor
 
 from app.api.dependencies import TheOnce, TheThreads, TheWorksheets
 from app.api.gate.clients import TheClient
@@ -24,6 +25,14 @@ from app.worksheets.checking import checked
 from app.worksheets.schemas import ReviewIn, SheetCheckIn, SheetIn, SheetPatch, WithdrawIn
 from app.worksheets.service import Worksheets
 
+
+class SheetId(StringConvertor):
+    """The id in a path that may end with a word of its own, such as `/worksheets/check`."""
+
+    regex = "(?!(?:check|import)$)[^/]+"
+
+
+register_url_convertor("sheet", SheetId())
 router = APIRouter(prefix="/api/v1/worksheets", tags=["worksheets"], route_class=StrictRoute)
 
 Id = Annotated[str, Path(max_length=64, examples=["bush_duty"])]
@@ -69,13 +78,13 @@ def list_worksheets(worksheets: TheWorksheets, limit: Limit = 50, cursor: Cursor
     return page(SheetList, rows, limit, lambda row: views.summary(row, broken), lambda row: row.id)
 
 
-@router.get("/{id}", response_model=Sheet, responses=refusals(404))
+@router.get("/{id:sheet}", response_model=Sheet, responses=refusals(404))
 def read_worksheet(id: Id, worksheets: TheWorksheets) -> Response:
     """A worksheet at its newest version; the ETag is that of this text and state."""
     return _shown(worksheets, worksheets.newest(id))
 
 
-@router.patch("/{id}", response_model=Sheet, responses=refusals(404, 429), openapi_extra=PATCH)
+@router.patch("/{id:sheet}", response_model=Sheet, responses=refusals(404, 429), openapi_extra=PATCH)
 async def change_worksheet(
     id: Id,
     body: SheetPatch,
@@ -89,7 +98,7 @@ async def change_worksheet(
     return await threads.run(_shown, worksheets, row)
 
 
-@router.delete("/{id}", status_code=204, responses=refusals(404, 409))
+@router.delete("/{id:sheet}", status_code=204, responses=refusals(404, 409))
 def delete_worksheet(id: Id, worksheets: TheWorksheets, if_match: IfMatch = None) -> Response:
     """Delete the newest version, which was never released; earlier ones stay."""
     worksheets.delete(id, if_match)
