@@ -4,8 +4,22 @@ from __future__ import annotations
 
 import uuid
 
-from app.client.exchange import BASE, MERGE_PATCH, Exchange, Request, answered, get, listed, post, written
+from app.client.exchange import (
+    BASE,
+    MERGE_PATCH,
+    Exchange,
+    Progress,
+    Request,
+    answered,
+    done,
+    get,
+    job_of,
+    listed,
+    post,
+    written,
+)
 from app.client.problem import checked
+from app.schemas.worksheet_imports import SheetImport
 from app.schemas.worksheets import Sheet, SheetCheck, SheetList, SheetSummary
 
 _PATH = "/worksheets"
@@ -38,6 +52,29 @@ def create_worksheet(
     """A new worksheet, a draft; two requests under one key make one."""
     body = {"id": id, "text": text, **({"author": author} if author else {})}
     return answered(Sheet, post(_PATH, body, {"Idempotency-Key": key or uuid.uuid4().hex}))
+
+
+def import_worksheet(
+    id: str, content: bytes, file: str, *, key: str | None = None, on_progress: Progress | None = None
+) -> Exchange[Sheet]:
+    """The draft that a sheet of Mathcad (.mcdx, .xmcd) becomes, once it has been read.
+
+    Raises
+    ------
+    Problem
+        If the file is not taken, or the id is.
+    """
+    headers = {"Content-Type": "application/octet-stream", "Idempotency-Key": key or uuid.uuid4().hex}
+    query = {"id": id, "file": file}
+    response = checked((yield Request("POST", f"{BASE}{_PATH}/import", content, query, headers)))
+    if job := job_of(response):
+        yield from done(job, on_progress)
+    return (yield from read_worksheet(id))
+
+
+def read_import(id: str) -> Exchange[SheetImport]:
+    """What became of every region of the sheet that a worksheet was imported from."""
+    return answered(SheetImport, get(f"{_PATH}/{id}/import"))
 
 
 def change_worksheet(sheet: Sheet, text: str, *, author: str | None = None) -> Exchange[Sheet]:

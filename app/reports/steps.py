@@ -23,6 +23,7 @@ from templates.core.language.intake import Input
 from templates.core.language.spec import Formula as DeclaredFormula
 from templates.core.language.spec import Profile
 from templates.core.language.template import Template
+from templates.core.paper.expressions import relation_latex
 from templates.core.paper.mathml import mathml, symbol
 from templates.core.paper.schema import documentation
 from templates.core.paper.verdicts import Check
@@ -149,7 +150,14 @@ def _input(name: str, used: UsedInput | Raw, raw: Raw, cls: Class) -> Line:
         cell(used, whole=given),
         in_si(used),
         relation or used.source,
+        relation=relation_mathml(raw),
     )
+
+
+def relation_mathml(raw: Raw) -> str:
+    """A relation in MathML; empty where it is a name alone, or none."""
+    latex = relation_latex(raw)
+    return mathml(latex) if latex else ""
 
 
 def _exists(output: Output) -> bool:

@@ -9,9 +9,9 @@ from pydantic import Field
 from app.schemas.answers import Answer
 
 RegionState = Literal["verified", "differs", "unverified", "shown", "refused", "blocked"]
-"""verified: the worksheet gives Mathcad's own result within 1e-9. differs: it gives another. unverified: Mathcad
-stored none. shown: it calculates nothing. refused: it has what worksheets do not have. blocked: it needs a
-region that was not translated."""
+"""verified: the worksheet gives Mathcad's own result within 1e-9. differs: it gives another. unverified:
+Mathcad stored none. shown: it calculates nothing. refused: it has what worksheets do not have. blocked: it
+needs a region that was not translated."""
 
 
 class RegionCounts(Answer):

@@ -140,4 +140,4 @@ class Sheet(Answer):
     updated: str
     released: str | None
     versions: list[SheetVersion]
-    import_: SheetOrigin | None = Field(alias="import", description="what it was imported from; null if typed")
+    import_: SheetOrigin | None = Field(alias="import", description="its source; null if it was typed")

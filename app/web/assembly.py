@@ -15,6 +15,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from app.web import (
     actions,
     impact_page,
+    import_page,
     organising,
     problems,
     routes,
@@ -79,6 +80,8 @@ def install(app: FastAPI) -> None:
     app.include_router(tables.router)
     app.include_router(study_routes.router)
     app.include_router(study_routes.forms)
+    app.include_router(import_page.router)  # before the worksheets: `import` is no id of one
+    app.include_router(import_page.forms)
     app.include_router(worksheet_routes.router)
     app.include_router(worksheet_routes.forms)
     for pages in (impact_page, upgrade_page):

@@ -58,7 +58,8 @@ class Unresolved(OutOfOrder):
         self.reasons = tuple(reasons)
         count, some = len(self.reasons), "; ".join(self.reasons[:5])
         remedy = "rewrite or remove the lines that stand for them"
-        super().__init__(f"{count} {'region' if count == 1 else 'regions'} of the import unresolved: {some}: {remedy}")
+        regions = "region" if count == 1 else "regions"
+        super().__init__(f"{count} {regions} of the import unresolved: {some}: {remedy}")
 
 
 class OwnReview(WorksheetError):

@@ -45,9 +45,12 @@ OVER_LISTS: Mapping[str, str] = {
 COUNTS = frozenset({"length", "rows", "last"})
 
 REFUSED: Mapping[str, str] = {
-    **dict.fromkeys(("augment", "stack", "submatrix", "identity", "diag", "det", "tr", "rank", "rref", "geninv",
-                     "eigenvals", "eigenvec", "eigenvecs", "lsolve", "matrix", "cols", "csort", "rsort", "norm1",
-                     "norm2", "norme", "normi", "cond1", "cond2", "conde", "condi", "svds", "genvals", "genvecs",
+    **dict.fromkeys(("augment", "stack", "submatrix", "identity", "diag", "det", "tr", "rank", "rref",
+                     "geninv",
+                     "eigenvals", "eigenvec", "eigenvecs", "lsolve", "matrix", "cols", "csort", "rsort",
+                     "norm1",
+                     "norm2", "norme", "normi", "cond1", "cond2", "conde", "condi", "svds", "genvals",
+                     "genvecs",
                      "CreateMesh", "IsArray", "IsScalar"), "matrix function"),
     **dict.fromkeys(("rnd", "runif", "rnorm", "rweibull", "rt", "rexp"), "random numbers"),
     **dict.fromkeys(("READFILE", "READEXCEL", "READPRN", "READCSV", "WRITEPRN", "WRITEEXCEL"), "file"),

@@ -51,7 +51,7 @@ def imported(content: bytes, title: str) -> Imported:
 
 
 def _title(outcomes: list[Outcome], other: str) -> str:
-    """The first text of the sheet if it is short enough for a title, which it then stands for; else another."""
+    """The first text of the sheet if it is short enough for a title; else another."""
     first = next((o for o in outcomes if o.original.kind == "text" and o.original.text), None)
     if first is not None and len(first.original.text) <= LONGEST_TITLE and "\n" not in first.original.text:
         if first is outcomes[0]:

@@ -20,8 +20,9 @@ from templates.core.units.units import compatible, registry, unit
 Part = tuple[Any, Sort]
 Call = Callable[[list[Part]], Part]
 
-_USUAL = ("1", "mm", "m**2", "m**3", "s", "kg", "kN", "MPa", "kN*m", "kg/m**3", "m/s", "m/s**2", "W", "K", "J",
-          "Pa*s", "m**2/s", "kN/m", "m**4", "rad/s", "1/s", "N/m**3", "A", "V", "ohm")  # fmt: skip
+_USUAL = ("1", "mm", "m**2", "m**3", "s", "kg", "kN", "MPa", "kN*m", "kg/m**3", "m/s", "m/s**2", "W", "K",
+          "J", "Pa*s", "m**2/s", "kN/m", "m**4", "rad/s", "1/s", "N/m**3", "A", "V",
+          "ohm")  # fmt: skip
 """Units in which results are declared, where the sheet asks for none."""
 _SHORT = {"meter": "m", "kilogram": "kg", "second": "s", "kelvin": "K", "ampere": "A", "mole": "mol",
           "radian": "rad", "candela": "cd"}  # fmt: skip

@@ -9,7 +9,8 @@ from app.worksheets.importing.regions import MOST_REGIONS, Kind, Original, Origi
 from app.worksheets.importing.trees import Node, read
 
 _KINDS: Mapping[str, Kind] = {
-    "math": "math", "text": "text", "plot": "plot", "picture": "picture", "area": "area", "pageBreak": "page break",
+    "math": "math", "text": "text", "plot": "plot", "picture": "picture", "area": "area",
+    "pageBreak": "page break",
 }  # fmt: skip
 _RENAMED = {"ifThen": "if", "otherwise": "else", "sqrt": "nthRoot"}
 _SKIPPED = {"originRef", "parentRef", "comment", "originComment", "contentHash", "resultFormat"}

@@ -81,7 +81,7 @@ _SUBSCRIPT = re.compile(r"[A-Za-z0-9,*+ ]{1,20}")
 
 
 def symbol(key: str) -> str:
-    """LaTeX of a name with its subscript, such as `\\sigma_{c2}`; empty where it cannot be written so."""
+    r"""LaTeX of a name with its subscript, such as `\sigma_{c2}`; empty where it cannot be written so."""
     head, _, below = key.partition("_{")
     head, below = head.strip(), below.replace("{", "").replace("}", "")
     letter = f"\\{GREEK[head]}" if head in _TEX else head if re.fullmatch("[A-Za-z]", head) else ""

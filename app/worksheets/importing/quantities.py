@@ -30,9 +30,11 @@ CONSTANTS: Mapping[str, tuple[float, str]] = {
     "e": (EULER, "1"), "γ": (0.5772156649015329, "1"), "α": (0.0072973525643, "1"),
     "c": (299792458.0, "m/s"), "g": (9.80665, "m/s**2"), "e_{c}": (1.602176634e-19, "coulomb"),
     "h": (6.62607015e-34, "J*s"), "ℏ": (6.62607015e-34 / (2 * PI), "J*s"), "k": (1.380649e-23, "J/K"),
-    "m_{u}": (1.66053906892e-27, "kg"), "N_{A}": (6.02214076e23, "mol**-1"), "R": (8.31446261815324, "J/(mol*K)"),
+    "m_{u}": (1.66053906892e-27, "kg"), "N_{A}": (6.02214076e23, "mol**-1"),
+    "R": (8.31446261815324, "J/(mol*K)"),
     "R_{∞}": (10973731.568157, "m**-1"), "ε_{0}": (8.8541878188e-12, "F/m"),
-    "μ_{0}": (1.25663706127e-6, "N/A**2"), "σ": (5.670374419e-8, "W/(m**2*K**4)"), "Φ_{0}": (2.067833848e-15, "Wb"),
+    "μ_{0}": (1.25663706127e-6, "N/A**2"), "σ": (5.670374419e-8, "W/(m**2*K**4)"),
+    "Φ_{0}": (2.067833848e-15, "Wb"),
 }  # fmt: skip
 """Constants of Mathcad Prime, CODATA 2022; names are these only where they are labelled as constants."""
 
@@ -48,7 +50,7 @@ class Scaled:
     powers: tuple[tuple[str, Fraction], ...] = ()
 
     def times(self, other: Scaled, power: int = 1) -> Scaled:
-        """This, times a power of another."""
+        """The product with a power of another."""
         powers = dict(self.powers)
         for name, exponent in other.powers:
             powers[name] = powers.get(name, Fraction(0)) + exponent * power
@@ -56,7 +58,7 @@ class Scaled:
         return Scaled(self.number * float(other.number) ** power, kept)
 
     def raised(self, power: Fraction) -> Scaled:
-        """A power of this."""
+        """A power of the quantity."""
         powers = tuple((name, exponent * power) for name, exponent in self.powers)
         return Scaled(float(self.number) ** float(power), powers)
 

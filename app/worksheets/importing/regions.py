@@ -19,8 +19,8 @@ class Original:
     """One region: its number in the sheet, what it is, where it stands on the page, and what it says.
 
     `top` and `left` are in the units of the sheet's page (96 to the inch in Mathcad Prime, 72 before it),
-    within the area or solve block where it stands. `cached` is Mathcad's own result. `role` is that of a region
-    of a solve block: a guess value, a constraint, or the solver.
+    within the area or solve block where it stands. `cached` is Mathcad's own result. `role` is that of a
+    region of a solve block: a guess value, a constraint, or the solver.
     """
 
     number: str
@@ -45,9 +45,9 @@ class OriginalSheet:
     regions: tuple[Original, ...] = ()
     origin: int = 0
     is_labelled: bool = True
-    """Whether names say what they are: in Mathcad Prime a unit is labelled so, before it a name may be either."""
+    """Whether names say what they are: in Mathcad Prime a unit is labelled so."""
     results_carry_units: bool = False
-    """Whether a cached result names its whole unit; else it is a multiple of the unit that the region asks for."""
+    """Whether a cached result names its whole unit; else it is a multiple of the unit that is asked for."""
     notes: tuple[str, ...] = field(default=())
 
 

@@ -31,8 +31,8 @@ class Said:
     """An expression of a worksheet.
 
     A list is either a vector of Mathcad, for which a product is a scalar product, or values taken one by one
-    along a range, which Mathcad calculates with as with single numbers. `number` is the value where it is known
-    without calculating the sheet.
+    along a range, which Mathcad calculates with as with single numbers. `number` is the value where it is
+    known without calculating the sheet.
     """
 
     text: str

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Union
 
 from app.worksheets.importing.said import Axis, Said
 from app.worksheets.importing.trees import Node
@@ -76,5 +75,5 @@ class Failed:
     region: str
 
 
-Meant = Union[Value, Range, Choice, Written, Function, Failed]
+Meant = Value | Range | Choice | Written | Function | Failed
 Scope = dict[str, Meant]

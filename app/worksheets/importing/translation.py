@@ -8,7 +8,7 @@ from app.worksheets.importing.definitions import Definitions
 from app.worksheets.importing.errors import Unnamed, Untranslatable
 from app.worksheets.importing.names import key_of, look
 from app.worksheets.importing.outcome import Outcome, one_line
-from app.worksheets.importing.regions import Original, OriginalSheet
+from app.worksheets.importing.regions import OriginalSheet
 from app.worksheets.importing.trees import Node
 
 _SHOWN = {"plot": "plot", "picture": "picture", "page break": "page break", "area": "area",

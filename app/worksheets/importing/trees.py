@@ -1,7 +1,8 @@
 """XML as trees of plain nodes. There is no document type, so there are no entities: both are refused.
 
-The reader is the standard library's expat with handlers of its own. It keeps no namespaces: their prefixes are
-a writer's choice, and no sheet has two elements of one local name in one place that mean different things.
+The reader is the standard library's expat with handlers of its own. It keeps no namespaces: their prefixes
+are a writer's choice, and no sheet has two elements of one local name in one place that mean different
+things.
 """
 
 from __future__ import annotations

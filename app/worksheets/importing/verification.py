@@ -1,6 +1,7 @@
 """The worksheet is read and calculated; its values are held against those that Mathcad stored.
 
-The language has the last word: a line that it refuses is a region that is refused, and what needs it is blocked.
+The language has the last word: a line that it refuses is a region that is refused, and what needs it is
+blocked.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ def verified(title: str, outcomes: Sequence[Outcome]) -> str:
 
 
 def _readable(title: str, outcomes: Sequence[Outcome]) -> Sheet | None:
-    """The worksheet, after what the language refuses has become remarks; None if that takes too many rounds."""
+    """The worksheet, once what the language refuses has become remarks; None if it takes too long."""
     gone: dict[str, str] = {}  # names without a line, by the region that had it
     for _ in range(MOST_ROUNDS):
         lines = list(_lines(title, outcomes))

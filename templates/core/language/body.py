@@ -19,6 +19,8 @@ class Body(ABC):
 
     uses: tuple[str, ...]
     line: int
+    name = ""  # the attribute that it calculates
+    inputs: tuple[str, ...] = ()  # those that it is about, if it is a rule
     has_numbers = True  # whether it is written once more with numbers in the place of attributes
 
     @abstractmethod

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from templates.core.errors import FaultyText
 from templates.core.paper.mathml import (
     ATOM,
     POWER,
@@ -16,8 +17,12 @@ from templates.core.paper.mathml import (
     unit_symbol,
 )
 from templates.core.units.operations import Constant, Item, Name, Word
+from templates.core.units.relation import is_relation, parse
+from templates.core.units.walking import depth_of
 
 CONDITION = SUM - 1
+DEEPEST_ON_PAPER = 8  # the typesetter nests few formulas
+_NO_LATEX = str.maketrans("{}\\&", "()/+")  # in a text, what LaTeX or markup would read
 _TWO = {  # how it is written, how tightly it binds, and how tightly its sides must
     "+": ("{}+{}", SUM, SUM, SUM),
     "-": ("{}-{}", SUM, SUM, PRODUCT),
@@ -61,6 +66,20 @@ def latex(node: Any, symbols: Mapping[str, str], times: str = r"\,", least: int 
     return _Writer(symbols, times).within(node, least)
 
 
+def relation_latex(raw: object) -> str:
+    """The LaTeX of a relation as typed.
+
+    Empty where it is a name alone, too deep to be read on paper, a list of relations, or none.
+    """
+    try:
+        relation = parse(str(raw)) if is_relation(raw) else None
+    except FaultyText:
+        return ""
+    if relation is None or relation.only_name or depth_of(relation.tree) > DEEPEST_ON_PAPER:
+        return ""
+    return latex(relation.tree, {})
+
+
 class _Writer:
     def __init__(self, symbols: Mapping[str, str], times: str) -> None:
         self.symbols, self.times = symbols, times
@@ -74,7 +93,7 @@ class _Writer:
             case Constant(text=text):
                 return _constant(text)
             case Word(text=text):
-                return rf"\text{{{_quoted(text)}}}", ATOM
+                return _words(text.translate(_NO_LATEX)), ATOM
             case Name(name=name):
                 shown = self.symbol(name)
                 return shown, tightness(shown)
@@ -85,9 +104,7 @@ class _Writer:
 
     def symbol(self, name: str) -> str:
         """The symbol of a name; a value of a step has the step as its index."""
-        if name in self.symbols:
-            return self.symbols[name]
-        return _indexed(named_symbol(name.rpartition(".")[2]), _roman(name.rpartition(".")[0]))
+        return self.symbols.get(name) or _symbol(*name.rpartition(".")[::2])
 
     def operation(self, sign: str, parts: tuple[Any, ...]) -> Written:
         match sign, parts:
@@ -146,9 +163,16 @@ def _constant(text: str) -> Written:
     number, _, unit = text.partition(" ")
     mantissa, _, exponent = number.lower().partition("e")
     shown = rf"{mantissa}\cdot 10^{{{int(exponent)}}}" if exponent else mantissa
-    printed = unit_symbol(unit).replace("%", r"\%") if unit else ""
+    printed = unit_symbol(unit)
     own = SUM if number.startswith("-") else PRODUCT if unit or exponent else ATOM
-    return (rf"{shown}~\text{{{printed}}}" if printed else shown), own
+    return (rf"{shown}~{_words(printed)}" if printed else shown), own
+
+
+def _symbol(block: str, name: str) -> str:
+    """A letter with its index, or words; behind it the block to which it belongs."""
+    symbol = named_symbol(name)
+    own = symbol if not symbol.startswith(r"\mathrm") else _roman(name)
+    return _indexed(own, _roman(block))
 
 
 def _indexed(symbol: str, index: str) -> str:
@@ -158,9 +182,10 @@ def _indexed(symbol: str, index: str) -> str:
     return f"{symbol[:-1]},{index}}}" if symbol.endswith("}") and "_{" in symbol else f"{symbol}_{{{index}}}"
 
 
-def _roman(words: str) -> str:
-    return rf"\mathrm{{{_quoted(words)}}}" if words else ""
+def _roman(name: str) -> str:
+    return _words(name.replace("_", " "))
 
 
-def _quoted(words: str) -> str:
-    return words.replace("_", r"\ ").translate({ord(sign): f"\\{sign}" for sign in "%&#$"})
+def _words(text: str) -> str:
+    """A text upright; a percent sign stands outside, where it begins no comment."""
+    return r"\%".join(rf"\text{{{part}}}" if part else "" for part in text.split("%"))

@@ -25,11 +25,19 @@ _SIGNS = {
 _JOINED = {"and": np.logical_and, "or": np.logical_or}
 
 
-class TreeBody(Body):
-    """A tree whose units were checked; `name` is the attribute, `axes` how many its list runs over."""
+def unequal_lengths(body: Body, template: Any) -> InvalidInputs:
+    """The refusal where lists of different lengths meet: it names the result, or the inputs of a rule."""
+    made = getattr(template, "declarations", {}).get(body.name)
+    names = body.inputs or (made.name if made else f"line {body.line}",)
+    detail = "lists of different lengths meet here; give lists of one length"
+    return InvalidInputs([Fault(names[0], "shape", detail, names[1:])])
 
-    def __init__(self, node: Any, line: int, name: str = "", axes: int = 0) -> None:
-        self.node, self.line, self.name, self.axes = node, line, name, axes
+
+class TreeBody(Body):
+    """A tree whose units were checked; `name` is the attribute that it calculates."""
+
+    def __init__(self, node: Any, line: int, name: str = "") -> None:
+        self.node, self.line, self.name = node, line, name
         self.uses = tuple(dict.fromkeys(names_in(node)))
         self.__doc__: str | None = None
         self.__qualname__ = f"line {line}"
@@ -50,15 +58,10 @@ class TreeBody(Body):
         try:
             value = self._run(template)
         except ValueError:
-            raise InvalidInputs([self._unequal(template)]) from None
+            raise unequal_lengths(self, template) from None
         if self._explained and np.isnan(value).any() and hasattr(template, "ledger"):
-            explain(template, self.name, self._explained, self.axes)
+            explain(template, self.name, self._explained)
         return value
-
-    def _unequal(self, template: Any) -> Fault:
-        declared = getattr(template, "declarations", {}).get(self.name)
-        detail = "lists of different lengths meet here; give lists of one length"
-        return Fault(declared.name if declared else self.__qualname__, "shape", detail)
 
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
         """How it is written, with symbols or numbers in the place of attributes."""
@@ -71,12 +74,15 @@ class TreeBody(Body):
 
 
 class RuleBody(TreeBody):
-    """A condition, whose comparisons a report can record; `sentence` is what the rule says."""
+    """A condition, whose comparisons a report can record; `sentence` is what the rule says.
 
-    def __init__(self, node: Any, line: int, sentence: str, axes: int = 0) -> None:
-        super().__init__(node, line, axes=axes)
+    One `of_items` of a list holds for all of them.
+    """
+
+    def __init__(self, node: Any, line: int, sentence: str, *, of_items: bool) -> None:
+        super().__init__(node, line)
         self.__doc__ = sentence
-        self._run = _everywhere(_truth(node)) if axes else _truth(node)
+        self._run = _everywhere(_truth(node)) if of_items else _truth(node)
         self._explained = []
 
 

@@ -37,7 +37,8 @@ class Reader:
         try:
             return checked(tree, self.names)
         except FaultyPlace as error:
-            raise statement.at(error.code, str(error), error.meta) from None
+            message, _, remedy = str(error).partition("; ")
+            raise statement.at(error.code, message, error.meta, remedy) from None
 
     def fitting(
         self, statement: Parsed, part: Part, unit_text: str, name: str, at: Any, axis: str | None = None

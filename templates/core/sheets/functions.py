@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import lark
@@ -45,6 +45,8 @@ class Function:
             if got.truth or not compatible(got.kind.base, wanted.kind.base):
                 given = "a condition" if got.truth else told(got.kind)
                 raise FaultyText("unit_mismatch", f"{self.name} takes {self.takes}, not {given}")
+            if wanted.axis and not got.axis:
+                raise FaultyText("axis_mismatch", f"{self.name} takes {self.takes}, not a single value")
         names = (name for name, _ in self.parameters)
         return self._written_out(dict(zip(names, arguments, strict=True)))
 
@@ -70,11 +72,11 @@ def function_of(statement: Parsed, reader: Reader) -> Function:
     name, unit_name = str(called)[:-1], reader.declared_unit(statement, unit_text)
     sorts = {}
     for parameter in parameters:
-        own, text = parameter.children
+        own, text, axis = parameter.children
         if str(own) in sorts:
             raise statement.refuse("name", f"{own} stands twice", own, "name the parameters differently")
-        sorts[str(own)] = sort_of(reader.declared_unit(statement, text))
-    takes = ", ".join(f"{p.children[0]} in {p.children[1][1:-1]}" for p in parameters)
+        sorts[str(own)] = replace(sort_of(reader.declared_unit(statement, text)), axis=str(axis or ""))
+    takes = ", ".join(map(_taken, parameters))
     names, before = reader.names, reader.names.parameters
     names.parameters = {own: (Name(own), sort) for own, sort in sorts.items()}
     try:
@@ -82,3 +84,9 @@ def function_of(statement: Parsed, reader: Reader) -> Function:
     finally:
         names.parameters = before
     return Function(name, unit_name, tuple(sorts.items()), takes, tree, names, node)
+
+
+def _taken(parameter: lark.Tree[Any]) -> str:
+    """A parameter in words: `x in mm`, `g in bar over cycle`."""
+    name, unit_text, axis = parameter.children
+    return f"{name} in {str(unit_text)[1:-1]}" + (f" over {axis}" if axis else "")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 
@@ -18,6 +19,7 @@ LANGUAGE = 1
 """The version of the language; a change of what a statement means makes another."""
 
 MOST_PARTS, MOST_DEPTH = 400, 100
+REMEMBERED = 512  # trees of up to 100 kB
 
 _STATEMENTS = files(__package__).joinpath("worksheet.lark").read_text(encoding="utf-8")
 _parser = lark.Lark(
@@ -72,18 +74,24 @@ def parsed(chunk: Chunk) -> Parsed:
     Refusal
         With code `syntax` and the place, or `too_large`.
     """
-    reader = _parser.parse_interactive(chunk.text)
-    tokens: list[lark.Token] = []
     try:
-        tokens += reader.iter_parse()
-        tree: lark.Tree[Any] = reader.feed_eof(tokens[-1] if tokens else None)  # type: ignore[no-untyped-call]
+        tree, words = _tree(chunk.text)
     except lark.exceptions.UnexpectedInput as error:
         raise Refusal(_not_understood(chunk, error)) from None
     if _parts(tree) > MOST_PARTS or height(tree) > MOST_DEPTH:
         message = f"a statement has at most {MOST_PARTS} parts, {MOST_DEPTH} deep"
         remedy = "give its parts names of their own"
         raise Refusal(SheetFault(chunk.line, 1, "too_large", message, remedy=remedy))
-    return Parsed(chunk, tree, tuple(map(str, tokens)))
+    return Parsed(chunk, tree, words)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _tree(text: str) -> tuple[lark.Tree[Any], tuple[str, ...]]:
+    """The tree of a statement, and its words; of an edited worksheet most statements are the old ones."""
+    reader = _parser.parse_interactive(text)
+    tokens: list[lark.Token] = list(reader.iter_parse())
+    tree: lark.Tree[Any] = reader.feed_eof(tokens[-1])  # type: ignore[no-untyped-call]
+    return tree, tuple(map(str, tokens))
 
 
 def name_of(chunk: Chunk) -> str:

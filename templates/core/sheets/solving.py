@@ -16,7 +16,7 @@ from scipy.optimize import elementwise
 from templates.core.language.body import Body
 from templates.core.language.ledger import Mask
 from templates.core.paper.expressions import latex
-from templates.core.sheets.body import names_in
+from templates.core.sheets.body import names_in, unequal_lengths
 from templates.core.sheets.expressions import Reader
 from templates.core.sheets.grammar import Parsed
 from templates.core.units.closures import closure
@@ -64,7 +64,10 @@ class SolveBody(Body):
         singles = [value for name, value in values.items() if _is_number(value) and name not in self._lists]
         firsts = [np.asarray(values[name])[..., 0] for name in self._lists & values.keys()]
         shape = np.broadcast_shapes(low.shape, high.shape, *(np.shape(v) for v in (*singles, *firsts)))
-        roots = self._roots(values, np.broadcast_to(low, shape), np.broadcast_to(high, shape))
+        try:
+            roots = self._roots(values, np.broadcast_to(low, shape), np.broadcast_to(high, shape))
+        except ValueError:
+            raise unequal_lengths(self, template) from None
         missing = np.isnan(roots)
         if missing.any() and (ledger := getattr(template, "ledger", None)):
             ledger.masks.append(Mask((self.name,), missing, self.reason, explains=True))

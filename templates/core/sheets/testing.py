@@ -61,8 +61,14 @@ def _run(cls: type[Template], test: SheetTest) -> TestResult:
         return TestResult(test.line, test.words, False, f"the inputs are refused: {error}")
     if messages:
         return TestResult(test.line, test.words, False, "; ".join(messages))
-    passed = ", ".join(f"{one.name} is {one.shown}" for one in test.expected)
-    return TestResult(test.line, test.words, True, passed)
+    return TestResult(test.line, test.words, True, "; ".join(_met(template, one) for one in test.expected))
+
+
+def _met(template: Template, one: Expected) -> str:
+    """What came out as expected."""
+    declared = template.formulas[one.name]
+    shown = _shown(getattr(template, declared.attribute), declared.meaning.scale)
+    return f"{declared.meaning.words} is {shown}: {one.shown}"
 
 
 def _missed(template: Template, test: SheetTest) -> Iterator[str]:

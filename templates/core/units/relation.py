@@ -162,7 +162,8 @@ def parse(text: str) -> Relation:
 
 
 def _where(body: str, error: lark.exceptions.UnexpectedInput) -> str:
-    place = getattr(error, "pos_in_stream", None)
+    is_at_end = getattr(getattr(error, "token", None), "type", "") == "$END"
+    place = None if is_at_end else getattr(error, "pos_in_stream", None)
     near = body[place : place + 20] if isinstance(place, int) and place >= 0 else ""
     hint = "write units as in 48 mm, names as in film.bearing_diameter, operators + - * / **"
     return f"not understood at {excerpt(near)}; {hint}" if near else f"the relation ends too early; {hint}"

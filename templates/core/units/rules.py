@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import reduce
+from functools import cache, reduce
 from typing import Any
 
 from templates.core.errors import FaultyText
@@ -117,5 +117,13 @@ def is_number(kind: Kind) -> bool:
 
 
 def told(kind: Kind) -> str:
-    """A kind in words."""
-    return f"{kind.base:~P}" or "a pure number"
+    """A kind in words: by the unit that has a name, `N` for `kg·m/s²`."""
+    named = (name for name, base in _named().items() if base == kind.base)
+    return next(named, f"{kind.base:~P}") or "a pure number"
+
+
+@cache
+def _named() -> dict[str, Any]:
+    """Derived units that engineers call by name, and what they are in SI base units."""
+    names = ("N", "Pa", "N·m", "W", "Pa·s", "N/m", "N·m/rad", "W/(m·K)", "J/(kg·K)")
+    return {name: registry.Unit(registry.get_base_units(name.replace("·", "*"))[1]) for name in names}

@@ -81,3 +81,12 @@ def nodes_of(node: Any) -> Iterator[Any]:
     while left:
         yield (first := left.pop())
         left += reversed(getattr(first, "arguments", ()))
+
+
+def depth_of(node: Any) -> int:
+    """How deep a tree is."""
+    depth, level = 0, [node]
+    while level:
+        depth += 1
+        level = [argument for part in level for argument in getattr(part, "arguments", ())]
+    return depth

@@ -141,13 +141,14 @@ def parts_of(*regions, origin=0):
         results.append(f'<resultData result-id="{number}">{inner}</resultData>')
         if region.tag:
             tags.append(f'<region region-id="{number}" ioTagType="{region.tag}"/>')
+    settings = f'<builtInVariables array-origin="{origin}"/>'
     spaces = f'xmlns="{SHEET}" xmlns:ml="{MATH}" xmlns:u="{UNITS}"'
     return {
         "mathcad/worksheet.xml": f"<worksheet {spaces}><regions>{''.join(said)}</regions></worksheet>",
         "mathcad/result.xml": f"<resultsList {spaces}>{''.join(results)}</resultsList>",
         "mathcad/_rels/worksheet.xml.rels": f"<Relationships>{''.join(relations)}</Relationships>",
         "mathcad/integration.xml": f"<regions>{''.join(tags)}</regions>",
-        "mathcad/settings/calculation.xml": f'<calculation><builtInVariables array-origin="{origin}"/></calculation>',
+        "mathcad/settings/calculation.xml": f"<calculation>{settings}</calculation>",
         **parts,
     }
 
@@ -160,7 +161,7 @@ def prime(*regions, origin=0):
 def legacy(*bodies, origin=0):
     """A .xmcd with regions of these bodies."""
     regions = "".join(
-        f'<region region-id="{number}" left="6" top="{20 * number}" align-y="{20 * number}" tag="">{body}</region>'
+        f'<region region-id="{number}" left="6" align-y="{20 * number}" tag="">{body}</region>'
         for number, body in enumerate(bodies)
     )
     settings = f'<settings><calculation><builtInVariables array-origin="{origin}"/></calculation></settings>'

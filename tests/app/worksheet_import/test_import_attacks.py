@@ -1,10 +1,11 @@
-"""Hostile packages and documents are refused by name, in little time and memory, and never with another error."""
+"""Hostile packages and documents are refused by name, in little time and memory."""
 
 import io
 import random
 import struct
 import tracemalloc
 import zipfile
+from contextlib import suppress
 
 import pytest
 from mathcad_files import (
@@ -119,8 +120,9 @@ def test_a_part_whose_name_leads_out_is_refused(path, told):
 
 def test_two_parts_of_one_name_are_refused():
     content = io.BytesIO()
-    with zipfile.ZipFile(content, "w") as archive, pytest.warns(UserWarning, match="Duplicate"):
-        for _ in range(2):
+    with zipfile.ZipFile(content, "w") as archive:
+        archive.writestr(SHEET_XML, SMALL[SHEET_XML])
+        with pytest.warns(UserWarning, match="Duplicate"):
             archive.writestr(SHEET_XML, SMALL[SHEET_XML])
     assert "two parts" in refused(content.getvalue())[1]
 
@@ -145,15 +147,16 @@ def test_a_package_that_was_cut_anywhere_is_refused():
 
 
 def test_packages_with_changed_bytes_give_a_sheet_or_a_refusal():
-    chance, content = random.Random(15), prime(math(define("x", real(1))), words("a"), math(shown(name("x")), "1"))
+    chance, content = (
+        random.Random(15),
+        prime(math(define("x", real(1))), words("a"), math(shown(name("x")), "1")),
+    )
     for _ in range(300):
         changed = bytearray(content)
         for _ in range(chance.randint(1, 4)):
             changed[chance.randrange(len(changed))] = chance.randrange(256)
-        try:
-            imported(bytes(changed), "Sheet")
-        except SheetNotRead as error:
-            assert str(error)
+        with suppress(SheetNotRead):
+            assert imported(bytes(changed), "Sheet").record["regions"] is not None
 
 
 @pytest.mark.parametrize("head", [BOMB, EXTERNAL, "<!DOCTYPE a>", '<!DOCTYPE a SYSTEM "http://localhost/x">'])
@@ -179,7 +182,8 @@ def test_too_many_regions_and_elements_are_refused():
 @pytest.mark.parametrize(
     "content",
     [b"", b"\0", b"PK", b"PK\x03\x04", b"PK\x05\x06" + b"\0" * 18, b"\xff\xfe\x00", b"<a", b"<a/>", b"{}",
-     b'<?xml version="1.0" encoding="none-such"?><a/>', b"<a>\xff</a>", "<a>\ud800</a>".encode("utf-8", "surrogatepass"),
+     b'<?xml version="1.0" encoding="none-such"?><a/>', b"<a>\xff</a>",
+     "<a>\ud800</a>".encode("utf-8", "surrogatepass"),
      b'<?xml version="1.0" encoding="utf-7"?><a>+ADw-</a>', b"%PDF-1.7", b"<html></html>"],
 )  # fmt: skip
 def test_what_is_no_sheet_is_refused(content):
@@ -202,7 +206,8 @@ def test_a_sheet_in_utf_16_is_read():
               tag("lowerBound", real(0)), tag("upperBound", real(10**12))),
         text("__import__('os').system('true')"),
         call("__import__", text("os")),
-        tag("apply"), tag("define"), tag("eval"), tag("program"), tag("matrix"), tag("ComboBoxControl", rows="x"),
+        tag("apply"), tag("define"), tag("eval"), tag("program"), tag("matrix"),
+        tag("ComboBoxControl", rows="x"),
     ],
 )  # fmt: skip
 def test_a_region_that_asks_too_much_is_refused_alone(value):
@@ -229,7 +234,9 @@ def test_functions_that_double_or_call_themselves_end():
     assert called.record["regions"][-1]["state"] in ("refused", "blocked")
 
 
-@pytest.mark.parametrize("said", ['x" (> 0)\ngiven y [m] "y', "a\u2028b", "\u202eabc", "x\\y{}", "`x`", "given", "level", ""])
+@pytest.mark.parametrize(
+    "said", ['x" (> 0)\ngiven y [m] "y', "a\u2028b", "\u202eabc", "x\\y{}", "`x`", "given", "level", ""]
+)
 def test_no_name_or_text_writes_a_line_of_its_own(said):
     safe = said.replace("&", "").replace("<", "")
     made = imported(prime(math(define(name(safe), real(1))), words(safe or "a")), "Sheet")

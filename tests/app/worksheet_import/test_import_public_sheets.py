@@ -1,4 +1,4 @@
-"""The public sheets, where a folder holds them: CRANKWRIGHT_MATHCAD_SHEETS. None of them is in this repository."""
+"""The public sheets, where CRANKWRIGHT_MATHCAD_SHEETS names a folder of them; none is in this repository."""
 
 import os
 from pathlib import Path
@@ -21,11 +21,16 @@ def records():
     made = {path: imported(path.read_bytes(), path.stem) for path in SHEETS}
     for one in made.values():
         read(one.text)
-    return [[region for region in one.record["regions"] if region["is_mathematical"]] for one in made.values()]
+    return [
+        [region for region in one.record["regions"] if region["is_mathematical"]] for one in made.values()
+    ]
 
 
 def test_at_least_27_of_35_have_half_of_their_mathematical_regions_translated(records):
-    translated = [sum(one["state"] in ("verified", "unverified", "differs", "shown") for one in sheet) for sheet in records]
+    translated = [
+        sum(one["state"] in ("verified", "unverified", "differs", "shown") for one in sheet)
+        for sheet in records
+    ]
     halves = sum(2 * count >= len(sheet) for count, sheet in zip(translated, records, strict=True))
     assert halves * 35 >= 27 * len(records)
 

@@ -123,8 +123,10 @@ def test_greek_letters_and_subscripts_make_names_that_keep_their_look():
 
 
 def test_a_name_that_is_defined_again_becomes_another():
-    records, text = regions_of(X, math(define("x", scale(1, "m"))), math(shown(name("x")), united(real(1), meter=1)))
-    assert 'given x_2 [m] = 1 m' in text
+    records, text = regions_of(
+        X, math(define("x", scale(1, "m"))), math(shown(name("x")), united(real(1), meter=1))
+    )
+    assert "given x_2 [m] = 1 m" in text
     assert records[1]["notes"] == ["x is defined again here: from here on it is x_2"]
     assert records[2]["state"] == "verified"
 
@@ -145,14 +147,18 @@ def test_a_condition_of_several_lines_is_one_formula():
     chain = tag("if", test, tag("then", tag("program", real(10))))
     other = tag("elseif", tag("test", apply("lessThan", name("a"), real(2))), tag("then", real(20)))
     body = tag("program", chain, other, tag("else", real(30)))
-    calls = [math(shown(call("f", real(value))), str(result)) for value, result in ((0, 10), (1, 20), (2, 30))]
+    calls = [
+        math(shown(call("f", real(value))), str(result)) for value, result in ((0, 10), (1, 20), (2, 30))
+    ]
     records, text = regions_of(math(define_function("f", ["a"], body)), *calls)
     assert "if a < 1 then 10 else if a < 2 then 20 else 30" in text
     assert [record["state"] for record in records[1:]] == ["verified"] * 3
 
 
 def test_local_names_of_a_program_are_written_out():
-    body = tag("program", tag("localDefine", name("b"), apply("mult", real(2), name("x"))), tag("return", name("b")))
+    body = tag(
+        "program", tag("localDefine", name("b"), apply("mult", real(2), name("x"))), tag("return", name("b"))
+    )
     assert last(X, math(define("y", shown(body)), united(real(1), meter=1)))["state"] == "verified"
 
 
@@ -233,7 +239,9 @@ def test_a_combo_box_is_a_choice_and_its_row_gives_the_value():
 
 
 def test_a_combo_box_of_texts_can_be_tested():
-    box = tag("ComboBoxControl", tag("ComboBoxValues", text("Yes"), text("No")), rows=2, cols=1, SelectedRow=1)
+    box = tag(
+        "ComboBoxControl", tag("ComboBoxValues", text("Yes"), text("No")), rows=2, cols=1, SelectedRow=1
+    )
     test = call("if", apply("equal", name("crack"), text("Yes")), real(1), real(2))
     records, text_ = regions_of(math(define("crack", box)), math(shown(test), "2"))
     assert "if crack is yes then 1 else 2" in text_
@@ -305,17 +313,25 @@ def test_text_that_looks_like_a_statement_stays_prose():
 
 
 def test_a_sheet_of_mathcad_15_is_read_alike():
-    x = "<ml:define><ml:id>x</ml:id><ml:apply><ml:mult/><ml:real>500</ml:real><ml:id>mm</ml:id></ml:apply></ml:define>"
-    stored = '<result><ml:real>1500</ml:real></result>'
-    united_ = f'<result><unitedValue><ml:real>1500</ml:real><u:unitMonomial><u:unitReference unit="millimeter"/>'
+    half = "<ml:apply><ml:mult/><ml:real>500</ml:real><ml:id>mm</ml:id></ml:apply>"
+    x = f"<ml:define><ml:id>x</ml:id>{half}</ml:define>"
+    stored = "<result><ml:real>1500</ml:real></result>"
+    united_ = (
+        '<result><unitedValue><ml:real>1500</ml:real><u:unitMonomial><u:unitReference unit="millimeter"/>'
+    )
     united_ += "</u:unitMonomial></unitedValue></result>"
     formula = "<ml:apply><ml:mult/><ml:real>3</ml:real><ml:id>x</ml:id></ml:apply>"
     y = f'<ml:define><ml:id subscript="a">y</ml:id><ml:eval>{formula}{united_}</ml:eval></ml:define>'
-    case = "<ml:ifThen><ml:apply><ml:lessThan/><ml:id>x</ml:id><ml:id subscript=\"a\">y</ml:id></ml:apply>"
+    case = '<ml:ifThen><ml:apply><ml:lessThan/><ml:id>x</ml:id><ml:id subscript="a">y</ml:id></ml:apply>'
     case += "<ml:real>1500</ml:real></ml:ifThen><ml:otherwise><ml:real>1</ml:real></ml:otherwise>"
     z = f"<ml:define><ml:id>z</ml:id><ml:eval><ml:program>{case}</ml:program>{stored}</ml:eval></ml:define>"
     bodies = [legacy_math(x), "<text><p>Some words</p></text>", legacy_math(y), legacy_math(z)]
     made = imported(legacy(*bodies), "Old")
     assert 'given x [mm] = 500 mm "x"' in made.text
     assert "> Some words" in made.text
-    assert [record["state"] for record in made.record["regions"]] == ["unverified", "shown", "verified", "verified"]
+    assert [record["state"] for record in made.record["regions"]] == [
+        "unverified",
+        "shown",
+        "verified",
+        "verified",
+    ]

@@ -138,6 +138,9 @@ class TestTheSameKindOfTemplate:
         assert TEXT.encode()[:60] in packed
         again = pickle.loads(packed)
         assert (again.id, again.version, again.sheet.digest()) == ("oil_film", 1, film.sheet.digest())
+        withdrawn = read(TEXT).template("oil_film", 1)
+        withdrawn.withdrawn = "it has another successor"
+        assert pickle.loads(pickle.dumps(withdrawn)).withdrawn == "it has another successor"
         template = pickle.loads(pickle.dumps(evaluate(film, film.example).template))
         assert template.h_0 == pytest.approx(3.24491e-6, rel=1e-5)
 
