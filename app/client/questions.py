@@ -20,11 +20,16 @@ def solve_design(
     target: Mapping[str, object],
     *,
     tolerance: float | None = None,
+    others: Mapping[str, object] | None = None,
     on_progress: Progress | None = None,
 ) -> Exchange[DesignSolution]:
-    """Every value of a parameter or input between two bounds that gives a wanted output."""
+    """Every value of a parameter or input between two bounds that gives a wanted output.
+
+    `others` are other values of the design for this question: `{"film.speed": "7000 rpm"}`.
+    """
     body: dict[str, object] = {"unknown": unknown, "between": list(between), "target": dict(target)}
     body |= {} if tolerance is None else {"tolerance": tolerance}
+    body |= {"with": dict(others)} if others else {}
     return calculated(DesignSolution, post(f"/designs/{id}/solve", body), on_progress)
 
 

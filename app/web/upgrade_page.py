@@ -101,6 +101,8 @@ async def _page(
     except Refused as wrong:
         if wrong.status != ILL_NAMED:
             raise
+        if newer is None:  # no version at all, or a draft with faults: its own answer says which
+            await api.get(f"/templates/{template}/versions/{number}", Template)
         refused = refused or wrong
     revision = await api.get(f"/designs/{id}/revisions/{design.revision}", Revision)
     before = {criterion.name: criterion.verdict for criterion in revision.criteria or ()}
