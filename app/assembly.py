@@ -44,6 +44,7 @@ from app.storage.integrity import refuse_damage
 from app.storage.migrations import migrate
 from app.studies.assembly import assemble_studies
 from app.studies.running import LANES, Parts
+from app.studies.solid_making import SolidMaking
 from app.tolerances.process import analysed
 from app.workers.base import Limits, Worker
 from app.workers.local import LocalProcesses
@@ -82,13 +83,16 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     published = published_worksheets(settings, database, catalogues, stack)
     calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs, NETWORK, SHEETS)
     recent = Recent()
-    register_jobs(settings, jobs, database, store, catalogues, calculations, recent)
+    builds = Builds(database, store)
+    analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
+    register_jobs(jobs, builds, analysing, catalogues, calculations, recent)
     about = database, catalogues, store, jobs, calculations.steps
     previews, decisions, impacts = Previews(*about), Decisions(*about), Impacts(*about)
     solving, tolerances = Asking(SOLUTION, solved, *about), Asking(TOLERANCE, analysed, *about)
     register_answers(jobs, previews, decisions, solving, tolerances, impacts)
     designs = Designs(database, jobs, catalogues, recent)
-    parts = Parts(database, store, catalogues, calculations.pool, jobs, calculations.steps)
+    solids = SolidMaking(database, builds, analysing, settings.workers)
+    parts = Parts(database, store, catalogues, calculations.pool, jobs, calculations.steps, solids)
     studies = assemble_studies(parts, designs)
     worksheets = Worksheets(database, catalogues, calculations.pool, published)
     imports = Imports(database, store, jobs, catalogues, worksheets)
@@ -178,19 +182,16 @@ def opened_database(settings: Settings, folder: DataFolder, stack: ExitStack) ->
 
 
 def register_jobs(
-    settings: Settings,
     jobs: Jobs,
-    database: Database,
-    store: ArtifactStore,
+    builds: Builds,
+    analysing: Analysing,
     catalogues: Catalogues,
     calculations: Calculations,
     recent: Recent,
 ) -> None:
     """Say what carries out each kind of job."""
-    builds = Builds(database, store)
-    analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
     regeneration = Regeneration(
-        database, builds, analysing, catalogues, calculations.steps, recent, problems.describe
+        builds.database, builds, analysing, catalogues, calculations.steps, recent, problems.describe
     )
     jobs.register(REGENERATE, regeneration, regeneration.failed)
     jobs.register(REGENERATE_SLOWLY, regeneration, regeneration.failed, is_slow=True)

@@ -10,7 +10,7 @@ import click
 
 from app.connecting import connected, data_option, url_option
 from app.presentation import numbers
-from app.schemas.impact import DesignImpact, Impact
+from app.schemas.impact import DesignImpact, Impact, VerdictMoved
 
 
 @click.command("impact")
@@ -65,11 +65,18 @@ def _print(found: Impact) -> None:
         click.echo(f"{one.design}  {one.name}, revision {one.revision}: {_line(one)}")
 
 
+def _moved(verdict: VerdictMoved) -> str:
+    """A criterion that is judged otherwise: `film.film of main_1 met → not met`."""
+    variant = f" of {verdict.variant}" if verdict.variant else ""
+    words = f"{verdict.old or 'none'} → {verdict.new or 'none'}".replace("_", " ")
+    return f"{verdict.name}{variant} {words}"
+
+
 def _line(one: DesignImpact) -> str:
     """What happens to a design, in short."""
     if one.effect == "refused":
         return f"refused: {'; '.join(f'{fault.name}: {fault.detail}' for fault in one.refusals[:3])}"
-    parts = [f"{v.name} {v.old or 'new'} → {v.new or 'gone'}".replace("_", " ") for v in one.verdicts[:3]]
+    parts = [_moved(verdict) for verdict in one.verdicts[:3]]
     if one.margin:
         share = f" ({numbers.percent(one.margin.relative)})" if one.margin.relative is not None else ""
         parts.append(f"{one.margin.name} loses {numbers.told(one.margin.lost)} of margin{share}")

@@ -17,6 +17,8 @@ from app.schemas.worksheet_imports import ImportedRegion
 from app.schemas.worksheets import Sheet, SheetCheck
 from templates.core.errors import plain
 
+OPEN = ("draft", "tested", "reviewed")
+"""States in which an edit begins no new version."""
 FILE = re.compile(r"([a-z][a-z0-9_]*?)(?:_v([1-9][0-9]*))?\.sheet")
 _files = click.argument(
     "files", nargs=-1, required=True, type=click.Path(exists=True, dir_okay=False, path_type=Path)
@@ -66,8 +68,10 @@ def import_command(files: tuple[Path, ...], author: str | None, url: str | None,
     named = sorted((_named(file), file) for file in files)
     with connected(url, data) as client:
         known = {one.id for one in client.worksheets()}
-        for (id, _), file in named:
-            sheet = _saved(client, id, _text(file), author, is_known=id in known)
+        for (id, number), file in named:
+            sheet = client.read_worksheet(id) if id in known else None
+            _require_next(file, number, sheet)
+            sheet = _saved(client, id, _text(file), author, sheet)
             known.add(id)
             faults = f", {len(sheet.faults)} faults" if sheet.faults else ""
             click.echo(f"{sheet.id} version {sheet.version}: {sheet.state}{faults}")
@@ -176,11 +180,27 @@ def withdraw_command(id: str, reason: str, version: int | None, url: str | None,
         _say(client.withdraw_worksheet(id, reason, version))
 
 
-def _saved(client: Client, id: str, text: str, author: str | None, *, is_known: bool) -> Sheet:
-    if not is_known:
+def _saved(client: Client, id: str, text: str, author: str | None, sheet: Sheet | None) -> Sheet:
+    if sheet is None:
         return client.create_worksheet(id, text, author=author)
-    sheet = client.read_worksheet(id)
     return sheet if sheet.text == text else client.change_worksheet(sheet, text, author=author)
+
+
+def _require_next(file: Path, number: int, sheet: Sheet | None) -> None:
+    """Refuse a file whose version is not the one that an edit would make; 0 is any.
+
+    Raises
+    ------
+    ClickException
+        If it is another one.
+    """
+    is_open = sheet is not None and sheet.state in OPEN
+    possible = 1 if sheet is None else sheet.version if is_open else sheet.version + 1
+    is_there = sheet is not None and number == sheet.version and sheet.text == _text(file)
+    if number not in (0, possible) and not is_there:
+        raise click.ClickException(
+            f"{file.name} would become version {possible}, not {number}: release the versions before it first"
+        )
 
 
 def _export(client: Client, sheet: Sheet, folder: Path) -> None:

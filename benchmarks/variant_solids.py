@@ -1,8 +1,10 @@
-"""A hundred variants as STEP files and one report, against their separate builds: `python -m benchmarks.variant_solids`.
+"""A hundred variants as STEP files and one report, against their separate builds.
+
+    python -m benchmarks.variant_solids --count 100 --rounds 1
 
 One service does both, in one run, with solids of other sizes. The separate builds are a job each: of the STEP
-files alone, and of STEP and the picture that a report shows. All times are processor time of the service and of
-every process that descends from it. Options: `--count 100`, `--rounds 1`.
+files alone, and of STEP and the picture that a report shows. All times are processor time of the service and
+of every process that descends from it.
 """
 
 from __future__ import annotations
@@ -35,7 +37,7 @@ def spent(server: Server) -> float:
 
 
 def measured(server: Server, action: Callable[[], object]) -> float:
-    """The processor time that the service needs for something [s]; what it does by itself meanwhile counts."""
+    """The processor time that the service needs for something [s], with what it does by itself."""
     before = spent(server)
     action()
     _settle(server)

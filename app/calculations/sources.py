@@ -10,7 +10,7 @@ from pathlib import Path
 from templates.core.catalogue.finding import declared_in, declared_in_file
 from templates.core.catalogue.loading import load, origin
 from templates.core.language.template import Template
-from templates.core.sheets import read
+from templates.core.sheets.classes import from_text
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,9 @@ def loaded(source: Source) -> type[Template]:
     Raises
     ------
     UnusableFile
-        If it cannot be imported here.
+        If a file cannot be imported here.
+    SheetRefused
+        If a worksheet has faults.
     """
     if isinstance(source, SheetSource):
         return class_of(source)
@@ -62,13 +64,11 @@ def loaded(source: Source) -> type[Template]:
 
 
 def class_of(source: SheetSource) -> type[Template]:
-    """The class that a worksheet makes.
+    """The class that a worksheet makes; one class, however often it is asked for.
 
     Raises
     ------
     SheetRefused
         If its text has faults.
     """
-    cls = read(source.text).template(source.id, source.version)
-    cls.withdrawn = source.withdrawn
-    return cls
+    return from_text(source.text, source.id, source.version, source.withdrawn)

@@ -12,7 +12,7 @@ from app.impact.outcome import Outcome, is_temperature
 from app.schemas.answers import Quantity
 from app.schemas.impact import MarginLost, OutputMoved, ParameterMoved, VerdictMoved
 from templates.core.arrays import Array
-from templates.core.units.units import Value, unit
+from templates.core.units.units import Value, compatible, unit
 
 SAME = 1e-9
 """Relative change below which two values are the same: far above the rounding of array calls, 3e-15."""
@@ -113,8 +113,17 @@ def _outputs(before: Outcome, after: Outcome) -> Iterator[tuple[str, float]]:
     """The outputs of both versions that change, with the size of the change."""
     for name, old in before.values.items():
         new = after.values.get(name)
-        if new is not None and (size := change_size(old, new)) > SAME:
+        if new is None:
+            continue
+        size = change_size(old, new) if _is_one_kind(before, after, name) else INFINITE
+        if size > SAME:
             yield name, size
+
+
+def _is_one_kind(before: Outcome, after: Outcome, name: str) -> bool:
+    """Whether both versions measure the same by a name, in whatever units."""
+    one, other = before.units[name], after.units[name]
+    return one == other or compatible(unit(one).base, unit(other).base)
 
 
 def change_size(old: Value, new: Value) -> float:
@@ -147,13 +156,13 @@ def _together(old: Value, new: Value) -> tuple[Array, Array]:
 
 
 def _shown(before: Outcome, after: Outcome, name: str, variant: str | None) -> OutputMoved:
-    """A change at its largest place, in the declared units."""
+    """A change at its largest place, in the unit that the new version declares."""
     old, new = _together(before.values[name], after.values[name])
-    place = _place(old, new) if old.shape == new.shape else ()
-    ends = [
-        _quantity(values[place], outcome.units[name]) for values, outcome in ((old, before), (new, after))
-    ]
-    change = _signed(old, new, place, before.units[name]) if old.shape == new.shape else None
+    is_alike = old.shape == new.shape and _is_one_kind(before, after, name)
+    place = _place(old, new) if is_alike else ()
+    units = (after if is_alike else before).units[name], after.units[name]
+    ends = [_quantity(values[place], scale) for values, scale in zip((old, new), units, strict=True)]
+    change = _signed(old, new, place, after.units[name]) if is_alike else None
     return OutputMoved.model_validate(
         {**_named(name, variant), "old": ends[0], "new": ends[1], "change": change}
     )

@@ -10,7 +10,6 @@ from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
-from app.plain import JsonObject
 from app.schemas.answers import Shown, Version
 from app.schemas.solids import Build, BuildUse, Verification
 from app.solids import measures, rows
@@ -90,7 +89,7 @@ class Models:
         """The one job that makes files of several finished builds, in as few processes as possible."""
         return self._requested(keys, {"builds": [*keys], "kinds": [*kinds]}, client)
 
-    def _requested(self, keys: Sequence[str], payload: JsonObject, client: str) -> str:
+    def _requested(self, keys: Sequence[str], payload: dict[str, str | list[str]], client: str) -> str:
         def unit(session: Session) -> str:
             renew(session, keys)
             return self.jobs.request(session, BUILD, payload, client)

@@ -72,7 +72,9 @@ async def design_page(
     """The newest revision in a form; or a form that was refused, with what was typed and what is wrong."""
     design = await api.get(f"/designs/{id}", Design)
     revision, preview, parameters, steps, parts, models = await _form(request, api, design, refusal)
-    faults, wrong, verdict = refusal.faults, errors_of(refusal.part, refusal.faults), banner(revision)
+    faults, wrong = refusal.faults, errors_of(refusal.part, refusal.faults)
+    has_criteria = bool(design.criteria) or any(step.template.criteria for step in steps)
+    verdict = banner(revision, has_criteria=has_criteria)
     measured = await api.get(
         f"/designs/{id}/measurements", dict[str, ModelMeasurements], units=units_of(request)
     )

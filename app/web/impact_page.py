@@ -139,13 +139,16 @@ async def _page(
     refusal: Refused | None,
     status: int = 200,
 ) -> Response:
-    template = await api.get(f"/templates/{id}/versions/{version}", Template)
+    template = await api.find(f"/templates/{id}/versions/{version}", Template)  # not of a draft
     job = typed.get("job", "")
     return show(
         request,
         "impact.html",
         status=status,
-        template=template,
+        id=id,
+        version=version,
+        is_released=template is not None,
+        withdrawn=template.withdrawn if template else None,
         typed=typed,
         job=job if job and found is None and refusal is None else "",
         found=found,

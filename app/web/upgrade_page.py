@@ -9,13 +9,17 @@ from fastapi import APIRouter, Depends, Request, Response
 
 from app.presentation import numbers
 from app.presentation.criteria import line
+from app.schemas.analyses import AnalysisOutput
+from app.schemas.answers import Quantity
 from app.schemas.designs import Design, Preview, Revision
+from app.schemas.evaluations import Output
 from app.schemas.templates import Template
 from app.web.actions import AT_ONCE, forms_only, tag_of
 from app.web.api import Api, Refused, TheApi
 from app.web.forms import Patch, fields
 from app.web.rendering import go, show, units_of
 from app.web.routes import Id, Text
+from templates.core.units.units import compatible, unit
 
 router = APIRouter(include_in_schema=False)
 forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
@@ -86,7 +90,7 @@ async def _page(
 ) -> Response:
     number = _number(template, version)
     design = await api.get(f"/designs/{id}", Design)
-    newer = await api.get(f"/templates/{template}/versions/{number}", Template)
+    newer = await api.find(f"/templates/{template}/versions/{number}", Template)  # not of a draft
     used = {name: step.version for name, step in design.steps.items() if step.template == template}
     if not used:
         raise Refused.because(MISSING, f"no step of the design uses {template}")
@@ -105,21 +109,43 @@ async def _page(
         "upgrade.html",
         status=refused.status if refused else 200,
         design=design,
-        template=newer,
+        template=template,
+        version=number,
+        is_released=newer is not None,
+        withdrawn=newer.withdrawn if newer else None,
         used=used,
         is_due=any(one != number for one in used.values()),
         preview=preview,
         criteria=[(line(one), before.get(one.name)) for one in (preview.criteria if preview else None) or ()],
         moved=_moved(preview) if preview else [],
+        others=_of_one_version(preview) if preview else [],
         parameters=_parameters(preview) if preview else [],
         refusal=refused.problem if refused else None,
     )
 
 
 def _moved(preview: Preview) -> list[Moved]:
-    """The outputs that are not the same."""
-    told = [Moved(n, numbers.told(one.old), numbers.told(one.new)) for n, one in preview.outputs.items()]
+    """The outputs of both versions that are not the same."""
+    both = {name: (one.old, one.new) for name, one in preview.outputs.items() if one.old and one.new}
+    told = [Moved(name, _told_like(old, new), numbers.told(new)) for name, (old, new) in both.items()]
     return [one for one in told if one.old != one.new]
+
+
+def _of_one_version(preview: Preview) -> list[Moved]:
+    """The outputs that only one of the versions has."""
+    outputs = preview.outputs.items()
+    told = [Moved(name, numbers.told(one.old), numbers.told(one.new)) for name, one in outputs]
+    return [one for one in told if not (one.old and one.new)]
+
+
+def _told_like(old: Output | AnalysisOutput, new: Output | AnalysisOutput) -> str:
+    """A value as text, in the unit of another one where that measures the same."""
+    value, given, wanted = old.value, old.unit, new.unit
+    if not isinstance(value, float) or not given or not wanted or given == wanted:
+        return numbers.told(old)
+    if not compatible(unit(given).base, unit(wanted).base):
+        return numbers.told(old)
+    return numbers.told(Quantity(value=float(unit(wanted).from_si(unit(given).to_si(value))), unit=wanted))
 
 
 def _parameters(preview: Preview) -> list[Moved]:

@@ -12,6 +12,7 @@ from app.schemas.templates import TemplateList
 from app.schemas.worksheets import Sheet, SheetCheck, SheetFault, SheetLine, SheetList, SheetSummary
 from app.web.api import Api, read
 from app.web.rendering import show
+from app.web.sheet_preview import offered, tried_in
 from app.web.stages import begins_next, newest_released, stages
 from templates.examples.listing import examples
 
@@ -64,15 +65,25 @@ async def start_page(
 
 
 async def editor_page(
-    request: Request, api: Api, id: str, unsaved: Unsaved | None = None, notice: str = "", status: int = 200
+    request: Request,
+    api: Api,
+    id: str,
+    unsaved: Unsaved | None = None,
+    notice: str = "",
+    status: int = 200,
+    design: str = "",
 ) -> Response:
-    """The newest version of a worksheet, to be edited; or what was typed and could not be saved."""
+    """The newest version of a worksheet, to be edited; or what was typed and could not be saved.
+
+    A version that is not released is previewed in `design`, if one is named.
+    """
     answer, models = await asyncio.gather(
         api.send("GET", f"/worksheets/{id}"), api.get("/models", TemplateList, limit=500)
     )
     sheet = read(answer, Sheet)
     text = unsaved.text if unsaved else sheet.text
     checked = await api.post("/worksheets/check", SheetCheck, {"text": text, "id": id})
+    is_open = not begins_next(sheet) and not sheet.faults
     return show(
         request,
         "worksheet.html",
@@ -88,6 +99,9 @@ async def editor_page(
         listing=listing(text, checked.faults),
         stages=stages(sheet),
         begins_next=begins_next(sheet),
+        offered=await offered(api, sheet) if is_open else [],
+        tried=await tried_in(api, design, sheet, checked) if is_open and design else None,
+        chosen=design,
         usable=newest_released(sheet),
         models=[item for item in models.items if item.latest],
     )
@@ -104,7 +118,7 @@ class Row:
 
     @property
     def says_its_value(self) -> bool:
-        """Whether it is a given quantity whose default is a constant: `T = 20 °C` needs no value beside it."""
+        """Whether it is given with a constant as its default: `T = 20 °C` needs no value beside it."""
         _, is_equal, behind = (self.line.mathml if self.line else "").partition(EQUALS)
         return bool(self.line and self.line.kind == "given" and is_equal and "<mi>" not in behind)
 

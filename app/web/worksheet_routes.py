@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Depends, Request, Response
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import JsonValue
 
 from app.schemas.worksheets import Sheet
@@ -35,9 +37,14 @@ async def new_worksheet(request: Request, api: TheApi) -> Response:
 
 
 @router.get("/worksheets/{id}")
-async def worksheet(id: Id, request: Request, api: TheApi) -> Response:
-    """The editor."""
-    return await editor_page(request, api, id)
+async def worksheet(
+    id: Id,
+    request: Request,
+    api: TheApi,
+    design: Annotated[str, Query(max_length=64, pattern=r"^[A-Za-z0-9_]*$")] = "",
+) -> Response:
+    """The editor; `design` names one in which a draft is previewed."""
+    return await editor_page(request, api, id, design=design)
 
 
 @router.get("/worksheets/{id}/test")

@@ -6,17 +6,16 @@ are time and memory, which the process does.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 from app.calculations.sources import SheetSource, class_of
-from app.plain import JsonObject
 from templates.core.catalogue.digests import digest as digest_of
 from templates.core.catalogue.golden import record
 from templates.core.checking.golden import differences
 from templates.core.errors import InvalidInputs, TemplateError
 from templates.core.language.template import Template
-from templates.core.sheets import SheetFault, SheetRefused, read, run_tests
+from templates.core.sheets import SheetFault, SheetRefused, TestResult, read, run_tests
 from templates.core.sheets.grammar import LANGUAGE
 
 LONGEST_TITLE = 200
@@ -28,7 +27,7 @@ class Examined:
 
     title: str
     digest: str | None
-    faults: list[JsonObject]
+    faults: tuple[SheetFault, ...]
     language: int = LANGUAGE
 
 
@@ -36,9 +35,9 @@ class Examined:
 class Tried:
     """A text whose tests ran: why it cannot be released, or its golden record."""
 
-    tests: list[JsonObject]
-    reasons: list[str]
-    record: JsonObject | None = None
+    tests: tuple[TestResult, ...]
+    reasons: tuple[str, ...]
+    record: Mapping[str, object] | None = None
 
 
 def examined(text: str) -> Examined:
@@ -46,8 +45,8 @@ def examined(text: str) -> Examined:
     try:
         sheet = read(text)
     except SheetRefused as refused:
-        return Examined(title_of(text), None, [fault_of(fault) for fault in refused.faults])
-    return Examined(sheet.title[:LONGEST_TITLE], sheet.digest(), [], sheet.language)
+        return Examined(title_of(text), None, refused.faults)
+    return Examined(sheet.title[:LONGEST_TITLE], sheet.digest(), (), sheet.language)
 
 
 def tried(id: str, version: int, text: str) -> Tried:
@@ -55,16 +54,15 @@ def tried(id: str, version: int, text: str) -> Tried:
     try:
         cls = read(text).template(id, version)
     except SheetRefused as refused:
-        return Tried([], [fault.sentence for fault in refused.faults])
-    results = run_tests(cls)
-    tests: list[JsonObject] = [asdict(result) for result in results]
-    reasons = [f"line {one.line}: test {one.words!r}: {one.message}" for one in results if not one.passed]
-    if reasons := [*reasons, *_unusable(cls)]:
+        return Tried((), tuple(fault.sentence for fault in refused.faults))
+    tests = run_tests(cls)
+    failed = (f"line {one.line}: test {one.words!r}: {one.message}" for one in tests if not one.passed)
+    if reasons := (*failed, *_unusable(cls)):
         return Tried(tests, reasons)
     try:
-        return Tried(tests, [], record(cls))
+        return Tried(tests, (), record(cls))
     except InvalidInputs as error:
-        return Tried(tests, [f"the example: {fault.name}: {fault.detail}" for fault in error.faults])
+        return Tried(tests, tuple(f"the example: {fault.name}: {fault.detail}" for fault in error.faults))
 
 
 def _unusable(cls: type[Template]) -> Iterator[str]:
@@ -77,7 +75,9 @@ def _unusable(cls: type[Template]) -> Iterator[str]:
             yield f"{name} has no example: write (example …) behind its words"
 
 
-def as_released(source: SheetSource, digest: str | None, golden: JsonObject | None) -> type[Template] | str:
+def as_released(
+    source: SheetSource, digest: str | None, golden: Mapping[str, object] | None
+) -> type[Template] | str:
     """The class of a released text, or why it is not that of its release any more."""
     try:
         cls = class_of(source)
@@ -96,8 +96,3 @@ def title_of(text: str) -> str:
     """The first heading of a text, readable or not."""
     headings = (line.lstrip("# ").strip() for line in text.splitlines() if line.startswith("#"))
     return next((heading for heading in headings if heading), "")[:LONGEST_TITLE]
-
-
-def fault_of(fault: SheetFault) -> JsonObject:
-    """A fault as answers hold it."""
-    return asdict(fault)

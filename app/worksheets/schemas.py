@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from pydantic import AfterValidator, ConfigDict, Field
+from pydantic.config import JsonValue
 
 from app.schemas.bounded import Bounded
 
@@ -34,6 +35,20 @@ Text = Annotated[str, AfterValidator(storable), Field(max_length=LONGEST_TEXT, d
 Person = Annotated[str, Field(min_length=1, max_length=100, pattern=NAME, examples=["A. Weber"])]
 
 
+EXAMPLE = """# Bush duty
+given F [kN] "radial load" (>= 0; example 25 kN)
+given D [mm] "bearing diameter" (> 0; example 48 mm)
+p [MPa] = F / D**2 "projected pressure"
+test "by hand" with F = 25 kN gives p = 10.85 MPa within 0.1 %
+"""
+EDITED = EXAMPLE.replace("> 0;", "> 0; <= 2 m;")
+
+
+def _examples(**example: JsonValue) -> ConfigDict:
+    """The configuration of a body with an example that can be sent as it is."""
+    return ConfigDict(extra="forbid", strict=True, json_schema_extra={"examples": [{**example}]})
+
+
 class Asked(Bounded):
     """The body of a request about worksheets."""
 
@@ -43,12 +58,16 @@ class Asked(Bounded):
 class SheetCheckIn(Asked):
     """A text that is to be checked."""
 
+    model_config = _examples(text=EXAMPLE)
+
     text: str = Field(max_length=MOST_CHECKED, description="the worksheet; at most 64 KiB make one")
     id: str | None = Field(None, max_length=64, pattern=ID, description="under which it would be described")
 
 
 class SheetIn(Asked):
     """A new worksheet."""
+
+    model_config = _examples(id="bush_duty", text=EXAMPLE, author="A. Weber")
 
     id: str = Field(
         max_length=64,
@@ -63,6 +82,8 @@ class SheetIn(Asked):
 class SheetPatch(Asked):
     """A change of a worksheet: what is not named stays."""
 
+    model_config = _examples(text=EDITED)
+
     text: Text | None = None
     author: Person | None = None
 
@@ -70,12 +91,16 @@ class SheetPatch(Asked):
 class ReviewIn(Asked):
     """A review of one text."""
 
+    model_config = _examples(reviewer="B. Klein", digest="0" * 64)
+
     reviewer: Person = Field(description="another name than the author's; nobody proves it yet")
     digest: str = Field(max_length=64, pattern=r"^[0-9a-f]{64}$", description="of the text that was reviewed")
 
 
 class WithdrawIn(Asked):
     """Why a released version shall not be used any longer."""
+
+    model_config = _examples(reason="the clearance is too small")
 
     reason: str = Field(min_length=1, max_length=1000, pattern=NAME)
     version: int | None = Field(None, ge=1, le=10**6, description="the newest released one, if none is named")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import TimeoutError as NotReady
+from dataclasses import asdict
 from typing import TypeVar, TypeVarTuple
 
 from sqlalchemy.orm import Session
@@ -126,7 +127,7 @@ class Worksheets:
         row = self.newest(id, expected)
         _require(row, "draft", "tested")
         result = self._tried(client, row)
-        return self._saved(row, state="tested", tests=result.tests)
+        return self._saved(row, state="tested", tests=list(map(asdict, result.tests)))
 
     def review(self, id: str, body: ReviewIn, expected: str | None) -> Row:
         """Note who reviewed the text.
@@ -165,7 +166,9 @@ class Worksheets:
         require_free(id, self.catalogues)
         require_resolved(row)
         result = self._tried(client, row)
-        return self._saved(row, state="released", tests=result.tests, record=result.record, released=now())
+        return self._saved(
+            row, state="released", tests=list(map(asdict, result.tests)), record=result.record, released=now()
+        )
 
     def withdraw(self, id: str, body: WithdrawIn, expected: str | None) -> Row:
         """Say why a released version shall not be used any longer; designs that use it still calculate.
@@ -274,7 +277,7 @@ def _draft(id: str, number: int, text: str, found: Examined) -> Row:
         title=found.title,
         language=found.language,
         digest=found.digest,
-        faults=found.faults,
+        faults=[asdict(fault) for fault in found.faults],
         tests=[],
     )
 

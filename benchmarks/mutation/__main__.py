@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import subprocess
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -17,6 +18,7 @@ from tempfile import TemporaryDirectory
 from threading import Lock
 from typing import Any
 
+from benchmarks.mutation import ROOT
 from benchmarks.mutation.named import named
 from benchmarks.mutation.places import Mutant, sample
 from benchmarks.mutation.related import NEAREST, related
@@ -72,9 +74,16 @@ def main() -> None:
     outcome = verdict(rows, reasons())
     print(report(rows, outcome))
     if options.report:
-        figures = {"seed": options.seed, "sample": len(chosen), **summary(rows, outcome)}
+        about = {"seed": options.seed, "commit": commit(), "sample": len(chosen)}
+        figures = {**about, **summary(rows, outcome)}
         options.report.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     sys.exit(not outcome.holds)
+
+
+def commit() -> str:
+    """Return the commit of the tree that is tried."""
+    command = ["git", "describe", "--always", "--dirty", "--exclude=*"]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
 
 
 def valid(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[str, Any]]:

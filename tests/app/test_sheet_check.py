@@ -173,3 +173,18 @@ def test_names_of_people_are_text(http):
     for author in ("", " ", "a\nb", "x" * 101, "\x7f"):
         body = {"id": fresh(), "text": BUSH, "author": author}
         assert set(faults(http.post(f"{API}/worksheets", json=body))) == {"author"}
+
+
+def test_sound_lines_show_their_numbers_beside_faulty_ones(http):
+    lines = BUSH.splitlines()
+    place = next(number for number, line in enumerate(lines) if line.startswith("p ["))
+    faulty = ['wrong [MPa] = F + D "no sum"', 'more [MPa] = 2 * wrong "twice that"']
+    check = checked(http, "\n".join([*lines[:place], *faulty, *lines[place:]]))
+    assert [fault["line"] for fault in check["faults"]] == [place + 1]
+    shown = {line["name"]: line for line in check["lines"]}
+    assert shown["p"]["value"] == pytest.approx(25e3 / (48e-3 * 24e-3) / 1e6)
+    assert shown["p"]["line"] == place + 3
+    assert not {"wrong", "more"} & shown.keys()
+    assert {"F", "p"} <= {name["name"] for name in check["names"]}
+    assert check["template"] is None
+    assert check["digest"] is None

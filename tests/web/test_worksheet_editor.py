@@ -107,7 +107,8 @@ def test_a_fault_is_explained_under_its_line_and_sound_lines_stay(watched, http)
     expect(page.locator(".note")).to_contain_text("+ needs equal units")
     expect(page.locator("[data-sheet-faults]")).to_have_text("1 fault, in line 10")
     expect(page.locator(".typeset-line")).to_have_count(10)
-    expect(page.locator(".typeset-lines.outdated")).to_contain_text("21.701 MPa")
+    expect(page.locator(".typeset-lines")).to_contain_text("21.701 MPa")
+    expect(page.locator(".typeset-lines.outdated")).to_have_count(0)  # it was calculated without the faulty line
     mark = page.locator(".underline").bounding_box()
     column = page.locator(".faulty .of-sign", has_text="+").bounding_box()
     assert mark["x"] < column["x"] + column["width"] < mark["x"] + mark["width"] + 20
@@ -185,3 +186,30 @@ def test_the_pages_are_accessible_wide_and_narrow_light_and_dark(browser, served
         assert [(rule["id"], node["target"]) for rule in found for node in rule["nodes"]] == [], path
     assert watched.faults() == []
     context.close()
+
+
+def test_a_draft_is_previewed_in_a_design_and_nothing_is_saved(watched, http):
+    place = stored(http, "tried_out", author="One")
+    api = f"/api/v1{place}"
+    digest = http.post(f"{api}/test").json()["digest"]
+    http.post(f"{api}/review", json={"reviewer": "Two", "digest": digest}).raise_for_status()
+    released = http.post(f"{api}/release")
+    inputs = {"radial_load": "25 kN", "bearing_diameter": "48 mm"}
+    step = {"template": "tried_out", "version": 1, "inputs": inputs}
+    design = http.post("/api/v1/designs", json={"name": "uses it", "steps": {"duty": step}}).json()["id"]
+    wider = SHEET.replace("= 24 mm", "= 48 mm")
+    headers = {"If-Match": released.headers["etag"]}
+    http.patch(api, json={"text": wider}, headers=headers).raise_for_status()
+    opened(watched, place)
+    page = watched.page
+    page.get_by_label("Preview version 2 in a design").select_option("uses it")
+    page.get_by_role("button", name="Preview").click()
+    pressure = page.locator("[data-tried] tr", has_text="duty.projected_pressure")
+    expect(pressure).to_contain_text("21.701 MPa")
+    expect(pressure).to_contain_text("10.851 MPa")
+    assert http.get(f"/api/v1/designs/{design}").json()["revision"] == 1
+    other = http.post("/api/v1/designs", json={"name": "other"}).json()["id"]
+    added = http.get(place, params={"design": other}).text
+    assert "with one more step <code>tried_out</code>" in added
+    assert http.get(place, params={"design": "none_such"}).status_code == 200
+    assert watched.faults() == []

@@ -51,6 +51,7 @@ def test_a_newcomer_writes_a_worksheet_that_drives_a_part(watched, tmp_path):
     expect(page.locator("[data-proposals]")).to_contain_text(
         "model.inner_diameter = newcomers_bush.bearing_diameter"
     )
+    expect(page.locator(".verdict .headline")).to_have_text(re.compile("^No criteria"))
     page.get_by_role("button", name="Apply the chosen").click()
     expect(page.locator(".page-head")).to_contain_text("revision 2")
     expect(page.locator("[data-design-state]")).to_have_text("current", timeout=PATIENCE)

@@ -15,7 +15,7 @@ from app.api.routes.evaluations import stored_answer
 from app.api.routes.templates import Id, Number
 from app.api.waiting import LATER, accepted, finished
 from app.impact.schemas import ImpactIn
-from app.impact.service import Asked
+from app.impact.survey import Asked
 from app.schemas.impact import Impact
 from app.schemas.problems import refusals
 

@@ -32,14 +32,17 @@ const checking = live(
   PAUSE,
 );
 
-// What the service says of a text. With faults it answers these alone: unchanged lines stay, with values of before.
+// What the service says of a text. With faults it shows the lines that do without the faulty ones; others that are
+// unchanged stay, with values of before.
 function show(checked, texts = text.texts) {
   const isSound = checked.faults.length === 0;
   if (isSound) sound = { ...checked, texts };
-  const lines = isSound ? checked.lines : stillThere(sound.lines, sound.texts, text.texts);
+  const shown = new Set(checked.lines.map(({ line }) => line));
+  const before = isSound ? [] : stillThere(sound.lines, sound.texts, text.texts).filter(({ line }) => !shown.has(line));
+  const lines = [...checked.lines, ...before].sort((a, b) => a.line - b.line);
   text.showFaults(checked.faults);
   typeset.show({ ...checked, lines });
-  typeset.list.classList.toggle("outdated", !isSound);
+  typeset.list.classList.toggle("outdated", before.length > 0);
   names.update(checked.names);
   align();
   find("[data-sheet-faults]").textContent = faultsIn(checked.faults);
@@ -166,9 +169,10 @@ document.addEventListener("submit", async (event) => {
 async function act(action, asked) {
   try {
     const body = Object.keys(asked).length ? asked : undefined;
-    await call("POST", `${api}/${action}`, body);
+    await call("POST", `${api}/${action}`, body, { headers: { "If-Match": tag } });
     await refresh(action);
   } catch (error) {
+    if (error.status === STALE) return conflict();
     await refresh();
     tell(error, find("[data-life-trouble]"));
   }

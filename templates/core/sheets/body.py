@@ -34,10 +34,10 @@ def unequal_lengths(body: Body, template: Any) -> InvalidInputs:
 
 
 class TreeBody(Body):
-    """A tree whose units were checked; `name` is the attribute, `axes` how many its list runs over."""
+    """A tree whose units were checked; `name` is the attribute that it calculates."""
 
-    def __init__(self, node: Any, line: int, name: str = "", axes: int = 0) -> None:
-        self.node, self.line, self.name, self.axes = node, line, name, axes
+    def __init__(self, node: Any, line: int, name: str = "") -> None:
+        self.node, self.line, self.name = node, line, name
         self.uses = tuple(dict.fromkeys(names_in(node)))
         self.__doc__: str | None = None
         self.__qualname__ = f"line {line}"
@@ -60,7 +60,7 @@ class TreeBody(Body):
         except ValueError:
             raise unequal_lengths(self, template) from None
         if self._explained and np.isnan(value).any() and hasattr(template, "ledger"):
-            explain(template, self.name, self._explained, self.axes)
+            explain(template, self.name, self._explained)
         return value
 
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
@@ -74,12 +74,15 @@ class TreeBody(Body):
 
 
 class RuleBody(TreeBody):
-    """A condition, whose comparisons a report can record; `sentence` is what the rule says."""
+    """A condition, whose comparisons a report can record; `sentence` is what the rule says.
 
-    def __init__(self, node: Any, line: int, sentence: str, axes: int = 0) -> None:
-        super().__init__(node, line, axes=axes)
+    One `of_items` of a list holds for all of them.
+    """
+
+    def __init__(self, node: Any, line: int, sentence: str, *, of_items: bool) -> None:
+        super().__init__(node, line)
         self.__doc__ = sentence
-        self._run = _everywhere(_truth(node)) if axes else _truth(node)
+        self._run = _everywhere(_truth(node)) if of_items else _truth(node)
         self._explained = []
 
 

@@ -159,7 +159,7 @@ class Builder:
         node, default = None, None
         if tree is not None:
             node = self._node(statement, str(name), meant, str(axis or ""), tree)
-            body = TreeBody(node, statement.chunk.line, str(name), axes=int(axis is not None))
+            body = TreeBody(node, statement.chunk.line, str(name))
             if body.uses and axis is None:
                 self._make(statement, str(name), Derived(body, meant), node)
                 return
@@ -171,7 +171,7 @@ class Builder:
         name, unit_text, axis, tree, words, clauses = statement.parts
         meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
         node = self._node(statement, str(name), meant, str(axis or ""), tree)
-        body = TreeBody(node, statement.chunk.line, str(name), axes=int(axis is not None))
+        body = TreeBody(node, statement.chunk.line, str(name))
         made = Formula(body, meant) if axis is None else Profile(body, meant, None, str(axis), 1)
         self._make(statement, str(name), made, node)
 
@@ -186,9 +186,9 @@ class Builder:
 
     def _require(self, statement: Parsed) -> None:
         tree, words, clauses = statement.parts
-        node, axes = self._condition(statement, tree)
+        node, of_items = self._condition(statement, tree)
         remedy = said_in(statement, clauses, self.reader).keywords.get("remedy")
-        body = RuleBody(node, statement.chunk.line, words_of(statement, words).rstrip("."), axes)
+        body = RuleBody(node, statement.chunk.line, words_of(statement, words).rstrip("."), of_items=of_items)
         blamed = body.inputs = self.built.inputs_beneath(body.uses)
         if not blamed:
             advice = "compare a given with something"
@@ -212,12 +212,12 @@ class Builder:
         self.built.tests.append(test)
         self.built.note(statement, "", "", test.words)
 
-    def _condition(self, statement: Parsed, tree: lark.Tree[Any]) -> tuple[Any, int]:
+    def _condition(self, statement: Parsed, tree: lark.Tree[Any]) -> tuple[Any, bool]:
         node, sort = self.reader.part(statement, tree)
         if not sort.truth:
             remedy = "write it as in p <= 30 MPa"
             raise statement.refuse("no_truth", "this is a quantity, not a condition", tree, remedy)
-        return node, int(bool(sort.axis))
+        return node, bool(sort.axis)
 
     def _node(self, statement: Parsed, name: str, meant: Meaning, axis: str, tree: lark.Tree[Any]) -> Any:
         """The tree of a value that is a list over an axis exactly where that is declared."""

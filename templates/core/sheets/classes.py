@@ -25,8 +25,8 @@ def made(sheet: Any, id: str, version: int, parts: Mapping[str, Any]) -> type[Te
 
 
 @lru_cache(maxsize=64)
-def from_text(text: str, id: str, version: int) -> type[Template]:
-    """The class of a worksheet in this process, one for each text, id and version.
+def from_text(text: str, id: str, version: int, withdrawn: str | None = None) -> type[Template]:
+    """The class of a worksheet in this process, one for each text, id, version and reason of withdrawal.
 
     Raises
     ------
@@ -35,11 +35,13 @@ def from_text(text: str, id: str, version: int) -> type[Template]:
     """
     from templates.core.sheets.sheet import read  # which makes its classes here
 
-    return read(text).template(id, version)
+    cls = read(text).template(id, version)
+    cls.withdrawn = withdrawn
+    return cls
 
 
-def _reduced(cls: Any) -> tuple[Callable[..., Any], tuple[str, str, int]]:
-    return from_text, (cls.sheet.text, cls.id, cls.version)
+def _reduced(cls: Any) -> tuple[Callable[..., Any], tuple[str, str, int, str | None]]:
+    return from_text, (cls.sheet.text, cls.id, cls.version, cls.withdrawn)
 
 
 copyreg.pickle(SheetClass, _reduced)

@@ -71,7 +71,7 @@ def _called(name: str, units: tuple[str, str], operation: Partial) -> Call:
         ((_, got),) = arguments
         if not compatible(got.kind.base, wanted.kind.base):
             raise FaultyText("unit_mismatch", f"{name} takes a value in {units[0]}, not {told(got.kind)}")
-        node, sort = applied(operation, arguments)
+        node, sort = applied(replace(operation, is_of_items=bool(got.axis)), arguments)
         return node, replace(sort, weight=given.weight)
 
     return call

@@ -17,10 +17,14 @@ from templates.core.units.walking import nodes_of
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Partial(Operation):
-    """An operation without a value where `is_missing` holds of its arguments, for a reason."""
+    """An operation without a value where `is_missing` holds of its arguments, for a reason.
+
+    It may be applied to each item of a list: then it `is_of_items`, and one item suffices.
+    """
 
     is_missing: Callable[..., Any]
     reason: str
+    is_of_items: bool = False
 
 
 def _no_item(values: Any, index: Any) -> Any:
@@ -42,10 +46,10 @@ def explained_in(node: Any) -> list[Explained]:
     return [(one, list(map(closure, arguments))) for one, arguments in found if isinstance(one, Partial)]
 
 
-def explain(template: Any, attribute: str, operations: list[Explained], axes: int) -> None:
-    """Note in the ledger of a template why a value does not exist; `axes` are those of a list."""
+def explain(template: Any, attribute: str, operations: list[Explained]) -> None:
+    """Note in the ledger of a template why a value does not exist, and at which points."""
     for operation, arguments in operations:
         missing = np.asarray(operation.is_missing(*(argument(template) for argument in arguments)))
-        where = np.asarray(missing.any(axis=-1)) if axes and missing.ndim else missing
+        where = np.asarray(missing.any(axis=-1)) if operation.is_of_items else missing
         if where.any():
             template.ledger.masks.append(Mask((attribute,), where, operation.reason, explains=True))

@@ -16,7 +16,7 @@ from templates.core.sheets.classes import made
 from templates.core.sheets.depths import set_order
 from templates.core.sheets.faults import SheetRefused
 from templates.core.sheets.grammar import LANGUAGE
-from templates.core.sheets.lines import Chunk, chunks_of
+from templates.core.sheets.lines import Chunk, chunks_of, normal
 from templates.core.sheets.loops import faults_of_loops
 from templates.core.sheets.names import Named
 from templates.core.sheets.paper import latex_of
@@ -125,7 +125,7 @@ def read(text: str) -> Sheet:
     SheetRefused
         With every fault, each with its line and column, a code, a sentence and a remedy.
     """
-    text = text.removeprefix("\ufeff").replace("\r\n", "\n")
+    text = normal(text)
     chunks = chunks_of(text)
     built = Builder([chunk for chunk in chunks if not chunk.kind]).built
     if faults := [*built.faults, *faults_of_loops(built)] or [*set_order(built)]:

@@ -83,6 +83,24 @@ class Usual(Ladder):
     default_level = "rough"
 
 
+class Judged(Ladder):
+    """The same with a criterion."""
+
+    criteria = {"small": "size <= 40 m"}
+
+
+class Quiet(Template):
+    """An input with a default that is no output."""
+
+    example = {"length": "2 m"}
+
+    x = given("m", "length")
+
+    @derived("m", "breadth")
+    def b(self):
+        return 2 * self.x
+
+
 @pytest.fixture
 def measured(monkeypatch):
     grid = np.array([0.0, 10.0, 100.0])
@@ -136,6 +154,16 @@ class TestLadder:
         """The breadth is twice the length, so both leave their grids together."""
         error = evaluated("size", level="rough", length=length).error["size"]
         assert np.isnan(error).tolist() == [value == 200 for value in length["value"]]
+
+    def test_property_criteria_are_judged_over_the_points_of_all_levels(self, measured, monkeypatch):
+        """Point 0 at the rough level, points 1 and 2 at the fine one, of which one is too large."""
+        monkeypatch.setitem(levels._cache, Judged, measured)
+        lengths = {"length": metres(5, 20, 60)}
+        evaluation = evaluate(Judged, lengths, outputs=("size",), tolerance=0.2, per_point=True)
+        assert evaluation.level.tolist() == ["rough", "fine", "fine"]
+        (judgement,) = evaluation.criteria
+        assert (judgement.verdict, [place.value for place in judgement.where]) == ("not_met", [3])
+        assert judgement.value == pytest.approx(60.06)
 
     @pytest.mark.parametrize("cls", [Usual, Ladder])
     def test_property_without_measured_errors_the_usual_level_answers(self, cls):
@@ -204,6 +232,10 @@ class TestOptional:
         given_one = evaluated("breadth", breadth="7 m")
         assert given_one.outputs["breadth"].value == 7
         assert given_one.inputs["breadth"].source == "given"
+
+    def test_property_a_default_that_is_not_shown_is_an_input_alone(self):
+        assert "breadth" not in Quiet.formulas
+        assert evaluate(Quiet, Quiet.example).inputs["breadth"].source == "default"
 
     def test_property_tables(self):
         assert evaluated("word").outputs["word"].value is None

@@ -138,11 +138,14 @@ class TestTheSameKindOfTemplate:
         assert TEXT.encode()[:60] in packed
         again = pickle.loads(packed)
         assert (again.id, again.version, again.sheet.digest()) == ("oil_film", 1, film.sheet.digest())
+        withdrawn = read(TEXT).template("oil_film", 1)
+        withdrawn.withdrawn = "it has another successor"
+        assert pickle.loads(pickle.dumps(withdrawn)).withdrawn == "it has another successor"
         template = pickle.loads(pickle.dumps(evaluate(film, film.example).template))
         assert template.h_0 == pytest.approx(3.24491e-6, rel=1e-5)
 
     def test_goes_to_processes_as_text(self, film):
         source = source_of(film)
-        assert source == SheetSource("oil_film", 1, TEXT)
+        assert source == SheetSource("oil_film", 1, TEXT, None)
         assert loaded(source).sheet.digest() == film.sheet.digest()
-        assert loaded(source) is loaded(SheetSource("oil_film", 1, TEXT))
+        assert loaded(source) is loaded(SheetSource("oil_film", 1, TEXT, None))

@@ -154,6 +154,22 @@ class TestManyPoints:
         )
         assert found["largest_pressure"] == pytest.approx([30, 3])
 
+    def test_a_curve_of_a_list_says_at_which_points_it_has_no_value(self):
+        text = """given g [bar] over cycle "gas" (example [1, 2] * 1 bar)
+given k [1] = 1 "factor"
+curve c(x [bar]) [1] "curve": 0 -> 0 10 -> 5
+most [1] = k * max(c(g)) "most"
+each [1] over cycle = k * c(g) "each"
+third [bar] = g[k] "chosen"
+"""
+        cls = read(text).template("curve_of_list", 1)
+        inputs = {"gas": {"value": [[1, 2], [3, 20], [4, 6]], "unit": "bar"}, "factor": [1, 2, 3]}
+        answers = evaluate(cls, inputs).outputs
+        reason = "c is known from 0 bar to 10 bar only"
+        assert answers["most"].reasons.tolist() == answers["each"].reasons.tolist() == [None, reason, None]
+        assert answers["most"].value[[0, 2]] == pytest.approx([1, 9])
+        assert answers["chosen"].reasons.tolist() == [None, None, "the list has no item of this index"]
+
 
 class TestTests:
     def test_say_what_came_out(self, bearing):
