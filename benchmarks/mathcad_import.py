@@ -1,7 +1,7 @@
 """What becomes of the regions of Mathcad's sheets in a folder.
 
-`python -m benchmarks.mathcad_import DIR` imports every .mcdx and .xmcd below the folder, none of which is part
-of this project. It prints a line for each, the totals, why regions are refused, and every result that differs.
+`python -m benchmarks.mathcad_import DIR` imports every .mcdx and .xmcd below the folder; none is part of
+this project. It prints a line for each, the totals, why regions are refused, and what differs.
 
 Translated is what has a line in the worksheet or needs none: verified, unverified, differs and shown.
 Compared are the results that Mathcad stored as a number or a list of numbers, of regions that are translated.
@@ -81,9 +81,8 @@ def _print_results(records: dict[str, JsonObject], total: Counter[str]) -> None:
     for name, region in regions:
         if region["state"] == "differs":
             ours, theirs = region["worksheet"][:5], region["mathcad"][:5]
-            print(
-                f"differs: {name}, region {region['region']}, {region['name']}: worksheet {ours}, Mathcad {theirs}"
-            )
+            place = f"{name}, region {region['region']}, {region['name']}"
+            print(f"differs: {place}: worksheet {ours}, Mathcad {theirs}")
     print()
 
 

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any
 
 import lark
 
@@ -15,9 +14,9 @@ from app.worksheets.importing.quantities import Scaled
 from templates.core.errors import FaultyText
 from templates.core.units.expressions import GRAMMAR, Sort, checked
 from templates.core.units.operations import Kind, Name
+from templates.core.units.sorts import Part
 from templates.core.units.units import compatible, registry, unit
 
-Part = tuple[Any, Sort]
 Call = Callable[[list[Part]], Part]
 
 _USUAL = ("1", "mm", "m**2", "m**3", "s", "kg", "kN", "MPa", "kN*m", "kg/m**3", "m/s", "m/s**2", "W", "K",
