@@ -51,14 +51,14 @@ FAILURES = (
 
 
 class Direct:
-    """Runs functions in job processes, for no job of the queue."""
+    """Runs functions in a job process, for no job of the queue."""
 
     def __init__(self, worker: LocalProcesses, limits: Limits) -> None:
-        self._worker, self._limits = worker, limits
+        self._batch, self._limits = worker.batch(), limits
 
     def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
         """See `Worker.run`."""
-        return self._worker.run(function, *args, limits=limits or self._limits)
+        return self._batch.run(function, *args, limits=limits or self._limits)
 
 
 class Repair:

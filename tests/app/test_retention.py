@@ -172,9 +172,10 @@ class TestBuilds:
         assert database.write(lambda session: rows.delete_builds(session, page, DAY)) == 1
         assert keys(database) == ["a", "b"]
 
-    def test_one_that_an_unfinished_job_works_on_stays(self, database, retention, store):
+    @pytest.mark.parametrize("named", [{"build": "a"}, {"builds": ["b", "a"]}])
+    def test_one_that_an_unfinished_job_works_on_stays(self, database, retention, store, named):
         build(database, "a", b"a", store)
-        asked = {"build": "a", "kinds": ["glb"]}
+        asked = {**named, "kinds": ["glb"]}
         id = database.write(lambda session: jobs.add(session, "build", asked, None, None))
         set_present(database, 11)
         assert retention.run()["builds"] == 0

@@ -103,10 +103,8 @@ def test_kill_9_at_random_moments(tmp_path, name):
             assert end.get("result") == result
             assert content(http, end, "npz") == npz
     assert server.stop() == 0
-
-    assert met >= 0.9 * KILLS, (
-        f"{met} of {KILLS}, seed {SEED}"
-    )  # between two looks, the last rows may be recorded
+    # between two looks, the last rows may be recorded
+    assert met >= 0.9 * KILLS, f"{met} of {KILLS}, seed {SEED}"
     assert [chunks(data, study) for study in studies] == recorded
     assert work_done(data) == after
     assert CliRunner().invoke(main, ["check", "--data", str(data)]).exit_code == 0

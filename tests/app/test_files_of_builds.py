@@ -1,0 +1,51 @@
+"""Files of several builds are one job; what fails for one is told once the others are there."""
+
+from patience import until
+from serving import API
+
+from cad.errors import GeometryError
+
+PLACE = f"{API}/models/plain_bearing/versions/1/build"
+
+
+def built(http, size):
+    body = {"parameters": {"inner_diameter": size, "width": "11 mm"}, "artifacts": ["step"]}
+    answer = http.post(PLACE, json=body, headers={"Prefer": "wait=60"})
+    assert answer.status_code == 200, answer.text
+    return answer.json()["build"]
+
+
+def ended(http, job):
+    ask = lambda: http.get(f"{API}/jobs/{job}").json()  # noqa: E731
+    return until(ask, lambda now: now["state"] in ("done", "failed"))
+
+
+def files(http, key):
+    return set(http.get(f"{API}/builds/{key}").json()["artifacts"])
+
+
+def test_all_are_made_by_one_job(served, http):
+    keys = [built(http, size) for size in ("71 mm", "72 mm", "73 mm")]
+    models = served.app.state.services.models
+    job = models.request_files_of_all(keys, ("svg",))
+    end = ended(http, job)
+    assert end["state"] == "done"
+    assert "solid 3 of 3" in end["log"]
+    assert all(files(http, key) == {"step", "svg"} for key in keys)
+
+
+def test_a_failure_leaves_the_others(served, http, monkeypatch):
+    first, second = built(http, "74 mm"), built(http, "75 mm")
+    builds = served.app.state.services.jobs._dispatcher.kinds["build"].handler.builds
+    derive = builds.derive
+
+    def moody(key, kind, context):
+        if key == first:
+            raise GeometryError("kernel", "no picture today")
+        derive(key, kind, context)
+
+    monkeypatch.setattr(builds, "derive", moody)
+    end = ended(http, served.app.state.services.models.request_files_of_all([first, second], ("svg",)))
+    assert end["state"] == "failed"
+    assert "no picture today" in end["problem"]["detail"]
+    assert (files(http, first), files(http, second)) == ({"step"}, {"step", "svg"})
