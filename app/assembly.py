@@ -24,6 +24,7 @@ from app.designs.recent import Recent
 from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.designs.solved import solved
+from app.impact.service import Impacts
 from app.jobs.service import Jobs
 from app.observation import metrics
 from app.reports.paper import Press
@@ -37,18 +38,31 @@ from app.solids.healing import Healing
 from app.solids.models import BUILD, ModelBuild, Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.storage.engines import sqlite_file
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.storage.migrations import migrate
 from app.studies.assembly import assemble_studies
 from app.studies.running import LANES, Parts
+from app.studies.solid_making import SolidMaking
 from app.tolerances.process import analysed
 from app.workers.base import Limits, Worker
 from app.workers.local import LocalProcesses
+from app.worksheets.importing.service import IMPORT, Imports
+from app.worksheets.published import Published
+from app.worksheets.service import Worksheets
 from cad.catalogue import models as find_models
 
-NETWORK = ("app.designs.net", "app.studies.planning", "app.studies.searching", "app.studies.sensitivities")
+NETWORK = (
+    "app.designs.net",
+    "app.impact.process",
+    "app.studies.planning",
+    "app.studies.searching",
+    "app.studies.sensitivities",
+)
 """What processes have loaded that calculate rows of designs."""
+SHEETS = ("app.worksheets.checking",)
+"""What all calculation processes have loaded to read worksheets."""
 
 
 def assemble(settings: Settings, stack: ExitStack) -> Services:
@@ -66,16 +80,23 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     catalogues = find_catalogues(settings, worker)
     stack.callback(catalogues.close)
     jobs = Jobs(database, worker, settings, problems.describe)
-    calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs, NETWORK)
+    published = published_worksheets(settings, database, catalogues, stack)
+    calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs, NETWORK, SHEETS)
     recent = Recent()
-    register_jobs(settings, jobs, database, store, catalogues, calculations, recent)
+    builds = Builds(database, store)
+    analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
+    register_jobs(jobs, builds, analysing, catalogues, calculations, recent)
     about = database, catalogues, store, jobs, calculations.steps
-    previews, decisions = Previews(*about), Decisions(*about)
+    previews, decisions, impacts = Previews(*about), Decisions(*about), Impacts(*about)
     solving, tolerances = Asking(SOLUTION, solved, *about), Asking(TOLERANCE, analysed, *about)
-    register_answers(jobs, previews, decisions, solving, tolerances)
+    register_answers(jobs, previews, decisions, solving, tolerances, impacts)
     designs = Designs(database, jobs, catalogues, recent)
-    parts = Parts(database, store, catalogues, calculations.pool, jobs, calculations.steps)
+    solids = SolidMaking(database, builds, analysing, settings.workers)
+    parts = Parts(database, store, catalogues, calculations.pool, jobs, calculations.steps, solids)
     studies = assemble_studies(parts, designs)
+    worksheets = Worksheets(database, catalogues, calculations.pool, published)
+    imports = Imports(database, store, jobs, catalogues, worksheets)
+    jobs.register(IMPORT, imports, imports.failed)
     jobs.start({**calculations.lanes, **LANES})
     stack.callback(jobs.stop)
     models = Models(database, store, jobs, catalogues)
@@ -95,8 +116,11 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         previews=previews,
         decisions=decisions,
         studies=studies,
+        worksheets=worksheets,
+        imports=imports,
         solving=solving,
         tolerances=tolerances,
+        impacts=impacts,
         models=models,
         analyses=analyses,
         healing=Healing(database, store, models, analyses),
@@ -135,6 +159,18 @@ def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
     return TeamCatalogues(settings.template_folders, CheckInProcess(worker, limits))
 
 
+def published_worksheets(
+    settings: Settings, database: Database, catalogues: Catalogues, stack: ExitStack
+) -> Published:
+    """The released worksheets among the templates; a SQLite file has one server, which releases them all."""
+    url = settings.database_url
+    is_shared = url is not None and sqlite_file(url) is None
+    published = Published(database, catalogues, is_shared=is_shared)
+    published.start()
+    stack.callback(published.stop)
+    return published
+
+
 def opened_database(settings: Settings, folder: DataFolder, stack: ExitStack) -> Database:
     """The database, migrated; a damaged one is refused before anything is written to it."""
     url = settings.database_url or folder.database_url
@@ -146,19 +182,16 @@ def opened_database(settings: Settings, folder: DataFolder, stack: ExitStack) ->
 
 
 def register_jobs(
-    settings: Settings,
     jobs: Jobs,
-    database: Database,
-    store: ArtifactStore,
+    builds: Builds,
+    analysing: Analysing,
     catalogues: Catalogues,
     calculations: Calculations,
     recent: Recent,
 ) -> None:
     """Say what carries out each kind of job."""
-    builds = Builds(database, store)
-    analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
     regeneration = Regeneration(
-        database, builds, analysing, catalogues, calculations.steps, recent, problems.describe
+        builds.database, builds, analysing, catalogues, calculations.steps, recent, problems.describe
     )
     jobs.register(REGENERATE, regeneration, regeneration.failed)
     jobs.register(REGENERATE_SLOWLY, regeneration, regeneration.failed, is_slow=True)

@@ -22,6 +22,7 @@ from app.settings import Settings
 from app.storage.database import Database
 from app.storage.folder import DataFolder
 from app.storage.migrations import migrate
+from app.workers.isolated import JobProcess
 from app.workers.local import LocalProcesses
 from app.workers.messages import Request
 
@@ -33,7 +34,8 @@ KERNEL = "cadquery"
 class WithoutSpare(LocalProcesses):
     """Forks a process when a job comes instead of before."""
 
-    def _start(self, request: Request):  # noqa: ANN202 - as the method that it replaces
+    def started(self, request: Request) -> JobProcess:
+        """Fork one; it is not kept waiting."""
         process = self._forkserver.fork()
         process.start(request)
         return process

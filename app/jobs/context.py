@@ -4,14 +4,15 @@ import logging
 import threading
 import time
 from collections.abc import Callable
-from typing import TypeVar, TypeVarTuple
+from typing import Protocol, TypeVar, TypeVarTuple
 
 from app.jobs import repository
 from app.jobs.events import Events
 from app.jobs.job import Job
 from app.observation import metrics
 from app.storage.database import Database
-from app.workers.base import Limits, Worker
+from app.workers.base import BatchWorker, Limits, Runner
+from templates.core.progress import Reporter
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
@@ -23,13 +24,17 @@ _INTERVAL = 0.5  # between two times that progress is stored [s]
 
 
 class JobContext:
-    """Runs functions in the worker, and reports and stores how far the job is."""
+    """Runs functions in the worker, and reports and stores how far the job is.
+
+    All functions of a job share a process, as long as each comes to its end: a job that builds a hundred
+    solids pays once for what the kernel loads at first use.
+    """
 
     def __init__(
         self,
         job: Job,
         database: Database,
-        worker: Worker,
+        worker: BatchWorker,
         limits: Limits,
         events: Events,
         cancelled: threading.Event,
@@ -37,7 +42,7 @@ class JobContext:
         self.log: list[str] = []
         self._job = job
         self._database = database
-        self._worker = worker
+        self._batch = worker.batch()
         self._limits = limits
         self._events = events
         self._cancelled = cancelled
@@ -63,13 +68,30 @@ class JobContext:
         WorkerError
             See `Worker.run`.
         """
-        return self._worker.run(
+        return self._run(self.progress, function, *args, limits=limits)
+
+    def quietly(self) -> Runner:
+        """Run functions of which nobody hears how far they are: they are many, and the job counts them."""
+        return _Quietly(self._run)
+
+    def _run(
+        self,
+        on_progress: Reporter | None,
+        function: Callable[[*Ts], T],
+        *args: *Ts,
+        limits: Limits | None = None,
+    ) -> T:
+        return self._batch.run(
             function,
             *args,
             limits=limits or self._limits,
-            on_progress=self.progress,
+            on_progress=on_progress,
             cancelled=self._cancelled,
         )
+
+    def close(self) -> None:
+        """End the process of the job; called when its handler has ended."""
+        self._batch.close()
 
     def progress(self, fraction: float, text: str) -> None:
         """Publish how far the job is (0 to 1) and what it does next; store it now and then."""
@@ -80,6 +102,30 @@ class JobContext:
                 lambda session: repository.note_progress(session, self._job, fraction, self.log)
             )
             self._stored = time.monotonic()
+
+
+class _Running(Protocol):
+    """Runs a function in the worker, with whoever hears how far it is."""
+
+    def __call__(
+        self,
+        on_progress: Reporter | None,
+        function: Callable[[*Ts], T],
+        /,
+        *args: *Ts,
+        limits: Limits | None = None,
+    ) -> T: ...
+
+
+class _Quietly:
+    """Runs functions in the worker; see `Runner`."""
+
+    def __init__(self, run: _Running) -> None:
+        self._run = run
+
+    def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
+        """Run a function without progress."""
+        return self._run(None, function, *args, limits=limits)
 
 
 def publish(events: Events, job: Job, name: str, **more: object) -> None:

@@ -4,6 +4,7 @@ import logging
 import threading
 import time
 from collections.abc import Callable, Mapping
+from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 
@@ -20,7 +21,7 @@ from app.observation import logs
 from app.plain import JsonObject
 from app.storage.database import Database
 from app.storage.errors import DatabaseClosed
-from app.workers.base import Limits, Worker
+from app.workers.base import BatchWorker, Limits
 from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed, MemoryExceeded
 
 logger = logging.getLogger(__name__)
@@ -53,7 +54,7 @@ class Dispatcher:
     def __init__(
         self,
         database: Database,
-        worker: Worker,
+        worker: BatchWorker,
         limits: Limits,
         events: Events,
         describe: Callable[[Exception], Problem],
@@ -169,7 +170,8 @@ class Dispatcher:
         context = JobContext(job, self._database, self._worker, self._limits, self._events, cancelled)
         publish(self._events, job, "running")
         try:
-            completion = self.kinds[job.kind].handler(job, context)
+            with closing(context):
+                completion = self.kinds[job.kind].handler(job, context)
             self._complete(job, context, completion)
         except JobCancelled:
             self._give_back(job, job.crashes)  # unless somebody has cancelled it: then it is no longer held

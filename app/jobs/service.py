@@ -20,7 +20,7 @@ from app.schemas.jobs import State
 from app.settings import Settings
 from app.storage.clock import operated
 from app.storage.database import Database
-from app.workers.base import Limits, Worker
+from app.workers.base import BatchWorker, Limits
 from app.workers.errors import JobCancelled
 
 __all__ = ["Completion", "Job", "JobContext", "JobFailed", "JobRests", "Jobs"]
@@ -41,7 +41,7 @@ class Jobs:
     def __init__(
         self,
         database: Database,
-        worker: Worker,
+        worker: BatchWorker,
         settings: Settings,
         describe: Callable[[Exception], Problem],
     ) -> None:

@@ -75,13 +75,13 @@ class Reports:
         return [self.models.request_files(key, kinds, client) for key, kinds in missing.items() if kinds]
 
     def request_variant_pictures(self, id: str, number: int, client: str = "") -> list[str]:
-        """The jobs that make a picture of every distinct solid of the variants; none if all is there."""
+        """The job that makes a picture of every distinct solid of the variants; none if all is there."""
         with self.database.read() as session:
             row = repository.revision(session, id, number)
             keys = {model.build_key for model in row.variant_models if model.build_key}
             there = rows.artifacts_of(session, rows.builds(session, keys))
-        missing = [key for key, files in there.items() if PICTURE in self._missing(files)]
-        return [self.models.request_files(key, (PICTURE,), client) for key in sorted(missing)]
+        missing = sorted(key for key, files in there.items() if PICTURE in self._missing(files))
+        return [self.models.request_files_of_all(missing, (PICTURE,), client)] if missing else []
 
     def gather_variants(self, id: str, number: int, system: System, *, pending: bool) -> Report:
         """The report of a revision with all its variants.
@@ -111,7 +111,7 @@ class Reports:
             ]
             document, head = row.document, repository.newest_number(session, id)
         steps = [
-            step_of(name, step, document["steps"][name], self.catalogues.templates)
+            step_of(name, step, document["steps"][name], self.catalogues)
             for name, step in worked.steps.items()
         ]
         problem = worked.problem

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy.orm import Session
@@ -18,7 +18,7 @@ from app.solids.builds import Builds
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild, NotFound
-from app.workers.errors import DeadlineExceeded, MemoryExceeded
+from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
 from cad.errors import GeometryError
 from cad.export import DERIVED
 from cad.header import read_header
@@ -83,10 +83,15 @@ class Models:
 
     def request_files(self, key: str, kinds: tuple[str, ...], client: str = "") -> str:
         """The job that makes several files of a finished build."""
-        payload = {"build": key, "kinds": [*kinds]}
+        return self._requested([key], {"build": key, "kinds": [*kinds]}, client)
 
+    def request_files_of_all(self, keys: Sequence[str], kinds: tuple[str, ...], client: str = "") -> str:
+        """The one job that makes files of several finished builds, in as few processes as possible."""
+        return self._requested(keys, {"builds": [*keys], "kinds": [*kinds]}, client)
+
+    def _requested(self, keys: Sequence[str], payload: dict[str, str | list[str]], client: str) -> str:
         def unit(session: Session) -> str:
-            renew(session, [key])
+            renew(session, keys)
             return self.jobs.request(session, BUILD, payload, client)
 
         job = self.database.write(unit)
@@ -161,6 +166,8 @@ class ModelBuild:
             With the problem, for anything that the model itself brings about.
         """
         asked = job.payload
+        if "builds" in asked:
+            return self._derived_of_all(asked["builds"], asked["kinds"], context)
         if "build" in asked:
             return self._derived(asked["build"], asked["kinds"], context)
         try:
@@ -171,6 +178,19 @@ class ModelBuild:
         except FAILURES as error:
             raise JobFailed(error) from error
         return self._derived(key, asked["kinds"], context)
+
+    def _derived_of_all(self, keys: Sequence[str], kinds: Sequence[str], context: JobContext) -> Completion:
+        """The files of several builds; what fails for one is raised once those of all others are there."""
+        failures: list[JobFailed | JobCrashed] = []
+        for number, key in enumerate(keys):
+            context.progress(number / len(keys), f"solid {number + 1} of {len(keys)}")
+            try:
+                self._derived(key, kinds, context)
+            except (JobFailed, JobCrashed) as error:
+                failures.append(error)
+        if failures:
+            raise failures[0]
+        return lambda session: None
 
     def _derived(self, key: str, kinds: Iterable[str], context: JobContext) -> Completion:
         try:

@@ -13,8 +13,7 @@ from app.studies.service import Studies
 def assemble_studies(parts: Parts, designs: Designs) -> Studies:
     """The service of studies, its handler registered."""
     conclude = Concluding(Building(parts, designs))
-    handler = Studying(parts, conclude)
+    healing = Healing(parts, conclude)
+    handler = Studying(parts, conclude, healing.heal)
     parts.jobs.register(STUDY, handler, handler.failed, lane=STUDY)
-    return Studies(
-        parts.database, parts.store, parts.jobs, parts.catalogues, designs, Healing(parts, conclude).lost
-    )
+    return Studies(parts.database, parts.store, parts.jobs, parts.catalogues, designs, healing.lost)

@@ -8,14 +8,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.designs.net import Net, Refusal, Table
+from app.designs.net import Refusal, Table
 from app.designs.reference import Reference
 from app.studies.archive import AnyArray, packed
-from app.studies.task import Task, prepared
+from app.studies.row_solids import Solids, Wanting
+from app.studies.task import Prepared, Task, prepared
 from app.workers.pieces import Pieces
 from templates.core.arrays import Array
 
 Levels = Mapping[str, str | None]
+
+
+@dataclass(frozen=True)
+class Lacking:
+    """The solids that rows wait for."""
+
+    solids: tuple[Wanting, ...]
 
 
 @dataclass(frozen=True)
@@ -27,37 +35,55 @@ class Chunk:
     refused: dict[str, int]
 
 
-def explored(task: Task, first: int, last: int, levels: Levels, criteria: tuple[str, ...]) -> Chunk:
+def explored(
+    task: Task, first: int, last: int, levels: Levels, criteria: tuple[str, ...], solids: Solids = ()
+) -> Chunk | Lacking:
     """Rows number `first` to `last`, the last one excluded, as the method has them."""
     points = prepared(task).asked.points
     assert points is not None, "a table or an optimisation gives its rows itself"
-    return calculated(task, points.rows(first, last), levels, criteria)
+    return calculated(task, points.rows(first, last), levels, criteria, solids)
 
 
-def calculated(task: Task, rows: Array, levels: Levels, criteria: tuple[str, ...]) -> Chunk:
-    """Rows given by their values [SI], shape (N, d)."""
+def calculated(
+    task: Task, rows: Array, levels: Levels, criteria: tuple[str, ...], solids: Solids = ()
+) -> Chunk | Lacking:
+    """Rows given by their values [SI], shape (N, d), or the solids that they wait for."""
     ready = prepared(task)
-    table = called(ready.net, ready.asked.places, rows, ready.asked.wanted, levels, criteria)
-    arrays = {**columns_of(task.varied, rows), **results_of(table, ready.asked.wanted)}
+    resolved = ready.solids.resolved(placed(ready, rows), len(rows), levels, solids)
+    if resolved.wanting:
+        return Lacking(tuple(resolved.wanting))
+    table = called(ready, rows, levels, criteria, measures=resolved.columns)
+    table.refusals |= resolved.refusals
+    wanted = ready.asked.wanted
+    arrays = {**columns_of(task.varied, rows), **results_of(table, wanted)}
     reasons, which = reasons_of(table)
     arrays["reason"], arrays["level"] = which, np.zeros(table.count, dtype=np.int16)
     about = {"reasons": reasons, "levels": [dict(table.levels)]}
     return Chunk(packed(arrays, about), table.count, refused_by_reason(table))
 
 
+def placed(ready: Prepared, rows: Array) -> dict[Reference, Array]:
+    """The columns of rows, shape (N, d), by their places."""
+    return {place: rows[:, column] for column, place in enumerate(ready.asked.places)}
+
+
 def called(
-    net: Net,
-    places: tuple[Reference, ...],
+    ready: Prepared,
     rows: Array,
-    wanted: tuple[Reference, ...],
     levels: Levels | None,
     criteria: tuple[str, ...] | None,
     *,
+    measures: Mapping[Reference, Array] | None = None,
     judge: bool = False,
 ) -> Table:
-    """The table of some rows, shape (N, d)."""
-    values = {place: rows[:, column] for column, place in enumerate(places)}
-    return net(values, wanted, levels=levels, criteria=criteria, judge=judge)
+    """The table of some rows, shape (N, d); without `measures`, with those of the design itself."""
+    values = {**placed(ready, rows), **(tried(ready, len(rows)) if measures is None else measures)}
+    return ready.net(values, ready.asked.wanted, levels=levels, criteria=criteria, judge=judge)
+
+
+def tried(ready: Prepared, count: int) -> dict[Reference, Array]:
+    """The measures of the design itself for rows that are only tried; NaN where they are not known."""
+    return {r: np.full(count, ready.nominal.get(r, np.nan)) for r in ready.solids.measures}
 
 
 def columns_of(names: tuple[str, ...], rows: Array) -> dict[str, AnyArray]:

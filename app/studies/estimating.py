@@ -73,5 +73,5 @@ def paced(ready: Prepared, probe: Array, criteria: tuple[str, ...], levels: Leve
 def timed(ready: Prepared, rows: Array, criteria: tuple[str, ...], levels: Levels) -> float:
     """The processor time of a call [s]."""
     begun = time.thread_time()
-    called(ready.net, ready.asked.places, rows, ready.asked.wanted, levels, criteria)
+    called(ready, rows, levels, criteria)
     return time.thread_time() - begun

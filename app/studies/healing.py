@@ -1,5 +1,7 @@
 """Chunks whose artifacts are lost or damaged: a job calculates them again, to the same bytes.
 
+That is a job of its own for rows that somebody reads, or the job of a study that reads its own while it runs.
+
 The study is repeated with the chunks that are left, until all that were recorded are there again. It goes no
 further: a cancelled study gets no new rows, and nothing is concluded or built a second time.
 """
@@ -77,16 +79,21 @@ class Healing:
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Repeat a study until all its recorded chunks are there."""
         id: str = job.payload["study"]
+        try:
+            self.heal(id, job, context)
+        except FAILURES as error:
+            self._refuse(id, error)
+            raise JobFailed(error) from error
+        return lambda session: f"/api/v1/studies/{id}"
+
+    def heal(self, id: str, job: Job, context: JobContext) -> None:
+        """Repeat a study until all its recorded chunks are there; raises what its design brings about."""
         run = run_of(self._parts, id, job, context, _Repeated)
         try:
             run.finish_if_whole()
             self._conclude(run)
         except _Whole:
             pass
-        except FAILURES as error:
-            self._refuse(id, error)
-            raise JobFailed(error) from error
-        return lambda session: f"/api/v1/studies/{id}"
 
     def lost(self, id: str) -> Exception:
         """What to raise when rows of a study cannot be read: where they are calculated again, or why not."""

@@ -13,13 +13,13 @@ from app.designs.net import Table
 from app.designs.reference import Reference
 from app.plain import JsonObject
 from app.studies.asking import Asked
-from app.studies.chunks import Levels, called
+from app.studies.chunks import Levels, called, placed
 from app.studies.estimating import estimated
 from app.studies.given import Rows, given_rows
 from app.studies.schemas import MOST_BUILT, MOST_ROWS
 from app.studies.signs import criterion_of
 from app.studies.solids_needed import counted
-from app.studies.task import Prepared, Task, prepared, read_body
+from app.studies.task import Prepared, Task, prepared
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs, unknown_names
 from templates.core.judging.comparison import NOT_CHECKED
@@ -50,6 +50,14 @@ class Plan:
     searched: list[dict[str, str | None]]  # levels of an optimisation: explore, confirm, others to compare
     seconds: float
     measured: dict[str, float]  # measures of solids that are known [SI]
+    solids: int = 0  # that rows need, at most
+    solid_seconds: float = 0.0  # that each of them takes [s]; plans of older studies have neither
+
+    def share(self, rows: int, solids: int) -> float:
+        """How far the study is with so many rows and solids, 0 to 1, by the seconds that each takes."""
+        building = min(1.0, self.solids * self.solid_seconds / self.seconds) if self.solids else 0.0
+        done = building * min(1.0, solids / self.solids) if self.solids else 0.0
+        return min(1.0, done + (1.0 - building) * rows / max(1, self.rows))
 
     @property
     def chunks(self) -> int:
@@ -69,17 +77,14 @@ class Plan:
 def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, Array | None]:
     """The plan of a study, and the values [SI] of the rows that its user gave, if the method is `table`.
 
-    `solid_seconds` is how long it takes to build a solid [s], for those who vary what solids follow from.
+    `solid_seconds` is how long it takes to build a solid [s], for rows that wait for solids.
 
     Raises
     ------
     InvalidInputs
-        With what is wrong: unknown places, units, bounds, too many rows, solids that would be needed.
+        With what is wrong: unknown places, units, bounds, too many rows, too many solids.
     """
-    try:
-        ready = prepared(task)
-    except InvalidInputs as error:
-        raise counted(error, read_body(task.body), rows, solid_seconds) from None
+    ready = prepared(task)
     body, given = ready.asked.body, None
     if body.method == "table":
         given = given_rows(rows or {}, ready.net)
@@ -87,10 +92,13 @@ def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, 
     _check_built(ready.asked, count)
     probe = _probe(ready.asked, count, given)
     criteria = _judged(body.hold, ready.net.criteria())
-    first = called(ready.net, ready.asked.places, probe[:TRIED], ready.asked.wanted, None, tuple(criteria))
+    few = probe[:TRIED]
+    first = called(ready, few, None, tuple(criteria))
+    behind = ready.solids.resolved(placed(ready, few), len(few), None, ()).levels
     _refuse_curves(first.columns, ready.asked.wanted)
     required = criteria if body.hold is not None else _checked(criteria, first, task)
-    levels: dict[str, str | None] = dict(first.levels)
+    levels: dict[str, str | None] = {**behind, **first.levels}
+    needed = counted(ready, count, given, levels, solid_seconds)
     if body.explore is not None:
         levels |= _levels(ready, probe, criteria, body.explore.tolerance, SHARE)
     confirm = None
@@ -110,8 +118,10 @@ def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, 
         chunk=min(count, _chunk(ready, criteria, levels)),
         confirm_chunk=_chunk(ready, criteria, confirm or levels),
         searched=_searched(ready, levels, confirm),
-        seconds=estimated(ready, probe, count, criteria, levels, confirm),
+        seconds=estimated(ready, probe, count, criteria, levels, confirm) + needed.solids * solid_seconds,
         measured=dict(task.measured),
+        solids=needed.solids,
+        solid_seconds=solid_seconds if needed.solids else 0.0,
     )
     return plan, given
 

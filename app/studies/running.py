@@ -6,6 +6,7 @@ which chunks are left, and they are calculated to the same bytes.
 
 from __future__ import annotations
 
+import logging
 import time
 from collections import deque
 from collections.abc import Callable, Iterable
@@ -20,6 +21,7 @@ from app.calculations.pool import Calculation, CalculationPool
 from app.calculations.steps import Steps
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository as designs
+from app.designs.document import Document
 from app.jobs.service import Completion, Job, JobContext, JobFailed, JobRests, Jobs
 from app.plain import JsonObject
 from app.schemas.studies import StudyResult
@@ -29,13 +31,18 @@ from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild
 from app.storage.tables import StudyChunkRow, StudyRow
 from app.studies import repository
 from app.studies.archive import Archive
-from app.studies.chunks import Chunk, calculated, explored
+from app.studies.chunks import Chunk, Lacking, calculated, explored
+from app.studies.finding import MOST_FRONT
 from app.studies.planning import Plan
+from app.studies.solid_making import SolidMaking, StudySolids
+from app.studies.solids_needed import MOST_SOLIDS, NEEDS_SOLIDS
 from app.studies.stored import Stored
 from app.studies.task import Task
 from app.workers.errors import DeadlineExceeded, JobCancelled, MemoryExceeded
 from templates.core.arrays import Array
-from templates.core.errors import TemplateError
+from templates.core.errors import Fault, InvalidInputs, TemplateError
+
+logger = logging.getLogger(__name__)
 
 STUDY = "study"
 """The kind of the jobs of studies, and their lane."""
@@ -43,6 +50,7 @@ LANES = {STUDY: 4}
 """Threads that wait for the chunks of studies: so many studies take turns in the pool."""
 GLANCE = 0.05  # how often a thread looks whether its study was cancelled [s]
 SHIFT = 5.0  # after which a study lets those that wait for its thread go first [s]
+MOST_HEALED = 3  # times that a study calculates rows again that it has lost while it runs
 FAILURES = (
     TemplateError,
     DeadlineExceeded,
@@ -67,13 +75,16 @@ class Parts:
     pool: CalculationPool
     jobs: Jobs
     steps: Steps
+    solids: SolidMaking
 
 
 class Run:
     """A study while a job works on it."""
 
-    def __init__(self, parts: Parts, row: StudyRow, task: Task, job: Job, context: JobContext) -> None:
-        self.parts, self.row, self.task = parts, row, task
+    def __init__(
+        self, parts: Parts, row: StudyRow, task: Task, solids: StudySolids, job: Job, context: JobContext
+    ) -> None:
+        self.parts, self.row, self.task, self.solids = parts, row, task, solids
         self.plan = Plan.of(row.plan)
         self.job, self.context = job, context
         self._since = time.monotonic()
@@ -112,9 +123,10 @@ class Run:
         def started(number: int) -> Calculation:
             first = number * self.plan.chunk
             last = min(first + self.plan.chunk, self.plan.rows)
+            levels, criteria, solids = self.plan.levels, self.criteria, self.solids.known
             if given is not None:
-                return self.submit(calculated, self.task, given[first:last], self.plan.levels, self.criteria)
-            return self.submit(explored, self.task, first, last, self.plan.levels, self.criteria)
+                return self.submit(calculated, self.task, given[first:last], levels, criteria, solids)
+            return self.submit(explored, self.task, first, last, levels, criteria, solids)
 
         self._all(range(self.plan.chunks), started)
 
@@ -124,7 +136,8 @@ class Run:
 
         def started(number: int) -> Calculation:
             first = (number - self.plan.chunks) * size
-            return self.submit(calculated, self.task, rows[first : first + size], levels, self.criteria)
+            part, solids = rows[first : first + size], self.solids.known
+            return self.submit(calculated, self.task, part, levels, self.criteria, solids)
 
         self._all(range(self.plan.chunks, self.plan.chunks - (-len(rows) // size)), started)
 
@@ -138,20 +151,43 @@ class Run:
                     continue
                 waiting.append((number, started(number)))
                 if len(waiting) > self.parts.pool.most_jobs:
-                    self._keep_first(waiting)
-                    self._rest(waiting)
+                    self._keep_first(waiting, started)
+                    self._rest(waiting, started)
             while waiting:
-                self._keep_first(waiting)
+                self._keep_first(waiting, started)
         finally:
             for _, calculation in waiting:
                 self.parts.pool.cancel(calculation)
 
-    def _keep_first(self, waiting: deque[tuple[int, Calculation]]) -> None:
+    def _keep_first(self, waiting: deque[tuple[int, Calculation]], started: Started) -> None:
+        """Keep the first chunk, once its rows have their solids."""
         number, calculation = waiting[0]
-        chunk = self.result_of(calculation)
+        while isinstance(answer := self.result_of(calculation), Lacking):
+            self._build(answer)
+            calculation = started(number)
+            waiting[0] = number, calculation
         waiting.popleft()
-        assert isinstance(chunk, Chunk)
-        self.keep(number, chunk)
+        assert isinstance(answer, Chunk)
+        self.keep(number, answer)
+
+    def _build(self, lacking: Lacking) -> None:
+        """Make the solids that rows wait for, one by one.
+
+        Raises
+        ------
+        InvalidInputs
+            There are more of them than were counted: confirmed at finer levels, rows have other solids.
+        """
+        for wanting in lacking.solids:
+            if self.solids.is_known(wanting):
+                continue
+            if len(self.solids.known) >= MOST_SOLIDS + MOST_FRONT:
+                detail = f"confirmed rows need other solids than explored ones, more than {MOST_FRONT}"
+                raise InvalidInputs([Fault("confirm", NEEDS_SOLIDS, detail)])
+            self._report()
+            self.rest_if_due()
+            self.solids.make(wanting)
+        self._report()
 
     def keep(self, number: int, chunk: Chunk) -> None:
         """Store a chunk, then record it.
@@ -177,13 +213,15 @@ class Run:
     def _report(self) -> None:
         with self.parts.database.read() as session:
             done = repository.done(session, self.row.id, self.plan.chunks).rows
-        self.context.progress(min(1.0, done / self.plan.rows), f"{done} rows are calculated")
+        solids = len(self.solids.known)
+        words = f"solids {solids} of {max(solids, self.plan.solids)}, " if self.plan.solids else ""
+        self.context.progress(self.plan.share(done, solids), f"{words}{done} rows are calculated")
 
-    def _rest(self, waiting: deque[tuple[int, Calculation]]) -> None:
+    def _rest(self, waiting: deque[tuple[int, Calculation]], started: Started) -> None:
         """Keep what is being calculated, then let others go first, if it is time."""
         if self._is_due():
             while waiting:
-                self._keep_first(waiting)
+                self._keep_first(waiting, started)
             raise JobRests
 
     def rest_if_due(self) -> None:
@@ -209,13 +247,15 @@ class Run:
 R = TypeVar("R", bound=Run)
 Conclude = Callable[[Run], StudyResult]
 """Calculates what a method needs, and says what it found."""
+Heal = Callable[[str, Job, JobContext], None]
+"""Calculates the recorded chunks of a study again that are lost."""
 
 
 class Studying:
     """The handler of the jobs of studies."""
 
-    def __init__(self, parts: Parts, conclude: Conclude) -> None:
-        self.parts, self._conclude = parts, conclude
+    def __init__(self, parts: Parts, conclude: Conclude, heal: Heal) -> None:
+        self.parts, self._conclude, self._heal = parts, conclude, heal
 
     def __call__(self, job: Job, context: JobContext) -> Completion:
         """Calculate what is left of a study, and conclude.
@@ -231,7 +271,7 @@ class Studying:
         if not self.parts.database.write(lambda session: repository.begin(session, id)):
             raise JobCancelled
         try:
-            result = self._conclude(run_of(self.parts, id, job, context, Run)).plain()
+            result = self._concluded(id, job, context).plain()
         except FAILURES as error:
             raise JobFailed(error) from error
 
@@ -240,6 +280,16 @@ class Studying:
             return f"/api/v1/studies/{id}"
 
         return completion
+
+    def _concluded(self, id: str, job: Job, context: JobContext) -> StudyResult:
+        """The result; chunks that are found lost or damaged meanwhile are calculated again first."""
+        for _ in range(MOST_HEALED):
+            try:
+                return self._conclude(run_of(self.parts, id, job, context, Run))
+            except (ArtifactMissing, ArtifactDamaged) as error:
+                logger.warning("study %s calculates its lost rows again: %s", id, error)
+                self._heal(id, job, context)
+        return self._conclude(run_of(self.parts, id, job, context, Run))
 
     def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
         """Record why a study failed, or that it was cancelled; in the transaction that ends its job."""
@@ -255,4 +305,5 @@ def run_of(parts: Parts, id: str, job: Job, context: JobContext, kind: type[R]) 
         document = designs.document(session, row.design_id, row.revision)
     plan = Plan.of(row.plan)
     task = Task.of(document, row.body, plan.places, plan.measured, parts.catalogues)
-    return kind(parts, row, task, job, context)
+    solids = parts.solids.of(Document.model_validate(document), parts.catalogues, context)
+    return kind(parts, row, task, solids, job, context)

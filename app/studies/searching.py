@@ -201,7 +201,7 @@ class _Book:
         criteria = self._search.criteria  # by tables: what was measured would differ from run to run
         seconds = net.seconds(len(rows), asked.wanted, levels, criteria=criteria, by_tables=True)
         self._spent += seconds + CALL_SECONDS
-        table = called(net, asked.places, rows, asked.wanted, levels, self._search.criteria, judge=True)
+        table = called(self._ready, rows, levels, criteria, judge=True)
         arrays = {**columns_of(self._task.varied, rows), **results_of(table, asked.wanted)}
         for name in self._search.required:
             arrays |= judged_of(net, name, table)

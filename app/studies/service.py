@@ -15,6 +15,7 @@ from app.jobs.errors import JobFinished, JobNotFound
 from app.jobs.service import Jobs
 from app.plain import JsonObject
 from app.schemas.jobs import State
+from app.solids.analyses import ANALYSIS
 from app.solids.models import BUILD
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
@@ -48,7 +49,7 @@ class Draft:
     body: JsonObject
     rows: Rows | None
     task: Task
-    solid_seconds: float  # that jobs have taken lately, such as those that build solids [s]
+    solid_seconds: float  # that a solid takes, as jobs have taken lately [s]
 
 
 class Studies:
@@ -91,7 +92,10 @@ class Studies:
         varied = columns_named(body.rows) if body.method == "table" else list(body.vary)
         measured = measured_in(self.designs, document)
         task = Task.of(document, plain, varied, measured, self.catalogues)
-        return Draft(body.design, number, plain, body.rows, task, self.jobs.usual_seconds(BUILD))
+        seconds = self.jobs.usual_seconds(BUILD)
+        if any(model.get("analyses") for model in document.get("models", {}).values()):
+            seconds += self.jobs.usual_seconds(ANALYSIS)
+        return Draft(body.design, number, plain, body.rows, task, seconds)
 
     def begin(self, draft: Draft, plan: Plan, given: Array | None, once: Once) -> str:
         """Write a study and queue its job.

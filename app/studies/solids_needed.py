@@ -1,70 +1,102 @@
-"""What a study would take that needs a solid for each row: how many solids, and how many hours."""
+"""How many solids a study needs, counted before it begins; what would be too much, in solids and hours."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from math import prod
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
-from app.studies.given import Rows
-from app.studies.schemas import MOST_ROWS, StudyIn
-from templates.core.errors import Fault, FaultyText, InvalidInputs
-from templates.core.units.quantity import read_any
+import numpy as np
+
+from app.designs.network import Block
+from app.designs.rows_needed import solids_in_the_way
+from app.studies.chunks import Levels, placed
+from app.studies.task import Prepared
+from templates.core.arrays import Array
+from templates.core.errors import Fault, InvalidInputs
 
 NEEDS_SOLIDS = "needs_solids"
+MOST_SOLIDS, MOST_ANALYSED = 500, 100
+"""Solids that are built for a study; solids that are analysed by finite elements for it."""
 HOUR = 3600.0  # s
+AT_ONCE = 65_536  # rows that are compared with those before
+MOST_COMPARED = 20_000  # distinct sets of values; if there are more, all rows are said to differ
+MOST_TRIED = 4096  # distinct sets of values from which solids are counted exactly
+AFFORDABLE = 1.0  # estimated, for the parameters of these solids [s]
+SEARCHES = "a search asks for its rows one after another; sample these places first"
 
 
-def counted(error: InvalidInputs, body: StudyIn, rows: Rows | None, seconds: float) -> InvalidInputs:
-    """The faults of a study, those about solids with their number; building one takes so long [s]."""
-    count = count_of(body, rows)
-    if not 0 < count <= MOST_ROWS[body.method]:
-        return error
-    return InvalidInputs([_counted(fault, count, seconds) for fault in error.faults])
+@dataclass(frozen=True)
+class Needed:
+    """How many solids a study needs, at most; and how many of them are analysed by finite elements."""
+
+    solids: int = 0
+    analysed: int = 0
 
 
-def _counted(fault: Fault, count: int, seconds: float) -> Fault:
-    if fault.code != NEEDS_SOLIDS:
-        return fault
-    hours = f"about {count * seconds / HOUR:.2g} h at {seconds:.2g} s each, as jobs have taken lately"
-    words = f"{fault.detail}: {count} rows are up to {count} solids, {hours}"
-    return replace(fault, detail=words)
+def counted(ready: Prepared, count: int, given: Array | None, levels: Levels, seconds: float) -> Needed:
+    """The solids that the rows of a study need; to build one takes so long [s].
+
+    Raises
+    ------
+    InvalidInputs
+        With code `needs_solids`, if there are too many, or if a search would ask for them.
+    """
+    solids, points = ready.solids, ready.asked.points
+    if not solids.measures:
+        return Needed()
+    if points is None and given is None:
+        raise InvalidInputs(_refused(ready, count, count, seconds, SEARCHES))
+    several = {model.name: _of_model(ready, model, count, given, levels) for model in solids.models}
+    needed = Needed(sum(several.values()), sum(several[name] for name in solids.analysed))
+    if needed.solids > MOST_SOLIDS:
+        why = f"a study builds at most {MOST_SOLIDS}"
+        raise InvalidInputs(_refused(ready, count, needed.solids, seconds, why))
+    if needed.analysed > MOST_ANALYSED:
+        why = f"a study analyses at most {MOST_ANALYSED} by finite elements"
+        raise InvalidInputs(_refused(ready, count, needed.analysed, seconds, why))
+    return needed
 
 
-def count_of(body: StudyIn, rows: Rows | None) -> int:
-    """How many rows a body asks for, as far as it says so; 0 if it does not."""
-    places = len(body.vary)
-    match body.method:
-        case "grid":
-            return prod(_values(body, name) for name in body.vary)
-        case "table":
-            return _length(rows)
-        case "sample":
-            return body.points or 0
-        case "sensitivity" if body.kind == "morris":
-            return (body.points or 20) * (places + 1)
-        case "sensitivity" if body.kind == "sobol":
-            return (body.points or 1024) * (places + 2)
-        case "sensitivity":
-            return 2 * places + 1
-    return body.points or MOST_ROWS["optimise"]
+def _refused(ready: Prepared, rows: int, solids: int, seconds: float, why: str) -> Iterator[Fault]:
+    """A fault for each measure, which names the chain from what varies."""
+    graph, measures = ready.net.graph, ready.solids.measures
+    hours = f"about {solids * seconds / HOUR:.2g} h at {seconds:.2g} s each, as jobs have taken lately"
+    for fault in solids_in_the_way(graph, measures, ready.net.design.moving):
+        yield replace(fault, detail=f"{fault.detail}: {rows} rows are up to {solids} solids, {hours}; {why}")
 
 
-def _values(body: StudyIn, name: str) -> int:
-    """How many values a place takes in a grid."""
-    if (values := body.vary[name].values) is not None:
-        return len(values)
-    steps = body.steps.get(name) if isinstance(body.steps, Mapping) else body.steps
-    return max(0, steps or 0)
+def _of_model(ready: Prepared, model: Block, count: int, given: Array | None, levels: Levels) -> int:
+    """How many solids of a model the rows need; at most, if it is not known before other solids are built."""
+    places = [ready.asked.places.index(place) for place in ready.solids.drivers(model)]
+    chosen = _distinct(ready, places, count, given)
+    if len(chosen) > MOST_COMPARED:
+        return count
+    if len(chosen) > MOST_TRIED or not _is_affordable(ready, model, len(chosen), levels):
+        return len(chosen)
+    wanting = ready.solids.resolved(placed(ready, chosen), len(chosen), levels, ()).wanting
+    own = {solid.texts for solid in wanting if solid.model == model.name}
+    return len(own) if own or not wanting else len(chosen)  # else it follows from solids that are not built
 
 
-def _length(rows: Rows | None) -> int:
-    if not rows:
-        return 0
-    if isinstance(rows, Sequence):
-        return len(rows)
-    try:
-        value = read_any(next(iter(rows.values()))).si
-    except FaultyText:  # it will be refused when the rest is right
-        return 0
-    return 1 if isinstance(value, float) else len(value)
+def _is_affordable(ready: Prepared, model: Block, count: int, levels: Levels) -> bool:
+    references = [cell.reference for cell in model.cells.values()]
+    return ready.net.seconds(count, references, levels, by_tables=True) <= AFFORDABLE
+
+
+def _distinct(ready: Prepared, places: Sequence[int], count: int, given: Array | None) -> Array:
+    """The first row of each distinct set of values of some places; not all, if there are too many."""
+    chosen: Array = np.empty((0, len(ready.asked.places)))
+    for first in range(0, count, AT_ONCE):
+        last = min(first + AT_ONCE, count)
+        if given is not None:
+            part = given[first:last]
+        else:
+            assert ready.asked.points is not None, "a search is refused before"
+            part = ready.asked.points.rows(first, last)
+        whole = np.concatenate([chosen, part])
+        if not places:
+            return whole[:1]
+        chosen = whole[np.sort(np.unique(whole[:, places], axis=0, return_index=True)[1])]
+        if len(chosen) > MOST_COMPARED:
+            break
+    return chosen

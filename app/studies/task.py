@@ -9,12 +9,14 @@ from functools import lru_cache
 from pydantic_core import from_json
 
 from app.catalogue.catalogues import Catalogues
+from app.designs.graph import raise_if
 from app.designs.net import Net
 from app.designs.reference import Reference
 from app.designs.tasks import DesignTask
 from app.plain import JsonObject
 from app.storage.tables import canonical_json
 from app.studies.asking import Asked, asked_of
+from app.studies.row_solids import RowSolids, iterated, measures_of_rows
 from app.studies.schemas import StudyIn
 
 
@@ -53,10 +55,20 @@ class Task:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A task in the process that calculates it: read, checked, built once."""
+    """A task in the process that calculates it: read, checked, built once.
+
+    Attributes
+    ----------
+    solids
+        What differs from row to row and is measured on solids.
+    nominal
+        These measures of the design itself, as far as they are known [SI]: for rows that are only tried.
+    """
 
     net: Net
     asked: Asked
+    solids: RowSolids
+    nominal: Mapping[Reference, float]
 
 
 def prepared(task: Task) -> Prepared:
@@ -79,6 +91,15 @@ def read_body(body: str) -> StudyIn:
 def _prepared(task: Task) -> Prepared:
     document, catalogues = task.design.read()
     varied = [Reference.parse(name) for name in task.varied]
-    measured = {Reference.parse(name): value for name, value in task.measured}
-    net = Net.of(document, catalogues, varied, measured=measured)
-    return Prepared(net, asked_of(read_body(task.body), task.varied, net))
+    known = {Reference.parse(name): value for name, value in task.measured}
+    body = read_body(task.body)
+    net = Net.of(document, catalogues, varied, measured=known, pending=True)
+    asked = asked_of(body, task.varied, net)
+    measures = measures_of_rows(net, body, asked.wanted, known)
+    raise_if(list(iterated(document, measures)))
+    nominal = {reference: known[reference] for reference in measures if reference in known}
+    blocks, moving = net.graph.blocks, net.design.moving
+    constant = {reference: v for reference, v in known.items() if blocks[reference.block].solid not in moving}
+    if measures or constant != known:
+        net = Net.of(document, catalogues, [*varied, *measures], measured=constant, pending=True)
+    return Prepared(net, asked, RowSolids(net, tuple(measures)), nominal)

@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 
 from app.presentation.units import System
 from app.schemas.studies import Estimate, Refused, Study, StudyResult, StudyRow, StudyRows
+from app.storage.tables import JobRow
 from app.storage.tables import StudyRow as Row
 from app.studies import repository
 from app.studies.archive import AnyArray, Archive
@@ -38,7 +39,7 @@ def study(session: Session, row: Row) -> Study:
         "method": row.method,
         "state": row.state,
         "seed": row.seed,
-        "progress": 1.0 if row.state == "done" else min(1.0, progress.rows / max(1, row.rows)),
+        "progress": 1.0 if row.state == "done" else _share(session, row, plan, progress.rows),
         "rows": row.rows,
         "done": progress.rows,
         "refused": Refused(count=sum(progress.refused.values()), reasons=dict(frequent)),
@@ -47,7 +48,7 @@ def study(session: Session, row: Row) -> Study:
         "criteria": plan.criteria,
         "units": plan.units,
         "levels": {step: level for step, level in plan.levels.items() if level is not None},
-        "estimate": Estimate(seconds=plan.seconds, solids=0),
+        "estimate": Estimate(seconds=plan.seconds, solids=plan.solids),
         "created": row.created,
         "changed": row.updated,
     }
@@ -58,6 +59,12 @@ def study(session: Session, row: Row) -> Study:
     if row.job is not None:
         shown["job"] = f"/api/v1/jobs/{row.job}"
     return Study.model_validate(shown)
+
+
+def _share(session: Session, row: Row, plan: Plan, rows: int) -> float:
+    """How far a study is, 0 to 1: by its rows, or as its job has said that builds solids meanwhile."""
+    job = session.get(JobRow, row.job) if plan.solids and row.job else None
+    return max(plan.share(rows, 0), job.progress if job is not None else 0.0)
 
 
 @dataclass(frozen=True)

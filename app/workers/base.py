@@ -27,8 +27,8 @@ class Runner(Protocol):
         ...
 
 
-class Worker(Protocol):
-    """Runs functions one by one, each on its own, from any number of threads."""
+class Batch(Protocol):
+    """Runs the functions of one piece of work, one after another, from one thread."""
 
     def run(
         self,
@@ -50,10 +50,26 @@ class Worker(Protocol):
         """
         ...
 
+    def close(self) -> None:
+        """End what runs and let no more run."""
+        ...
+
+
+class Worker(Batch, Protocol):
+    """Runs functions one by one, each on its own, from any number of threads."""
+
     def answers(self) -> bool:
         """Whether a function would find a process that is alive; if none is, one is started. Never blocks."""
         ...
 
-    def close(self) -> None:
-        """End what runs and let no more run."""
+
+class BatchWorker(Worker, Protocol):
+    """A worker of which a piece of work can have a process for all its functions."""
+
+    def batch(self) -> Batch:
+        """Run several functions in one process, as long as each comes to its end.
+
+        What crashes, takes too long, wants too much memory, is cancelled or raises ends the process with it,
+        and the next function has a new one. Close the batch in the end.
+        """
         ...

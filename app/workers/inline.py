@@ -2,7 +2,7 @@
 
 import threading
 from collections.abc import Callable
-from typing import TypeVar, TypeVarTuple
+from typing import Self, TypeVar, TypeVarTuple
 
 from app.workers.base import Limits
 from app.workers.errors import JobCancelled
@@ -28,6 +28,10 @@ class Inline:
             raise JobCancelled
         with reporting(on_progress):
             return function(*args)
+
+    def batch(self) -> Self:
+        """All run in the thread that asks; see `BatchWorker.batch`."""
+        return self
 
     def answers(self) -> bool:
         """Its thread is that of the caller."""

@@ -1,10 +1,12 @@
-"""The worker of a server on one machine: every job in a fresh process of its own."""
+"""The worker of a server on one machine: every job in a fresh process, several functions of a job in one."""
 
+import logging
 import threading
 from collections.abc import Callable, Sequence
 from typing import TypeVar, TypeVarTuple, cast
 
 from app.workers.base import Limits
+from app.workers.errors import DeadlineExceeded, JobCancelled
 from app.workers.isolated import ForkServer, JobProcess
 from app.workers.messages import Request
 from app.workers.threads import ONE_THREAD
@@ -13,6 +15,7 @@ from templates.core.progress import Reporter
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
+logger = logging.getLogger(__name__)
 
 # What jobs import: the kernel, every model, and the modules of the job functions. The finite elements are
 # imported by those that need them (0.3 s): NGSolve starts threads at once, which a fork would not have.
@@ -39,8 +42,12 @@ class LocalProcesses:
         cancelled: threading.Event | None = None,
     ) -> T:
         """Run the function in a process of its own; see `Worker.run`."""
-        process = self._start(Request(function, args, limits))
+        process = self.started(Request(function, args, limits))
         return cast(T, process.finish(limits, on_progress, cancelled))
+
+    def batch(self) -> "Batch":
+        """Run several functions in one process; see `BatchWorker.batch`."""
+        return Batch(self.started)
 
     def answers(self) -> bool:
         """Whether the forkserver is alive, and has forked the process that waits for the next job."""
@@ -59,7 +66,7 @@ class LocalProcesses:
         with self._lock:
             self._spare.kill()
 
-    def _start(self, request: Request) -> JobProcess:
+    def started(self, request: Request) -> JobProcess:
         """Give the job to the process that waits for it, and have the next one forked meanwhile."""
         with self._lock:
             process, self._spare = self._spare, self._forkserver.fork()
@@ -69,3 +76,70 @@ class LocalProcesses:
             process = self._forkserver.fork()
             process.start(request)
         return process
+
+
+MOST_IN_BATCH = 100  # functions that one process runs: what leaks in it ends with it
+
+
+class Batch:
+    """Runs functions in one process, as long as each returns.
+
+    Its process is given up after whatever did not return: the kernel may be in any state then. If it had run
+    other functions before, the same one runs once more in a new process, whose answer counts. So no function
+    fails for what another has left behind.
+    """
+
+    def __init__(self, started: Callable[[Request], JobProcess]) -> None:
+        self._started = started
+        self._process: JobProcess | None = None
+        self._count = 0
+
+    def run(
+        self,
+        function: Callable[[*Ts], T],
+        *args: *Ts,
+        limits: Limits = Limits(),  # noqa: B008 - frozen
+        on_progress: Reporter | None = None,
+        cancelled: threading.Event | None = None,
+    ) -> T:
+        """Run the function in the process of this batch, or in a new one; see `Worker.run`."""
+        request = Request(function, args, limits, reusable=True)
+        if (process := self._taken()) is not None:
+            try:
+                process.start(request)
+                return cast(T, self._finished(process, limits, on_progress, cancelled))
+            except (JobCancelled, DeadlineExceeded):
+                raise
+            except Exception as error:  # its predecessors may be to blame, or it died while it waited
+                logger.info("once more in a new process: %s", error)
+        self._count = 0
+        return cast(T, self._finished(self._started(request), limits, on_progress, cancelled))
+
+    def close(self) -> None:
+        """End the process, if one waits."""
+        if (process := self._taken()) is not None:
+            process.kill()
+
+    def _taken(self) -> JobProcess | None:
+        process, self._process = self._process, None
+        return process
+
+    def _finished(
+        self,
+        process: JobProcess,
+        limits: Limits,
+        on_progress: Reporter | None,
+        cancelled: threading.Event | None,
+    ) -> object:
+        """What a process answers; it is kept if it may run another function."""
+        try:
+            result = process.finish(limits, on_progress, cancelled)
+        except BaseException:
+            process.kill()  # also where it is fit for another function by its own account
+            raise
+        self._count += 1
+        if process.reusable and self._count < MOST_IN_BATCH:
+            self._process = process
+        else:
+            process.kill()
+        return result

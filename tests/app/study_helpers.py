@@ -1,7 +1,9 @@
 """Studies for tests: a design of one exact formula, and one of a real film."""
 
+import httpx
 from patience import patient, until
 from serving import API, created
+from sqlalchemy import create_engine, text
 
 TWICE = {
     "name": "twice",
@@ -72,3 +74,22 @@ def content(http, study, kind, **query):
 
 def new_design(http, document):
     return created(http, document)
+
+
+def queried(data, query, **values):
+    """What the database of a data folder answers, whether a service runs on it or not."""
+    engine = create_engine(f"sqlite:///{data}/crankwright.sqlite")
+    with engine.connect() as connection:
+        answer = [tuple(row) for row in connection.execute(text(query), values)]
+    engine.dispose()
+    return answer
+
+
+def chunks(data, study):
+    """The chunks as they were recorded: (number, rows, sha256)."""
+    query = "SELECT number, rows, sha256 FROM study_chunk WHERE study_id = :id ORDER BY number"
+    return queried(data, query, id=study["id"])
+
+
+def connected(url):
+    return httpx.Client(base_url=url, timeout=90, trust_env=False)

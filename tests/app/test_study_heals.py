@@ -119,3 +119,30 @@ def test_check_reports_lost_rows_and_the_service_makes_them_again(tmp_path):
         assert read_again(http, study, "rows")
         assert rows(http, study) == before
     assert CliRunner().invoke(main, ["check", "--data", str(settings.data)]).exit_code == 0
+
+
+@pytest.mark.parametrize("harm", [lambda path: path.unlink(), damage], ids=["lost", "damaged"])
+@pytest.mark.parametrize(("document", "body"), [STUDIES[0], STUDIES[2]], ids=["sample", "optimise"])
+def test_a_study_that_meets_its_own_lost_rows_calculates_them_again(
+    served, http, monkeypatch, document, body, harm
+):
+    """Its first chunk goes just before the study concludes from what is stored."""
+    design = new_design(http, document)
+    body = {**body, **({"minimise": [OUT]} if body is SAMPLE else {})}
+    reference = done(http, design, **body)
+    handler = served.app.state.services.jobs._dispatcher.kinds["study"].handler
+    conclude, harmed = handler._conclude, []
+
+    def concluded(run):
+        result = conclude(run)
+        if not harmed:
+            harmed.append(run.row.id)
+            harm(files(served, {"id": run.row.id})[0])
+            return conclude(run)
+        return result
+
+    monkeypatch.setattr(handler, "_conclude", concluded)
+    study = done(http, design, **body)
+    assert harmed == [study["id"]]
+    assert study["result"] == reference["result"]
+    assert content(http, study, "npz") == content(http, reference, "npz")

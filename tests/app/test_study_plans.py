@@ -39,36 +39,78 @@ def task(document, **body):
     return Task.of(document, {"design": "x", "outputs": [LOSS], **body}, varied, {}, loaded(())), rows
 
 
+LONG = [40 + n / 100 for n in range(501)]
+
+
 @pytest.mark.parametrize(
-    ("body", "count", "hours"),
+    ("body", "count", "solids", "hours"),
     [
-        (
-            {"method": "grid", "vary": {**BORE, **CLEARANCE}, "steps": {"diameter": 9, "clearance": 4}},
-            36,
-            "0.1",
-        ),
-        ({"method": "grid", "vary": {"diameter": {"values": ["46 mm", "48 mm"]}}}, 2, "0.0056"),
-        ({"method": "sample", "vary": BORE, "points": 720}, 720, "2"),
-        ({"method": "table", "rows": {"diameter": {"value": [46, 47, 48], "unit": "mm"}}}, 3, "0.0083"),
-        ({"method": "sensitivity", "vary": BORE}, 3, "0.0083"),
-        ({"method": "optimise", "vary": BORE, "minimise": [LOSS], "points": 36}, 36, "0.1"),
+        ({"method": "grid", "vary": {**BORE, **CLEARANCE}, "steps": 720}, 720**2, 720, "2"),
+        ({"method": "grid", "vary": {"diameter": {"values": [f"{d} mm" for d in LONG]}}}, 501, 501, "1.4"),
+        ({"method": "sample", "vary": BORE, "points": 720}, 720, 720, "2"),
+        ({"method": "sample", "vary": BORE, "points": 10**6}, 10**6, 10**6, "2.8e+03"),
+        ({"method": "table", "rows": {"diameter": {"value": LONG, "unit": "mm"}}}, 501, 501, "1.4"),
+        ({"method": "optimise", "vary": BORE, "minimise": [LOSS], "points": 36}, 36, 36, "0.1"),
     ],
-    ids=["grid", "values", "sample", "table", "local", "optimise"],
+    ids=["grid", "values", "sample", "million", "table", "optimise"],
 )
-def test_a_study_that_needs_solids_says_how_many_and_how_long(body, count, hours):
+def test_a_study_that_needs_too_many_solids_says_how_many_and_how_long(body, count, solids, hours):
     with pytest.raises(InvalidInputs) as refused:
         planned(*task(SHELL, **body), 10.0)
     (fault,) = refused.value.faults
     assert (fault.name, fault.code) == ("diameter", "needs_solids")
-    assert f"{count} rows are up to {count} solids, about {hours} h at 10 s each" in fault.detail
+    assert f"{count} rows are up to {solids} solids, about {hours} h at 10 s each" in fault.detail
+
+
+@pytest.mark.parametrize(
+    ("body", "solids"),
+    [
+        ({"method": "grid", "vary": {**BORE, **CLEARANCE}, "steps": {"diameter": 9, "clearance": 400}}, 9),
+        ({"method": "sample", "vary": BORE, "points": 500}, 500),
+        ({"method": "table", "rows": {"diameter": {"value": [46, 47, 46], "unit": "mm"}}}, 2),
+        ({"method": "sensitivity", "vary": BORE}, 3),
+        ({"method": "sample", "vary": CLEARANCE, "points": 5000}, 1),
+    ],
+    ids=["grid", "sample", "table", "local", "one for all rows"],
+)
+def test_distinct_solids_are_counted_and_their_time_is_estimated(body, solids):
+    plan, _ = planned(*task(SHELL, **body), 10.0)
+    assert plan.solids == solids
+    assert plan.seconds > 10.0 * solids
+    assert plan.share(plan.rows, solids) == pytest.approx(1.0)
+    assert plan.share(0, 0) == 0.0
+
+
+def test_rounded_parameters_make_few_solids_of_many_rows():
+    document = {**SHELL, "models": {"shell": {**SHELL["models"]["shell"]}}}
+    rounded = {"inner_diameter": "= min(diameter, 47 mm)", "width": "18 mm"}
+    document["models"]["shell"]["parameters"] = rounded
+    values = [f"{40 + n / 50} mm" for n in range(1000)]
+    plan, _ = planned(*task(document, method="grid", vary={"diameter": {"values": values}}), 10.0)
+    assert plan.solids == 351
+
+
+def test_a_study_whose_outputs_need_no_solid_needs_none():
+    """Only what the study names counts: the shell's mass is used, but not for its clearance."""
+    document = {**SHELL, "parameters": {**SHELL["parameters"], "unused": "= shell.mass * 2"}}
+    plan, _ = planned(*task(document, method="sample", vary=BORE, points=5000, outputs=["shell.width"]), 10.0)
+    assert plan.solids == 0
+
+
+def test_a_design_that_iterates_builds_no_solid_for_a_row():
+    document = {**SHELL, "iterations": [{"through": "shell.mass", "start": "0.1 kg"}]}
+    with pytest.raises(InvalidInputs) as refused:
+        planned(*task(document, method="sample", vary=BORE, points=5), 10.0)
+    (fault,) = refused.value.faults
+    assert fault.code == "needs_solids"
+    assert "iterates through shell.mass" in fault.detail
 
 
 @pytest.mark.parametrize("steps", [None, -(10**400), 10**400])
-def test_a_number_of_rows_that_no_study_takes_is_not_counted(steps):
+def test_a_number_of_rows_that_no_study_takes_is_refused(steps):
     with pytest.raises(InvalidInputs) as refused:
         planned(*task(SHELL, method="grid", vary=BORE, steps=steps), 10.0)
-    assert [fault.code for fault in refused.value.faults] == ["needs_solids"]
-    assert "solids," not in refused.value.faults[0].detail
+    assert {fault.code for fault in refused.value.faults} <= {"missing", "too_many_rows"}
 
 
 def test_the_interface_says_how_many_solids(http):

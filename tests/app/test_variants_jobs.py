@@ -102,7 +102,8 @@ def side_of(step):
     return seen.length(Z)
 
 
-@pytest.mark.parametrize("kills", [1, pytest.param(4, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("kills", [1, 4])
 def test_kills_lose_no_solid_and_build_none_twice(tmp_path, kills):
     """A server is killed while it builds the variants of a design; the next one completes the revision."""
     environment = {"CRANKWRIGHT_TEMPLATE_FOLDERS": f'["{folder_of_models(tmp_path)}"]'}

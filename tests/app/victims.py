@@ -138,3 +138,14 @@ def environment(name):
 
 def processor_limit():
     return os.getpid(), resource.getrlimit(resource.RLIMIT_CPU)[0]
+
+
+_calls = []
+
+
+def second_fails():
+    """Fails if this process has called it before."""
+    _calls.append(1)
+    if len(_calls) > 1:
+        raise RuntimeError("this process is used")
+    return len(_calls)

@@ -1,0 +1,206 @@
+"""Which solid each row of a study needs, and what was measured on it as columns. In a calculation process.
+
+A row waits for its solids: until all are known, a chunk answers which ones it lacks. A model may take a
+measure of another, so its parameters are known only once that one is built.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from app.designs.document import Document
+from app.designs.net import Net, Refusal
+from app.designs.network import Block
+from app.designs.reference import Reference
+from app.designs.row_design import Levels, Rows, Wanted
+from app.designs.row_refusals import refusal_of
+from app.designs.rows_needed import needs, varying
+from app.designs.subjects import subjects
+from app.studies.schemas import StudyIn
+from cad.model import CadModel
+from cad.regenerate import as_text
+from templates.core.arrays import Array, Mask
+from templates.core.errors import Fault, InvalidInputs
+from templates.core.language.spec import Choice
+
+Texts = tuple[tuple[str, str], ...]
+"""All parameters of a model as `as_text` writes them, by name: what makes a solid another one."""
+
+
+@dataclass(frozen=True)
+class Wanting:
+    """A solid that is not known, and what is to be measured on it."""
+
+    model: str
+    texts: Texts
+    measures: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What was measured on a solid [SI], by its name in relations, or why it has no measures."""
+
+    model: str
+    texts: Texts
+    measures: tuple[tuple[str, float], ...] = ()
+    failure: Refusal | None = None
+
+
+Solids = tuple[Measured, ...]
+
+NO_VALUE = "a parameter of the solid has no finite value here"
+
+
+@dataclass
+class Resolved:
+    """Rows with what is known of their solids.
+
+    Attributes
+    ----------
+    columns
+        The measures [SI], NaN where a row has none.
+    wanting
+        Solids that are not known.
+    waiting
+        The rows that have any of them.
+    refusals
+        By row, why it has no solid.
+    levels
+        Of the steps from which parameters of models follow.
+    """
+
+    columns: dict[Reference, Array]
+    waiting: Mask
+    wanting: list[Wanting] = field(default_factory=list)
+    refusals: dict[int, Refusal] = field(default_factory=dict)
+    levels: dict[str, str | None] = field(default_factory=dict)
+
+
+def measures_of_rows(
+    net: Net, body: StudyIn, outputs: Collection[Reference], known: Collection[Reference]
+) -> list[Reference]:
+    """The measures that a study needs and that differ from row to row, or are not `known`.
+
+    Only what the study names counts: its outputs and objectives, and the criteria of `hold`.
+    """
+    held = [subject for name, subject in subjects(net.graph).items() if name in (body.hold or ())]
+    wanted = Wanted.of(outputs, held)
+    due = needs(net.graph, wanted.references, net.varied, wanted.inside)
+    moving = net.design.moving
+    return sorted(
+        (r for r in due.waiting if r not in known or net.graph.blocks[r.block].solid in moving), key=str
+    )
+
+
+def iterated(document: Document, measures: Sequence[Reference]) -> Iterator[Fault]:
+    """A fault if a design iterates: each row would need several solids, one after another."""
+    if document.iterations and measures:
+        through = document.iterations[0].through
+        detail = f"the design iterates through {through}; a study builds no solid for a row of such a design"
+        yield Fault(str(measures[0]), "needs_solids", detail)
+
+
+@dataclass(frozen=True)
+class RowSolids:
+    """The solids of rows: of which models, and what is measured on them."""
+
+    net: Net
+    measures: tuple[Reference, ...]
+
+    @cached_property
+    def models(self) -> list[Block]:
+        """The models that are built, in the order in which they follow from each other."""
+        names = {reference.block for reference in self.measures}
+        return [node for node in self.net.graph.order if isinstance(node, Block) and node.name in names]
+
+    def measures_of(self, model: str) -> list[Reference]:
+        """What is measured on a model."""
+        return [reference for reference in self.measures if reference.block == model]
+
+    def drivers(self, model: Block) -> list[Reference]:
+        """The places that rows vary and from which the parameters of a model follow."""
+        places = self.net.varied - set(self.measures)
+        return sorted((p for p in places if model in varying(self.net.graph, [p])), key=str)
+
+    @property
+    def analysed(self) -> set[str]:
+        """The models of which analyses by finite elements are needed."""
+        return {reference.block for reference in self.measures if reference.analysis is not None}
+
+    def resolved(self, rows: Rows, count: int, levels: Levels | None, solids: Solids) -> Resolved:
+        """The measures of rows, as far as their solids are known."""
+        empty = {reference: np.full(count, np.nan) for reference in self.measures}
+        result = Resolved(empty, np.zeros(count, dtype=bool))
+        known = {(solid.model, solid.texts): solid for solid in solids}
+        for model in self.models:
+            self._measure(model, rows, levels, known, result)
+        return result
+
+    def _measure(
+        self,
+        model: Block,
+        rows: Rows,
+        levels: Levels | None,
+        known: Mapping[tuple[str, Texts], Measured],
+        result: Resolved,
+    ) -> None:
+        """Fill in the columns of one model."""
+        names = [name for name, cell in model.cells.items() if not isinstance(cell.declared, Choice)]
+        references = [model.cells[name].reference for name in names]
+        table = self.net({**rows, **result.columns}, references, levels=levels)
+        result.levels |= table.levels
+        columns = [table.columns[reference] for reference in references]
+        matrix = np.stack(columns, axis=-1) if columns else np.empty((len(result.waiting), 0))
+        there: Mask = np.asarray(np.isfinite(matrix).all(axis=1))
+        for row in np.flatnonzero(~there & ~result.waiting).tolist():
+            _refuse(result, [row], table.refusals.get(row, Refusal(model.name, "not_finite", NO_VALUE)))
+        for values, numbers in _distinct(matrix, there):
+            found = self._solid(model, dict(zip(names, values.tolist(), strict=True)))
+            if isinstance(found, Refusal):
+                _refuse(result, numbers, found)
+                continue
+            solid = known.get((model.name, found))
+            if solid is None:
+                measures = tuple(reference.member for reference in self.measures_of(model.name))
+                result.wanting.append(Wanting(model.name, found, measures))
+                result.waiting[numbers] = True
+            elif solid.failure is not None:
+                _refuse(result, numbers, solid.failure)
+            else:
+                for name, value in solid.measures:
+                    result.columns[Reference.parse(f"{model.name}.{name}")][numbers] = value
+
+    def _solid(self, model: Block, values: Mapping[str, float]) -> Texts | Refusal:
+        """The parameters of a solid as text, or what is wrong with them."""
+        words = {n: _word(cell.raw) for n, cell in model.cells.items() if n not in values}
+        try:
+            shape = model.cls.from_si({**words, **values})
+        except InvalidInputs as error:
+            return refusal_of([fault.within(model.name) for fault in error.faults])
+        assert isinstance(shape, CadModel), "what is measured is a model"
+        return tuple(sorted(as_text(shape).items()))
+
+
+def _word(raw: object) -> str:
+    return str(raw["value"] if isinstance(raw, dict) else raw)
+
+
+def _refuse(result: Resolved, numbers: Sequence[int], refusal: Refusal) -> None:
+    """Note why rows have no solid; the first reason is the cause of the others."""
+    result.refusals = dict.fromkeys(map(int, numbers), refusal) | result.refusals
+
+
+def _distinct(matrix: Array, among: Mask) -> Iterator[tuple[Array, list[int]]]:
+    """The distinct rows among some of a matrix, each with the numbers of the rows that are equal to it."""
+    numbers = np.flatnonzero(among)
+    if not len(numbers):
+        return
+    unique, which = np.unique(matrix[numbers], axis=0, return_inverse=True)
+    order = np.argsort(which.reshape(-1), kind="stable")
+    starts = np.searchsorted(which.reshape(-1)[order], np.arange(len(unique) + 1))
+    for place, values in enumerate(unique):
+        yield values, numbers[order[starts[place] : starts[place + 1]]].tolist()
