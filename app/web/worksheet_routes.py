@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request, Response
@@ -136,7 +137,9 @@ async def release(id: Id, request: Request, api: TheApi) -> Response:
 async def withdraw(id: Id, request: Request, api: TheApi) -> Response:
     """Say why a released version shall not be used any longer."""
     typed = await fields(request)
-    return await _act(id, "withdraw", {"reason": typed.get("reason", "").strip()}, request, api)
+    version = typed.get("version", "")
+    named = {"version": int(version)} if re.fullmatch("[0-9]{1,6}", version) else {}
+    return await _act(id, "withdraw", {"reason": typed.get("reason", "").strip(), **named}, request, api)
 
 
 @forms.post("/worksheets/{id}/delete")

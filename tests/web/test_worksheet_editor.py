@@ -108,7 +108,7 @@ def test_a_fault_is_explained_under_its_line_and_sound_lines_stay(watched, http)
     expect(page.locator("[data-sheet-faults]")).to_have_text("1 fault, in line 10")
     expect(page.locator(".typeset-line")).to_have_count(10)
     expect(page.locator(".typeset-lines")).to_contain_text("21.701 MPa")
-    expect(page.locator(".typeset-lines.outdated")).to_have_count(0)  # it was calculated without the faulty line
+    expect(page.locator(".typeset-line.before")).to_have_count(0)  # calculated without the faulty line
     mark = page.locator(".underline").bounding_box()
     column = page.locator(".faulty .of-sign", has_text="+").bounding_box()
     assert mark["x"] < column["x"] + column["width"] < mark["x"] + mark["width"] + 20
@@ -168,6 +168,11 @@ def test_the_next_version_is_held_against_the_released_one(watched, http):
     page.get_by_text("What differs from version 1").click()
     expect(page.locator(".diff .added")).to_contain_text("> more")
     expect(page.locator(".diff .removed")).to_have_count(0)
+    page.get_by_text("Withdraw version 1 …").click()
+    page.get_by_label("Reason").fill("superseded")
+    page.get_by_role("button", name="Withdraw", exact=True).click()
+    expect(page.locator(".versions")).to_contain_text("withdrawn: superseded")
+    expect(page.locator("[data-sheet-state]")).to_have_text("draft")
     assert watched.faults() == []
 
 

@@ -54,8 +54,8 @@ export function stillThere(lines, old, texts) {
   while (head < most && old[head] === texts[head]) head += 1;
   while (tail < most - head && old.at(-1 - tail) === texts.at(-1 - tail)) tail += 1;
   return lines.flatMap((line) => {
-    if (line.last_line <= head) return [line];
-    return line.line > old.length - tail ? [{ ...line, line: line.line + shift, last_line: line.last_line + shift }] : [];
+    if (line.last_line <= head) return [{ ...line, is_before: true }];
+    return line.line > old.length - tail ? [{ ...line, line: line.line + shift, last_line: line.last_line + shift, is_before: true }] : [];
   });
 }
 
@@ -76,7 +76,7 @@ export function rowsOf(lines, faults, tests) {
 }
 
 function drawn(row) {
-  const made = element("li", `typeset-line ${row.kind}`, ...(row.kind === "prose" ? [prose(row)] : statement(row)));
+  const made = element("li", `typeset-line ${row.kind}${row.is_before ? " before" : ""}`, ...(row.kind === "prose" ? [prose(row)] : statement(row)));
   made.dataset.line = row.line;
   made.append(...row.faults.map(faultOf));
   return made;

@@ -42,7 +42,6 @@ function show(checked, texts = text.texts) {
   const lines = [...checked.lines, ...before].sort((a, b) => a.line - b.line);
   text.showFaults(checked.faults);
   typeset.show({ ...checked, lines });
-  typeset.list.classList.toggle("outdated", before.length > 0);
   names.update(checked.names);
   align();
   find("[data-sheet-faults]").textContent = faultsIn(checked.faults);
@@ -168,8 +167,9 @@ document.addEventListener("submit", async (event) => {
 
 async function act(action, asked) {
   try {
-    const body = Object.keys(asked).length ? asked : undefined;
-    await call("POST", `${api}/${action}`, body, { headers: { "If-Match": tag } });
+    const { version } = asked; // the one that is withdrawn, not the one that is edited
+    const body = version ? { ...asked, version: Number(version) } : Object.keys(asked).length ? asked : undefined;
+    await call("POST", `${api}/${action}`, body, { headers: version ? {} : { "If-Match": tag } });
     await refresh(action);
   } catch (error) {
     if (error.status === STALE) return conflict();
