@@ -97,7 +97,9 @@ def test_rows_that_start_at_different_levels_are_calculated_apart():
 
 
 @pytest.mark.parametrize("documents", [
-    [loosely(clearance) for clearance in ("0.05 mm", "0.06 mm")], [at_points("4000 rpm"), at_points("3000 rpm")], [weighed()] * 2,
+    [loosely(clearance) for clearance in ("0.05 mm", "0.06 mm")],
+    [at_points(speed) for speed in ("4000 rpm", "3000 rpm")],
+    [weighed()] * 2,
 ], ids=["tolerance", "points", "measured"])  # fmt: skip
 def test_what_cannot_share_a_call_is_calculated_alone(documents):
     assert outcomes(documents)[0] is None
