@@ -19,11 +19,7 @@ def allowed_methods(request: Request) -> str:
 
 def _takes(request: Request, method: str, root: str) -> bool:
     scope = {**request.scope, "method": method, "root_path": root}
-    routes = request.app.router.routes
-    path = request.scope["path"].removeprefix(root)
-    # a path of its own, such as /worksheets/import, is no value of a parameter, as in /worksheets/{id}
-    named = [route for route in routes if getattr(route, "path", None) == path]
-    for route in named or routes:
+    for route in request.app.router.routes:
         if route.matches(dict(scope))[0] is Match.FULL:
             # what is mounted matches for every method; files are only read
             return method in ("GET", "HEAD") if isinstance(route, Mount) else True
