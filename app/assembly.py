@@ -24,6 +24,7 @@ from app.designs.recent import Recent
 from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.designs.solved import solved
+from app.impact.service import Impacts
 from app.jobs.service import Jobs
 from app.observation import metrics
 from app.reports.paper import Press
@@ -37,6 +38,7 @@ from app.solids.healing import Healing
 from app.solids.models import BUILD, ModelBuild, Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
+from app.storage.engines import sqlite_file
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.storage.migrations import migrate
@@ -46,10 +48,21 @@ from app.studies.solid_making import SolidMaking
 from app.tolerances.process import analysed
 from app.workers.base import Limits, Worker
 from app.workers.local import LocalProcesses
+from app.worksheets.importing.service import IMPORT, Imports
+from app.worksheets.published import Published
+from app.worksheets.service import Worksheets
 from cad.catalogue import models as find_models
 
-NETWORK = ("app.designs.net", "app.studies.planning", "app.studies.searching", "app.studies.sensitivities")
+NETWORK = (
+    "app.designs.net",
+    "app.impact.process",
+    "app.studies.planning",
+    "app.studies.searching",
+    "app.studies.sensitivities",
+)
 """What processes have loaded that calculate rows of designs."""
+SHEETS = ("app.worksheets.checking",)
+"""What all calculation processes have loaded to read worksheets."""
 
 
 def assemble(settings: Settings, stack: ExitStack) -> Services:
@@ -67,19 +80,23 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     catalogues = find_catalogues(settings, worker)
     stack.callback(catalogues.close)
     jobs = Jobs(database, worker, settings, problems.describe)
-    calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs, NETWORK)
+    published = published_worksheets(settings, database, catalogues, stack)
+    calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs, NETWORK, SHEETS)
     recent = Recent()
     builds = Builds(database, store)
     analysing = Analysing(database, store, Limits(settings.analysis_deadline, settings.analysis_memory_mb))
     register_jobs(jobs, builds, analysing, catalogues, calculations, recent)
     about = database, catalogues, store, jobs, calculations.steps
-    previews, decisions = Previews(*about), Decisions(*about)
+    previews, decisions, impacts = Previews(*about), Decisions(*about), Impacts(*about)
     solving, tolerances = Asking(SOLUTION, solved, *about), Asking(TOLERANCE, analysed, *about)
-    register_answers(jobs, previews, decisions, solving, tolerances)
+    register_answers(jobs, previews, decisions, solving, tolerances, impacts)
     designs = Designs(database, jobs, catalogues, recent)
     solids = SolidMaking(database, builds, analysing, settings.workers)
     parts = Parts(database, store, catalogues, calculations.pool, jobs, calculations.steps, solids)
     studies = assemble_studies(parts, designs)
+    worksheets = Worksheets(database, catalogues, calculations.pool, published)
+    imports = Imports(database, store, jobs, catalogues, worksheets)
+    jobs.register(IMPORT, imports, imports.failed)
     jobs.start({**calculations.lanes, **LANES})
     stack.callback(jobs.stop)
     models = Models(database, store, jobs, catalogues)
@@ -99,8 +116,11 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         previews=previews,
         decisions=decisions,
         studies=studies,
+        worksheets=worksheets,
+        imports=imports,
         solving=solving,
         tolerances=tolerances,
+        impacts=impacts,
         models=models,
         analyses=analyses,
         healing=Healing(database, store, models, analyses),
@@ -137,6 +157,18 @@ def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
         return Catalogues(find_templates(()), find_models())
     limits = Limits(settings.template_seconds, settings.job_memory_mb)
     return TeamCatalogues(settings.template_folders, CheckInProcess(worker, limits))
+
+
+def published_worksheets(
+    settings: Settings, database: Database, catalogues: Catalogues, stack: ExitStack
+) -> Published:
+    """The released worksheets among the templates; a SQLite file has one server, which releases them all."""
+    url = settings.database_url
+    is_shared = url is not None and sqlite_file(url) is None
+    published = Published(database, catalogues, is_shared=is_shared)
+    published.start()
+    stack.callback(published.stop)
+    return published
 
 
 def opened_database(settings: Settings, folder: DataFolder, stack: ExitStack) -> Database:

@@ -1,4 +1,4 @@
-"""The command line: `crankwright serve | demo | download | study | sweep | evaluate | template | …`."""
+"""The command line: `crankwright serve | demo | study | sweep | impact | evaluate | template | …`."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from app.catalogue.commands import check_template_command
 from app.demo import demonstrate
 from app.downloads import download_command
 from app.hosts import is_loopback
+from app.impact_commands import impact_command
 from app.main import create_app
 from app.maintenance.commands import backup_command, check_command, restore_command
 from app.plain import Json, JsonObject, Raw
@@ -27,6 +28,7 @@ from app.storage.errors import DatabaseDamaged, DataFolderInUse
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
 from app.study_commands import study_command, sweep_command
+from app.worksheet_commands import worksheet_command
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.catalogue.golden import freeze as freeze_template
@@ -122,6 +124,8 @@ main.add_command(restore_command)
 main.add_command(check_template_command)
 main.add_command(study_command)
 main.add_command(sweep_command)
+main.add_command(worksheet_command)
+main.add_command(impact_command)
 
 
 @main.command()

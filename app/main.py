@@ -33,6 +33,7 @@ from app.api.routes.design_files import router as design_files
 from app.api.routes.designs import router as designs
 from app.api.routes.evaluations import router as answers
 from app.api.routes.film_pressure import router as film_pressure
+from app.api.routes.impact import router as impact
 from app.api.routes.jobs import router as jobs
 from app.api.routes.labels import router as labels
 from app.api.routes.library import router as library
@@ -48,6 +49,8 @@ from app.api.routes.tolerances import router as tolerances
 from app.api.routes.variant_sheets import by_type as sheets_by_type
 from app.api.routes.variant_sheets import router as variant_sheets
 from app.api.routes.variants import router as variants
+from app.api.routes.worksheet_imports import router as worksheet_imports
+from app.api.routes.worksheets import router as written_worksheets
 from app.assembly import assemble
 from app.hosts import Hosts
 from app.jobs.shutdown import on_stop_signal
@@ -71,7 +74,10 @@ ROUTERS = (
     film_pressure,
     curves,
     catalogue,
+    impact,
     faults,
+    worksheet_imports,
+    written_worksheets,
     library,
     designs,
     decisions,

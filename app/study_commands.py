@@ -5,37 +5,23 @@ from __future__ import annotations
 import json
 import re
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
 import click
-import httpx
 
-from app.client import Client, Problem
+from app.client import Client
 from app.client.studies import ClientStudy, Kind
-from app.demo import service
+from app.connecting import connected, data_option, url_option
 from app.plain import JsonObject
 from app.schemas.studies import Study
-from app.settings import Settings
 
 _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
 _INTERVAL = re.compile(rf"({_NUMBER})\s*([^.]*?)\s*\.\.\s*({_NUMBER})\s*(.*?)/([0-9]{{1,7}})")
 _VALUE = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*")
 MOST_OUTPUTS = 50
-PATIENCE = 600.0  # for an answer: a busy service plans a study in its turn [s]
 KINDS: dict[str, Kind] = {".csv": "csv", ".xlsx": "xlsx", ".npz": "npz"}
 
-_url = click.option(
-    "--url", default=None, help="of the service; that of CRANKWRIGHT_PORT on this machine if not given"
-)
-_data = click.option(
-    "--data",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-    default=None,
-    help="a data folder that no service uses, instead of a service",
-)
 _out = click.option(
     "--out", type=click.Path(dir_okay=False, path_type=Path), help="file for the rows: .csv, .xlsx or .npz"
 )
@@ -44,8 +30,8 @@ _out = click.option(
 @click.command("study")
 @click.argument("file", type=click.File("r", encoding="utf-8"))
 @_out
-@_url
-@_data
+@url_option
+@data_option
 def study_command(file: IO[str], out: Path | None, url: str | None, data: Path | None) -> None:
     """Carry out the study in FILE, the JSON that POST /api/v1/studies takes; print what was found.
 
@@ -57,7 +43,7 @@ def study_command(file: IO[str], out: Path | None, url: str | None, data: Path |
         design = str(body.pop("design"))
     except (ValueError, KeyError, AttributeError, TypeError):
         raise click.ClickException('FILE is no JSON object with a "design"') from None
-    with _connected(url, data) as client:
+    with connected(url, data) as client:
         study = client.study(design, **body)
         shown = _followed(study)
         if out is not None:
@@ -72,8 +58,8 @@ def study_command(file: IO[str], out: Path | None, url: str | None, data: Path |
     "--output", "outputs", multiple=True, help="as step.output (repeatable); all single values if not given"
 )
 @_out
-@_url
-@_data
+@url_option
+@data_option
 def sweep_command(
     design: str,
     vary: tuple[str, ...],
@@ -90,7 +76,7 @@ def sweep_command(
     steps = {name: count for name, (_, count) in varied.items() if count}
     body: JsonObject = {"method": "grid", "vary": {name: entry for name, (entry, _) in varied.items()}}
     body |= {"steps": steps} if steps else {}
-    with _connected(url, data) as client:
+    with connected(url, data) as client:
         body["outputs"] = list(outputs) or _single_outputs(client, design)
         study = client.study(design, **body)
         _followed(study)
@@ -130,28 +116,6 @@ def _single_outputs(client: Client, design: str) -> list[str]:
             f"the design has {len(names)} single outputs; name some by --output step.name"
         )
     return names
-
-
-@contextmanager
-def _connected(url: str | None, data: Path | None) -> Iterator[Client]:
-    """A client of the service that was named, or of one that is started on a data folder."""
-    place = url or f"http://127.0.0.1:{Settings().port}"
-    try:
-        if data is not None:
-            with service(data, err=True) as client:
-                yield client
-        else:
-            with Client(place, timeout=PATIENCE) as client:
-                yield client
-    except Problem as problem:
-        raise click.ClickException(_reasons(problem)) from None
-    except httpx.HTTPError as error:
-        where = "the service on the data folder does not answer" if data else f"no service answers at {place}"
-        raise click.ClickException(f"{where}: {error}") from None
-
-
-def _reasons(problem: Problem) -> str:
-    return "\n".join([str(problem), *(f"  {fault.name}: {fault.detail}" for fault in problem.errors)])
 
 
 def _followed(study: ClientStudy) -> Study:

@@ -1,4 +1,4 @@
-"""Draws docs/pictures/{home,template,design,shell,throw,report}-{wide,narrow}.png from a running service.
+"""Draws docs/pictures/{home,template,worksheet,design,shell,throw,report}-{wide,narrow}.png from a service.
 
     python -m benchmarks.screenshots
 
@@ -16,9 +16,11 @@ from PIL import Image
 from playwright.sync_api import Page
 
 from benchmarks.browser import chromium, examples
+from templates.examples.listing import examples as worksheets
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 SCREENS = {"wide": (1440, 900), "narrow": (390, 844)}
+EXAMPLE = worksheets()[0]  # the paper's worksheet
 COLOURS = 256  # of a picture: enough for the eye, and small
 MOST_BYTES = 300_000
 LONGEST = 120_000  # ms, for a part to be built and analysed
@@ -29,9 +31,11 @@ def main() -> None:
     with examples(("paper", "shell")) as (url, (paper, shell), client), chromium() as browser:
         design = client.design(paper.rpartition("/")[2])
         client.change(design, {"parameters": {"scale": "1"}, "note": "the size of the paper"})
+        sheet = client.create_worksheet("my_bearing", EXAMPLE.text, author="A. Weber")
         pages = {
             "home": "/",
             "template": "/templates/oil_film/1",
+            "worksheet": f"/worksheets/{sheet.id}",
             "design": paper,
             "shell": shell,
             "throw": "/models/crank_throw/1",
@@ -62,7 +66,24 @@ def _with_stress(page: Page) -> None:
     page.wait_for_timeout(1500)
 
 
-PAINTED: dict[str, Callable[[Page], None]] = {"shell": _with_pressure, "throw": _with_stress}
+def _with_a_fault(page: Page) -> None:
+    """A worksheet with a wrong unit in line 22, explained under it."""
+    page.locator("#text").evaluate("""(area) => {
+      const place = area.value.indexOf("= D - c") + 6;
+      area.focus({ preventScroll: true });
+      area.setSelectionRange(place, place + 1);
+      document.execCommand("insertText", false, "F");
+    }""")
+    page.locator(".note").wait_for()
+    page.locator(".line.faulty").evaluate("(line) => scrollTo(0, line.getBoundingClientRect().top - 420)")
+    page.wait_for_timeout(500)
+
+
+PAINTED: dict[str, Callable[[Page], None]] = {
+    "worksheet": _with_a_fault,
+    "shell": _with_pressure,
+    "throw": _with_stress,
+}
 """What is done on a page before it is looked at."""
 
 

@@ -123,7 +123,7 @@ def levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
 def _measurement(cls: type[Template]) -> Any:
     """The accuracy file of a version: how errors and costs were measured; None if there is none."""
     file = accuracy_file(cls)
-    return json.loads(file.read_text(encoding="utf-8")) if file.exists() else None
+    return json.loads(file.read_text(encoding="utf-8")) if file and file.exists() else None
 
 
 def _costs(measured: dict[str, Any]) -> dict[str, float]:

@@ -1,11 +1,16 @@
 """The lanes of the tests: one thread for numerical libraries, deadlines, and who shares a worker."""
 
 import os
+import sys
 import time
+from pathlib import Path
 
 from app.workers.threads import use_one_thread
 
 use_one_thread()  # before NumPy is imported, here and in the servers that tests start
+if sys.dont_write_bytecode:  # compiled tests are kept, but not beside their sources: to compile takes seconds
+    sys.dont_write_bytecode = False
+    sys.pycache_prefix = str(Path.home() / ".cache" / "crankwright-tests")
 
 import pytest  # noqa: E402
 from hypothesis import settings  # noqa: E402

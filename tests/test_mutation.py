@@ -39,9 +39,8 @@ def test_a_server_is_stopped_where_the_table_of_slow_tests_says_so():
 
 
 def row(key, outcome="survived", file="templates/core/x.py", text="a = b + c", after="a = b - c"):
-    return {"key": key, "outcome": outcome, "file": file, "line": 1, "text": text, "operator": "o"} | {
-        "diff": f"-{text}\n+{after}"
-    }
+    about = {"key": key, "outcome": outcome, "file": file, "line": 1, "text": text, "operator": "o"}
+    return about | {"diff": f"-{text}\n+{after}", "by": "tests/test_x.py::test_it - assert 1 == 2"}
 
 
 def killed(count):
@@ -94,6 +93,9 @@ class TestVerdict:
         assert figures["without_reason"] == 1
         assert figures["share"] == round(8 / 9, 4)
         assert [one["state"] for one in figures["not_killed"]] == ["equivalent", "without_reason"]
+        assert len(figures["killed_by"]) == 8
+        assert figures["killed_by"][0]["change"] == "a = b - c"
+        assert figures["killed_by"][0]["test"] == "tests/test_x.py::test_it"
 
     def test_folders_are_counted(self):
         assert by_folder([*killed(2), row("s")]) == {"templates/core": (2, 3)}

@@ -17,8 +17,24 @@ from app.calculations.jobs import CalculationJobs
 from app.calculations.operations import LARGE, Question, answered, check, checked
 from app.calculations.pool import Calculation, CalculationPool
 from app.calculations.sources import source_of
+from app.catalogue.catalogues import Catalogues
 from app.workers.errors import JobCancelled
+from templates.core.errors import UnreleasedTemplate
 from templates.core.language.template import Template
+
+
+async def to_try(catalogues: Catalogues, template: str, version: int) -> type[Template]:
+    """A version, or the draft of a worksheet: what is answered is not kept.
+
+    Raises
+    ------
+    UnknownTemplate
+        If there is none, or the draft has faults.
+    """
+    try:
+        return catalogues.templates.get(template, version)
+    except UnreleasedTemplate:
+        return await run_in_threadpool(catalogues.to_try, template, version)
 
 
 class Answering:
@@ -35,7 +51,7 @@ class Answering:
         UnknownTemplate, InvalidInputs, TooManyCalculations
             What `answer` would raise now.
         """
-        self.jobs.catalogue.get(template, version)
+        await to_try(self.jobs.catalogues, template, version)
         client = await get_client(request)
         if self._patience(request) > 0:  # else a job waits for its turn
             self.pool.admit(client)
@@ -53,7 +69,7 @@ class Answering:
         Exception
             What the calculation raises.
         """
-        cls = self.jobs.catalogue.get(question.template, question.version)
+        cls = await to_try(self.jobs.catalogues, question.template, question.version)
         client = await get_client(request)
         seconds = self._patience(request)
         if seconds <= 0:

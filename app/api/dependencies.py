@@ -23,6 +23,7 @@ from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.service import Designs
+from app.impact.service import Impacts
 from app.jobs.service import Jobs
 from app.presentation.units import System
 from app.reports.paper import Press
@@ -36,6 +37,8 @@ from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.studies.service import Studies
+from app.worksheets.importing.service import Imports
+from app.worksheets.service import Worksheets
 
 
 def services_of(request: Request) -> Services:
@@ -62,10 +65,13 @@ TheAnswering = Annotated[Answering, Depends(_part("answering"))]
 TheDesigns = Annotated[Designs, Depends(_part("designs"))]
 TheLabelling = Annotated[Labelling, Depends(_part("labelling"))]
 TheStudies = Annotated[Studies, Depends(_part("studies"))]
+TheImports = Annotated[Imports, Depends(_part("imports"))]
+TheWorksheets = Annotated[Worksheets, Depends(_part("worksheets"))]
 ThePreviews = Annotated[Previews, Depends(_part("previews"))]
 TheDecisions = Annotated[Decisions, Depends(_part("decisions"))]
 TheSolving = Annotated[Asking[DesignSolution], Depends(_part("solving"))]
 TheTolerances = Annotated[Asking[ToleranceAnalysis], Depends(_part("tolerances"))]
+TheImpacts = Annotated[Impacts, Depends(_part("impacts"))]
 TheModels = Annotated[Models, Depends(_part("models"))]
 TheAnalyses = Annotated[Analyses, Depends(_part("analyses"))]
 TheHealing = Annotated[Healing, Depends(_part("healing"))]

@@ -26,6 +26,7 @@ from app.api.reading import (
     NotCsv,
     NotForm,
     NotJson,
+    NotSheet,
     NotStep,
     PreconditionRequired,
     TooIntricate,
@@ -41,6 +42,8 @@ from app.storage import errors as storage
 from app.storage.errors import CannotRebuild
 from app.studies.errors import RowsLost
 from app.workers import errors as workers
+from app.worksheets import errors as worksheets
+from app.worksheets.importing.errors import SheetNotRead
 from cad.errors import AnalysisError, GeometryError, UnreadableStep
 from templates.core import errors as templates
 from templates.library.tables import UnknownTable
@@ -74,17 +77,45 @@ TABLE: dict[type[Exception], Kind] = {
     templates.QuarantinedTemplate: Kind(
         "quarantined", 404, "The version is quarantined", "correct its file: GET /api/v1/catalogue/faults"
     ),
+    templates.UnreleasedTemplate: Kind(
+        "unreleased",
+        404,
+        "The version is a draft",
+        "release the worksheet first; until then only previews and `evaluate` take it",
+    ),
     templates.UnknownTemplate: Kind("unknown-template", 404, "No such version", "GET the list of versions"),
     UnknownTable: Kind("unknown-table", 404, "No such table", "GET /api/v1/library lists them"),
     templates.Unreachable: Kind("unreachable", 422, "The target is out of reach", "see `reachable`"),
     templates.TemplateError: Kind("refused", 422, "The calculation refuses", "see `detail`"),
     storage.NotFound: Kind("not-found", 404, "Not found", "GET the list to see what there is"),
     designs.StaleRevision: Kind("stale-revision", 412, "The design has changed", "read it again, then retry"),
+    worksheets.StaleWorksheet: Kind(
+        "stale-worksheet", 412, "The worksheet has changed", "read it again, then retry"
+    ),
+    worksheets.IdTaken: Kind("id-taken", 409, "The id is taken", "choose another id; see `detail`"),
+    worksheets.OwnReview: Kind(
+        "own-review", 403, "Authors do not review their own worksheets", "let another person review it"
+    ),
+    worksheets.OtherText: Kind(
+        "other-text", 409, "The review is of another text", "read the worksheet again, then review it"
+    ),
+    worksheets.TestsFailed: Kind(
+        "tests-failed", 409, "The worksheet is not sound", "correct each of `errors`"
+    ),
+    worksheets.Unresolved: Kind(
+        "unresolved-import", 409, "Regions of the import are unresolved", "rewrite or remove each of `errors`"
+    ),
+    worksheets.OutOfOrder: Kind(
+        "out-of-order", 409, "The worksheet is in another state", "draft → test → review → release → withdraw"
+    ),
     storage.KeyReused: Kind("idempotency-key-reused", 422, "Idempotency-Key reused", "take a new key"),
     designs.NotConverged: Kind("not-converged", 422, "The iteration did not settle", "see `rounds`"),
     PreconditionRequired: Kind("precondition-required", 428, "If-Match is needed", "send the design's ETag"),
     NotJson: Kind("unsupported-media-type", 415, "The body is not JSON", "send application/json"),
     NotCsv: Kind("not-csv", 415, "The body is not CSV", "send text/csv in UTF-8"),
+    NotSheet: Kind(
+        "not-sheet", 415, "The body is not said to be a file", "send the file as application/octet-stream"
+    ),
     NotStep: Kind("not-step", 415, "The body is not said to be STEP", "send the file as model/step"),
     NotForm: Kind("not-a-form", 415, "The body is not a form", "send application/x-www-form-urlencoded"),
     BadHost: Kind("bad-host", 400, "The request names no host", "send one header Host, and the path alone"),
@@ -126,6 +157,9 @@ TABLE: dict[type[Exception], Kind] = {
     GeometryError: Kind("geometry", 422, "No sound solid came out", "change the parameters in `errors`"),
     AnalysisError: Kind(
         "analysis", 422, "The solid could not be analysed", "see `errors`; fillets and less accuracy help"
+    ),
+    SheetNotRead: Kind(
+        "unreadable-sheet", 422, "The file is not taken as a sheet of Mathcad", "see `detail`"
     ),
     UnreadableStep: Kind("unreadable-step", 422, "Not a STEP file", "send a STEP file (ISO 10303-21)"),
     workers.DeadlineExceeded: Kind("deadline", 422, "The work took too long", "simplify the model"),
@@ -216,6 +250,11 @@ def _geometry(error: GeometryError) -> JsonObject:
     return {"errors": [{"name": name, "code": error.code, "detail": error.detail} for name in names]}
 
 
+def _untested(error: worksheets.TestsFailed) -> JsonObject:
+    listed: list[Json] = [{"name": "text", "code": "test_failed", "detail": text} for text in error.reasons]
+    return {"errors": listed}
+
+
 _CARRIED: dict[type[Exception], Callable[..., JsonObject]] = {
     templates.InvalidInputs: _faults,
     RequestValidationError: _validation,
@@ -226,6 +265,10 @@ _CARRIED: dict[type[Exception], Callable[..., JsonObject]] = {
         "errors": [{"name": error.name, "code": error.code, "detail": error.detail}]
     },
     designs.NotConverged: lambda error: {"rounds": error.rounds},
+    worksheets.TestsFailed: _untested,
+    worksheets.Unresolved: lambda error: {
+        "errors": [{"name": "text", "code": "unresolved", "detail": text} for text in error.reasons]
+    },
     RowsLost: lambda error: {"job": f"/api/v1/jobs/{error.job}"},
     CannotRebuild: lambda error: {
         **error.links,

@@ -24,6 +24,8 @@ JSON_TYPES = {"application/json"}
 PATCH_TYPES = {"application/json", "application/merge-patch+json"}
 STEP_TYPES = ("model/step", "application/step", "application/p21")
 """The registered name of STEP's clear text, and two that were in use before it."""
+SHEET_TYPES = {"application/octet-stream", "application/zip", "application/xml", "text/xml"}
+"""How a sheet of Mathcad may be sent: its own media types are not registered."""
 FORM_TYPES = {"application/x-www-form-urlencoded"}
 MOST_BRACKETS, MOST_QUOTES = 250_000, 400_000
 """In one body. A list of numbers has one bracket; millions of them keep the parser, and the server, busy."""
@@ -59,6 +61,10 @@ class NotCsv(HttpError):
 
 class NotStep(HttpError):
     """The content type is not that of a STEP file."""
+
+
+class NotSheet(HttpError):
+    """The content type is not one under which a sheet of Mathcad is sent."""
 
 
 class PreconditionRequired(HttpError):
@@ -134,7 +140,7 @@ class StrictRoute(APIRoute):
         async def strict(request: Request) -> Response:
             await _refreshed(request)
             if is_change and "if-match" not in request.headers:
-                raise PreconditionRequired('send If-Match with the ETag of the design you read, such as "3"')
+                raise PreconditionRequired('send If-Match with the ETag of what you read, such as "3"')
             strictly = StrictRequest(request.scope, request.receive)
             if takes_json:
                 check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
@@ -195,6 +201,21 @@ def require_step(request: Request) -> None:
     if given.partition(";")[0].strip().lower() not in STEP_TYPES:
         raise NotStep(
             f"content type {given[:80]!r} is not taken here; send the STEP file itself as model/step"
+        )
+
+
+def require_sheet(request: Request) -> None:
+    """Refuse a body that is said to be something else than a sheet of Mathcad.
+
+    Raises
+    ------
+    NotSheet
+        If the content type is another, or missing.
+    """
+    given = request.headers.get("content-type", "")
+    if given.partition(";")[0].strip().lower() not in SHEET_TYPES:
+        raise NotSheet(
+            f"content type {given[:80]!r} is not taken here; send the file itself as application/octet-stream"
         )
 
 

@@ -16,6 +16,7 @@ from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.service import Designs
+from app.impact.service import Impacts
 from app.jobs.service import Jobs
 from app.reports.paper import Press
 from app.reports.service import Reports
@@ -28,6 +29,8 @@ from app.solids.models import Models
 from app.storage.artifacts import ArtifactStore
 from app.storage.database import Database
 from app.studies.service import Studies
+from app.worksheets.importing.service import Imports
+from app.worksheets.service import Worksheets
 
 
 @dataclass(frozen=True)
@@ -48,8 +51,11 @@ class Services:
     previews: Previews
     decisions: Decisions
     studies: Studies
+    worksheets: Worksheets
+    imports: Imports
     solving: Asking[DesignSolution]
     tolerances: Asking[ToleranceAnalysis]
+    impacts: Impacts
     models: Models
     analyses: Analyses
     healing: Healing

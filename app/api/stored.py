@@ -16,7 +16,7 @@ from app.jobs.service import Jobs
 from app.schemas.problems import refusals
 from app.solids.healing import Healing, other_bytes
 from app.storage.artifacts import ArtifactStore
-from app.storage.errors import ArtifactDamaged
+from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.storage.verified import Opened
 
 RETRY_AFTER = 2  # s
@@ -35,6 +35,23 @@ async def lost(
     """
     if await to_thread.run_sync(healing.is_good, sha):
         return None
+    if answer := await _made_again(sha, healing, jobs, prefer):
+        return answer
+    if await to_thread.run_sync(healing.is_good, sha):
+        return None
+    # A job that was under way already may have passed the file before that was lost: the next one has not.
+    try:
+        if answer := await _made_again(sha, healing, jobs, prefer):
+            return answer
+    except ArtifactMissing:
+        pass  # the row names other bytes by now
+    if same and not await to_thread.run_sync(healing.is_good, sha):
+        return problems.answer(problems.describe(other_bytes(sha)))
+    return None
+
+
+async def _made_again(sha: str, healing: Healing, jobs: Jobs, prefer: str | None) -> Response | None:
+    """None once the job that makes an artifact again has ended well, else what to answer."""
     if refused := healing.refused(sha):
         return problems.answer(refused)
     job = await to_thread.run_sync(healing.request, sha)
@@ -44,8 +61,6 @@ async def lost(
         if problem["status"] == GONE:
             healing.refuse(sha, problem)
         return problems.answer(problem)
-    if same and not await to_thread.run_sync(healing.is_good, sha):
-        return problems.answer(problems.describe(other_bytes(sha)))
     return None
 
 

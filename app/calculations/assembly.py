@@ -48,15 +48,18 @@ def assemble_calculations(
     store: ArtifactStore,
     jobs: Jobs,
     designs: tuple[str, ...] = (),
+    sheets: tuple[str, ...] = (),
 ) -> Calculations:
     """Make the pool, and register the jobs that use it; the stack ends it.
 
-    `designs` are the modules that functions of designs need in their processes.
+    `designs` are the modules that functions of designs need in their processes, `sheets` those that read
+    worksheets, which all processes have.
     """
     size = settings.calculation_processes or len(os.sched_getaffinity(0))
     limits = Limits(settings.calculation_job_deadline, settings.calculation_memory_mb)
-    light = WarmProcesses(PRELOAD, spares=size)
-    processes = CalculationProcesses(light, lambda: WarmProcesses((*PRELOAD, *designs), spares=size))
+    preload = (*PRELOAD, *sheets)
+    light = WarmProcesses(preload, spares=size)
+    processes = CalculationProcesses(light, lambda: WarmProcesses((*preload, *designs), spares=size))
     stack.callback(processes.close)
     pool = CalculationPool(processes, size, settings.calculation_waiting, limits)
     stack.callback(pool.close)

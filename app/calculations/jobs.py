@@ -28,8 +28,8 @@ from templates.core.errors import TemplateError
 from templates.core.language.template import Template
 
 CALCULATION, PREVIEW, DECISION = "calculation", "preview", "decision"
-TOLERANCE, SOLUTION = "tolerance", "solution"
-ANSWERS = (CALCULATION, PREVIEW, DECISION, TOLERANCE, SOLUTION)
+TOLERANCE, SOLUTION, IMPACT = "tolerance", "solution", "impact"
+ANSWERS = (CALCULATION, PREVIEW, DECISION, TOLERANCE, SOLUTION, IMPACT)
 """Kinds of jobs whose result is an answer: what a request asked for, and nobody waited for."""
 GLANCE = 0.1  # how often a thread looks whether its job was cancelled [s]
 AGAIN = "again"  # in a payload: the job whose lost answer is calculated again
@@ -148,7 +148,7 @@ class CalculationJobs:
             question = question_of(job.payload, self.store)
         except (ArtifactMissing, ArtifactDamaged) as error:
             raise _lost(job) from error
-        cls = self.catalogue.get(question.template, question.version)
+        cls = self.catalogues.to_try(question.template, question.version)
         return self.pool.submit(f"job:{job.id}", answered, source_of(cls), question, lane="jobs")
 
     def _outcome(self, calculation: Calculation, context: JobContext) -> Pieces:

@@ -18,8 +18,9 @@ from templates.core.progress import Reporter
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
-LIGHT = ("app.calculations", "app.workers", "templates")
-"""Packages of this program whose functions need no network of designs."""
+SHEETS = ("app.worksheets.checking", "app.worksheets.examining")
+LIGHT = ("app.calculations", "app.workers", *SHEETS, "templates")
+"""Packages and modules of this program whose functions need no network of designs."""
 
 
 class CalculationProcesses:

@@ -22,7 +22,10 @@ def identity(cls: type[Template]) -> JsonObject:
     """Which version calculated: id, version and both digests of its code."""
     if cls not in _identities:
         codes = {"digest": digest(cls), "content_digest": content_digest(cls)}
-        _identities[cls] = {"id": cls.id, "version": cls.version, **codes}
+        identified: JsonObject = {"id": cls.id, "version": cls.version, **codes}
+        if cls.sheet:
+            return identified  # worksheets come and go, and know their digest
+        _identities[cls] = identified
     return dict(_identities[cls])
 
 

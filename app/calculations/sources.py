@@ -1,4 +1,4 @@
-"""Where a process finds a template: by the file that declares it, as it was when the server read it."""
+"""Where a process finds a template: the file, or the worksheet, that declares it, as the server read it."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from pathlib import Path
 from templates.core.catalogue.finding import declared_in, declared_in_file
 from templates.core.catalogue.loading import load, origin
 from templates.core.language.template import Template
+from templates.core.sheets.classes import from_text
 
 
 @dataclass(frozen=True)
-class Source:
+class FileSource:
     """The file of a template; the content of a team's file goes with it, of a built-in one nothing."""
 
     path: str
@@ -21,11 +22,26 @@ class Source:
     content: bytes = field(default=b"", compare=False)
 
 
+@dataclass(frozen=True)
+class SheetSource:
+    """The text of a worksheet, of which every process makes the class."""
+
+    id: str
+    version: int
+    text: str
+    withdrawn: str | None
+
+
+Source = FileSource | SheetSource
+
+
 def source_of(cls: type[Template]) -> Source:
     """The source of a template, with the code that this process calculates by."""
+    if cls.sheet is not None:
+        return SheetSource(cls.id, cls.version, cls.sheet.text, cls.withdrawn)
     module, path = inspect.getmodule(cls), inspect.getfile(cls)
     made = origin(module) if module else None
-    return Source(path, made[1], made[0]) if made else Source(path)
+    return FileSource(path, made[1], made[0]) if made else FileSource(path)
 
 
 @lru_cache(maxsize=1024)
@@ -35,9 +51,24 @@ def loaded(source: Source) -> type[Template]:
     Raises
     ------
     UnusableFile
-        If it cannot be imported here.
+        If a file cannot be imported here.
+    SheetRefused
+        If a worksheet has faults.
     """
+    if isinstance(source, SheetSource):
+        return class_of(source)
     path = Path(source.path)
     if not source.digest:
         return declared_in_file(path)
     return declared_in(load(path, source.content, source.digest), path)
+
+
+def class_of(source: SheetSource) -> type[Template]:
+    """The class that a worksheet makes; one class, however often it is asked for.
+
+    Raises
+    ------
+    SheetRefused
+        If its text has faults.
+    """
+    return from_text(source.text, source.id, source.version, source.withdrawn)

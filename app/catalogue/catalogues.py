@@ -1,22 +1,29 @@
-"""What a design can be made of: built-in templates and models, and a team's, read again when they change."""
+"""What a design can be made of: versions of this program, of a team's files, and of released worksheets.
+
+The files of a team are read again when they change; `app.worksheets` says which worksheets there are.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import logging
+import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 from app.catalogue.checking import Check
 from app.catalogue.finding import find_templates
-from app.catalogue.team import Snapshot, TeamFile, TeamFiles, merged
+from app.catalogue.sheets import Key, ReleasedSheet, Sheets
+from app.catalogue.team import Snapshot, TeamFile, TeamFiles, joined, merged
 from app.workers.errors import WorkerError
 from cad.catalogue import models as find_models
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
+from templates.core.errors import UnknownTemplate
 from templates.core.language.template import Template
 
 logger = logging.getLogger(__name__)
@@ -25,11 +32,18 @@ EVERY = 1.0  # how often files are looked at, while there are requests [s]
 PATIENCE = 2.0  # how long a request waits for the check of a file that has changed [s]
 
 
+Drafts = Callable[[str, int], type[Template]]
+"""Reads the draft of a worksheet as it is now; raises UnknownTemplate if it has faults, or is gone."""
+
+
 class Catalogues:
     """What a design can be made of, as it is now; who uses one catalogue twice shall keep it meanwhile."""
 
     def __init__(self, templates: Catalogue[Template], models: Catalogue[CadModel]) -> None:
-        self.snapshot = Snapshot(templates, models)
+        self.files = self.snapshot = Snapshot(templates, models)
+        self._sheets = Sheets()
+        self._drafts: Drafts = _no_drafts
+        self._joining = threading.Lock()
 
     @property
     def templates(self) -> Catalogue[Template]:
@@ -40,6 +54,48 @@ class Catalogues:
     def models(self) -> Catalogue[CadModel]:
         """The CAD models."""
         return self.snapshot.models
+
+    def worksheet_of(self, cls: type[Template]) -> ReleasedSheet | None:
+        """The worksheet that a template is; None of one from a file."""
+        return self.snapshot.sheets.released.get((cls.id, cls.version))
+
+    def publish(self, sheets: Sheets, drafts: Drafts) -> None:
+        """Let these worksheets stand among the templates from now on."""
+        with self._joining:
+            self._sheets, self._drafts = sheets, drafts
+            self.snapshot = joined(self.files, sheets)
+
+    def to_try(self, id: str, version: int) -> type[Template]:
+        """A version, or the draft of a worksheet as it is now: for what is calculated and not kept.
+
+        Raises
+        ------
+        UnknownTemplate
+            If there is none, or the draft has faults.
+        """
+        if (id, version) not in self.templates.unreleased:
+            return self.templates.get(id, version)
+        return self._drafts(id, version)
+
+    def with_drafts(self, wanted: Iterable[Key]) -> Catalogues:
+        """The same, and the drafts of worksheets that are wanted; one with faults cannot be used still."""
+        drafts: dict[Key, type[Template]] = {}
+        faulty: dict[Key, str] = {}
+        for key in self.templates.unreleased.keys() & set(wanted):
+            try:
+                drafts[key] = self._drafts(*key)
+            except UnknownTemplate as error:
+                faulty[key] = str(error)
+        if not (drafts or faulty):
+            return self
+        versions = {**self.templates.versions, **drafts}
+        unreleased = {**self.templates.unreleased, **faulty}
+        return Catalogues(replace(self.templates, versions=versions, unreleased=unreleased), self.models)
+
+    def _take(self, files: Snapshot) -> None:
+        """Take notice of other files."""
+        with self._joining:
+            self.files, self.snapshot = files, joined(files, self._sheets)
 
     async def refresh(self) -> None:
         """Take notice of files that have changed; nothing changes here."""
@@ -88,10 +144,14 @@ class TeamCatalogues(Catalogues):
             return
         if is_changed:
             before = {file.path: file for file in self.snapshot.files}
-            self.snapshot = merged(*self._built_in, self._team.files)
+            self._take(merged(*self._built_in, self._team.files))
             for file in self.snapshot.files:
                 if file.faults and before.get(file.path) != file:
                     _report(file)
+
+
+def _no_drafts(id: str, version: int) -> type[Template]:
+    raise UnknownTemplate(id, f"there is no draft of {id} version {version}")
 
 
 async def _ended(future: Future[None], seconds: float) -> None:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from app.catalogue.checking import Check, loaded_or_faulty
+from app.catalogue.sheets import Key, Sheets
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.checking.faults import FileFault
@@ -17,9 +18,6 @@ from templates.core.language.template import VERSIONED, Template
 
 Signature = tuple[tuple[int, int, int] | None, ...]
 """Times of change [ns] and size [bytes] of a file and of those beside it; None for one that is not there."""
-
-Key = tuple[str, int]
-"""Id and version."""
 
 _MEANT = re.compile(r".+_[vV][0-9]+")  # a name that somebody may have meant as that of a version
 NAME = "name it <id>_v<version>.py, in small letters, such as bush_duty_v1.py"
@@ -59,11 +57,12 @@ class TeamFile:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """What can be calculated and drawn at one time, and the files of teams."""
+    """What can be calculated and drawn at one time, the files of teams, and worksheets."""
 
     templates: Catalogue[Template]
     models: Catalogue[CadModel]
     files: tuple[TeamFile, ...] = ()
+    sheets: Sheets = field(default_factory=Sheets)
 
 
 class TeamFiles:
@@ -193,6 +192,34 @@ def merged(
         Catalogue(dict(sorted(own_models.items())), models.kind, reasons),
         tuple(settled),
     )
+
+
+def joined(files: Snapshot, sheets: Sheets) -> Snapshot:
+    """The versions of files and those of worksheets.
+
+    A released worksheet keeps its name: a file that comes with the same one later would change the numbers of
+    the designs that use it. Nor does a file stand in for a broken worksheet.
+    """
+    released = {key: sheet.cls for key, sheet in sheets.released.items()}
+    others = {key: cls for key, cls in files.templates.versions.items() if not sheets.owns(key)}
+    templates = Catalogue(
+        dict(sorted({**others, **released}.items())),
+        files.templates.kind,
+        {**files.templates.quarantined, **sheets.broken},
+        sheets.unreleased,
+    )
+    settled = (file.refused(_worksheets(file)) if _collides(file, sheets) else file for file in files.files)
+    return Snapshot(templates, files.models, tuple(settled), sheets)
+
+
+def _collides(file: TeamFile, sheets: Sheets) -> bool:
+    """Whether a file declares a template that has been released as a worksheet."""
+    return file.cls is not None and not issubclass(file.cls, CadModel) and sheets.owns(file.key)
+
+
+def _worksheets(file: TeamFile) -> FileFault:
+    what = f"{file.path.stem} has been released as a worksheet"
+    return FileFault("worksheet", what, "give it another id, or the next free version")
 
 
 def _taken(key: Key, by: TeamFile | None) -> FileFault:

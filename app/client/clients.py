@@ -2,64 +2,21 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Awaitable, Callable, Mapping
-from typing import Generic, ParamSpec, Self, TypedDict, TypeVar, overload
+from collections.abc import Mapping
+from typing import Self, TypedDict, TypeVar
 
 import httpx
 
-from app.client import operations, variant_operations
+from app.client import operations, variant_operations, worksheet_operations
 from app.client import studies as exchanges
 from app.client.exchange import Exchange, Query, Request
+from app.client.methods import AsyncMethod, Method
 from app.client.names import CLIENT_HEADER, checked_name
 from app.client.studies import AsyncClientStudy, ClientStudy
 
 _RETRIES = 3  # of the transport, for a connection that is refused
 
-Asked = ParamSpec("Asked")
 Result = TypeVar("Result")
-
-
-class _Method(Generic[Asked, Result]):
-    """A method of `Client` that runs an operation."""
-
-    def __init__(self, operation: Callable[Asked, Exchange[Result]]) -> None:
-        self.operation, self.__doc__ = operation, operation.__doc__
-
-    @overload
-    def __get__(self, client: None, owner: type) -> Self: ...
-    @overload
-    def __get__(self, client: Client, owner: type) -> Callable[Asked, Result]: ...
-    def __get__(self, client: Client | None, owner: type) -> Self | Callable[Asked, Result]:
-        if client is None:
-            return self
-
-        @functools.wraps(self.operation)
-        def call(*given: Asked.args, **options: Asked.kwargs) -> Result:
-            return client.run(self.operation(*given, **options))
-
-        return call
-
-
-class _AsyncMethod(Generic[Asked, Result]):
-    """A method of `AsyncClient` that runs an operation; what it returns is awaited."""
-
-    def __init__(self, operation: Callable[Asked, Exchange[Result]]) -> None:
-        self.operation, self.__doc__ = operation, operation.__doc__
-
-    @overload
-    def __get__(self, client: None, owner: type) -> Self: ...
-    @overload
-    def __get__(self, client: AsyncClient, owner: type) -> Callable[Asked, Awaitable[Result]]: ...
-    def __get__(self, client: AsyncClient | None, owner: type) -> Self | Callable[Asked, Awaitable[Result]]:
-        if client is None:
-            return self
-
-        @functools.wraps(self.operation)
-        def call(*given: Asked.args, **options: Asked.kwargs) -> Awaitable[Result]:
-            return client.run(self.operation(*given, **options))
-
-        return call
 
 
 class _Options(TypedDict):
@@ -176,52 +133,67 @@ class Client(_Connection):
         """A study that was begun before."""
         return ClientStudy(self, self.run(exchanges.find(id)))
 
-    studies = _Method(exchanges.find_all)
-    templates = _Method(operations.templates)
-    faults = _Method(operations.faults)
-    template = _Method(operations.template)
-    library = _Method(operations.library)
-    library_table = _Method(operations.library_table)
-    evaluate = _Method(operations.evaluate)
-    worksheet = _Method(operations.worksheet)
-    solve = _Method(operations.solve)
-    curves = _Method(operations.curves)
-    analyse = _Method(operations.analyse)
-    surface = _Method(operations.surface)
-    designs = _Method(operations.designs)
-    design = _Method(operations.design)
-    create = _Method(operations.create)
-    change = _Method(operations.change)
-    copy = _Method(operations.copy)
-    restore = _Method(operations.restore)
-    delete = _Method(operations.delete)
-    labels = _Method(operations.labels)
-    label = _Method(operations.label)
-    tags = _Method(operations.tags)
-    compare = _Method(operations.compare)
-    preview = _Method(operations.preview)
-    decide = _Method(operations.decide)
-    solve_design = _Method(operations.solve_design)
-    tolerance = _Method(operations.tolerance)
-    auto_map = _Method(operations.auto_map)
-    explain = _Method(operations.explain)
-    network = _Method(operations.network)
-    revision = _Method(operations.revision)
-    revisions = _Method(operations.revisions)
-    measurements = _Method(operations.measurements)
-    design_worksheet = _Method(operations.design_worksheet)
-    build = _Method(operations.build)
-    model = _Method(operations.model)
-    download = _Method(operations.download)
-    report = _Method(operations.report)
-    picture = _Method(operations.picture)
-    variants = _Method(variant_operations.variants)
-    put_variants = _Method(variant_operations.put_variants)
-    download_variant = _Method(variant_operations.download_variant)
-    download_variants = _Method(variant_operations.download_variants)
-    verify = _Method(operations.verify)
-    job = _Method(operations.job)
-    follow = _Method(operations.follow)
+    studies = Method(exchanges.find_all)
+    templates = Method(operations.templates)
+    faults = Method(operations.faults)
+    template = Method(operations.template)
+    library = Method(operations.library)
+    library_table = Method(operations.library_table)
+    evaluate = Method(operations.evaluate)
+    worksheet = Method(operations.worksheet)
+    solve = Method(operations.solve)
+    curves = Method(operations.curves)
+    analyse = Method(operations.analyse)
+    surface = Method(operations.surface)
+    designs = Method(operations.designs)
+    design = Method(operations.design)
+    create = Method(operations.create)
+    change = Method(operations.change)
+    copy = Method(operations.copy)
+    restore = Method(operations.restore)
+    delete = Method(operations.delete)
+    labels = Method(operations.labels)
+    label = Method(operations.label)
+    tags = Method(operations.tags)
+    compare = Method(operations.compare)
+    preview = Method(operations.preview)
+    decide = Method(operations.decide)
+    solve_design = Method(operations.solve_design)
+    tolerance = Method(operations.tolerance)
+    impact = Method(operations.impact)
+    upgrade = Method(operations.upgrade)
+    auto_map = Method(operations.auto_map)
+    explain = Method(operations.explain)
+    network = Method(operations.network)
+    revision = Method(operations.revision)
+    revisions = Method(operations.revisions)
+    measurements = Method(operations.measurements)
+    design_worksheet = Method(operations.design_worksheet)
+    build = Method(operations.build)
+    model = Method(operations.model)
+    download = Method(operations.download)
+    report = Method(operations.report)
+    picture = Method(operations.picture)
+    variants = Method(variant_operations.variants)
+    put_variants = Method(variant_operations.put_variants)
+    download_variant = Method(variant_operations.download_variant)
+    download_variants = Method(variant_operations.download_variants)
+    worksheets = Method(worksheet_operations.worksheets)
+    read_worksheet = Method(worksheet_operations.read_worksheet)
+    worksheet_text = Method(worksheet_operations.worksheet_text)
+    check_worksheet = Method(worksheet_operations.check_worksheet)
+    create_worksheet = Method(worksheet_operations.create_worksheet)
+    import_worksheet = Method(worksheet_operations.import_worksheet)
+    read_import = Method(worksheet_operations.read_import)
+    change_worksheet = Method(worksheet_operations.change_worksheet)
+    test_worksheet = Method(worksheet_operations.test_worksheet)
+    review_worksheet = Method(worksheet_operations.review_worksheet)
+    release_worksheet = Method(worksheet_operations.release_worksheet)
+    withdraw_worksheet = Method(worksheet_operations.withdraw_worksheet)
+    delete_worksheet = Method(worksheet_operations.delete_worksheet)
+    verify = Method(operations.verify)
+    job = Method(operations.job)
+    follow = Method(operations.follow)
 
 
 class AsyncClient(_Connection):
@@ -279,49 +251,64 @@ class AsyncClient(_Connection):
         """A study that was begun before."""
         return AsyncClientStudy(self, await self.run(exchanges.find(id)))
 
-    studies = _AsyncMethod(exchanges.find_all)
-    templates = _AsyncMethod(operations.templates)
-    faults = _AsyncMethod(operations.faults)
-    template = _AsyncMethod(operations.template)
-    library = _AsyncMethod(operations.library)
-    library_table = _AsyncMethod(operations.library_table)
-    evaluate = _AsyncMethod(operations.evaluate)
-    worksheet = _AsyncMethod(operations.worksheet)
-    solve = _AsyncMethod(operations.solve)
-    curves = _AsyncMethod(operations.curves)
-    analyse = _AsyncMethod(operations.analyse)
-    surface = _AsyncMethod(operations.surface)
-    designs = _AsyncMethod(operations.designs)
-    design = _AsyncMethod(operations.design)
-    create = _AsyncMethod(operations.create)
-    change = _AsyncMethod(operations.change)
-    copy = _AsyncMethod(operations.copy)
-    restore = _AsyncMethod(operations.restore)
-    delete = _AsyncMethod(operations.delete)
-    labels = _AsyncMethod(operations.labels)
-    label = _AsyncMethod(operations.label)
-    tags = _AsyncMethod(operations.tags)
-    compare = _AsyncMethod(operations.compare)
-    preview = _AsyncMethod(operations.preview)
-    decide = _AsyncMethod(operations.decide)
-    solve_design = _AsyncMethod(operations.solve_design)
-    tolerance = _AsyncMethod(operations.tolerance)
-    auto_map = _AsyncMethod(operations.auto_map)
-    explain = _AsyncMethod(operations.explain)
-    network = _AsyncMethod(operations.network)
-    revision = _AsyncMethod(operations.revision)
-    revisions = _AsyncMethod(operations.revisions)
-    measurements = _AsyncMethod(operations.measurements)
-    design_worksheet = _AsyncMethod(operations.design_worksheet)
-    build = _AsyncMethod(operations.build)
-    model = _AsyncMethod(operations.model)
-    download = _AsyncMethod(operations.download)
-    report = _AsyncMethod(operations.report)
-    picture = _AsyncMethod(operations.picture)
-    variants = _AsyncMethod(variant_operations.variants)
-    put_variants = _AsyncMethod(variant_operations.put_variants)
-    download_variant = _AsyncMethod(variant_operations.download_variant)
-    download_variants = _AsyncMethod(variant_operations.download_variants)
-    verify = _AsyncMethod(operations.verify)
-    job = _AsyncMethod(operations.job)
-    follow = _AsyncMethod(operations.follow)
+    studies = AsyncMethod(exchanges.find_all)
+    templates = AsyncMethod(operations.templates)
+    faults = AsyncMethod(operations.faults)
+    template = AsyncMethod(operations.template)
+    library = AsyncMethod(operations.library)
+    library_table = AsyncMethod(operations.library_table)
+    evaluate = AsyncMethod(operations.evaluate)
+    worksheet = AsyncMethod(operations.worksheet)
+    solve = AsyncMethod(operations.solve)
+    curves = AsyncMethod(operations.curves)
+    analyse = AsyncMethod(operations.analyse)
+    surface = AsyncMethod(operations.surface)
+    designs = AsyncMethod(operations.designs)
+    design = AsyncMethod(operations.design)
+    create = AsyncMethod(operations.create)
+    change = AsyncMethod(operations.change)
+    copy = AsyncMethod(operations.copy)
+    restore = AsyncMethod(operations.restore)
+    delete = AsyncMethod(operations.delete)
+    labels = AsyncMethod(operations.labels)
+    label = AsyncMethod(operations.label)
+    tags = AsyncMethod(operations.tags)
+    compare = AsyncMethod(operations.compare)
+    preview = AsyncMethod(operations.preview)
+    decide = AsyncMethod(operations.decide)
+    solve_design = AsyncMethod(operations.solve_design)
+    tolerance = AsyncMethod(operations.tolerance)
+    impact = AsyncMethod(operations.impact)
+    upgrade = AsyncMethod(operations.upgrade)
+    auto_map = AsyncMethod(operations.auto_map)
+    explain = AsyncMethod(operations.explain)
+    network = AsyncMethod(operations.network)
+    revision = AsyncMethod(operations.revision)
+    revisions = AsyncMethod(operations.revisions)
+    measurements = AsyncMethod(operations.measurements)
+    design_worksheet = AsyncMethod(operations.design_worksheet)
+    build = AsyncMethod(operations.build)
+    model = AsyncMethod(operations.model)
+    download = AsyncMethod(operations.download)
+    report = AsyncMethod(operations.report)
+    picture = AsyncMethod(operations.picture)
+    variants = AsyncMethod(variant_operations.variants)
+    put_variants = AsyncMethod(variant_operations.put_variants)
+    download_variant = AsyncMethod(variant_operations.download_variant)
+    download_variants = AsyncMethod(variant_operations.download_variants)
+    worksheets = AsyncMethod(worksheet_operations.worksheets)
+    read_worksheet = AsyncMethod(worksheet_operations.read_worksheet)
+    worksheet_text = AsyncMethod(worksheet_operations.worksheet_text)
+    check_worksheet = AsyncMethod(worksheet_operations.check_worksheet)
+    create_worksheet = AsyncMethod(worksheet_operations.create_worksheet)
+    import_worksheet = AsyncMethod(worksheet_operations.import_worksheet)
+    read_import = AsyncMethod(worksheet_operations.read_import)
+    change_worksheet = AsyncMethod(worksheet_operations.change_worksheet)
+    test_worksheet = AsyncMethod(worksheet_operations.test_worksheet)
+    review_worksheet = AsyncMethod(worksheet_operations.review_worksheet)
+    release_worksheet = AsyncMethod(worksheet_operations.release_worksheet)
+    withdraw_worksheet = AsyncMethod(worksheet_operations.withdraw_worksheet)
+    delete_worksheet = AsyncMethod(worksheet_operations.delete_worksheet)
+    verify = AsyncMethod(operations.verify)
+    job = AsyncMethod(operations.job)
+    follow = AsyncMethod(operations.follow)

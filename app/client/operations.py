@@ -44,8 +44,10 @@ from app.client.exchange import (
     read,
 )
 from app.client.files import File
+from app.client.questions import impact as impact
 from app.client.questions import solve_design as solve_design
 from app.client.questions import tolerance as tolerance
+from app.client.questions import upgrade as upgrade
 from app.schemas.analyses import Analysis, Surface
 from app.schemas.catalogue import FaultList, FaultyFile
 from app.schemas.curves import Curves

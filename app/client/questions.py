@@ -1,10 +1,14 @@
-"""Questions about a design: which value gives a wanted output, and what its tolerances do."""
+"""Questions about designs: which value gives an output, what tolerances do, what a version moves."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from app.client.design_operations import change
 from app.client.exchange import Exchange, Progress, calculated, post
+from app.presentation.units import System
+from app.schemas.designs import Design
+from app.schemas.impact import Impact
 from app.schemas.solve import DesignSolution
 from app.schemas.tolerances import ToleranceAnalysis
 
@@ -16,11 +20,16 @@ def solve_design(
     target: Mapping[str, object],
     *,
     tolerance: float | None = None,
+    others: Mapping[str, object] | None = None,
     on_progress: Progress | None = None,
 ) -> Exchange[DesignSolution]:
-    """Every value of a parameter or input between two bounds that gives a wanted output."""
+    """Every value of a parameter or input between two bounds that gives a wanted output.
+
+    `others` are other values of the design for this question: `{"film.speed": "7000 rpm"}`.
+    """
     body: dict[str, object] = {"unknown": unknown, "between": list(between), "target": dict(target)}
     body |= {} if tolerance is None else {"tolerance": tolerance}
+    body |= {"with": dict(others)} if others else {}
     return calculated(DesignSolution, post(f"/designs/{id}/solve", body), on_progress)
 
 
@@ -38,3 +47,38 @@ def tolerance(
     sampling = {"points": points, "seed": seed, "levels": dict(levels or {})}
     body = {"outputs": outputs, "criteria": criteria, **sampling}
     return calculated(ToleranceAnalysis, post(f"/designs/{id}/tolerance", body), on_progress)
+
+
+def impact(
+    template: str,
+    version: int,
+    designs: Sequence[str] | None = None,
+    *,
+    name: str | None = None,
+    tags: Sequence[str] = (),
+    limit: int = 100,
+    units: System = "si",
+    on_progress: Progress | None = None,
+) -> Exchange[Impact]:
+    """What a version of a template does to the designs that use another one, worst first; nothing is saved.
+
+    All designs that are not archived, unless ids, a part of the name or tags select some.
+    """
+    chosen = {"designs": None if designs is None else [*designs], "name": name}
+    body = {**chosen, "tags": [*tags], "limit": limit}
+    path = f"/templates/{template}/versions/{version}/impact?units={units}"
+    return calculated(Impact, post(path, body), on_progress)
+
+
+def upgrade(
+    design: Design,
+    template: str,
+    version: int,
+    *,
+    on_progress: Progress | None = None,
+    key: str | None = None,
+) -> Exchange[Design]:
+    """Make a new revision of a design that was read, in which every step of a template has this version."""
+    steps = {name: {"version": version} for name, step in design.steps.items() if step.template == template}
+    patch = {"steps": steps, "note": f"{template} version {version}"}
+    return change(design, patch, on_progress=on_progress, key=key)

@@ -24,7 +24,7 @@ from templates.core.language.evaluate import Evaluation
 from templates.core.language.request import read_request
 from templates.core.language.spec import Choice
 from templates.core.units.quantity import Typed, read, read_any
-from templates.core.units.relation import is_relation, parse
+from templates.core.units.relation import is_relation
 from templates.core.units.units import Value
 
 __all__ = [
@@ -202,7 +202,7 @@ def _joined(result: Calculation, cell: Cell) -> Value:
     if not isinstance(cell.raw, list):
         return _finite(cell.relations[0].value(names))
     declared = cell.declared.meaning.unit if cell.declared else None
-    parts = [_item(item, names, declared) for item in cell.raw]
+    parts = [_item(cell, item, names, declared) for item in cell.raw]
     if any(np.ndim(part) for part in parts):
         raise FaultyText(
             "shape", "each item of a list is a single value, but a relation in it gives an array"
@@ -210,9 +210,9 @@ def _joined(result: Calculation, cell: Cell) -> Value:
     return _finite(np.array(parts, dtype=float))
 
 
-def _item(item: Raw, names: Mapping[str, Value], declared: str | None) -> Value:
+def _item(cell: Cell, item: Raw, names: Mapping[str, Value], declared: str | None) -> Value:
     if is_relation(item):
-        return parse(item).value(names)
+        return cell.relations_by_text[str(item).strip()].value(names)
     return read(item, declared).si if declared else read_any(item).si
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from app.calculations.criteria import rendered
@@ -15,17 +14,14 @@ from app.designs.document import Document
 from app.designs.graph import build_graph, raise_if
 from app.designs.judging import Judging
 from app.designs.long_answers import LongAnswers
-from app.designs.reference import Reference
 from app.designs.service import analysed, built
-from app.designs.starting import starts
+from app.designs.starting import settled, starts
 from app.plain import Json, JsonObject, Raw
 from app.presentation.units import System
 from app.schemas.answers import Quantity
 from app.schemas.decisions import Decision, Tried
-from app.storage.tables import RevisionRow
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_names
 from templates.core.units.quantity import read
-from templates.core.units.units import unit
 
 LONGEST_BUDGET = 600.0  # s
 
@@ -112,17 +108,10 @@ class Decisions(LongAnswers):
         document = Document.model_validate(row.document)
         graph, faults = build_graph(document, self.catalogues)
         raise_if(faults)
-        assumed = {**starts(document), **_settled(row)}
+        assumed = {**starts(document), **settled(row.results)}
         calculation = calculate(graph, built(self.database), analysed(self.database), assumed)
         raise_if(calculation.faults)
         return row.number, calculation
-
-
-def _settled(row: RevisionRow) -> Mapping[Reference, float]:
-    """The values [SI] with which the iterations of a revision ended."""
-    rounds = (row.results or {}).get("iterations", [])
-    values = {one["through"]: (float(one["assumed"]), one["unit"]) for one in rounds}
-    return {Reference.parse(name): float(unit(scale).to_si(value)) for name, (value, scale) in values.items()}
 
 
 def _pending(calculation: Calculation) -> deciding.Decision:

@@ -34,7 +34,7 @@ def _columns(graph: Graph) -> dict[str, int]:
     """
     columns: dict[str, int] = {}
     for name in _ordered(graph):
-        sources = (source.block for cell in _cells(graph, name) for source in cell.uses.values())
+        sources = (source.block for cell in _cells(graph, name) for source in _sources(cell).values())
         columns[name] = max((columns[source] + 1 for source in sources if source in columns), default=0)
     return columns
 
@@ -63,10 +63,15 @@ def _relations(graph: Graph, columns: Columns) -> Iterator[NetworkRelation]:
     """Every name that every relation uses, where there is such a block."""
     for cell in graph.cells():
         target = cell.reference.block
-        for name, source in cell.uses.items():
+        for name, source in _sources(cell).items():
             if source.block in columns and not (cell.reference.analysis == LIMITS and source.block == target):
                 forward = columns[source.block] < columns[target]
                 yield NetworkRelation(target=cell.name, source=name, relation=_text(cell), forward=forward)
+
+
+def _sources(cell: Cell) -> Mapping[str, Reference]:
+    """What a cell uses: quantities, and the choices that it tests."""
+    return {**cell.uses, **cell.tests}
 
 
 def _text(cell: Cell) -> str:

@@ -13,6 +13,8 @@ from app.plain import JsonObject
 from app.storage.errors import NotFound
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Derived, Formula
+from templates.core.paper.expressions import relation_latex
+from templates.core.paper.mathml import mathml
 from templates.core.paper.schema import formula_on_paper
 from templates.core.units.units import Value, unit
 
@@ -79,8 +81,8 @@ class Explainer:
     def _cell(self, cell: Cell) -> JsonObject:
         if not cell.relations:
             return {"kind": "given", "typed": cell.raw, "because": []}
-        because = [self.of(used) for used in cell.uses.values()]
-        return {"kind": "relation", "relation": cell.raw, "because": because}
+        because = [self.of(used) for used in (*cell.uses.values(), *cell.tests.values())]
+        return {"kind": "relation", "relation": cell.raw, **_on_paper(cell), "because": because}
 
     def _declared(self, head: str, tail: str) -> JsonObject:
         cls = self.graph.blocks[head].cls
@@ -114,6 +116,12 @@ class Explainer:
         if not np.size(si):
             return None
         return shown(si, measured_unit(reference) if declared is None else declared.meaning.unit)
+
+
+def _on_paper(cell: Cell) -> JsonObject:
+    """A relation as LaTeX and MathML, where it is more than a name."""
+    latex = relation_latex(cell.raw)
+    return {"latex": latex, "mathml": mathml(latex)} if latex else {}
 
 
 def shown(si: Value, unit_name: str) -> JsonObject:

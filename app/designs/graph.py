@@ -12,6 +12,7 @@ from typing import TypeVar
 
 from app.catalogue.catalogues import Catalogues
 from app.designs.analyses import is_measured, questions, remedy
+from app.designs.choices import Choices
 from app.designs.demands import checked_demands, read_demands, unknown_names_in
 from app.designs.document import Document, Model, Step, Version
 from app.designs.kinds import checked_kinds
@@ -20,7 +21,6 @@ from app.designs.ordering import ordered
 from app.designs.reference import Reference
 from app.designs.size import has_relation, too_many_relations
 from app.plain import Raw
-from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_names
 from templates.core.judging.limits import GivenLimit, read_limits
@@ -77,11 +77,12 @@ def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[
     """The parameters and blocks of a document, and what of them cannot be read."""
     faults: list[Fault] = []
     parameters: dict[str, Cell] = {}
+    choices = Choices(document, catalogues)
     for name, raw in document.parameters.items():
-        parameters[name], wrong = _cell(Reference(name), name, raw)
+        parameters[name], wrong = _cell(choices, Reference(name), name, raw)
         faults += wrong
     blocks: dict[str, Block] = {}
-    for block, wrong in _blocks(document, catalogues):
+    for block, wrong in _blocks(choices):
         blocks |= {block.name: block} if block else {}
         faults += wrong
     assumed = frozenset(Reference.parse(iteration.through) for iteration in document.iterations)
@@ -90,7 +91,7 @@ def _network(document: Document, catalogues: Catalogues) -> tuple[Network, list[
 
 
 def _cell(
-    reference: Reference, name: str, raw: Raw, declared: Input | None = None
+    choices: Choices, reference: Reference, name: str, raw: Raw, declared: Input | None = None
 ) -> tuple[Cell, list[Fault]]:
     """A cell with those of its relations that can be read, and the faults of the others."""
     texts = [item for item in raw if is_relation(item)] if isinstance(raw, list) else [raw]
@@ -100,35 +101,38 @@ def _cell(
     faults: list[Fault] = []
     for text in texts:
         try:
-            relations.append(parse(text))
+            relation = parse(text)
+            relations.append(choices.decided(relation) if relation.choices else relation)
         except FaultyText as error:
             faults.append(error.fault(name))
-    names = [name for relation in relations for name in relation.names]
-    uses = {used: Reference.parse(used) for used in sorted(set(names))}
+    names = relations[0].names if len(relations) == 1 else {n for one in relations for n in one.names}
+    uses = {used: Reference.parse(used) for used in sorted(names)}
     return Cell(reference, name, raw, tuple(relations), uses, declared), faults
 
 
-def _blocks(document: Document, catalogues: Catalogues) -> Iterator[tuple[Block | None, list[Fault]]]:
+def _blocks(choices: Choices) -> Iterator[tuple[Block | None, list[Fault]]]:
     """Every step and every model, None where its template is unknown, with what is wrong with it."""
-    for name, step in document.steps.items():
-        yield _step(name, step, catalogues.templates)
-    for name, model in document.models.items():
-        yield _model(name, model, catalogues.models)
+    for name, step in choices.document.steps.items():
+        yield _step(choices, name, step)
+    for name, model in choices.document.models.items():
+        yield _model(choices, name, model)
 
 
-def _step(name: str, step: Step, templates: Catalogue[Template]) -> tuple[Block | None, list[Fault]]:
-    cls, faults = _class(templates, f"steps.{name}", step.template, step.version)
+def _step(choices: Choices, name: str, step: Step) -> tuple[Block | None, list[Fault]]:
+    cls, faults = _class(choices.catalogues.templates, f"steps.{name}", step.template, step.version)
     if cls is None:
         return None, faults
-    cells, faults = _cells(name, step.inputs, cls)
+    cells, faults = _cells(choices, name, step.inputs, cls)
     outputs = None if step.outputs is None else tuple(step.outputs)
-    related, wrong = _related_limits(name, step, cls)
+    related, wrong = _related_limits(choices, name, step, cls)
     faults += wrong
     limits, wrong = _limits(name, {n: raw for n, raw in step.limits.items() if n not in related}, cls)
     return Block(name, cls, cells, step.level, step.tolerance, outputs, limits, related), [*faults, *wrong]
 
 
-def _related_limits(name: str, step: Step, cls: type[Template]) -> tuple[dict[str, Cell], list[Fault]]:
+def _related_limits(
+    choices: Choices, name: str, step: Step, cls: type[Template]
+) -> tuple[dict[str, Cell], list[Fault]]:
     """The limits that a step gives by relations; names that are no limits are left to `_limits`."""
     cells: dict[str, Cell] = {}
     faults: list[Fault] = []
@@ -138,7 +142,9 @@ def _related_limits(name: str, step: Step, cls: type[Template]) -> tuple[dict[st
         if has_relation(raw := step.limits[tail]):
             declared = limits_of(cls)[tail]
             given = Given(Meaning(words=declared.words, unit=declared.unit, name=tail))
-            cells[tail], wrong = _cell(Reference(name, LIMITS, tail), f"{name}.{LIMITS}.{tail}", raw, given)
+            cells[tail], wrong = _cell(
+                choices, Reference(name, LIMITS, tail), f"{name}.{LIMITS}.{tail}", raw, given
+            )
             faults += wrong
     return cells, faults
 
@@ -153,11 +159,11 @@ def _limits(
         return {}, [fault.within(name) for fault in error.faults]
 
 
-def _model(name: str, model: Model, models: Catalogue[CadModel]) -> tuple[Block | None, list[Fault]]:
-    cls, faults = _class(models, f"models.{name}", model.id, model.version)
+def _model(choices: Choices, name: str, model: Model) -> tuple[Block | None, list[Fault]]:
+    cls, faults = _class(choices.catalogues.models, f"models.{name}", model.id, model.version)
     if cls is None:
         return None, faults
-    cells, faults = _cells(name, model.parameters, cls)
+    cells, faults = _cells(choices, name, model.parameters, cls)
     analyses, wrong = questions(name, model, cls)
     return Block(name, cls, cells, analyses=analyses), [*faults, *wrong]
 
@@ -172,14 +178,18 @@ def _class(
     return cls, []
 
 
-def _cells(block: str, values: Mapping[str, Raw], cls: type[Template]) -> tuple[dict[str, Cell], list[Fault]]:
+def _cells(
+    choices: Choices, block: str, values: Mapping[str, Raw], cls: type[Template]
+) -> tuple[dict[str, Cell], list[Fault]]:
     """The cells of a block; names that its template does not know are faults."""
     cells: dict[str, Cell] = {}
     unknown = unknown_names(filterfalse(cls.inputs.__contains__, values), cls.inputs, "input")
     faults = [fault.within(block) for fault in unknown]
     for name, raw in values.items():
         if declared := cls.inputs.get(name):
-            cells[name], wrong = _cell(Reference(block, None, name), f"{block}.{name}", raw, declared)
+            cells[name], wrong = _cell(
+                choices, Reference(block, None, name), f"{block}.{name}", raw, declared
+            )
             faults += wrong
     return cells, faults
 

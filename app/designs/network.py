@@ -43,6 +43,16 @@ class Cell:
     uses: Mapping[str, Reference] = field(default_factory=dict)
     declared: Declaration | None = None
 
+    @cached_property
+    def tests(self) -> Mapping[str, Reference]:
+        """The choices that its relations test; these are decided already."""
+        return {name: Reference.parse(name) for relation in self.relations for name in relation.decided_by}
+
+    @cached_property
+    def relations_by_text(self) -> Mapping[str, Relation]:
+        """Its relations by their text, as the items of a list have it."""
+        return {relation.text: relation for relation in self.relations}
+
 
 @dataclass(frozen=True, eq=False)
 class Block:

@@ -70,6 +70,7 @@ def preview(
             else repository.revision(session, design, revision)
         )
     changed = resolved(read_document(merge(head.document, patch)), catalogues)
+    catalogues = catalogues.with_drafts(_steps_of(changed))  # a preview keeps nothing
     new, mismatched = _calculated(database, catalogues, changed)
     raise_if(new.faults)  # not those of the old one: the change may be to correct it
     old, _ = _calculated(database, catalogues, Document.model_validate(head.document))
@@ -91,6 +92,12 @@ def preview(
         content.steps, content.parameters = previewed(new, steps, system), _values(new)
     is_deferred = old.deferred or new.deferred or any(outcome.is_deferred for outcome in outcomes)
     return Previewed(content, is_whole=not is_deferred)
+
+
+def _steps_of(document: Document) -> list[tuple[str, int]]:
+    """The versions that the steps of a document name."""
+    named = ((step.template, step.version) for step in document.steps.values())
+    return [(template, version) for template, version in named if isinstance(version, int)]
 
 
 def _variants(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy import select, update
@@ -82,6 +82,11 @@ def document(session: Session, id: str, number: int) -> JsonObject:
 
 def _no_revision(id: str, number: int) -> NotFound:
     return NotFound(f"design {id[:80]!r} has no revision {number}")
+
+
+def of_ids(session: Session, ids: Collection[str]) -> list[DesignRow]:
+    """The designs of these ids that are not deleted."""
+    return list(session.scalars(select(DesignRow).where(DesignRow.id.in_(ids), DesignRow.deleted.is_(None))))
 
 
 def newest_number(session: Session, id: str) -> int:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from app.designs.columns import Column, aligned
+from app.designs.row_lists import column_of
 from templates.core.errors import FaultyText
 from templates.core.units.items import item_of
 from templates.core.units.operations import Item
@@ -22,8 +23,19 @@ def related(relation: Relation, uses: Mapping[str, Column]) -> Column:
         With code `shape`, where curves of different lengths meet; `index`, if no row has a value.
     """
     items = {item.text: _item(item, uses) for item in relation.items}
-    values, is_row = aligned({**{name: uses[name] for name in relation.whole_names}, **items})
+    columns = {**{name: uses[name] for name in relation.whole_names}, **items}
+    if relation.has_lists:
+        return _with_lists(relation, columns)
+    values, is_row = aligned(columns)
     return Column(relation.value(values), is_row)
+
+
+def _with_lists(relation: Relation, columns: Mapping[str, Column]) -> Column:
+    try:
+        with np.errstate(all="ignore"):
+            return column_of(relation.tree, columns)
+    except ValueError:
+        raise FaultyText("shape", f"{relation.text!r} joins arrays of different lengths") from None
 
 
 def wrong_index(relation: Relation, uses: Mapping[str, Column], row: int) -> FaultyText | None:

@@ -19,7 +19,7 @@ from templates.core.arrays import Array
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Choice
 from templates.core.units.quantity import Typed, read, read_any
-from templates.core.units.relation import is_relation, parse
+from templates.core.units.relation import is_relation
 
 NOT_FINITE = "the relation has no finite value here (a division by zero, a root below zero?)"
 NOT_FINITE_GIVEN = "the value of this row is not finite"
@@ -254,4 +254,4 @@ def _item(cell: Cell, item: Raw, uses: Mapping[str, Column]) -> Column:
     if not is_relation(item):
         unit = cell.declared.meaning.unit if cell.declared else None
         return Column(read(item, unit).si if unit else read_any(item).si)
-    return related(parse(item), uses)
+    return related(cell.relations_by_text[str(item).strip()], uses)

@@ -11,6 +11,7 @@ from app.designs.analyses import is_measured
 from app.designs.document import Document
 from app.designs.network import Block, Cell, Graph
 from app.designs.reference import Reference
+from app.designs.row_lists import rank_of
 from app.designs.row_pass import literal
 from app.designs.rows_needed import Varying
 from app.plain import Raw
@@ -110,9 +111,9 @@ class Ranks:
         if not cell.relations:
             return _rank(cell)
         relation = cell.relations[0]
-        whole = (self._of_reference(cell.uses[name]) for name in relation.whole_names)
-        items = (self._of_reference(cell.uses[item.name]) - 1 for item in relation.items)
-        return max(0, *whole, *items)
+        ranks = {name: self._of_reference(cell.uses[name]) for name in relation.whole_names}
+        ranks |= {item.text: self._of_reference(cell.uses[item.name]) - 1 for item in relation.items}
+        return rank_of(relation.tree, ranks)
 
     def _of_reference(self, reference: Reference) -> int:
         if cell := self.graph.cell(reference):

@@ -9,10 +9,11 @@ from pydantic import ConfigDict, Field, StringConstraints
 
 from app.catalogue.catalogues import Catalogues
 from app.designs.calculate import calculate
-from app.designs.document import Document
+from app.designs.document import Document, Place
 from app.designs.graph import build_graph
 from app.designs.judging import judged
 from app.designs.net import Net
+from app.designs.overriding import changed
 from app.designs.reference import Reference
 from app.designs.solving import DesignRoots, Wanted, roots_of_design
 from app.designs.starting import starts
@@ -31,6 +32,7 @@ from templates.core.units.quantity import read
 
 _NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}$"
 Named = Annotated[str, StringConstraints(pattern=_NAME)]
+MOST_OTHERS = 50  # values of the design that a question changes
 MOST_JUDGED = 8  # roots of which the criteria are judged: each is a calculation of the whole design
 
 
@@ -62,6 +64,12 @@ class SolveDesignIn(Bounded):
     tolerance: float | None = Field(
         None, gt=0, lt=1, description="relative error at which solutions are confirmed; that of the design"
     )
+    others: Annotated[dict[Place, Given], Field(max_length=MOST_OTHERS), at_most(MOST_OTHERS)] = Field(
+        {},
+        alias="with",
+        description="other values than those of the revision, by parameter, `step.input` or model input",
+        examples=[{"film.speed": "7000 rpm"}],
+    )
 
 
 def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
@@ -76,6 +84,8 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
     """
     question = SolveDesignIn.model_validate_json(body)
     document, catalogues = task.read()
+    if question.others:
+        document = changed(document, catalogues, question.others, question.unknown)
     unknown = Reference.parse(question.unknown)
     [(name, raw)] = question.target.items()
     target = Reference.parse(name)

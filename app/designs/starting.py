@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from app.designs.analyses import measured_unit
 from app.designs.document import Document
 from app.designs.graph import raise_if
 from app.designs.reference import Reference
+from app.plain import Raw
 from templates.core.errors import Fault, FaultyText
 from templates.core.units.quantity import Value, read
+from templates.core.units.units import unit
 
 
 def starts(document: Document) -> dict[Reference, float]:
@@ -27,6 +31,13 @@ def starts(document: Document) -> dict[Reference, float]:
             faults.append(error.fault("iterations.start"))
     raise_if(faults)
     return values
+
+
+def settled(results: Mapping[str, list[Mapping[str, Raw]]] | None) -> dict[Reference, float]:
+    """The values [SI] with which the iterations of a revision ended, by its results."""
+    rounds = (results or {}).get("iterations", [])
+    values = {str(one["through"]): (float(str(one["assumed"])), str(one["unit"])) for one in rounds}
+    return {Reference.parse(name): float(unit(scale).to_si(value)) for name, (value, scale) in values.items()}
 
 
 def _single(value: Value) -> float:

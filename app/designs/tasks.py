@@ -18,6 +18,32 @@ from templates.core.language.template import Template
 
 T = TypeVar("T", bound=Template)
 _Sources = tuple[tuple[str, int, Source], ...]
+Versions = set[tuple[str, int]]
+"""Versions by id and number."""
+
+
+@dataclass(frozen=True)
+class CatalogueTask:
+    """Versions of templates and models, by their files; equal versions make equal tasks."""
+
+    templates: _Sources
+    models: _Sources
+
+    @classmethod
+    def of(cls, templates: Versions, models: Versions, catalogues: Catalogues) -> CatalogueTask:
+        """The task of some versions.
+
+        Raises
+        ------
+        UnknownTemplate
+            The catalogue has no longer one of them.
+        """
+        return cls(_sources(catalogues.templates, templates), _sources(catalogues.models, models))
+
+    def read(self) -> Catalogues:
+        """The versions in this process."""
+        templates = _catalogue(self.templates, Template, "template")
+        return Catalogues(templates, _catalogue(self.models, CadModel, "model"))
 
 
 @dataclass(frozen=True)
@@ -25,8 +51,7 @@ class DesignTask:
     """A revision's document with its templates and models; equal designs make equal tasks."""
 
     document: str
-    templates: _Sources
-    models: _Sources
+    parts: CatalogueTask
 
     @classmethod
     def of(cls, document: JsonObject, catalogues: Catalogues) -> DesignTask:
@@ -40,14 +65,11 @@ class DesignTask:
         read = Document.model_validate(document)
         steps = {(step.template, _number(step.version)) for step in read.steps.values()}
         models = {(model.id, _number(model.version)) for model in read.models.values()}
-        templates, shapes = _sources(catalogues.templates, steps), _sources(catalogues.models, models)
-        return cls(canonical_json(document), templates, shapes)
+        return cls(canonical_json(document), CatalogueTask.of(steps, models, catalogues))
 
     def read(self) -> tuple[Document, Catalogues]:
         """The design in this process, and what it is made of."""
-        templates = _catalogue(self.templates, Template, "template")
-        catalogues = Catalogues(templates, _catalogue(self.models, CadModel, "model"))
-        return Document.model_validate(from_json(self.document)), catalogues
+        return Document.model_validate(from_json(self.document)), self.parts.read()
 
 
 def _catalogue(sources: _Sources, base: type[T], kind: str) -> Catalogue[T]:
@@ -55,7 +77,7 @@ def _catalogue(sources: _Sources, base: type[T], kind: str) -> Catalogue[T]:
     return Catalogue({key: cls for key, cls in classes.items() if issubclass(cls, base)}, kind)
 
 
-def _sources(catalogue: Catalogue[T], wanted: set[tuple[str, int]]) -> _Sources:
+def _sources(catalogue: Catalogue[T], wanted: Versions) -> _Sources:
     return tuple((id, number, source_of(catalogue.get(id, number))) for id, number in sorted(wanted))
 
 

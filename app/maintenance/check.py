@@ -14,13 +14,13 @@ from pathlib import Path
 
 from app.maintenance.errors import CannotRun
 from app.maintenance.folder import database_file, reading, refuse_other_schema
-from app.maintenance.rows import Named, broken_references, named_files
+from app.maintenance.rows import Named, broken_references, broken_worksheets, named_files
 from app.storage.artifacts import QUARANTINE, SHA256
 from app.storage.integrity import faults, is_damage, marker_of
 
 YOUNG = 60.0  # a file of a running service may be this old before the row that names it is committed [s]
 # by kind of file; of a build else
-OWNERS = {"surface": "analysis", "body": "job", "answer": "job", "rows": "study"}
+OWNERS = {"surface": "analysis", "body": "job", "answer": "job", "rows": "study", "import": "worksheet"}
 MOST = 100  # faults of the database that are listed
 
 Say = Callable[[str], None]
@@ -32,6 +32,7 @@ class Findings:
 
     database: list[str] = field(default_factory=list)
     references: list[str] = field(default_factory=list)
+    worksheets: list[str] = field(default_factory=list)
     damaged: dict[Named, str] = field(default_factory=dict)  # by row, what is wrong with its file
     unnamed: list[Path] = field(default_factory=list)
     files: int = 0
@@ -41,12 +42,13 @@ class Findings:
     @property
     def count(self) -> int:
         """How many faults there are."""
-        return sum(map(len, (self.database, self.references, self.damaged, self.unnamed)))
+        return sum(map(len, (self.database, self.references, self.worksheets, self.damaged, self.unnamed)))
 
     def lines(self) -> Iterable[str]:
         """The faults, one a line, then what was counted."""
         yield from (f"database: {text}" for text in self.database)
         yield from (f"reference: {text}" for text in self.references)
+        yield from (f"worksheet: {text}" for text in self.worksheets)
         for row, text in self.damaged.items():
             owner = OWNERS.get(row.kind, "build")
             yield f"artifact {row.sha}, {row.kind} of {owner} {row.owner}: {text}"
@@ -75,6 +77,7 @@ def check(data: Path, url: str | None, *, in_use: bool) -> Findings:
         with reading(path) as connection:
             refuse_other_schema(connection, older_too=True)
             findings.references += broken_references(connection)
+            findings.worksheets += broken_worksheets(connection)
             rows = list(named_files(connection))
     except (sqlite3.DatabaseError, ValueError) as error:
         if not (is_damage(error) or findings.database):

@@ -12,7 +12,7 @@ from app.calculations.errors import InvalidBody, TooManyValues
 from app.calculations.jobs import CALCULATION, place_of_answer, question_of
 from app.calculations.operations import answered
 from app.calculations.sources import source_of
-from app.catalogue.catalogues import loaded
+from app.catalogue.catalogues import Catalogues, loaded
 from app.jobs import repository as jobs
 from app.maintenance.check import Findings, Say
 from app.maintenance.rows import Named
@@ -27,6 +27,7 @@ from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild
 from app.workers.base import Limits
 from app.workers.errors import WorkerError
 from app.workers.local import LocalProcesses
+from app.worksheets.published import Published
 from cad.analysis.kinds import SURFACE
 from cad.errors import AnalysisError, GeometryError
 from cad.export import DERIVED
@@ -67,7 +68,9 @@ class Repair:
         self, database: Database, store: ArtifactStore, settings: Settings, worker: LocalProcesses
     ) -> None:
         self.database, self.store = database, store
-        self.catalogues = loaded(settings.template_folders)
+        files = loaded(settings.template_folders)
+        self.catalogues = Catalogues(files.templates, files.models)
+        Published(database, self.catalogues, is_shared=False)
         self.builds = Builds(database, store)
         longest = Limits(settings.analysis_deadline, settings.analysis_memory_mb)
         self.analysing = Analysing(database, store, longest)
@@ -80,6 +83,8 @@ class Repair:
             return "it is not kept anywhere else; nothing needs it as long as the job's answer is good"
         if row.kind == "rows":
             return "the service calculates the rows again when they are read; a table that was sent is lost"
+        if row.kind == "import":
+            return "the worksheet is kept as text; the file that it was imported from is lost"
         try:
             if row.kind == "answer":
                 self._answer(row)

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Named:
-    """A file that a row names: of a build, an analysis, a calculation (body, answer), rows of a study."""
+    """A file that a row names: of a build, an analysis, a calculation, a study, an imported worksheet."""
 
     sha: str
     size: int | None  # None where the row does not say it
-    owner: str  # the key of the build or the analysis, or the id of the job or the study
-    kind: str  # step, png, …; or surface, body, answer, rows
+    owner: str  # the key of the build or the analysis, or the id of the job, the study or the worksheet
+    kind: str  # step, png, …; or surface, body, answer, rows, import
 
 
 def named_files(connection: sqlite3.Connection) -> Iterator[Named]:
@@ -32,6 +32,9 @@ def named_files(connection: sqlite3.Connection) -> Iterator[Named]:
     if _has_table(connection, "study"):
         for id, sha in connection.execute(STUDIES):
             yield Named(sha, None, id, "rows")
+    if _has_table(connection, "worksheet_version"):
+        for id, sha in connection.execute(IMPORTS):
+            yield Named(sha, None, id, "import")
 
 
 CALCULATIONS = "SELECT id, payload, result FROM job WHERE kind IN ('calculation', 'preview')"
@@ -39,6 +42,9 @@ CALCULATIONS = "SELECT id, payload, result FROM job WHERE kind IN ('calculation'
 STUDIES = """
     SELECT id, table_sha256 FROM study WHERE table_sha256 IS NOT NULL
     UNION ALL SELECT study_id, sha256 FROM study_chunk"""
+
+
+IMPORTS = "SELECT id, import_sha256 FROM worksheet_version WHERE import_sha256 IS NOT NULL"
 
 
 def _files_of_calculation(id: str, payload: dict[str, str], result: str | None) -> Iterator[Named]:
@@ -69,6 +75,25 @@ LEADING_NOWHERE = {
         ON artifact.build_key = build.key AND artifact.kind = 'step' WHERE artifact.kind IS NULL""",
 }
 """Sentences about rows that refer to what is not there, each with the query that finds them."""
+
+
+RELEASES = """
+    SELECT id, number, text, withdrawn, digest, record FROM worksheet_version
+    WHERE state IN ('released', 'withdrawn') ORDER BY id, number"""
+
+
+def broken_worksheets(connection: sqlite3.Connection) -> Iterator[str]:
+    """Released worksheets whose text or results are not those of the release, a sentence each."""
+    from app.calculations.sources import SheetSource  # templates, which the other checks do without
+    from app.worksheets.examining import as_released
+
+    if not _has_table(connection, "worksheet_version"):
+        return
+    for id, number, text, withdrawn, digest, record in connection.execute(RELEASES):
+        golden = json.loads(record) if record else None
+        found = as_released(SheetSource(id, number, text, withdrawn), digest, golden)
+        if isinstance(found, str):
+            yield f"{id} version {number} is broken: {found}"
 
 
 def broken_references(connection: sqlite3.Connection) -> Iterator[str]:

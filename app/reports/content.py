@@ -20,6 +20,7 @@ class Line:
     si: Cell = NOTHING
     origin: str = ""  # given, default, or the relation
     error: str = ""
+    relation: str = ""  # MathML, where the origin is a relation that is more than a name
 
 
 @dataclass(frozen=True)
@@ -97,6 +98,7 @@ class Identity:
     digest: str
     title: str
     withdrawn: str
+    review: str = ""  # of a worksheet
 
 
 @dataclass(frozen=True)
@@ -124,6 +126,7 @@ class Mapped:
     words: str
     symbol: str
     relation: str
+    formula: str  # the relation in MathML, where it is more than a name
     old: Cell
     new: Cell
     measured: Cell

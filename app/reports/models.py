@@ -14,7 +14,7 @@ from app.presentation.numbers import told as in_line
 from app.presentation.units import System
 from app.reports.cells import NOTHING, cell, typed
 from app.reports.content import File, Line, Mapped, Model, Rule, Warned
-from app.reports.steps import class_of, rules, symbol_of, version_of, words_of
+from app.reports.steps import class_of, relation_mathml, rules, symbol_of, version_of, words_of
 from app.reports.typesetting import DRAWING, PICTURE
 from app.schemas.analyses import AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Quantity, Shown
@@ -87,6 +87,7 @@ def _parameters(
             words=words_of(name, cls),
             symbol=symbol_of(name, cls),
             relation=typed(model.relations.get(name)),
+            formula=relation_mathml(model.relations.get(name)),
             old=cell(old.in_units(system)) if old else NOTHING,
             new=cell(new.in_units(system)),
             measured=cell(dimensions[name].in_units(system)) if name in dimensions else NOTHING,

@@ -111,7 +111,7 @@ class Reports:
             ]
             document, head = row.document, repository.newest_number(session, id)
         steps = [
-            step_of(name, step, document["steps"][name], self.catalogues.templates)
+            step_of(name, step, document["steps"][name], self.catalogues)
             for name, step in worked.steps.items()
         ]
         problem = worked.problem

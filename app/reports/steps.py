@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import TypeVar
 
 from app.calculations.rendering import identity
+from app.catalogue.catalogues import Catalogues
+from app.catalogue.sheets import ReleasedSheet
 from app.designs.worksheet import checked
 from app.plain import Json, JsonObject, Raw
 from app.presentation import numbers
@@ -20,6 +23,7 @@ from templates.core.language.intake import Input
 from templates.core.language.spec import Formula as DeclaredFormula
 from templates.core.language.spec import Profile
 from templates.core.language.template import Template
+from templates.core.paper.expressions import relation_latex
 from templates.core.paper.mathml import mathml, symbol
 from templates.core.paper.schema import documentation
 from templates.core.paper.verdicts import Check
@@ -36,14 +40,15 @@ Class = type[Template] | None
 """The class of a version; None if its file was taken away."""
 
 
-def step_of(name: str, step: PreviewedStep, document: JsonObject, catalogue: Catalogue[Template]) -> Step:
+def step_of(name: str, step: PreviewedStep, document: JsonObject, catalogues: Catalogues) -> Step:
     """One step, from the worksheet of a revision and from its `document`, which is the step as typed."""
-    calculated_by = step.template
+    calculated_by, catalogue = step.template, catalogues.templates
+    review = review_of(catalogues.snapshot.sheets.released.get((calculated_by.id, calculated_by.version)))
     cls = class_of(catalogue, calculated_by.id, calculated_by.version)
     checks = checked(step, catalogue)
     return Step(
         name=name,
-        template=version_of(calculated_by, cls),
+        template=replace(version_of(calculated_by, cls), review=review),
         state="done" if step.outputs else WAITS,
         level=_level(step.level, document.get("tolerance")),
         inputs=_inputs(step, document["inputs"], cls),
@@ -55,6 +60,14 @@ def step_of(name: str, step: PreviewedStep, document: JsonObject, catalogue: Cat
         warnings=[Warned(w.name.replace("_", " "), _about_the_case(w.detail, checks)) for w in step.warnings],
         references=list(documentation(cls).get("References", ())) if cls else [],
     )
+
+
+def review_of(sheet: ReleasedSheet | None) -> str:
+    """Who stands for a worksheet; empty for a template from a file."""
+    if sheet is None:
+        return ""
+    author = f"written by {sheet.author}" if sheet.author else "its author is not named"
+    return f"Worksheet, {author}, reviewed by {sheet.reviewer}; review not verified."
 
 
 def class_of(catalogue: Catalogue[T], id: str, version: int) -> type[T] | None:
@@ -137,7 +150,14 @@ def _input(name: str, used: UsedInput | Raw, raw: Raw, cls: Class) -> Line:
         cell(used, whole=given),
         in_si(used),
         relation or used.source,
+        relation=relation_mathml(raw),
     )
+
+
+def relation_mathml(raw: Raw) -> str:
+    """A relation in MathML; empty where it is a name alone, or none."""
+    latex = relation_latex(raw)
+    return mathml(latex) if latex else ""
 
 
 def _exists(output: Output) -> bool:

@@ -20,6 +20,7 @@ from app.storage.tables import (
     RevisionModelRow,
     StudyChunkRow,
     StudyRow,
+    WorksheetVersionRow,
 )
 
 _SHA256 = re.compile(r"(?<![0-9a-f])[0-9a-f]{64}(?![0-9a-f])")
@@ -67,12 +68,14 @@ def referenced_files(session: Session) -> set[str]:
     """The SHA-256 of every file that a row refers to, and some hashes more, such as keys of builds.
 
     Files belong to artifacts, to outputs of analyses that are files, to whatever a job was given or made, and
-    to studies: the rows that they were given and those that they calculated.
+    to studies: the rows that they were given and those that they calculated; and worksheets to the files from
+    which they were imported.
     Whoever lets another column refer to files adds it here.
     """
     files = set(session.scalars(select(ArtifactRow.sha256)))
     files.update(session.scalars(select(StudyChunkRow.sha256)))
-    files.update(sha for sha in session.scalars(select(StudyRow.table_sha256)) if sha)
+    for given in (StudyRow.table_sha256, WorksheetVersionRow.import_sha256):
+        files.update(sha for sha in session.scalars(select(given)) if sha)
     for column in (AnalysisRow.found, JobRow.payload, JobRow.result):
         text = cast(column, Text)
         for part in session.execute(select(text).where(text.like("%" + 64 * "_" + "%"))).scalars():

@@ -114,6 +114,7 @@ class StudyResult(Answer):
     settled: bool | None = Field(None, description="whether promise and confirmed value agree")
     global_: str | None = Field(None, alias="global", description="`not proven`: of every search")
     share: float | None = Field(None, description="of the rows that meet all criteria")
+    shares: dict[str, float] | None = Field(None, description="of the rows that meet each criterion")
     design: str | None = Field(None, description="the new design, whose variants are the rows to build")
     notes: list[str] = []
 

@@ -13,6 +13,15 @@ Schema = dict[str, JsonValue]
 """A JSON Schema. It holds units, symbols and bounds beside each property."""
 
 
+class SheetMark(Answer):
+    """What stands beside a template that is a worksheet: who wrote it, and who reviewed it."""
+
+    state: Literal["released", "withdrawn"]
+    author: str | None
+    reviewer: str | None
+    review_verified: bool = Field(description="false: a typed name, which nobody proved")
+
+
 class TemplateSummary(Answer):
     """One version in a list."""
 
@@ -22,6 +31,7 @@ class TemplateSummary(Answer):
     summary: str
     status: Literal["released", "withdrawn"]
     latest: bool
+    worksheet: SheetMark | None = Field(None, description="absent for a template from a file")
 
 
 class TemplateList(Page[TemplateSummary]):
@@ -104,6 +114,7 @@ class Template(Described):
 
     inputs: Schema = Field(description="JSON Schema of the object `inputs`")
     latest: bool
+    worksheet: SheetMark | None = Field(None, description="absent for a template from a file")
 
 
 class CadModel(Described):

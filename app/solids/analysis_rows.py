@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from sqlalchemy import Text, select, type_coerce
 from sqlalchemy.orm import Session
@@ -21,6 +21,14 @@ def outputs_of(session: Session, key: str) -> Outputs:
     """What is known to a question about a build, by output."""
     rows = session.scalars(select(AnalysisRow).where(AnalysisRow.key == key))
     return {row.output: row.found for row in rows}
+
+
+def outputs_of_builds(session: Session, builds: Collection[str]) -> dict[str, Outputs]:
+    """What is known to any question about some builds, by key of the question and output."""
+    found: dict[str, Outputs] = {}
+    for row in session.scalars(select(AnalysisRow).where(AnalysisRow.build_key.in_(builds))):
+        found.setdefault(row.key, {})[row.output] = row.found
+    return found
 
 
 def stresses(session: Session, build: str, question: Question) -> Outputs:

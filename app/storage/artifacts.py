@@ -9,7 +9,7 @@ import re
 import stat
 import tempfile
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -84,8 +84,7 @@ class ArtifactStore:
         if not (self.exists(sha) and self._renewed(target)):
             with self._changing:
                 target.parent.mkdir(exist_ok=True)
-                self._clear(target)
-                _write_whole(target, parts)
+                _write_whole(target, parts, self._clear)
         # Even for a file that exists: the writer that renamed it may not have synced its folder yet.
         _sync_folder(target.parent)
         _sync_folder(self.folder)
@@ -180,7 +179,7 @@ class ArtifactStore:
             if not stat.S_ISREG(location.lstat().st_mode):  # a pipe, a link, a folder
                 raise ArtifactMissing(sha)
             return location.open("rb")
-        except FileNotFoundError:
+        except (FileNotFoundError, IsADirectoryError):  # since it was looked at
             raise ArtifactMissing(sha) from None
 
     def _clear(self, target: Path) -> None:
@@ -232,14 +231,18 @@ def _hashed(parts: Iterable[bytes | memoryview]) -> str:
     return total.hexdigest()
 
 
-def _write_whole(target: Path, parts: Iterable[bytes | memoryview]) -> None:
-    """Write beside the target, sync, then rename, so that the target never shows half its bytes."""
+def _write_whole(target: Path, parts: Iterable[bytes | memoryview], clear: Callable[[Path], None]) -> None:
+    """Write beside the target, sync, then rename, so that the target never shows half its bytes.
+
+    To sync takes long: only then is the place cleared of what cannot be replaced.
+    """
     descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=_TEMPORARY)
     try:
         with os.fdopen(descriptor, "wb") as file:
             file.writelines(parts)
             file.flush()
             os.fsync(file.fileno())
+        clear(target)
         os.replace(temporary, target)
     except BaseException:
         os.unlink(temporary)

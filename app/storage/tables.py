@@ -58,7 +58,7 @@ class Base(DeclarativeBase):
     """All tables share one metadata and one way to name constraints, which migrations rely on."""
 
     metadata = MetaData(naming_convention=NAMING)
-    type_annotation_map = {str: Text, JsonObject: Json, list[str]: Json}
+    type_annotation_map = {str: Text, JsonObject: Json, list[JsonObject]: Json, list[str]: Json}
 
 
 class CounterRow(Base):
@@ -104,10 +104,10 @@ class RevisionRow(Base):
     number: Mapped[int] = mapped_column(primary_key=True)
     note: Mapped[str | None]
     created: Mapped[str]
-    document: Mapped[JsonObject] = mapped_column(Json)  # as typed by the user
-    results: Mapped[JsonObject | None] = mapped_column(Json)  # the evaluated steps
+    document: Mapped[JsonObject]  # as typed by the user
+    results: Mapped[JsonObject | None]  # the evaluated steps
     state: Mapped[str]  # current, regenerating, failed
-    problem: Mapped[JsonObject | None] = mapped_column(Json)
+    problem: Mapped[JsonObject | None]
 
     models: Mapped[list["RevisionModelRow"]] = relationship(
         primaryjoin="and_(RevisionRow.design_id == RevisionModelRow.design_id,"
@@ -136,8 +136,8 @@ class RevisionModelRow(Base):
     name: Mapped[str] = mapped_column(primary_key=True)
     model: Mapped[str]
     model_version: Mapped[int]
-    parameters: Mapped[JsonObject] = mapped_column(Json)
-    relations: Mapped[JsonObject] = mapped_column(Json)
+    parameters: Mapped[JsonObject]
+    relations: Mapped[JsonObject]
     # No foreign key: the key follows from the parameters and is known before the build is made.
     build_key: Mapped[str | None] = mapped_column(index=True)
 
@@ -150,8 +150,8 @@ class BuildRow(Base):
     key: Mapped[str] = mapped_column(primary_key=True)
     model: Mapped[str]
     version: Mapped[int]
-    parameters: Mapped[JsonObject] = mapped_column(Json)
-    measurements: Mapped[JsonObject] = mapped_column(Json)
+    parameters: Mapped[JsonObject]
+    measurements: Mapped[JsonObject]
     created: Mapped[str]
     operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when last wanted [s of operation]
     made_by: Mapped[str] = mapped_column(default="")  # kernel and recipe; empty in builds of version 0.1
@@ -179,8 +179,8 @@ class AnalysisRow(Base):
     key: Mapped[str] = mapped_column(primary_key=True)
     output: Mapped[str] = mapped_column(primary_key=True)  # stiffness, …
     build_key: Mapped[str] = mapped_column(ForeignKey("build.key"), index=True)
-    asked: Mapped[JsonObject] = mapped_column(Json)
-    found: Mapped[JsonObject] = mapped_column(Json)
+    asked: Mapped[JsonObject]
+    found: Mapped[JsonObject]
     created: Mapped[str]
 
 
@@ -201,12 +201,12 @@ class JobRow(Base):
     state: Mapped[str]  # queued, running, done, failed, cancelled
     design_id: Mapped[str | None]
     revision: Mapped[int | None]
-    payload: Mapped[JsonObject] = mapped_column(Json)
+    payload: Mapped[JsonObject]
     attempt: Mapped[int]  # how often it was claimed: only the newest claim may write
     crashes: Mapped[int]  # how often it took its process down
     progress: Mapped[float]
-    log: Mapped[list[str]] = mapped_column(Json)
-    problem: Mapped[JsonObject | None] = mapped_column(Json)
+    log: Mapped[list[str]]
+    problem: Mapped[JsonObject | None]
     result: Mapped[str | None]  # a link
     created: Mapped[str]
     updated: Mapped[str]
@@ -230,16 +230,16 @@ class StudyRow(Base):
     revision: Mapped[int]
     method: Mapped[str]
     state: Mapped[str]  # queued, running, done, failed, cancelled
-    body: Mapped[JsonObject] = mapped_column(Json)  # as its user wrote it
-    plan: Mapped[JsonObject] = mapped_column(Json)  # what it led to: places, units, levels, stages
+    body: Mapped[JsonObject]  # as its user wrote it
+    plan: Mapped[JsonObject]  # what it led to: places, units, levels, stages
     seed: Mapped[int] = mapped_column(BigInteger)
     chunk: Mapped[int]  # rows of one chunk
     rows: Mapped[int]  # that are planned; an optimisation may need fewer
     table_sha256: Mapped[str | None]  # the artifact with the rows that its user gave
     client: Mapped[str]
     job: Mapped[str | None]  # the job that works on it
-    result: Mapped[JsonObject | None] = mapped_column(Json)
-    problem: Mapped[JsonObject | None] = mapped_column(Json)
+    result: Mapped[JsonObject | None]
+    problem: Mapped[JsonObject | None]
     created: Mapped[str]
     updated: Mapped[str]
 
@@ -254,8 +254,34 @@ class StudyChunkRow(Base):
     state: Mapped[str]  # done
     attempt: Mapped[int]  # of the job that calculated it
     rows: Mapped[int]
-    refused: Mapped[JsonObject] = mapped_column(Json)  # how many rows, by reason
+    refused: Mapped[JsonObject]  # how many rows, by reason
     sha256: Mapped[str] = mapped_column(index=True)
+
+
+class WorksheetVersionRow(Base):
+    """A version of a worksheet: its text is the truth. Only a version that was never released changes it."""
+
+    __tablename__ = "worksheet_version"
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    number: Mapped[int] = mapped_column(primary_key=True)
+    edit: Mapped[str]  # another at every change: the ETag
+    state: Mapped[str]  # draft, tested, reviewed, released, withdrawn
+    text: Mapped[str]
+    title: Mapped[str]
+    language: Mapped[int]  # its version
+    digest: Mapped[str | None]  # of the statements; null while they have faults
+    faults: Mapped[list[JsonObject]]
+    tests: Mapped[list[JsonObject]]  # as they ran last
+    record: Mapped[JsonObject | None]  # golden: what the released version calculated
+    author: Mapped[str | None]
+    reviewer: Mapped[str | None]
+    withdrawn: Mapped[str | None]  # why
+    import_sha256: Mapped[str | None]  # the artifact with the file that it was imported from
+    imported: Mapped[JsonObject | None]  # what the import says of its regions
+    created: Mapped[str]
+    updated: Mapped[str]
+    released: Mapped[str | None]
 
 
 class IdempotencyRow(Base):
@@ -269,6 +295,6 @@ class IdempotencyRow(Base):
     client: Mapped[str] = mapped_column(primary_key=True, default="")  # see `app.api.gate.clients`
     fingerprint: Mapped[str]  # SHA-256 of the body
     status: Mapped[int]
-    location: Mapped[JsonObject] = mapped_column(Json)  # what to render again
+    location: Mapped[JsonObject]  # what to render again
     created: Mapped[str]
     operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when it was kept [s of operation]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.schemas.studies import StudyResult, Trade
+from app.studies.archive import AnyArray
 from app.studies.asking import directions
 from app.studies.building import Building
 from app.studies.finding import MOST_CONFIRMED, front, ranked, signed
@@ -50,10 +51,10 @@ def _chosen(run: Run) -> StudyResult:
     """The best rows among all; those that matter are calculated again, if the study asks for that."""
     stored = run.stored(run.plan.chunks)
     worst = stored.worst(run.plan.required)
-    share = float(np.mean(worst == MET)) if run.plan.required else None
+    met = _shares_met(run, stored, worst)
     names, maximised = directions(read_body(run.task.body))
     if not names:
-        return _answered(share=share)
+        return _answered(**met)
     objectives = signed(
         stored.rows([f"{OUTPUT}{name}" for name in names], np.arange(stored.count)), maximised
     )
@@ -67,7 +68,15 @@ def _chosen(run: Run) -> StudyResult:
         run.confirm(stored.rows([f"{PLACE}{name}" for name in run.plan.places], numbers))
         stored, numbers = run.stored(), np.arange(stored.count, stored.count + len(numbers))
         numbers = _feasible(stored, numbers, run, names, maximised)
-    return _result(run, stored, explored, numbers, share, several=len(names) > 1)
+    return _result(run, stored, explored, numbers, met, several=len(names) > 1)
+
+
+def _shares_met(run: Run, stored: Stored, worst: AnyArray) -> dict[str, object]:
+    """The share of the rows that meet all criteria, and each of them; nothing where there are none."""
+    if not run.plan.required:
+        return {}
+    shares = {name: float(np.mean(stored.codes(name) == MET)) for name in run.plan.required}
+    return {"share": float(np.mean(worst == MET)), "shares": shares}
 
 
 def _feasible(
@@ -82,14 +91,20 @@ def _feasible(
 
 
 def _result(
-    run: Run, stored: Stored, explored: Integers, numbers: Integers, share: float | None, *, several: bool
+    run: Run,
+    stored: Stored,
+    explored: Integers,
+    numbers: Integers,
+    met: dict[str, object],
+    *,
+    several: bool,
 ) -> StudyResult:
     if not len(numbers):
-        return _answered(share=share, notes=["no row meets all criteria that are held"])
+        return _answered(**met, notes=["no row meets all criteria that are held"])
     is_confirmed = run.plan.confirm is not None
     found = rows_found(run, stored, numbers if several else numbers[:1], confirmed=is_confirmed)
     result: dict[str, object] = {
-        "share": share,
+        **met,
         ("front" if several else "best"): found if several else found[0],
     }
     if is_confirmed and not several:

@@ -12,7 +12,19 @@ from starlette.middleware.gzip import GZipMiddleware
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.web import actions, organising, problems, routes, study_routes, tables, variant_forms
+from app.web import (
+    actions,
+    impact_page,
+    import_page,
+    organising,
+    problems,
+    routes,
+    study_routes,
+    tables,
+    upgrade_page,
+    variant_forms,
+    worksheet_routes,
+)
 
 STATIC = Path(__file__).with_name("static")
 SMALLEST, LEVEL = 1000, 6  # of what is compressed [bytes], and how hard
@@ -68,6 +80,13 @@ def install(app: FastAPI) -> None:
     app.include_router(tables.router)
     app.include_router(study_routes.router)
     app.include_router(study_routes.forms)
+    app.include_router(import_page.router)  # before the worksheets: `import` is no id of one
+    app.include_router(import_page.forms)
+    app.include_router(worksheet_routes.router)
+    app.include_router(worksheet_routes.forms)
+    for pages in (impact_page, upgrade_page):
+        app.include_router(pages.router)
+        app.include_router(pages.forms)
     app.mount("/static", Files(directory=STATIC), name="static")
     problems.install(app)
     app.add_middleware(Compression)

@@ -45,6 +45,7 @@ from app.web.names import names_json, values_of
 from app.web.rendering import show, units_of
 from app.web.study_page import studies_of
 from app.web.tolerances_page import toleranced
+from app.web.upgrades import upgrades_of
 from app.web.variants import RefusedTable, variants_table
 from app.web.verdict import banner, opened, with_keys
 from cad.export import MEDIA_TYPES
@@ -71,7 +72,9 @@ async def design_page(
     """The newest revision in a form; or a form that was refused, with what was typed and what is wrong."""
     design = await api.get(f"/designs/{id}", Design)
     revision, preview, parameters, steps, parts, models = await _form(request, api, design, refusal)
-    faults, wrong, verdict = refusal.faults, errors_of(refusal.part, refusal.faults), banner(revision)
+    faults, wrong = refusal.faults, errors_of(refusal.part, refusal.faults)
+    has_criteria = bool(design.criteria) or any(step.template.criteria for step in steps)
+    verdict = banner(revision, has_criteria=has_criteria)
     measured = await api.get(
         f"/designs/{id}/measurements", dict[str, ModelMeasurements], units=units_of(request)
     )
@@ -111,6 +114,7 @@ async def design_page(
         measures=list(measures(design, parts)),
         network=network,
         picture=drawing(network),
+        upgrades=await upgrades_of(api, {step.name: step.template for step in steps}),
         variants=variants,
         names=names_json(network, values_of(revision, preview, measured)),
     )

@@ -21,7 +21,8 @@ from app.web.api import Api, Refused, read
 from app.web.places import PlaceOption, outputs, suggested, varied
 from app.web.rendering import go, show, units_of
 
-FIELDS = ("unknown", "low", "high", "output", "value", "tolerance")
+FIELDS = ("unknown", "low", "high", "output", "value", "tolerance", "other", "other_value")
+OPTIONAL = ("tolerance", "other", "other_value")
 PATIENT = {"Prefer": "wait=5"}  # the page shows how a longer calculation goes on
 ANSWERED, ACCEPTED = 422, 202
 """Status of a question that is wrong; the page shows why beside the form."""
@@ -41,7 +42,8 @@ class Asked:
     @property
     def is_whole(self) -> bool:
         """Whether everything is given that an answer needs."""
-        return all(self.typed[name] for name in FIELDS if name != "tolerance")
+        is_paired = bool(self.typed["other"]) == bool(self.typed["other_value"])
+        return is_paired and all(self.typed[name] for name in FIELDS if name not in OPTIONAL)
 
     def body(self) -> dict[str, object]:
         """The question as the interface takes it."""
@@ -51,7 +53,13 @@ class Asked:
             "between": [value_of(typed["low"]), value_of(typed["high"])],
             "target": {typed["output"]: value_of(typed["value"])},
         }
+        if typed["other"]:
+            body["with"] = {typed["other"]: value_of(typed["other_value"])}
         return body | ({"tolerance": _number(typed["tolerance"])} if typed["tolerance"] else {})
+
+    def saved_beside(self) -> tuple[str, str] | None:
+        """The field of the design's form that takes the other value, and what it takes."""
+        return (_control(self.typed["other"]), self.typed["other_value"]) if self.typed["other"] else None
 
 
 async def solve_page(request: Request, api: Api, id: str) -> Response:
@@ -81,6 +89,7 @@ async def solve_page(request: Request, api: Api, id: str) -> Response:
         places=places,
         outputs=outputs(network),
         asked=asked,
+        beside=asked.saved_beside(),
         solution=solution,
         chart=drawn(solution) if solution else "",
         roots=_saved(design, solution) if solution else [],
@@ -160,10 +169,14 @@ class SavedRoot:
     note: str
 
 
+def _control(name: str) -> str:
+    """The field of the design's form for a place."""
+    return name if "." in name else f".{name}"
+
+
 def _saved(design: Design, solution: DesignSolution) -> list[SavedRoot]:
     """Every solution, with what saves it as a revision; none of several is preferred."""
-    name = solution.unknown
-    control = name if "." in name else f".{name}"
+    control = _control(solution.unknown)
     target = f"{solution.target.name} = {numbers.plain(solution.target.value)} {solution.target.unit}"
     return [
         SavedRoot(

@@ -13,6 +13,7 @@ from app.reports.pictures import pictures
 from app.schemas.declared import properties
 from app.schemas.evaluations import CalculatedBy, Output, Worksheet
 from app.schemas.templates import Accuracy, Template, TemplateVersions
+from app.schemas.worksheets import Sheet
 from app.web import sheet
 from app.web.accuracy import table
 from app.web.api import Api, Refused, read
@@ -32,6 +33,7 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
     inputs, chosen, limits = _asked(template, typed)
     tables = await library(api)
     measured = await api.find(f"{path}/accuracy", Accuracy)
+    written = await api.find(f"/worksheets/{id}/versions/{version}", Sheet) if template.worksheet else None
     body = {"inputs": inputs, **chosen, **({"limits": limits} if limits else {})}
     answer, job, faults = await _tried(api, path, body, units_of(request))
     used = answer.inputs if answer else {}
@@ -44,6 +46,7 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
         status=422 if faults else 200,
         template=template,
         versions=(await api.get(f"/templates/{id}", TemplateVersions)).items,
+        written=written,
         accuracy=measured,
         levels=table(measured) if measured else None,
         fields=fields,

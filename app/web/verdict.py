@@ -42,11 +42,11 @@ class Banner:
         return next((line for line in self.lines if line.step == step), None)
 
 
-def banner(revision: RevisionWorksheet) -> Banner:
-    """The verdict of a revision; of one that has none, the reason."""
+def banner(revision: RevisionWorksheet, *, has_criteria: bool = True) -> Banner:
+    """The verdict of a revision; of one that has none, the reason: perhaps nothing declares any."""
     verdict = revision.verdict
     if verdict is None or not revision.criteria:
-        is_judged = revision.criteria is not None
+        is_judged = revision.criteria is not None or (revision.state == "current" and not has_criteria)
         return Banner(headline_of(revision.state, is_judged=is_judged), "plain", None, [], judged=is_judged)
     lines = [line(criterion) for criterion in revision.criteria]
     governing = next((line for line in lines if line.name == verdict.governing), None)

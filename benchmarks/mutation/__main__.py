@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import subprocess
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -17,6 +18,7 @@ from tempfile import TemporaryDirectory
 from threading import Lock
 from typing import Any
 
+from benchmarks.mutation import ROOT
 from benchmarks.mutation.named import named
 from benchmarks.mutation.places import Mutant, sample
 from benchmarks.mutation.related import NEAREST, related
@@ -41,6 +43,11 @@ def arguments() -> argparse.Namespace:
         "--tests",
         nargs="+",
         help="try these test files instead of the related ones, and record what they kill",
+    )
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="only the first pass: the nearest test file of each, for a minute",
     )
     parser.add_argument("--named", action="store_true", help="try the named mutants instead of random ones")
     parser.add_argument("--record", type=Path, help="file of results, one JSON object a line; is appended to")
@@ -67,9 +74,16 @@ def main() -> None:
     outcome = verdict(rows, reasons())
     print(report(rows, outcome))
     if options.report:
-        figures = {"seed": options.seed, "sample": len(chosen), **summary(rows, outcome)}
+        about = {"seed": options.seed, "commit": commit(), "sample": len(chosen)}
+        figures = {**about, **summary(rows, outcome)}
         options.report.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     sys.exit(not outcome.holds)
+
+
+def commit() -> str:
+    """Return the commit of the tree that is tried."""
+    command = ["git", "describe", "--always", "--dirty", "--exclude=*"]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
 
 
 def valid(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[str, Any]]:
@@ -100,9 +114,8 @@ def results(chosen: Sequence[Mutant], options: argparse.Namespace) -> list[dict[
     with TemporaryDirectory(prefix="mutants-") as folder, ThreadPoolExecutor(options.jobs) as threads:
         kept = options.record and options.record.resolve().with_name("observations")
         copies = Copies(Path(folder), options.limit, options.nearest, kept, tuple(options.tests or ()))
-        for at_once in (
-            (True,) if options.tests else (True, False)
-        ):  # the nearest tests kill most: they come first
+        passes = (True,) if options.tests or options.quick else (True, False)
+        for at_once in passes:  # the nearest tests kill most: they come first
             attempt = partial(tried, copies, options.record, lock, at_once)
             results = filter(None, threads.map(attempt, [one for one in ahead if one.key not in rows]))
             rows |= {str(result["key"]): result for result in results}

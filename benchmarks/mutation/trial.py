@@ -10,8 +10,6 @@ import os
 import re
 import shutil
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -23,13 +21,12 @@ from threading import Lock
 from types import MappingProxyType
 from uuid import uuid4
 
-from benchmarks.mutation import ROOT, observer
+from benchmarks.mutation import ROOT, forks, observer
 from benchmarks.mutation.observations import Observations
 from benchmarks.mutation.places import Mutant, targets
 from benchmarks.mutation.related import related
 
-PYTEST = ("-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", "--no-header", "--tb=line")
-MEMORY = 12 << 20  # [KiB] of addresses, for a mutant that fills all of it
+PYTEST = ("-x", "-q", "-n", "0", "-p", "no:cacheprovider", "--no-header", "--tb=line")
 MARK = "CRANKWRIGHT_MUTANT"
 WIDE = {"COLUMNS": "500"}  # lines of pytest's summary, so that it says why a test failed
 NEAR = 4  # test files whose single tests are tried first
@@ -142,25 +139,18 @@ class Copy:
         options: tuple[str, ...] = (),
         variables: Mapping[str, str] = MappingProxyType({}),
     ) -> Run:
-        mark = uuid4().hex
-        command = ("sh", "-c", f'ulimit -v {MEMORY}; exec "$@"', "sh", sys.executable, *PYTEST)
-        process = subprocess.Popen(
-            (*command, *plugins(tests), *options, *tests),
-            cwd=self.folder,
-            env={**os.environ, **variables, **WIDE, MARK: mark, "PYTHONPATH": str(self.folder)},
-            start_new_session=True,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors="replace",
-        )
+        mark, output = uuid4().hex, self.folder / "output.txt"
+        names = {**variables, **WIDE, MARK: mark, "PYTHONPATH": str(self.folder)}
+        process = forks.start(self.folder, (*PYTEST, *plugins(tests), *options, *tests), names, output)
         try:
-            output, _ = process.communicate(timeout=limit)
-        except subprocess.TimeoutExpired:
-            return Run("hung", "", tests, limit)
+            process.join(limit)
+            if process.exitcode is None:
+                return Run("hung", "", tests, limit)
         finally:
-            end(process, mark)
-        return understood(process.returncode, output, tests, limit)
+            end(process.pid, mark)
+            process.join()
+        text = output.read_text(encoding="utf-8", errors="replace")
+        return understood(process.exitcode, text, tests, limit)
 
 
 def plugins(tests: Sequence[str]) -> tuple[str, ...]:
@@ -182,12 +172,13 @@ def understood(code: int, output: str, tests: tuple[str, ...], limit: float) -> 
     return Run("failed", failure[1][:200], again, limit)
 
 
-def end(process: subprocess.Popen[str], mark: str) -> None:
-    """End the process and all that it started, which inherited its mark."""
-    for pid in [process.pid, *marked(mark)]:
+def end(pid: int | None, mark: str) -> None:
+    """End a process, its session, and all that it started, which inherited its mark."""
+    with suppress(ProcessLookupError, PermissionError):
+        os.killpg(pid or 0, signal.SIGKILL)
+    for one in marked(mark):
         with suppress(ProcessLookupError, PermissionError):
-            os.kill(pid, signal.SIGKILL)
-    process.wait()
+            os.kill(one, signal.SIGKILL)
 
 
 def marked(mark: str) -> list[int]:

@@ -109,7 +109,22 @@ def summary(rows: Sequence[dict[str, Any]], result: Verdict) -> dict[str, Any]:
             for name, group in groups.items()
             for one in group
         ],
+        "killed_by": [
+            {
+                "file": one["file"],
+                "line": one["line"],
+                "change": changed(one),
+                "test": one["by"].partition(" - ")[0],
+            }
+            for one in sorted(rows, key=lambda one: (one["file"], one["line"]))
+            if one["outcome"] == "killed"
+        ],
     }
+
+
+def changed(row: dict[str, Any]) -> str:
+    """Return the line after the change, empty if it was left out."""
+    return " ".join(line[1:].strip() for line in row["diff"].splitlines() if line.startswith("+"))
 
 
 def by_folder(rows: Sequence[dict[str, Any]]) -> dict[str, tuple[int, int]]:

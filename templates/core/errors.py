@@ -4,6 +4,7 @@ TemplateError
     InvalidInputs       wrong inputs, all of them at once, each a `Fault`
     UnknownTemplate     no such template or version in the catalogue
         QuarantinedTemplate     its file has faults
+        UnreleasedTemplate      it is the draft of a worksheet
     UnusableFile        a file in a folder of templates or models is broken
     Unreachable         `solve` cannot reach the target within the bounds
     FaultyText          a text that is no quantity, unit or relation
@@ -84,6 +85,12 @@ class QuarantinedTemplate(UnknownTemplate):
     """The file of this version has faults, so that nothing is calculated by it."""
 
     code = "quarantined"
+
+
+class UnreleasedTemplate(UnknownTemplate):
+    """The version is the draft of a worksheet: it can be tried, and nothing that is kept may use it."""
+
+    code = "unreleased"
 
 
 class UnusableFile(TemplateError):

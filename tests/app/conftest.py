@@ -4,6 +4,7 @@ import os
 
 import httpx
 import pytest
+from patience import patient
 from serving import created, folder_of_models, paper, patched, serving
 
 from app.client import Client
@@ -33,8 +34,8 @@ def served(tmp_path_factory):
     settings = Settings(
         data=folder / "data",
         template_folders=(folder_of_models(folder / "templates"),),
-        wait_seconds=20,
-        job_deadline=8,
+        wait_seconds=patient(20),
+        job_deadline=patient(8),
         job_memory_mb=800,
     )
     with serving(settings) as server:

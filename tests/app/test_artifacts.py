@@ -1,6 +1,7 @@
 """Artifacts are whole or absent, and their names are the hashes of their bytes."""
 
 import hashlib
+from pathlib import Path
 
 import pytest
 
@@ -62,6 +63,29 @@ def test_a_file_is_synced_before_it_is_renamed(store, monkeypatch):
     monkeypatch.setattr("os.replace", lambda *paths: (calls.append("rename"), rename(*paths)))
     store.put(BYTES)
     assert calls == ["sync", "rename", "sync", "sync"]
+
+
+def test_a_folder_that_takes_the_place_meanwhile_is_set_aside(store, monkeypatch):
+    """To sync takes long, and what stands in the way then is no file that can be replaced."""
+    location = store.folder / hashlib.sha256(BYTES).hexdigest()[:2] / hashlib.sha256(BYTES).hexdigest()
+    monkeypatch.setattr("os.fsync", lambda descriptor: None if location.exists() else location.mkdir())
+    assert store.read(store.put(BYTES)) == BYTES
+
+
+def test_a_folder_in_place_of_a_file_that_was_there_is_a_missing_artifact(store, monkeypatch):
+    """It is replaced between the look at it and its opening."""
+    sha = store.put(BYTES)
+    location, look = store.fetch(sha), Path.lstat
+
+    def replacing(path):
+        seen = look(path)
+        location.unlink()
+        location.mkdir()
+        return seen
+
+    monkeypatch.setattr(Path, "lstat", replacing)
+    with pytest.raises(ArtifactMissing):
+        store.read(sha)
 
 
 def test_a_half_written_file_is_removed_at_the_start(store):

@@ -66,7 +66,7 @@ def test_preconditions_are_declared(http):
     described = http.get("/openapi.json").json()
     sent = {name: one["required"] for name, one in parameters(described) if one["name"] == "if-match"}
     required = {name.split()[0]: is_required for name, is_required in sent.items()}
-    assert required == {"patch": True, "put": True, "post": False}
+    assert required == {"patch": True, "put": True, "post": False, "delete": False}
     assert {"412", "428"} <= set(described["paths"][f"{API}/designs/{{id}}"]["patch"]["responses"])
     for path in ("auto-map", "revisions/{number}/restore"):
         assert "412" in described["paths"][f"{API}/designs/{{id}}/{path}"]["post"]["responses"]
@@ -93,6 +93,8 @@ ALLOWED = {
     "/api/v1/designs": "GET, POST",
     "/api/v1/designs/some": "GET, PATCH, DELETE",
     "/api/v1/jobs/some": "GET, DELETE",
+    "/api/v1/worksheets/some": "GET, PATCH, DELETE",
+    "/api/v1/worksheets/check": "POST",
     "/api/v1/templates/oil_film/versions/1/evaluate": "POST",
     "/healthz": "GET",
     "/": "GET",

@@ -382,6 +382,9 @@ def test_tolerance_of_the_design_chooses_one_level():
         tolerance=0.06,
     )
     assert table.levels == {"film": expected.level}
+    assert net(rows, [FILM], levels={"film": "map"}).levels == {"film": "map"}  # asked for, so not chosen
+    raw["steps"]["film"]["level"] = "map"
+    assert net_of(raw, "clearance")(rows, [FILM]).levels == {"film": "map"}
 
 
 def test_one_level_serves_all_rows_whichever_start_finer():

@@ -96,9 +96,8 @@ def assert_equal_numbers(judgement, column, row):
         np.testing.assert_allclose(column.margin[row], judgement.margin * factor, rtol=1e-12, atol=size)
 
 
-@pytest.mark.parametrize("name", DESIGNS)
-def test_property_verdicts_of_rows_equal_those_of_designs(name):
-    raw, varied, count = DESIGNS[name]
+def assert_judged_as_designs(raw, varied, count):
+    """The verdicts and numbers of each row are those of a design of its own; how often each verdict is."""
     net = net_of(raw, *varied)
     rows = spread(net, count, 0.8, 1.2)
     table = net(rows, [], judge=True)
@@ -111,6 +110,12 @@ def test_property_verdicts_of_rows_equal_those_of_designs(name):
             assert (judgement.name, verdict) == (judgement.name, judgement.verdict)
             assert_equal_numbers(judgement, table.judged[judgement.name], row)
             verdicts[verdict] += 1
+    return verdicts
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_property_verdicts_of_rows_equal_those_of_designs(name):
+    verdicts = assert_judged_as_designs(*DESIGNS[name])
     assert verdicts.keys() == set(WORST_FIRST) or name == "few rows"
 
 

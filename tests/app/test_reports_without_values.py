@@ -57,7 +57,7 @@ def report_of(revision, document):
     """The page of the report."""
     worked = worksheet(revision, CATALOGUES.templates, "si")
     typed = document.model_dump()["steps"]
-    steps = [step_of(name, step, typed[name], CATALOGUES.templates) for name, step in worked.steps.items()]
+    steps = [step_of(name, step, typed[name], CATALOGUES) for name, step in worked.steps.items()]
     texts = {"title": worked.name, "design": "d", "note": "", "date": worked.created, "state": worked.state}
     parts = {"problem": "", "program": "", "units": "si", "summary": [], "parameters": [], "models": []}
     return page(Report(revision=1, newest=1, verdict=judged(worked), steps=steps, **texts, **parts))

@@ -163,3 +163,37 @@ class TestOverHttp:
         body = {"unknown": "half", "between": ["100 rpm", "200 rpm"], "target": {"idle.power_loss": "1 W"}}
         answer = http.post(f"{API}/designs/{design}/solve", json=body, headers={"Prefer": "wait=30"})
         assert "half" in faults(answer)
+
+
+def test_other_values_hold_for_the_question_alone():
+    """Petroff's power is proportional to n² r³: at twice the speed a quarter of r³ gives the same."""
+    place, between = "radius", ("1 mm", "100 mm")
+    idle = {**FRICTION, "journal_diameter": "50 mm", "speed": "3000 rpm"}
+    power = evaluate(built_in().get("journal_friction", 1), idle).outputs["power_loss"].value
+    target = ("idle.power_loss", f"{power} W")
+    plain = asked(PETROFF, place, *between, *target)
+    fast = asked(PETROFF, place, *between, *target, **{"with": {"speed": "6000 rpm"}})
+    assert plain.roots[0].value == pytest.approx(25, rel=1e-9)
+    assert fast.roots[0].value == pytest.approx(25 * 0.25 ** (1 / 3), rel=1e-9)
+
+
+@pytest.mark.parametrize(("others", "name", "code"), [
+    ({"speeed": "1 rpm"}, "with.speeed", "unknown_name"),
+    ({"speed": "1 kN"}, "with.speed", "wrong_unit"),
+    ({"idle.bearing_width": "1 kN"}, "with.idle.bearing_width", "wrong_unit"),
+    ({"radius": "1 mm"}, "with.radius", "conflict"),
+])  # fmt: skip
+def test_other_values_that_do_not_fit_are_refused(others, name, code):
+    with pytest.raises(InvalidInputs) as refused:
+        asked(PETROFF, "radius", "1 mm", "100 mm", "idle.power_loss", "5 W", **{"with": others})
+    assert [(fault.name, fault.code) for fault in refused.value.faults] == [(name, code)]
+
+
+def test_other_values_go_over_http(http):
+    design = http.post(f"{API}/designs", json=PETROFF).json()["id"]
+    body = {"unknown": "radius", "between": ["1 mm", "100 mm"], "target": {"idle.power_loss": "5 W"}}
+    slow, fast = (
+        http.post(f"{API}/designs/{design}/solve", json={**body, "with": others}).json()
+        for others in ({}, {"speed": "6000 rpm"})
+    )
+    assert fast["roots"][0]["value"] == pytest.approx(slow["roots"][0]["value"] * 0.25 ** (1 / 3), rel=1e-9)

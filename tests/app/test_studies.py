@@ -117,6 +117,10 @@ def test_verdicts_stand_in_the_rows_and_filter_them(http, film, sampled):
     assert 0 < met["count"] < 200
     assert met["count"] == sum(row["verdicts"]["thick_enough"] == "met" for row in everything)
     assert sampled["result"]["share"] == pytest.approx(met["count"] / 200)
+    shares = sampled["result"]["shares"]
+    assert set(shares) <= set(sampled["criteria"])
+    for name, share in shares.items():
+        assert share == pytest.approx(sum(row["verdicts"][name] == "met" for row in everything) / 200)
     for row in met["items"]:
         assert row["verdict"] == "met"
         assert row["values"][THICKNESS] >= 1.8

@@ -185,6 +185,13 @@ def test_every_faulty_cell_is_named_at_once():
     assert "umm" in faults["D3"].detail
 
 
+@pytest.mark.parametrize("heading", ["zone", "bearing", ""])
+def test_the_first_column_is_that_of_the_names(heading):
+    faults = csv_faults(f"{heading},clearance\nunit,um\nmain_1,55\n")
+    assert faults["A1"].code == "missing_name"
+    assert "'variant'" in faults["A1"].detail
+
+
 def test_a_number_without_a_unit_and_a_place_set_twice_are_refused():
     faults = csv_faults("variant,clearance,film.radial_load,film.radial_load =\n,,kN,\na,55,3,load\n")
     assert {name: fault.code for name, fault in faults.items()} == {"B3": "missing_unit", "D3": "set_twice"}
@@ -273,6 +280,11 @@ def test_an_exported_sheet_has_number_cells_frozen_headings_and_no_formula():
     assert sheet["B4"].value == "0.06 mm"
     assert {cell.data_type for row in sheet.iter_rows() for cell in row} <= {"n", "s"}
     assert sheet["C3"].quotePrefix
+    assert [[(cell.font.bold, cell.font.italic) for cell in sheet[row]] for row in (1, 2, 3)] == [
+        [(True, False)] * 3,  # headings
+        [(False, True)] * 3,  # units
+        [(False, False)] * 3,
+    ]
     assert sheet.freeze_panes == "B3"
     assert sheet.column_dimensions["C"].width > len("film.radial_load =")
     assert b"'-load" in write_csv(rows_of(columns))

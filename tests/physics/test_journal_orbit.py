@@ -318,3 +318,15 @@ def test_short_film_under_load_has_its_steepest_pressure() -> None:
     P_max, side = short_film_under_load(xi, eta, np.asarray(RATIO))
     assert P_max == pytest.approx(searched, rel=1e-4)
     assert np.all(side == 1)
+
+
+def test_a_load_that_vanishes_moves_the_journal_as_a_tiny_one_does() -> None:
+    """Without a load no direction of it exists; the film carries the journal around where it is."""
+    load = duty(4.0, w=0.5)
+    pause = (load.angle > 2) & (load.angle < 4)
+    idle, nearly = (np.where(pause, size, 1.0) * load.S for size in (0.0, 1e-12))
+    orbit, limit = (
+        periodic_orbit(CyclicLoad(load.angle, load.period, S, load.w), law(ShortLaw)) for S in (idle, nearly)
+    )
+    assert np.hypot(*orbit.eps[..., pause]).min() > 0.5
+    assert orbit.eps == pytest.approx(limit.eps, abs=1e-9)

@@ -45,6 +45,11 @@ def test_literature_coefficients_of_the_index_join() -> None:
         assert limits(here["to"], here) == pytest.approx(limits(here["to"], there), rel=2e-3)
 
 
+def test_every_line_of_the_table_is_a_grade() -> None:
+    assert {"sae_15w_40", "sae_0w_20", "iso_vg_10"} <= set(grades())  # the first ones of each source
+    assert all(not grade.startswith("grade") for grade in grades())
+
+
 @pytest.mark.parametrize("grade", grades())
 def test_literature_grades(grade: str) -> None:
     """In the middle of what its standard allows, and of the index that the table names."""

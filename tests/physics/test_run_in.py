@@ -1,12 +1,14 @@
 """Analytic: how an orbit runs in, on a made-up film whose every cycle is known."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from templates.physics.cavities.transient_balance import transient_mesh
 from templates.physics.cavities.transient_film import State
 from templates.physics.orbits import transient_orbit
-from templates.physics.orbits.cyclic_film import _sampled
+from templates.physics.orbits.cyclic_film import _marched, _sampled
 from templates.physics.orbits.journal_orbit import CyclicLoad
 from templates.physics.orbits.transient_orbit import MOST_CYCLES, REPEATS, Marching
 
@@ -14,6 +16,7 @@ ANGLE = np.radians(np.arange(-170.0, 190.0, 30.0))
 LOAD = CyclicLoad(ANGLE, 2 * np.pi, np.ones((2, 1, 12)), np.full((1, 12), 0.5))
 MARCHING = Marching(around=8, across=2, step=np.radians(30.0))
 SMALLEST_GAP = 0.02
+CIRCLE = ((np.cos, np.sin), (lambda angle: -np.sin(angle), np.cos))  # a place on it, the direction ahead
 
 
 def run_in(monkeypatch, decay):
@@ -73,3 +76,15 @@ def test_shear_and_side_flow_of_a_full_film_of_even_pressure(ratio, eps):
     assert orbit.shear == pytest.approx(np.pi / np.sqrt(1 - e2))
     assert orbit.side_flow == pytest.approx(3 / edge * 2 * np.pi * (1 + 1.5 * e2) / (24 * ratio**2))
     assert orbit.P_max == 3
+
+
+@pytest.mark.parametrize("turns", [1, 2])
+def test_analytic_work_of_a_force_along_a_circle(turns):
+    """A force of 1 along the path of a journal on a circle of radius 0.4: power 0.4 a radian and turn."""
+    angle = np.radians(np.arange(360.0))
+    circle, ahead = (np.stack([f(turns * angle), g(turns * angle)]) for f, g in CIRCLE)
+    nothing = np.zeros(360)
+    orbit = SimpleNamespace(eps=0.4 * circle, place=angle, P_max=nothing, side_flow=nothing, shear=nothing)
+    load = CyclicLoad(angle, 2 * np.pi, ahead[:, None], np.zeros((1, 360)))
+    work = _marched(orbit, load, orbit.eps[:, None])[3]
+    assert work == pytest.approx(np.full((1, 360), 0.4 * turns), rel=1e-3)

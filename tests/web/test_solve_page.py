@@ -23,6 +23,8 @@ ASKED = {
     "high": "20000 rpm",
     "output": "idle.power_loss",
     "tolerance": "",
+    "other": "",
+    "other_value": "",
 }
 FORM = re.compile(r'<form method="post" action="(/designs/[^"]+)">(.*?)</form>', re.DOTALL)
 HIDDEN = re.compile(r'name="([^"]+)" value="([^"]*)"')
@@ -85,3 +87,16 @@ def test_the_form_keeps_every_field(http):
         text = {**ASKED, "value": "1 kg", "tolerance": "0.01"}[name]
         assert f'value="{text}"' in page, name
     assert "W" in page
+
+
+def test_a_solution_is_saved_with_the_other_value(http):
+    design = created(http, PETROFF)["id"]
+    page = solved(http, design, value="50 W", other="idle.bearing_width", other_value="40 mm")
+    [(action, inside)] = FORM.findall(page)
+    fields = dict(HIDDEN.findall(inside))
+    assert fields["idle.bearing_width"] == "40 mm"
+    saved = http.post(action, data=fields, headers={"Origin": str(http.base_url).rstrip("/")})
+    assert saved.status_code == 303
+    step = http.get(f"{API}/designs/{design}/revisions/2").json()["steps"]["idle"]
+    assert step["inputs"]["bearing_width"]["value"] == 40
+    assert abs(step["outputs"]["power_loss"]["value"] / 50 - 1) < 1e-12

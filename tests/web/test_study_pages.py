@@ -51,6 +51,8 @@ def test_a_grid_of_two_shows_a_contour_and_a_chosen_row_becomes_a_revision(plott
     page = watched.page
     watched.open(study)
     expect(page.locator("[data-chart]")).to_have_value("contour", timeout=patient(20_000))
+    page.locator("[data-by]").select_option("thick_enough")
+    expect(page.locator("[data-drawing] .js-plotly-plot, [data-drawing].js-plotly-plot")).to_be_visible()
     page.locator(".rows").get_by_role("button", name="Use row 7", exact=True).click()
     page.wait_for_url(f"**{design}")
     row = http.get(f"{API}{study}/rows?limit=25").json()["items"][7]["values"]

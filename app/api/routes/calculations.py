@@ -14,6 +14,7 @@ from fastapi import APIRouter, Header, Request, Response
 from pydantic_core import to_json
 from starlette.concurrency import run_in_threadpool
 
+from app.api.answering import to_try
 from app.api.dependencies import TheAnswering, TheCatalogues, Units, services_of
 from app.api.reading import StrictRequest, StrictRoute
 from app.api.routes.templates import Id, Number
@@ -118,7 +119,7 @@ async def evaluate_template(
     prefer: Prefer = None,
 ) -> Response:
     """Evaluate a template: inputs in any unit, scalars or arrays; only what is asked for is computed."""
-    cls = catalogues.templates.get(id, number)
+    cls = await to_try(catalogues, id, number)
     if points(body.inputs) <= FEW and len(body.inputs) <= FEW and is_quick(cls):
         return _json(to_json(run_evaluate(cls, body)))
     if estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs) > EXPENSIVE:
@@ -137,7 +138,7 @@ async def solve_template(
     prefer: Prefer = None,
 ) -> Response:
     """Find the input that gives a wanted output, between bounds."""
-    cls = catalogues.templates.get(id, number)
+    cls = await to_try(catalogues, id, number)
     seconds = solving_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs, body.target)
     if seconds > EXPENSIVE:
         return await answering.answer(request, await _question(request, id, number, "solve"))
@@ -159,7 +160,7 @@ async def write_worksheet(
     prefer: Prefer = None,
 ) -> Response:
     """Evaluate a template, with every formula written out: symbol = expression = numbers = result."""
-    cls = catalogues.templates.get(id, number)
+    cls = await to_try(catalogues, id, number)
     seconds = estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs)
     if seconds + writing_seconds(cls, body.outputs) > EXPENSIVE:
         return await answering.answer(request, await _question(request, id, number, "worksheet", units))

@@ -20,6 +20,7 @@ from app.jobs.service import Jobs
 from app.schemas.decisions import Decision
 from app.schemas.designs import Preview
 from app.schemas.evaluations import AnyCalculation
+from app.schemas.impact import Impact
 from app.schemas.problems import refusals
 from app.schemas.solve import DesignSolution
 from app.schemas.tolerances import ToleranceAnalysis
@@ -32,7 +33,7 @@ router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
 
 @router.get(
     "/{job}",
-    response_model=AnyCalculation | Preview | Decision | DesignSolution | ToleranceAnalysis,
+    response_model=AnyCalculation | Preview | Decision | DesignSolution | ToleranceAnalysis | Impact,
     responses={**LATER, **UNAVAILABLE, **refusals(404, 409, 429)},
 )
 async def show_evaluation(
@@ -44,7 +45,7 @@ async def show_evaluation(
     request: Request,
     prefer: Annotated[str | None, Header(description="`wait=5`, for an answer that was lost")] = None,
 ) -> Response:
-    """What `evaluate`, `solve`, `worksheet`, `preview` or `decide` would answer; 202 while the job goes on.
+    """What `evaluate`, `solve`, `preview`, `impact` and their like would answer; 202 while the job goes on.
 
     An answer that was lost is calculated again: the same, but for the time that it took.
     """
@@ -54,11 +55,12 @@ async def show_evaluation(
     if row.result is None:
         return problems.answer(row.problem or problems.problem(problems.INTERNAL, "the job left no answer"))
     try:
-        stored = await run_in_threadpool(_stored, store, row)
+        stored = await run_in_threadpool(stored_answer, store, row)
     except (ArtifactMissing, ArtifactDamaged) as lost:
         if unavailable := await _calculated_again(answering.jobs, row, client, prefer, lost.sha):
             return unavailable
-        stored = await run_in_threadpool(_stored, store, await run_in_threadpool(_calculation, jobs, job))
+        row = await run_in_threadpool(_calculation, jobs, job)
+        stored = await run_in_threadpool(stored_answer, store, row)
     return PiecesResponse(stored, request.app.state.pace)
 
 
@@ -82,7 +84,7 @@ def _calculation(jobs: Jobs, id: str) -> Job:
     return row
 
 
-def _stored(store: ArtifactStore, row: Job) -> Pieces:
+def stored_answer(store: ArtifactStore, row: Job) -> Pieces:
     """The answer from the store; raises ArtifactMissing, ArtifactDamaged."""
     assert row.result is not None
     return Pieces.of(store.read(row.result.rpartition("sha256=")[2]))

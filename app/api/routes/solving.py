@@ -32,7 +32,7 @@ async def solve_design(
     prefer: Prefer = None,
 ) -> Response:
     """Find every value of one parameter or input that gives a wanted output; nothing is saved."""
-    asked = Asked(id, body.model_dump_json(exclude_unset=True), units=units)
+    asked = Asked(id, body.model_dump_json(exclude_unset=True, by_alias=True), units=units)
     return await answer_asked(solving, asked, threads, request, client, prefer)
 
 

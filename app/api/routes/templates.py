@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Annotated, TypeVar
 
 from fastapi import APIRouter, Path
@@ -9,8 +11,10 @@ from fastapi import APIRouter, Path
 from app.api.dependencies import TheCatalogues
 from app.api.paging import Cursor, Limit, page_of
 from app.api.reading import StrictRoute
+from app.catalogue.catalogues import Catalogues
+from app.catalogue.sheets import Key
 from app.schemas.problems import refusals
-from app.schemas.templates import Accuracy, TemplateList, TemplateSummary, TemplateVersions
+from app.schemas.templates import Accuracy, SheetMark, TemplateList, TemplateSummary, TemplateVersions
 from app.schemas.templates import Template as TemplateAnswer
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import UnknownTemplate
@@ -27,13 +31,13 @@ Id = Annotated[str, Path(max_length=64, examples=["oil_film"])]
 @router.get("")
 def list_templates(catalogues: TheCatalogues, limit: Limit = 100, cursor: Cursor = None) -> TemplateList:
     """Every version of every template."""
-    return listed(catalogues.templates, limit, cursor)
+    return listed(catalogues.templates, limit, cursor, marks(catalogues))
 
 
 @router.get("/{id}", responses=refusals(404))
 def list_template_versions(id: Id, catalogues: TheCatalogues) -> TemplateVersions:
     """The versions of one template."""
-    return versions_of(catalogues.templates, id)
+    return versions_of(catalogues.templates, id, marks(catalogues))
 
 
 @router.get("/{id}/versions/{number}", responses=refusals(404))
@@ -41,7 +45,9 @@ def show_template(id: Id, number: Number, catalogues: TheCatalogues) -> Template
     """One version: inputs and outputs as JSON Schema, formulas on paper, limits, references, errata."""
     cls = catalogues.templates.get(id, number)
     is_latest = cls is catalogues.templates.latest(id)
-    return TemplateAnswer.model_validate({**describe(cls), "latest": is_latest})
+    return TemplateAnswer.model_validate(
+        {**describe(cls), "latest": is_latest, **marks(catalogues).get((cls.id, cls.version), {})}
+    )
 
 
 @router.get("/{id}/versions/{number}/accuracy", responses=refusals(404))
@@ -57,12 +63,30 @@ def show_accuracy(id: Id, number: Number, catalogues: TheCatalogues) -> Accuracy
 T = TypeVar("T", bound=Template)
 
 
-def listed(catalogue: Catalogue[T], limit: int, cursor: str | None) -> TemplateList:
+Marks = Mapping[Key, Mapping[str, SheetMark]]
+"""What answers say of templates that are worksheets, by id and version."""
+
+
+def marks(catalogues: Catalogues) -> Marks:
+    """What answers say of templates that are worksheets."""
+    return {
+        key: {
+            "worksheet": SheetMark(
+                state=sheet.state, author=sheet.author, reviewer=sheet.reviewer, review_verified=False
+            )
+        }
+        for key, sheet in catalogues.snapshot.sheets.released.items()
+    }
+
+
+def listed(
+    catalogue: Catalogue[T], limit: int, cursor: str | None, marked: Marks = MappingProxyType({})
+) -> TemplateList:
     """One page of all versions in a catalogue."""
-    return page_of(TemplateList, list(catalogue), limit, cursor, lambda cls: summary(cls, catalogue))
+    return page_of(TemplateList, list(catalogue), limit, cursor, lambda cls: summary(cls, catalogue, marked))
 
 
-def versions_of(catalogue: Catalogue[T], id: str) -> TemplateVersions:
+def versions_of(catalogue: Catalogue[T], id: str, marked: Marks = MappingProxyType({})) -> TemplateVersions:
     """All versions of one template or model.
 
     Raises
@@ -70,11 +94,11 @@ def versions_of(catalogue: Catalogue[T], id: str) -> TemplateVersions:
     UnknownTemplate
         If there is none.
     """
-    items = [summary(cls, catalogue) for cls in catalogue.of(id).values()]
+    items = [summary(cls, catalogue, marked) for cls in catalogue.of(id).values()]
     return TemplateVersions(id=id, items=items, next=None)
 
 
-def summary(cls: type[Template], catalogue: Catalogue[T]) -> TemplateSummary:
+def summary(cls: type[Template], catalogue: Catalogue[T], marked: Marks) -> TemplateSummary:
     """One version in a list."""
     return TemplateSummary(
         id=cls.id,
@@ -83,4 +107,5 @@ def summary(cls: type[Template], catalogue: Catalogue[T]) -> TemplateSummary:
         summary=cls.summary(),
         status="withdrawn" if cls.withdrawn else "released",
         latest=cls is catalogue.latest(cls.id),
+        **marked.get((cls.id, cls.version), {}),
     )

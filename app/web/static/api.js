@@ -19,7 +19,7 @@ export async function call(method, path, body, { headers = {}, signal } = {}) {
   const answer = await fetch(path, { method, signal, headers: { ...type, ...headers }, ...sent });
   const told = answer.status === 204 ? null : await answer.json().catch(() => ({}));
   if (!answer.ok) throw new Refused(answer.status, told ?? {});
-  return { told, status: answer.status, location: answer.headers.get("Location") };
+  return { told, status: answer.status, location: answer.headers.get("Location"), tag: answer.headers.get("ETag") };
 }
 
 export const units = () =>

@@ -1,5 +1,5 @@
-// A relation completes its names while it is typed: a combobox with a list, by keyboard and by mouse.
-import { insert, startOfName } from "./names.js";
+// Completes names while they are typed, by keyboard and by mouse: of relations in their fields, and of worksheets.
+// `names` says which fields take them, where a name begins, what fits, and where the list opens.
 import { unit } from "./numbers.js";
 
 const MOST = 40; // options at once; typing on narrows them
@@ -14,13 +14,13 @@ export function startCompletion(form, names) {
   const close = () => {
     if (!field) return;
     if (list.matches(":popover-open")) list.hidePopover();
-    field.setAttribute("aria-expanded", "false");
+    if (field.role === "combobox") field.setAttribute("aria-expanded", "false");
     field.removeAttribute("aria-activedescendant");
     field = null;
   };
 
   function open(target) {
-    start = startOfName(target.value, target.selectionStart);
+    start = names.start(target);
     const typed = start < 0 ? "" : target.value.slice(start, target.selectionStart);
     options = start < 0 ? [] : names.matching(target, typed).slice(0, MOST);
     if (options.length === 0 || (options.length === 1 && options[0].name === typed)) return close();
@@ -28,7 +28,7 @@ export function startCompletion(form, names) {
     list.replaceChildren(...options.map((item, place) => option(item, place, names.fits(item, target))));
     if (!list.matches(":popover-open")) list.showPopover();
     if (!isFollowing) follow();
-    target.setAttribute("aria-expanded", "true");
+    if (target.role === "combobox") target.setAttribute("aria-expanded", "true");
     choose(0);
   }
 
@@ -42,7 +42,7 @@ export function startCompletion(form, names) {
   function take(place) {
     const target = field;
     isInserting = true;
-    insert(target, options[place].name, start, target.selectionStart);
+    names.put(target, options[place].name, start, target.selectionStart);
     isInserting = false;
     close();
   }
@@ -57,7 +57,7 @@ export function startCompletion(form, names) {
 
   // Below the field, or above it where there is more room; never wider than the window.
   function place() {
-    const box = field.getBoundingClientRect(), below = innerHeight - box.bottom;
+    const box = names.box(field), below = innerHeight - box.bottom;
     const isBelow = below > 200 || below > box.top;
     const width = Math.min(Math.max(box.width, 340), innerWidth - 16);
     Object.assign(list.style, {
@@ -70,9 +70,10 @@ export function startCompletion(form, names) {
   }
 
   for (const input of [...form.elements].filter((one) => names.takes(one))) {
-    for (const [name, value] of Object.entries({ role: "combobox", "aria-autocomplete": "list", "aria-expanded": "false", "aria-controls": list.id })) input.setAttribute(name, value);
+    for (const [name, value] of Object.entries(attributes(input, list.id))) input.setAttribute(name, value);
     input.addEventListener("input", () => isInserting || open(input));
     input.addEventListener("blur", close);
+    input.addEventListener("pointerdown", close); // the caret goes elsewhere
     input.addEventListener("keydown", (event) => onKey(event));
   }
 
@@ -92,6 +93,12 @@ export function startCompletion(form, names) {
     const line = event.target.closest("[role=option]");
     if (line) take([...list.children].indexOf(line));
   });
+}
+
+// A field of one line is a combobox; a text of many lines may not be called so, and does not expand.
+function attributes(field, list) {
+  const shared = { "aria-autocomplete": "list", "aria-controls": list };
+  return field.matches("textarea") ? { ...shared, "aria-haspopup": "listbox" } : { ...shared, role: "combobox", "aria-expanded": "false" };
 }
 
 function option(item, place, fits) {

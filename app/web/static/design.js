@@ -214,7 +214,7 @@ async function start() {
   startDrives();
   const from = draft.restore();
   if (from !== null) showDraft();
-  if (from !== null && from !== Number(revision)) tell(`Revision ${revision} was saved since you typed these changes; look at them once more.`);
+  if (from !== null && from !== revision) tell(`Revision ${revision} was saved since you typed these changes; look at them once more.`);
   const running = progress.dataset.job;
   if (running) regenerated(`/api/v1/jobs/${running}`).then(() => location.reload());
   startSolids(() => steps);

@@ -1,11 +1,10 @@
-// What was typed and not saved, kept by the tab of the browser: one draft for every design and revision.
+// What was typed and not saved, kept by the tab of the browser: one draft for every design or worksheet, and revision.
 import { reveal } from "./reveal.js";
 
 export class Draft {
-  constructor(form, was) {
-    this.form = form;
-    this.was = was;
-    this.key = `draft:${form.dataset.design}:${form.dataset.revision}`;
+  constructor(form, was, { of = form.dataset.design, revision = form.dataset.revision } = {}) {
+    Object.assign(this, { form, was, prefix: `draft:${of}:` });
+    this.key = this.prefix + revision;
   }
 
   fields() {
@@ -33,8 +32,7 @@ export class Draft {
 
   // Put back what was kept, for this revision; for an older one if somebody else saved since. Returns its revision.
   restore() {
-    const prefix = `draft:${this.form.dataset.design}:`;
-    const keys = Object.keys(sessionStorage).filter((key) => key.startsWith(prefix)).sort(byRevision);
+    const keys = Object.keys(sessionStorage).filter((key) => key.startsWith(this.prefix)).sort(byRevision);
     const key = keys.at(-1);
     if (!key) return null;
     const kept = JSON.parse(sessionStorage.getItem(key));
@@ -43,7 +41,7 @@ export class Draft {
       reveal(field);
     }
     for (const old of keys) if (old !== this.key) sessionStorage.removeItem(old);
-    return Number(key.slice(prefix.length));
+    return key.slice(this.prefix.length);
   }
 
   forget() {
@@ -51,4 +49,4 @@ export class Draft {
   }
 }
 
-const byRevision = (one, other) => Number(one.split(":")[2]) - Number(other.split(":")[2]);
+const byRevision = (one, other) => one.localeCompare(other, "en", { numeric: true });

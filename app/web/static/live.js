@@ -1,7 +1,7 @@
 // Asks for a preview while something is typed: at most one call at a time, the newest wins; it can be cancelled.
 const PAUSE = 80; // ms without a key
 
-export function live(ask, show, refuse) {
+export function live(ask, show, refuse, pause = PAUSE) {
   let timer, running;
   const cancel = () => {
     clearTimeout(timer);
@@ -18,7 +18,7 @@ export function live(ask, show, refuse) {
       } catch (error) {
         if (error.name !== "AbortError" && !mine.signal.aborted) refuse(error);
       }
-    }, PAUSE);
+    }, pause);
   };
   return { ask: soon, cancel };
 }

@@ -3,6 +3,7 @@ import { quantityText, unit } from "./numbers.js";
 import { nameOf } from "./typed.js";
 
 const WORD = /[\w.]/;
+const BEFORE = /(^|[^\w.])(if|then|else|and|or|not)$/; // words behind which a name may stand
 const FOLLOWS = new Set(["output", "measure"]);
 
 export class Names {
@@ -40,6 +41,12 @@ export class Names {
     return ranks.flat();
   }
 
+  start = (field) => startOfName(field.value, field.selectionStart);
+
+  put = insert;
+
+  box = (field) => field.getBoundingClientRect();
+
   // New values of a preview.
   update({ steps = {}, parameters = {} }) {
     const put = (name, quantity) => {
@@ -56,14 +63,15 @@ export class Names {
 
 export const isRelation = (text) => text.trimStart().startsWith("=");
 
-// Where the name before the caret begins; -1 where no name may stand: outside of relations, in numbers and units.
+// Where the name before the caret begins; -1 where no name may stand: outside of relations, in numbers, units and words.
 export function startOfName(text, caret) {
   if (!isRelation(text) || caret <= text.indexOf("=")) return -1;
   let start = caret;
   while (start > 0 && WORD.test(text[start - 1])) start -= 1;
   if (start < caret && !/[A-Za-z]/.test(text[start])) return -1;
   const before = text.slice(0, start).trimEnd();
-  return /[\w.)]/.test(before.at(-1) ?? "=") ? -1 : start;
+  if (before.split('"').length % 2 === 0) return -1; // within the word of a choice
+  return /[\w.)\]"]/.test(before.at(-1) ?? "=") && !BEFORE.test(before) ? -1 : start;
 }
 
 // Put a name into a field: in place of what was typed of it; behind "= " where there was no relation.

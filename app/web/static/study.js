@@ -26,29 +26,43 @@ async function startCharts(section) {
   const table = await tableOf(section);
   if (!table.rows.length) return;
   section.hidden = false;
-  const varied = JSON.parse(section.dataset.varied), [kind, x, y, z] = ["chart", "x", "y", "z"].map((name) => section.querySelector(`[data-${name}]`));
+  const varied = JSON.parse(section.dataset.varied), [kind, x, y, z, by] = ["chart", "x", "y", "z", "by"].map((name) => section.querySelector(`[data-${name}]`));
   if (section.dataset.chart !== undefined) kind.value = section.dataset.chart;
   if (varied.length === 2 && isGrid(table, varied)) [kind.value, x.value, y.value] = ["contour", ...varied];
-  const redraw = () => draw(section, table, kind.value, x.value, y.value, z.value);
-  for (const choice of [kind, x, y, z]) choice.addEventListener("change", redraw);
+  const output = firstThatVaries(table, JSON.parse(section.dataset.outputs));
+  if (output) z.value = output;
+  if (output && !varied.includes(y.value)) y.value = output;
+  const redraw = () => draw(section, judgedBy(table, by?.value), kind.value, x.value, y.value, z.value);
+  for (const choice of [kind, x, y, z, by]) choice?.addEventListener("change", redraw);
   await redraw();
 }
 
 // All rows that have values, as far as a chart can show them.
 async function tableOf(section) {
   const names = [...JSON.parse(section.dataset.varied), ...JSON.parse(section.dataset.outputs)], symbols = JSON.parse(section.dataset.unitsOf);
-  const columns = Object.fromEntries(names.map((name) => [name, { unit: symbols[name], values: [] }])), rows = [], verdicts = [];
+  const columns = Object.fromEntries(names.map((name) => [name, { unit: symbols[name], values: [] }])), rows = [], verdicts = [], each = [];
   let cursor = "";
   do {
     const { told: page } = await call("GET", `/api/v1/studies/${section.dataset.study}/rows?limit=${PAGE}&units=${units()}${cursor && `&cursor=${encodeURIComponent(cursor)}`}`);
     for (const row of page.items.filter(({ reason }) => !reason)) {
       rows.push(row.row);
       verdicts.push(row.verdict);
+      each.push(row.verdicts);
       for (const name of names) columns[name].values.push(row.values[name] ?? null);
     }
     cursor = page.next;
   } while (cursor && rows.length < MOST_DRAWN);
-  return { rows, verdicts, columns, isWhole: !cursor };
+  return { rows, verdicts, each, columns, isWhole: !cursor };
+}
+
+// The table with the verdicts of one criterion in the place of the worst of all, if one is named.
+function judgedBy(table, criterion) {
+  return criterion ? { ...table, verdicts: table.each.map((verdicts) => verdicts?.[criterion]) } : table;
+}
+
+// The first output that is not the same in all rows.
+function firstThatVaries(table, outputs) {
+  return outputs.find((name) => new Set(table.columns[name].values).size > 1);
 }
 
 function isGrid(table, [x, y]) {

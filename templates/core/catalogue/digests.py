@@ -11,6 +11,8 @@ A released version is a file that nobody edits, so its code is hashed. There are
 
 Neither sees docstrings, comments, layout and what `MARKS` names: they calculate nothing. The files of groups,
 which give a template inputs, formulas or rules, are part of both.
+
+Of a worksheet all are one: the digest that the worksheet itself gives.
 """
 
 from __future__ import annotations
@@ -24,6 +26,7 @@ from pathlib import Path
 from typing import Any
 
 from templates.core.catalogue.loading import text_of
+from templates.core.language.origin import file_of
 from templates.core.language.spec import Declaration, Requirement, Shared
 from templates.core.language.template import Template
 
@@ -41,17 +44,23 @@ def digest(cls: type[Template]) -> str:
 
     The record counts only as long as the code is that of the release: an edited file has another digest.
     """
+    if cls.sheet:
+        return cls.sheet.digest()
     recorded = _released(cls)
     return recorded["digest"] if recorded else source_digest(cls)
 
 
 def source_digest(cls: type[Template]) -> str:
     """The first digest, computed from the file as it stands, import lines included."""
+    if cls.sheet:
+        return cls.sheet.digest()
     return _sha256("\n".join(dict.fromkeys(_bare(source) for source in _sources(cls))))
 
 
 def content_digest(cls: type[Template]) -> str:
     """The second digest, computed from the file as it stands."""
+    if cls.sheet:
+        return cls.sheet.digest()
     return content_digest_of(_sources(cls))
 
 
@@ -65,10 +74,10 @@ def is_digest_of(text: str, cls: type[Template]) -> bool:
     return text in (digest(cls), content_digest(cls), source_digest(cls))
 
 
-def release_file(cls: type[Template]) -> Path:
-    """Where the digests of a released version are recorded: beside its file."""
-    path = Path(inspect.getfile(cls))
-    return path.with_name(f"{path.stem}.release.json")
+def release_file(cls: type[Template]) -> Path | None:
+    """Where the digests of a released version are recorded: beside its file; None of a worksheet."""
+    path = file_of(cls)
+    return path and path.with_name(f"{path.stem}.release.json")
 
 
 def digests(cls: type[Template]) -> dict[str, Any]:
@@ -79,7 +88,7 @@ def digests(cls: type[Template]) -> dict[str, Any]:
 def _released(cls: type[Template]) -> dict[str, Any] | None:
     """The recorded digests, if there are any and the code is still the released one."""
     path = release_file(cls)
-    if not path.exists():
+    if path is None or not path.exists():
         return None
     recorded: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     return recorded if recorded.get("content_digest") == content_digest(cls) else None

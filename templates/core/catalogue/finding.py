@@ -11,7 +11,13 @@ from types import ModuleType
 from typing import Generic, TypeVar
 
 from templates.core.catalogue.loading import failing_line, load
-from templates.core.errors import QuarantinedTemplate, UnknownTemplate, UnusableFile, plain
+from templates.core.errors import (
+    QuarantinedTemplate,
+    UnknownTemplate,
+    UnreleasedTemplate,
+    UnusableFile,
+    plain,
+)
 from templates.core.language.template import VERSIONED, Template
 
 T = TypeVar("T", bound=Template)
@@ -21,12 +27,14 @@ T = TypeVar("T", bound=Template)
 class Catalogue(Generic[T]):
     """All versions of all templates (or models) in the folders; `kind` names them in messages.
 
-    `quarantined` says why a version cannot be used whose file has faults.
+    `quarantined` says why a version cannot be used whose file has faults, `unreleased` why one cannot that is
+    the draft of a worksheet.
     """
 
     versions: dict[tuple[str, int], type[T]]
     kind: str = "template"
     quarantined: Mapping[tuple[str, int], str] = field(default_factory=dict)
+    unreleased: Mapping[tuple[str, int], str] = field(default_factory=dict)
 
     @cached_property
     def ids(self) -> tuple[str, ...]:
@@ -43,7 +51,8 @@ class Catalogue(Generic[T]):
         """
         classes = {version: cls for (name, version), cls in sorted(self.versions.items()) if name == id}
         if not classes:
-            self._refuse_quarantined(id, max((n for name, n in self.quarantined if name == id), default=0))
+            refused = (*self.quarantined, *self.unreleased)
+            self._refuse_unusable(id, max((n for name, n in refused if name == id), default=0))
             raise UnknownTemplate(
                 id, f"there is no {self.kind} {plain(id)!r}; there are {', '.join(self.ids)}"
             )
@@ -58,19 +67,23 @@ class Catalogue(Generic[T]):
             If there is none.
         """
         if (version_class := self.versions.get((id, version))) is None:
-            self._refuse_quarantined(id, version)
+            self._refuse_unusable(id, version)
             listing = ", ".join(map(str, self.of(id)))
             raise UnknownTemplate(id, f"{self.kind} {id} has no version {version}; it has {listing}")
         return version_class
 
-    def _refuse_quarantined(self, id: str, version: int) -> None:
-        """Say why a version is quarantined, if it is.
+    def _refuse_unusable(self, id: str, version: int) -> None:
+        """Say why a version cannot be used that is there, if it is.
 
         Raises
         ------
         QuarantinedTemplate
             If its file has faults.
+        UnreleasedTemplate
+            If it is the draft of a worksheet.
         """
+        if reason := self.unreleased.get((id, version)):
+            raise UnreleasedTemplate(id, f"{self.kind} {id} version {version} is no release: {reason}")
         if reason := self.quarantined.get((id, version)):
             raise QuarantinedTemplate(id, f"{self.kind} {id} version {version} is quarantined: {reason}")
 

@@ -63,10 +63,13 @@ def freeze(cls: type[Template], folder: Path) -> Path:
     return path
 
 
-def mark_released(cls: type[Template]) -> Path:
-    """Record the digests of a version beside its file, where the service reads them; never over a record."""
+def mark_released(cls: type[Template]) -> Path | None:
+    """Record the digests of a version beside its file, where the service reads them; never over a record.
+
+    A worksheet has no file: whoever keeps its text records its release.
+    """
     path = release_file(cls)
-    if not path.exists():
+    if path and not path.exists():
         path.write_text(json.dumps(digests(cls), indent=1) + "\n", encoding="utf-8")
     return path
 

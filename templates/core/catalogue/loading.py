@@ -18,6 +18,9 @@ from types import ModuleType
 OUTSIDE = "_outside"
 """The package to which files belong that are in none."""
 
+WORKSHEETS = "worksheets"
+"""The package that classes made from worksheets name; there is no such package."""
+
 _CONTENT, _DIGEST = "__content__", "__digest__"  # attributes of such a module
 
 
@@ -77,8 +80,8 @@ def text_of(module: ModuleType) -> str | None:
 
 
 def is_outside(cls: type) -> bool:
-    """Whether a class comes from a file outside the packages of this program."""
-    return cls.__module__.partition(".")[0] == OUTSIDE
+    """Whether a class comes from outside the packages of this program: from a team's file, or a worksheet."""
+    return cls.__module__.partition(".")[0] in (OUTSIDE, WORKSHEETS)
 
 
 def failing_line(error: BaseException, path: Path) -> int | None:

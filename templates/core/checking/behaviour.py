@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import json
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 from templates.core.catalogue.loading import failing_line
 from templates.core.checking.faults import FileFault
@@ -13,6 +12,7 @@ from templates.core.checking.structure import line_of
 from templates.core.errors import Fault, InvalidInputs, TemplateError
 from templates.core.language.dimensions import faults_by_part
 from templates.core.language.evaluate import evaluate
+from templates.core.language.origin import file_of
 from templates.core.language.template import Template
 from templates.core.paper import report
 from templates.core.paper.schema import describe
@@ -75,13 +75,16 @@ def _refused(fault: Fault, line: int | None) -> FileFault:
 
 def _raised(cls: type[Template], error: Exception, what: str, line: int | None) -> FileFault:
     """A fault for an error that no template should raise, at the line of the file that raised it."""
-    place = failing_line(error, Path(inspect.getfile(cls))) or line
+    file = file_of(cls)
+    place = (failing_line(error, file) if file else None) or line
     kind = "raises" if place else "internal"
     return FileFault(kind, f"{what}: {type(error).__name__}: {error}", "correct what raises it", place)
 
 
 def _line_of_example(cls: type[Template]) -> int | None:
-    """The line of the class that sets the example, or begins the class."""
+    """The line of the class that sets the example, or begins the class; None of a worksheet."""
+    if cls.sheet:
+        return None
     lines, first = inspect.getsourcelines(cls)
     places = (n for n, text in enumerate(lines) if text.strip().startswith(("example =", "example:")))
     return first + next(places, 0)

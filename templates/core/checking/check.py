@@ -11,10 +11,11 @@ from templates.core.checking.structure import faults_of_structure
 from templates.core.language.template import Template
 
 
-def faults_of(cls: type[Template], path: Path) -> list[FileFault]:
-    """Every fault of a template or model that the file at `path` declares."""
+def faults_of(cls: type[Template], path: Path | None) -> list[FileFault]:
+    """Every fault of a template or model that the file at `path`, or a worksheet, declares."""
     if faults := list(faults_of_structure(cls)):
         return faults
     if faults := list(faults_of_example(cls)):
         return faults
-    return [*faults_of_behaviour(cls), *faults_of_release(cls, path)]
+    release = faults_of_release(cls, path) if path else ()
+    return [*faults_of_behaviour(cls), *release]

@@ -29,9 +29,10 @@ def faults_of_release(cls: type[Template], path: Path) -> Iterator[FileFault]:
     for file in records(path):
         if file.is_file():
             yield from _against(cls, file)
-    recorded = _read(release_file(cls))
-    if recorded is not None and recorded.get("content_digest") != content_digest(cls):
-        what = f"the code is not that of the release: {release_file(cls).name} holds another digest"
+    release = release_file(cls)
+    recorded = _read(release) if release else None
+    if release and recorded is not None and recorded.get("content_digest") != content_digest(cls):
+        what = f"the code is not that of the release: {release.name} holds another digest"
         yield FileFault("released", what, NEW_VERSION, quarantines=False)
 
 
@@ -41,8 +42,7 @@ def _against(cls: type[Template], file: Path) -> Iterator[FileFault]:
         what = f"{file.name} is no golden record"
         yield FileFault("golden", what, "write it by crankwright freeze, or take it away")
         return
-    differences = _differences(cls, record)
-    for number, what in enumerate(differences):
+    for number, what in enumerate(differences(cls, record)):
         if number == MOST_DIFFERENCES:
             return
         yield FileFault("golden", f"{file.name}: {what}", NEW_VERSION)
@@ -57,7 +57,8 @@ def _read(file: Path) -> dict[str, Any] | None:
     return content if isinstance(content, dict) else None
 
 
-def _differences(cls: type[Template], record: Mapping[str, Any]) -> Iterator[str]:
+def differences(cls: type[Template], record: Mapping[str, Any]) -> Iterator[str]:
+    """What a version calculates otherwise than its golden record, a sentence each."""
     precision = float(record.get("precision", cls.precision))
     for case in [*record["cases"], *record.get("levels", ())]:
         try:

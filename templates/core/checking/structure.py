@@ -12,6 +12,7 @@ from typing import Any
 
 from templates.core.checking.faults import FileFault
 from templates.core.errors import FaultyText
+from templates.core.language.body import Body
 from templates.core.language.spec import Derived, Formula, Requirement, Shared
 from templates.core.language.syntax import lines_of_attributes, returned
 from templates.core.language.template import Template
@@ -22,6 +23,8 @@ MOST_CYCLES = 10
 
 def faults_of_structure(cls: type[Template]) -> Iterator[FileFault]:
     """Every fault of the text; if there is one, to calculate the template would only repeat it."""
+    if cls.sheet:
+        return  # it was read and checked whole
     yield from _docstring(cls)
     yield from _formulas(cls)
     yield from _units(cls)
@@ -42,6 +45,8 @@ def functions_of(cls: type[Template]) -> dict[str, Callable[..., Any]]:
 
 def line_of(function: Callable[..., Any]) -> int | None:
     """The first line of a function."""
+    if isinstance(function, Body):
+        return function.line
     code = getattr(inspect.unwrap(function), "__code__", None)
     return code.co_firstlineno if code else None
 

@@ -174,7 +174,8 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
     Raises
     ------
     FaultyText
-        With code `syntax` if it has not one `>=` or `<=`, or as `parse`.
+        With code `syntax` if it has not one `>=` or `<=`; `index`, `no_truth` or `shape`, if a side holds an
+        item, a condition or a list; or as `parse`.
     """
     if not isinstance(text, str) or len(text) > LONGEST_REQUIRE:
         raise FaultyText("syntax", f"`require` is a text of at most {LONGEST_REQUIRE} characters")
@@ -187,6 +188,13 @@ def read_comparison(text: str) -> tuple[Relation, Sign, Relation]:
     if items := value.items + limit.items:
         detail = f"a criterion takes no index; make {items[0].text} a parameter or an input, and compare that"
         raise FaultyText("index", detail)
+    for side in (value, limit):
+        if side.has_conditions or side.has_lists:
+            what, code = ("condition", "no_truth") if side.has_conditions else ("list", "shape")
+            detail = (
+                f"a side of a criterion holds no {what}; make {excerpt(side.text)} a parameter of the design"
+            )
+            raise FaultyText(code, f"{detail}, and compare that")
     return value, sign, limit
 
 

@@ -20,7 +20,16 @@ def absence(self: Template, declaration: Formula[Any]) -> str | None:
     missing = sorted(self.ledger.missing & self.ancestors(declaration.attribute))
     if missing:
         return f"needs {', '.join(self.declarations[name].name for name in missing)}"
-    return declaration.meaning.absent
+    return declaration.meaning.absent or _explained(self, declaration)
+
+
+def _explained(self: Template, declaration: Formula[Any]) -> str | None:
+    """Why a result beneath this one exists at no point, if its formula noted that."""
+    explaining = [mask for mask in self.ledger.masks if mask.explains and mask.where.all()]
+    if not explaining:
+        return None
+    beneath = self.ancestors(declaration.attribute)
+    return next((mask.reason for mask in explaining if not beneath.isdisjoint(mask.names)), None)
 
 
 def refusal(self: Template, declaration: Formula[Any], value: float) -> Fault:

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import pint
 
+from templates.core.language.body import Body
 from templates.core.language.spec import Choice, Derived, Formula, Requirement, Table
 from templates.core.language.syntax import attributes_used
 from templates.core.language.template import Template
@@ -43,10 +44,10 @@ def faults_by_part(cls: type[Template]) -> Iterator[tuple[Checked, str]]:
 
 
 def _checked(cls: type[Template]) -> Iterator[Checked]:
-    for declared in cls.declarations.values():
-        if isinstance(declared, (Formula, Derived)):
-            yield declared
-    yield from cls.requirements
+    """The formulas and rules of Python; bodies of a worksheet were checked when it was read."""
+    parts: list[Checked] = [d for d in cls.declarations.values() if isinstance(d, (Formula, Derived))]
+    parts += cls.requirements
+    yield from (part for part in parts if not isinstance(part.function, Body))
 
 
 def _fault_of(template: Template, part: Checked) -> str | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cache, reduce
+from functools import lru_cache, reduce
 from typing import Any
 
 import numpy as np
@@ -273,9 +273,9 @@ def _echo(template: Template, declared: Input, typed: str | None) -> Echo:
     return Echo(value, None, source, {}) if isinstance(declared, Choice) else _shown(declared, value, source)
 
 
-@cache
+@lru_cache(maxsize=4096)  # worksheets come and go
 def _default(declared: Given) -> Echo:
-    """The constant default of an input; there are only so many."""
+    """The constant default of an input."""
     assert declared.default is not None
     return _shown(declared, declared.default.si, "default")
 

@@ -13,7 +13,6 @@ measured. Two levels may follow two conventions, and then their errors say nothi
 
 from __future__ import annotations
 
-import inspect
 import json
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping
@@ -27,6 +26,7 @@ from numpy.typing import NDArray
 
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
+from templates.core.language.origin import file_of
 from templates.core.language.spec import Profile, Text
 from templates.core.language.template import Template
 
@@ -149,9 +149,10 @@ def _places(grid: Array, values: Array) -> tuple[NDArray[np.intp], NDArray[np.bo
     return cells, (values >= grid[0]) & (values <= grid[-1])
 
 
-def accuracy_file(cls: type[Template]) -> Path:
-    """Where the measured errors of a version stand."""
-    return Path(inspect.getfile(cls)).with_suffix(".accuracy.json")
+def accuracy_file(cls: type[Template]) -> Path | None:
+    """Where the measured errors of a version stand; None of a worksheet, of which none are measured."""
+    path = file_of(cls)
+    return path and path.with_suffix(".accuracy.json")
 
 
 _cache: dict[Any, Accuracy | None] = {}
@@ -159,9 +160,11 @@ _cache: dict[Any, Accuracy | None] = {}
 
 def accuracy(cls: type[Template]) -> Accuracy | None:
     """The measured errors of a version, if they were measured."""
+    if cls.sheet:
+        return None
     if cls not in _cache:
         path = accuracy_file(cls)
-        _cache[cls] = _loaded(path) if path.exists() else None
+        _cache[cls] = _loaded(path) if path and path.exists() else None
     return _cache[cls]
 
 

@@ -8,6 +8,8 @@ import textwrap
 from collections.abc import Callable
 from typing import Any
 
+from templates.core.language.body import Body
+
 
 def returned(function: Callable[..., Any]) -> ast.expr:
     """The expression that a function of one `return` returns.
@@ -15,8 +17,11 @@ def returned(function: Callable[..., Any]) -> ast.expr:
     Raises
     ------
     TypeError
-        If the function does more than return an expression (branches live in physics functions).
+        If the function does more than return an expression (branches live in physics functions), or is the
+        body of a worksheet, which has no Python source.
     """
+    if isinstance(function, Body):
+        raise TypeError("a formula of a worksheet has no Python source")
     body = syntax(function).body
     statements = [s for s in body if not (isinstance(s, ast.Expr) and isinstance(s.value, ast.Constant))]
     match statements:
@@ -34,11 +39,15 @@ def syntax(function: Callable[..., Any]) -> ast.FunctionDef:
 
 def attributes_used(function: Callable[..., Any]) -> tuple[str, ...]:
     """The names x in `self.x` and `getattr(self, "x")` within a method, each once, in order of appearance."""
+    if isinstance(function, Body):
+        return function.uses
     return _in_order(function, _used)
 
 
 def inputs_read_as_given(function: Callable[..., Any]) -> tuple[str, ...]:
     """The names x in `self.as_given("x")` within a method: the value is used, the formula of x is not."""
+    if isinstance(function, Body):
+        return ()
     return _in_order(function, _read_as_given)
 
 

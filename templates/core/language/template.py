@@ -46,6 +46,7 @@ from templates.core.language.intake import (
     violations,
 )
 from templates.core.language.ledger import Ledger, Mask
+from templates.core.language.origin import Written
 from templates.core.language.spec import (
     Choice,
     Declaration,
@@ -71,6 +72,7 @@ class Template:
     id: ClassVar[str] = ""
     version: ClassVar[int] = 0
     withdrawn: ClassVar[str | None] = None
+    sheet: ClassVar[Written | None] = None  # the worksheet that it was made from
     example: ClassVar[Mapping[str, Any]] = {}
     criteria: ClassVar[Mapping[str, Any]] = {}  # by name: `"film >= limit"`, or an object with `require`
     precision: ClassVar[float] = (

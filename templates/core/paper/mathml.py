@@ -16,6 +16,7 @@ from typing import Any
 import latex2mathml.converter
 from cachetools import LRUCache, cached
 
+from templates.core.language.body import Body
 from templates.core.language.spec import Declaration, Formula
 from templates.core.language.syntax import returned, syntax
 from templates.core.language.template import Template
@@ -52,10 +53,11 @@ _FUNCTIONS = {"log10": r"\lg", "log": r"\ln", "exp": r"\exp", "sin": r"\sin", "c
 
 def symbol(declared: Declaration) -> str:
     r"""The symbol on paper: as declared, else from the attribute, as `nu_1` → `\nu_{1}`."""
-    return declared.meaning.symbol or _from_attribute(declared.attribute)
+    return declared.meaning.symbol or named_symbol(declared.attribute)
 
 
-def _from_attribute(attribute: str) -> str:
+def named_symbol(attribute: str) -> str:
+    r"""The symbol that a name makes: `nu_1` is `\nu_{1}`, and `width` an upright word."""
     head, _, index = attribute.partition("_")
     plain = head if len(head) == 1 else rf"\mathrm{{{head}}}"
     letter = _SPECIAL.get(head) or (f"\\{head}" if head in _GREEK else plain)
@@ -94,11 +96,13 @@ def expression(formula: Formula[Any], symbols: Mapping[str, str], times: str = r
     """The right-hand side of a formula, as LaTeX, with the given symbols (or numbers) for its names."""
     if formula.latex is not None:
         return formula.latex
-    attributes = {name: (text, _tightness(text)) for name, text in symbols.items()}
+    if isinstance(formula.function, Body):
+        return formula.function.latex(symbols, times)
+    attributes = {name: (text, tightness(text)) for name, text in symbols.items()}
     return Writer(formula.function.__globals__, attributes, {}, times).write(formula.expression)[0]
 
 
-def _tightness(text: str) -> int:
+def tightness(text: str) -> int:
     """How tightly a symbol or a number with its unit binds."""
     if text.startswith("-"):
         return SUM
@@ -148,11 +152,11 @@ class Writer:
         """
         match node:
             case ast.Constant(value=int() | float() as value):
-                return (text := number(value)), _tightness(text)
+                return (text := number(value)), tightness(text)
             case ast.Attribute(value=ast.Name(id="self"), attr=name):
-                return self.attributes.get(name) or (_from_attribute(name), ATOM)
+                return self.attributes.get(name) or (named_symbol(name), ATOM)
             case ast.Attribute(value=ast.Attribute(value=ast.Name(id="self")), attr=name):
-                return _from_attribute(name), ATOM
+                return named_symbol(name), ATOM
             case ast.Attribute(attr="pi") | ast.Name(id="pi"):
                 return r"\pi", ATOM
             case ast.Name(id=name):
@@ -229,7 +233,7 @@ class Writer:
     def _constant(self, name: str) -> Written:
         value = self.scope.get(name)
         if isinstance(value, (int, float)) and math.isfinite(value):
-            return (text := number(value)), _tightness(text)
+            return (text := number(value)), tightness(text)
         return rf"\mathrm{{{name}}}", ATOM
 
 

@@ -10,6 +10,7 @@ import ast
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from templates.core.language.body import Body
 from templates.core.language.spec import Formula
 from templates.core.language.syntax import returned
 from templates.core.language.template import Template
@@ -24,12 +25,14 @@ def right_side(
     """What stands right of the sign of equality, as LaTeX, and whether it is words and no formula."""
     if words := _words(cls, formula, level):
         return rf"\text{{{words}}}", True
-    return expression(formula, symbols), False
+    return expression(formula, symbols), not getattr(formula.function, "has_numbers", True)
 
 
 def _words(cls: type[Template], formula: Formula[Any], level: str) -> str | None:
     """How a result is calculated, if no formula says so."""
     if formula.latex is not None and not formula.latex.startswith(rf"{symbol(formula)}\left("):
+        return None
+    if isinstance(formula.function, Body):
         return None
     node, scope = formula.expression, formula.function.__globals__
     maker = _maker(cls, node, scope)

@@ -9,59 +9,84 @@ curves it is one curve.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from importlib.resources import files
 from typing import Any
 
 import lark
 import numpy as np
 
 from templates.core.errors import FaultyText, excerpt
+from templates.core.units.conditions import CONDITIONS, IS
+from templates.core.units.expressions import GRAMMAR, Sort, built, height
 from templates.core.units.items import check_index, item_of
-from templates.core.units.operations import (
-    CONSTANTS,
-    FUNCTIONS,
-    OPERATORS,
-    Apply,
-    Constant,
-    Item,
-    Kind,
-    Name,
-)
-from templates.core.units.units import Unit, Value, forget_units, unit
+from templates.core.units.operations import Apply, Constant, Item, Kind, Name, Word
+from templates.core.units.sorts import sorted_by
+from templates.core.units.units import Value, forget_units
+from templates.core.units.walking import LISTWISE, applied_in, nodes_of, value_of
 
 __all__ = ["Kind", "Relation", "is_relation", "parse"]
 
 MAX_LENGTH, MAX_DEPTH, MAX_PARTS = 2000, 100, 400
-MAX_INDEX = 10**9
 REMEMBERED = 1024  # trees of up to 50 kB
 
-_GRAMMAR = files(__package__).joinpath("relation.lark").read_text(encoding="utf-8")
-_parser = lark.Lark(_GRAMMAR, parser="lalr")
+_parser = lark.Lark(GRAMMAR, parser="lalr")
 
 
 @dataclass(frozen=True)
 class Relation:
-    """A parsed relation: its text, the names it uses, and its tree."""
+    """A parsed relation: its text, the names it uses, and its tree.
+
+    `choices` are those of its names that it tests, as in `film.oil is "SAE 30"`; all others are quantities.
+    In a relation that is `decided_by` some choices, words stand in their place.
+    """
 
     text: str
     names: frozenset[str]
     tree: Any
     parts: int = 1
     items: tuple[Item, ...] = ()
+    choices: frozenset[str] = frozenset()
+    decided_by: tuple[str, ...] = ()
 
     @cached_property
     def whole_names(self) -> frozenset[str]:
         """The names whose values are used whole, not an item of them."""
-        inside = {name for item in self.items for name in (item.name, item.index)}
-        return self.names if not inside else frozenset(_whole(self.tree))
+        if not self.items:
+            return self.names
+        return frozenset(node.name for node in nodes_of(self.tree) if isinstance(node, Name))
 
     @cached_property
     def only_name(self) -> str | None:
         """The name, where the relation is nothing but a name."""
         return self.tree.name if isinstance(self.tree, Name) else None
+
+    @cached_property
+    def tests(self) -> tuple[tuple[str, str], ...]:
+        """Each choice that it tests, with the word."""
+        nodes = (node.arguments for node in applied_in(self.tree) if node.operation is IS)
+        return tuple((choice.name, word.text) for choice, word in nodes if isinstance(choice, Name))
+
+    def decided(self, words: Mapping[str, str]) -> Relation:
+        """The relation with a word in place of each choice that it tests."""
+        return replace(
+            self,
+            names=self.names - self.choices,
+            tree=_decided(self.tree, words),
+            choices=frozenset(),
+            decided_by=tuple(sorted(self.choices)),
+        )
+
+    @cached_property
+    def has_lists(self) -> bool:
+        """Whether it makes or sums up lists; every other operation goes place by place."""
+        return any(node.operation in LISTWISE for node in applied_in(self.tree))
+
+    @cached_property
+    def has_conditions(self) -> bool:
+        """Whether anything in it depends on a condition."""
+        return any(node.operation in CONDITIONS for node in applied_in(self.tree))
 
     def kind(self, kinds: Mapping[str, Kind]) -> Kind:
         """What the relation gives, from what its names are.
@@ -69,9 +94,10 @@ class Relation:
         Raises
         ------
         FaultyText
-            With code `unit_mismatch`, where units do not go together.
+            With code `unit_mismatch`, where units do not go together; `no_truth`, where conditions and
+            quantities do not.
         """
-        return _checked(self.text, tuple((name, kinds[name]) for name in sorted(self.names)))
+        return _checked(self.text, tuple((name, kinds[name]) for name in sorted(self.names - self.choices)))
 
     def value(self, values: Mapping[str, Value]) -> Value:
         """The value in SI, from the SI values of its names; not finite where the arithmetic is not.
@@ -89,7 +115,7 @@ class Relation:
         known = self._with_items(values) if self.items else values
         try:
             with np.errstate(all="ignore"):
-                return _value(self.tree, known)
+                return value_of(self.tree, known)
         except ValueError:
             raise FaultyText("shape", f"{self.text!r} joins arrays of different lengths") from None
 
@@ -121,130 +147,56 @@ def parse(text: str) -> Relation:
     except lark.exceptions.UnexpectedInput as error:
         raise FaultyText("syntax", _where(body, error)) from None
     parts = sum(1 for _ in parsed.iter_subtrees())
-    if parts > MAX_PARTS or _height(parsed) > MAX_DEPTH:
+    if parts > MAX_PARTS or height(parsed) > MAX_DEPTH:
         raise FaultyText("syntax", f"a relation has at most {MAX_PARTS} parts, {MAX_DEPTH} deep")
-    names = frozenset(str(t.children[0]) for t in parsed.find_data("name"))
-    items = tuple(dict.fromkeys(_build(t) for t in parsed.find_data("item")))
-    names |= {name for item in items for name in (item.name, item.index) if isinstance(name, str)}
-    return Relation(text.strip(), names - CONSTANTS.keys(), _build(parsed), parts, items)
-
-
-def _height(tree: lark.Tree[Any]) -> int:
-    height, level = 0, [tree]
-    while level:
-        height += 1
-        level = [child for node in level for child in node.children if isinstance(child, lark.Tree)]
-    return height
+    tree = built(parsed)
+    nodes = list(nodes_of(tree))
+    items = tuple(dict.fromkeys(node for node in nodes if isinstance(node, Item)))
+    names = {node.name for node in nodes if isinstance(node, (Item, Name))}
+    names |= {item.index for item in items if isinstance(item.index, str)}
+    choices = frozenset(str(t.children[0]) for t in parsed.find_data("is"))
+    numbers = {str(t.children[0]) for kind in ("name", "item") for t in parsed.find_data(kind)}
+    if both := choices & numbers:
+        raise FaultyText("syntax", f"{min(both)[:60]} is a choice in one place and a quantity in another")
+    return Relation(text.strip(), frozenset(names), tree, parts, items, choices)
 
 
 def _where(body: str, error: lark.exceptions.UnexpectedInput) -> str:
-    place = getattr(error, "pos_in_stream", None)
+    is_at_end = getattr(getattr(error, "token", None), "type", "") == "$END"
+    place = None if is_at_end else getattr(error, "pos_in_stream", None)
     near = body[place : place + 20] if isinstance(place, int) and place >= 0 else ""
     hint = "write units as in 48 mm, names as in film.bearing_diameter, operators + - * / **"
     return f"not understood at {excerpt(near)}; {hint}" if near else f"the relation ends too early; {hint}"
-
-
-def _build(node: Any) -> Any:
-    """From the parser's tree to ours; every unit, function and number is checked here."""
-    match node.data, node.children:
-        case "quantity" | "number", [text]:
-            return _constant(str(text))
-        case "negative", [lark.Tree(data="quantity" | "number", children=[text])]:
-            return _constant(f"-{text}")
-        case "name", [text]:
-            return CONSTANTS.get(str(text)) or Name(str(text))
-        case "item", [name, index]:
-            return _item(name, index)
-        case "call", [called, *arguments]:
-            return _call(str(called)[:-1], tuple(map(_build, arguments)))
-        case operator, arguments:
-            return Apply(OPERATORS[operator], tuple(map(_build, arguments)))
-
-
-def _item(name: lark.Token, index: lark.Token) -> Item:
-    """An item of an array.
-
-    Raises
-    ------
-    FaultyText
-        With code `syntax`, if its index is neither a whole number from 1 nor a name.
-    """
-    if name in CONSTANTS or index in CONSTANTS:
-        raise FaultyText("syntax", f"{excerpt(f'{name}[{index}]')}: pi is no array, and no index")
-    if index.type == "NAME":
-        return Item(str(name), str(index))
-    number = float(index)
-    if not number.is_integer() or not 1 <= number <= MAX_INDEX:
-        hint = f"an index is a whole number from 1 to the length of {str(name)[:60]}"
-        raise FaultyText("syntax", f"{excerpt(f'{name}[{index}]')}: {hint}")
-    return Item(str(name), int(number))
-
-
-def _constant(text: str) -> Constant:
-    """A number, or a number and its unit; its sign belongs to it, so that -20 degC is a temperature."""
-    number, _, name = text.partition(" ")
-    scale = _unit(name or "1")
-    return Constant(_finite(float(scale.to_si(float(number)))), Kind(scale.base, scale.absolute))
-
-
-def _call(called: str, arguments: tuple[Any, ...]) -> Apply:
-    operation = FUNCTIONS.get(called)
-    if operation is None:
-        message = f"{called[:60]} is no function; there are {', '.join(FUNCTIONS)}"
-        raise FaultyText("unknown_function", message)
-    if operation.arity not in (None, len(arguments)):
-        raise FaultyText("syntax", f"{called} takes {operation.arity} value, not {len(arguments)}")
-    return Apply(operation, arguments)
-
-
-def _unit(name: str) -> Unit:
-    try:
-        return unit(name)
-    except FaultyText as error:
-        hint = f"if {name[:60]} holds a name, put blanks around * and /"
-        raise FaultyText("unknown_unit", f"{error} ({hint})") from None
-
-
-def _finite(value: float) -> float:
-    if not np.isfinite(value):
-        raise FaultyText("not_finite", "a number in the relation is too large")
-    return value
 
 
 @lru_cache(maxsize=REMEMBERED)
 def _checked(text: str, kinds: tuple[tuple[str, Kind], ...]) -> Kind:
     """The kind of a relation, from those of its names; raises as `Relation.kind`."""
     forget_units()
-    return _kind(parse(text).tree, dict(kinds))
+    sort = _sort(parse(text).tree, dict(kinds))
+    if sort.truth:
+        detail = f"{excerpt(text)} is a condition and no value; write if … then … else …"
+        raise FaultyText("no_truth", detail)
+    return sort.kind
 
 
-def _whole(node: Any) -> Iterator[str]:
-    """The names of a tree that are no part of an item."""
-    if isinstance(node, Name):
-        yield node.name
-    for argument in getattr(node, "arguments", ()):
-        yield from _whole(argument)
-
-
-def _kind(node: Any, kinds: Mapping[str, Kind]) -> Kind:
+def _sort(node: Any, kinds: Mapping[str, Kind]) -> Sort:
     match node:
         case Constant(kind=kind):
-            return kind
+            return Sort(kind)
         case Name(name=name):
-            return kinds[name]
+            return Sort(kinds[name])
         case Item(name=name):
             check_index(node, kinds)
-            return kinds[name]
-    parts = [_kind(argument, kinds) for argument in node.arguments]
-    return node.operation.kind(node.operation, parts, node.arguments)
+            return Sort(kinds[name])
+    if node.operation is IS:
+        return Sort(truth=True)
+    return sorted_by(node.operation, [(argument, _sort(argument, kinds)) for argument in node.arguments])
 
 
-def _value(node: Any, values: Mapping[str, Value]) -> Value:
-    match node:
-        case Constant(value=value):
-            return value
-        case Name(name=name):
-            return values[name]
-        case Item():
-            return values[node.text]
-    return node.operation.calculate(*(_value(argument, values) for argument in node.arguments))
+def _decided(node: Any, words: Mapping[str, str]) -> Any:
+    if not isinstance(node, Apply):
+        return node
+    if node.operation is IS and isinstance(choice := node.arguments[0], Name):
+        return Apply(IS, (Word(words[choice.name]), *node.arguments[1:]))
+    return Apply(node.operation, tuple(_decided(argument, words) for argument in node.arguments))

@@ -111,6 +111,22 @@ def test_a_loop_of_several_is_reported_with_its_path(tmp_path):
     assert fault.what in ("b follows from itself: b ← p ← b", "p follows from itself: p ← b ← p")
 
 
+def test_a_function_of_the_file_that_raises_is_reported_by_its_own_line(tmp_path):
+    """Not by the line of the formula that calls it."""
+    text = (
+        BUSH.replace(SPEED, "return halved(self.omega * self.d)") + "\n\ndef halved(x):\n    return x() / 2\n"
+    )
+    faults = checked(tmp_path, text)
+    assert {(fault.code, fault.line) for fault in faults} == {("raises", line_of(text, "return x() / 2"))}
+
+
+def test_a_formula_that_cannot_be_written_on_paper_is_reported(tmp_path):
+    text = BUSH.replace('"sliding speed"', '"sliding speed", latex=7')
+    assert any(
+        fault.what.startswith("its formulas cannot be written on paper") for fault in checked(tmp_path, text)
+    )
+
+
 def test_a_sound_file_has_no_fault(tmp_path):
     assert checked(tmp_path, BUSH) == []
 

@@ -77,6 +77,30 @@ class Ladder(Template):
         return counted(self.holes)
 
 
+class Usual(Ladder):
+    """The same, of which the rough level is the usual one."""
+
+    default_level = "rough"
+
+
+class Judged(Ladder):
+    """The same with a criterion."""
+
+    criteria = {"small": "size <= 40 m"}
+
+
+class Quiet(Template):
+    """An input with a default that is no output."""
+
+    example = {"length": "2 m"}
+
+    x = given("m", "length")
+
+    @derived("m", "breadth")
+    def b(self):
+        return 2 * self.x
+
+
 @pytest.fixture
 def measured(monkeypatch):
     grid = np.array([0.0, 10.0, 100.0])
@@ -131,6 +155,35 @@ class TestLadder:
         error = evaluated("size", level="rough", length=length).error["size"]
         assert np.isnan(error).tolist() == [value == 200 for value in length["value"]]
 
+    def test_property_criteria_are_judged_over_the_points_of_all_levels(self, measured, monkeypatch):
+        """Point 0 at the rough level, points 1 and 2 at the fine one, of which one is too large."""
+        monkeypatch.setitem(levels._cache, Judged, measured)
+        lengths = {"length": metres(5, 20, 60)}
+        evaluation = evaluate(Judged, lengths, outputs=("size",), tolerance=0.2, per_point=True)
+        assert evaluation.level.tolist() == ["rough", "fine", "fine"]
+        (judgement,) = evaluation.criteria
+        assert (judgement.verdict, [place.value for place in judgement.where]) == ("not_met", [3])
+        assert judgement.value == pytest.approx(60.06)
+
+    @pytest.mark.parametrize("cls", [Usual, Ladder])
+    def test_property_without_measured_errors_the_usual_level_answers(self, cls):
+        """Also where it is not the finest: nobody knows that a finer one would do."""
+        evaluation = evaluate(cls, cls.example, outputs=("size",), tolerance=0.1)
+        assert evaluation.level == cls.default_level
+
+    @pytest.mark.parametrize(
+        "rows",
+        [[[1, 2, 3]], [[1], [2]], [[1, 2]] * 13, [[1, -2]]],
+        ids=["three columns", "one column", "thirteen rows", "below its domain"],
+    )
+    def test_a_table_is_refused_with_its_columns_and_their_most_rows(self, rows):
+        with pytest.raises(InvalidInputs, match="at most 12 rows of place, width, each ≥ 0 m") as refusal:
+            evaluated("word", holes={"value": rows, "unit": "m"})
+        assert [(fault.name, fault.code) for fault in refusal.value.faults] == [("holes", "not_a_table")]
+
+    def test_a_table_takes_as_many_rows_as_it_says(self):
+        assert evaluated("word", holes={"value": [[1, 2]] * 12, "unit": "m"}).outputs["word"].value == "many"
+
     def test_property_unmeasured_is_reported(self):
         assert [w.code for w in evaluated("size", tolerance=0.1).warnings] == ["tolerance_unmet"]
 
@@ -179,6 +232,10 @@ class TestOptional:
         given_one = evaluated("breadth", breadth="7 m")
         assert given_one.outputs["breadth"].value == 7
         assert given_one.inputs["breadth"].source == "given"
+
+    def test_property_a_default_that_is_not_shown_is_an_input_alone(self):
+        assert "breadth" not in Quiet.formulas
+        assert evaluate(Quiet, Quiet.example).inputs["breadth"].source == "default"
 
     def test_property_tables(self):
         assert evaluated("word").outputs["word"].value is None

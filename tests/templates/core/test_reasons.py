@@ -26,6 +26,24 @@ class Hollow(Template):
         return 2 * self.bore
 
 
+class Rated(Template):
+    """A tube, of which a bore below 1 m is not rated."""
+
+    example = {"x": "1 m"}
+
+    x = given("m", "x")
+
+    @formula("m", "bore", ge=1, absent="thin tubes have no bore")
+    def bore(self):
+        return np.where(self.x > 1, self.x - 1, np.nan)
+
+
+def test_an_absent_value_and_one_out_of_its_domain_have_each_their_reason():
+    answer = evaluate(Rated, {"x": {"value": [0.5, 1.5, 3.0], "unit": "m"}}).outputs["bore"]
+    assert np.isnan(answer.value).tolist() == [True, True, False]
+    assert answer.reasons.tolist() == ["thin tubes have no bore", "bore must be ≥ 1 m", None]
+
+
 @pytest.mark.parametrize("name", ["bore", "double_bore"])
 def test_a_value_is_absent_with_its_reason_only_where_it_does_not_exist(name):
     answer = evaluate(Hollow, {"x": {"value": [0.5, 2.0, 1.0, 3.0], "unit": "m"}}).outputs[name]

@@ -8,11 +8,20 @@ from seeds import seeded
 
 from templates.core.errors import FaultyText
 from templates.core.judging.bands import Estimate
-from templates.core.judging.comparison import MET, NOT_CHECKED, NOT_MET, UNDECIDED, WORST_FIRST, judge_rows
+from templates.core.judging.comparison import (
+    MET,
+    NOT_CHECKED,
+    NOT_MET,
+    UNDECIDED,
+    WORST_FIRST,
+    compare,
+    judge_rows,
+)
 from templates.core.judging.criterion import Known, read_criterion
 from templates.core.judging.judgement import sentence
 from templates.core.judging.judging import Absent, Along, judge
 from templates.core.judging.summary import summarised, worst_first
+from templates.core.judging.worst import worst_of_rows
 
 NAN = math.nan
 KNOWN = {
@@ -218,6 +227,36 @@ def test_unstated_error_is_said_and_never_green():
     assert result.reason == "the error of the model is not stated"
     assert not summarised([result]).green
     assert summarised([of_film(4.0)]).green
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "verdict"),
+    [(0.9, 1, 2, MET), (1.5, 1, 2, UNDECIDED), (2.1, 1, 2, NOT_MET)],
+)
+def test_analytic_verdict_against_an_uncertain_limit(value, low, high, verdict):
+    """The limit lies between limit/(1 + e) and limit/(1 - e)."""
+    criterion = read_criterion("film", "film <= limit", KNOWN)
+    error = (high - low) / (high + low)
+    assert judge_rows(criterion, {"film": um(value), "limit": um(low * (1 + error), error)}) == verdict
+
+
+def test_why_a_limit_whose_error_is_not_known_decides_nothing():
+    criterion = read_criterion("film", "film >= limit", KNOWN)
+    assert judge(criterion, {"film": um(4.0), "limit": um(3.0, NAN)}).reason == (
+        "the error of limit is not known here"
+    )
+    elsewhere = {"film": um([3.1, 9.0], np.array([0.1, NAN])), "limit": um(3.0)}
+    assert "a relative error below" in judge(criterion, elsewhere).reason
+
+
+@pytest.mark.parametrize("places", [1, 2, 3])
+def test_the_worst_place_of_each_row_is_reported(places):
+    value = np.array([[5.0, 2.0, 4.0], [2.5, 6.0, 1.0]])[:, :places] * 1e-6
+    compared = compare(FILM, {"film": Estimate(value)}, [])
+    codes, sides = worst_of_rows(FILM, compared, 2)
+    smallest = value.min(axis=1)
+    assert codes.tolist() == [MET if one >= 3e-6 else NOT_MET for one in smallest]
+    assert sides[0] == pytest.approx(smallest)
 
 
 def test_property_scalars_and_arrays_agree():

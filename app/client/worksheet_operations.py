@@ -1,0 +1,115 @@
+"""What a client can ask of the service about worksheets: each function is an exchange."""
+
+from __future__ import annotations
+
+import uuid
+
+from app.client.exchange import (
+    BASE,
+    MERGE_PATCH,
+    Exchange,
+    Progress,
+    Request,
+    answered,
+    done,
+    get,
+    job_of,
+    listed,
+    post,
+    written,
+)
+from app.client.problem import checked
+from app.schemas.worksheet_imports import SheetImport
+from app.schemas.worksheets import Sheet, SheetCheck, SheetList, SheetSummary
+
+_PATH = "/worksheets"
+
+
+def worksheets() -> Exchange[list[SheetSummary]]:
+    """Every worksheet at its newest version."""
+    return listed(SheetList, _PATH)
+
+
+def read_worksheet(id: str, version: int | None = None) -> Exchange[Sheet]:
+    """A worksheet at its newest version, or at another one."""
+    return answered(Sheet, get(f"{_PATH}/{id}" if version is None else f"{_PATH}/{id}/versions/{version}"))
+
+
+def worksheet_text(id: str, version: int | None = None) -> Exchange[str]:
+    """The text of a worksheet as it was written."""
+    query = {} if version is None else {"version": str(version)}
+    return checked((yield get(f"{_PATH}/{id}/text", query))).content.decode()
+
+
+def check_worksheet(text: str, id: str | None = None) -> Exchange[SheetCheck]:
+    """Everything that is wrong with a text, or every line on paper with the example's numbers."""
+    return answered(SheetCheck, post(f"{_PATH}/check", {"text": text, **({"id": id} if id else {})}))
+
+
+def create_worksheet(
+    id: str, text: str, *, author: str | None = None, key: str | None = None
+) -> Exchange[Sheet]:
+    """A new worksheet, a draft; two requests under one key make one."""
+    body = {"id": id, "text": text, **({"author": author} if author else {})}
+    return answered(Sheet, post(_PATH, body, {"Idempotency-Key": key or uuid.uuid4().hex}))
+
+
+def import_worksheet(
+    id: str, content: bytes, file: str, *, key: str | None = None, on_progress: Progress | None = None
+) -> Exchange[Sheet]:
+    """The draft that a sheet of Mathcad (.mcdx, .xmcd) becomes, once it has been read.
+
+    Raises
+    ------
+    Problem
+        If the file is not taken, or the id is.
+    """
+    headers = {"Content-Type": "application/octet-stream", "Idempotency-Key": key or uuid.uuid4().hex}
+    query = {"id": id, "file": file}
+    response = checked((yield Request("POST", f"{BASE}{_PATH}/import", content, query, headers)))
+    if job := job_of(response):
+        yield from done(job, on_progress)
+    return (yield from read_worksheet(id))
+
+
+def read_import(id: str) -> Exchange[SheetImport]:
+    """What became of every region of the sheet that a worksheet was imported from."""
+    return answered(SheetImport, get(f"{_PATH}/{id}/import"))
+
+
+def change_worksheet(sheet: Sheet, text: str, *, author: str | None = None) -> Exchange[Sheet]:
+    """An edit of a worksheet as it was read: a draft again, of a released version the next one."""
+    body = {"text": text, **({"author": author} if author else {})}
+    headers = {"Content-Type": MERGE_PATCH, "Idempotency-Key": uuid.uuid4().hex, **_if_match(sheet)}
+    return answered(Sheet, Request("PATCH", f"{BASE}{_PATH}/{sheet.id}", written(body), headers=headers))
+
+
+def test_worksheet(sheet: Sheet) -> Exchange[Sheet]:
+    """Run the tests and the golden steps of a worksheet as it was read: draft → tested."""
+    return answered(Sheet, post(f"{_PATH}/{sheet.id}/test", {}, _if_match(sheet)))
+
+
+def review_worksheet(sheet: Sheet, reviewer: str) -> Exchange[Sheet]:
+    """Note who reviewed a worksheet as it was read: tested → reviewed."""
+    body = {"reviewer": reviewer, "digest": sheet.digest or ""}
+    return answered(Sheet, post(f"{_PATH}/{sheet.id}/review", body, _if_match(sheet)))
+
+
+def release_worksheet(sheet: Sheet) -> Exchange[Sheet]:
+    """Make a worksheet a template that never changes: reviewed → released."""
+    return answered(Sheet, post(f"{_PATH}/{sheet.id}/release", {}, _if_match(sheet)))
+
+
+def withdraw_worksheet(id: str, reason: str, version: int | None = None) -> Exchange[Sheet]:
+    """Say why a released version, the newest if none is named, shall not be used any longer."""
+    body = {"reason": reason, **({} if version is None else {"version": version})}
+    return answered(Sheet, post(f"{_PATH}/{id}/withdraw", body))
+
+
+def delete_worksheet(sheet: Sheet) -> Exchange[None]:
+    """Delete the newest version of a worksheet as it was read, which was never released."""
+    checked((yield Request("DELETE", f"{BASE}{_PATH}/{sheet.id}", headers=_if_match(sheet))))
+
+
+def _if_match(sheet: Sheet) -> dict[str, str]:
+    return {"If-Match": f'"{sheet.edit}"'}

@@ -1,0 +1,91 @@
+"""What designs of one structure have in common, and the quantities in which they differ.
+
+Two documents have one form if they are equal but for single quantities of equal kind: parameters, inputs of
+steps, parameters of models. Everything else, such as relations, choices, curves, limits and criteria, is part
+of the form as it is written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from app.catalogue.catalogues import Catalogues
+from app.designs.document import Document
+from app.designs.reference import Reference
+from app.plain import Raw
+from app.storage.tables import canonical_json
+from templates.core.errors import FaultyText
+from templates.core.language.intake import Input
+from templates.core.language.spec import Choice, Curve, Table
+from templates.core.language.template import Template
+from templates.core.units.quantity import read, read_any
+from templates.core.units.relation import is_relation
+from templates.core.units.units import unit
+
+Quantities = Mapping[Reference, float]
+"""Values [SI] of the places that are left open."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """A document without its single quantities, as text, and these."""
+
+    text: str
+    quantities: Quantities
+
+
+def form_of(document: Document, catalogues: Catalogues) -> Form:
+    """The form of a document whose templates and models are in the catalogues."""
+    plain = document.model_dump(mode="json", exclude={"name", "variants"})
+    opening = _Opening({})
+    plain["parameters"] = {n: opening.parameter(n, raw) for n, raw in document.parameters.items()}
+    for name, step in document.steps.items():
+        cls = catalogues.templates.versions.get((step.template, int(step.version or 0)))
+        plain["steps"][name]["inputs"] = opening.inputs(name, step.inputs, cls)
+    for name, model in document.models.items():
+        shape = catalogues.models.versions.get((model.id, int(model.version or 0)))
+        plain["models"][name]["parameters"] = opening.inputs(name, model.parameters, shape)
+    return Form(canonical_json(plain), opening.found)
+
+
+@dataclass(frozen=True)
+class _Opening:
+    """Leaves places open, and notes the values that stood there."""
+
+    found: dict[Reference, float]
+
+    def parameter(self, name: str, raw: Raw) -> Raw:
+        """A parameter of the design: its kind is that of its own unit."""
+        if _is_written_out(raw):
+            return raw
+        try:
+            typed = read_any(raw)
+        except FaultyText:
+            return raw
+        if not isinstance(typed.si, float):
+            return raw
+        self.found[Reference(name)] = typed.si
+        return {"open": f"{unit(typed.unit).base:~C}"}
+
+    def inputs(self, block: str, values: Mapping[str, Raw], cls: type[Template] | None) -> dict[str, Raw]:
+        """The inputs of a step, or the parameters of a model."""
+        declared = cls.inputs if cls else {}
+        return {name: self._input(block, name, raw, declared.get(name)) for name, raw in values.items()}
+
+    def _input(self, block: str, name: str, raw: Raw, declared: Input | None) -> Raw:
+        if declared is None or isinstance(declared, (Choice, Curve, Table)) or _is_written_out(raw):
+            return raw
+        try:
+            typed = read(raw, declared.meaning.unit)
+        except FaultyText:
+            return raw
+        if not isinstance(typed.si, float):
+            return raw
+        self.found[Reference(block, None, name)] = typed.si
+        return {"open": True}
+
+
+def _is_written_out(raw: Raw) -> bool:
+    """Whether a value is a relation or a list, which are part of the form."""
+    return isinstance(raw, list) or is_relation(raw)

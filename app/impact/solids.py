@@ -1,0 +1,30 @@
+"""What is known of the solids of some designs, as a calculation process takes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from app.designs.calculation import Measures, Outputs
+from app.solids.questions import Question, under_load
+from cad.model import CadModel
+from cad.regenerate import build_key
+
+
+@dataclass(frozen=True)
+class Solids:
+    """Measures by key of build, and outputs of analyses by key of question; others are not known."""
+
+    builds: Mapping[str, Measures] = field(default_factory=dict)
+    analyses: Mapping[str, Outputs] = field(default_factory=dict)
+
+    def measured(self, shape: CadModel) -> Measures | None:
+        """What a model measures, if its solid is among these."""
+        return self.builds.get(build_key(shape))
+
+    def analysed(self, shape: CadModel, question: Question, wanted: tuple[str, ...]) -> Outputs | None:
+        """What finite elements computed on a model, if all that is wanted is among these."""
+        outputs = self.analyses.get(question.key(build_key(shape)), {})
+        if not set(wanted) <= outputs.keys():
+            return None
+        return under_load(question, {name: outputs[name] for name in wanted})

@@ -1,0 +1,193 @@
+"""All designs that use another version of a template, calculated batch by batch, and ranked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+from app.calculations.jobs import IMPACT
+from app.calculations.steps import present_caller
+from app.catalogue.catalogues import Catalogues
+from app.designs.document import Document
+from app.designs.filtering import DesignFilter
+from app.designs.labels import key_of
+from app.designs.tasks import CatalogueTask
+from app.impact import repository
+from app.impact.answering import described, unfinished, unusable, used_steps
+from app.impact.process import Found, compared
+from app.impact.ranking import rank
+from app.impact.schemas import ImpactIn
+from app.impact.task import Batch, DesignAt, missing, uses
+from app.presentation.units import System
+from app.schemas.answers import Version
+from app.schemas.impact import DesignImpact, Impact
+from app.storage.database import Database
+from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
+
+MOST_TOGETHER = 256
+"""Designs and variants in one batch: so much is in memory at once."""
+
+LOST = (DeadlineExceeded, MemoryExceeded, JobCrashed)
+"""What ends the process of a batch; its designs are then calculated in smaller ones."""
+
+At = tuple[DesignAt, Document]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A version of a template, which designs are held against it, and the units of the answer."""
+
+    template: str
+    version: int
+    body: ImpactIn
+    units: System = "si"
+
+
+@dataclass
+class _Tally:
+    """What was found so far: the worst designs, and how many there are of each kind."""
+
+    limit: int
+    worst: list[DesignImpact] = field(default_factory=list)
+    counts: dict[str, int] = field(default_factory=dict)
+    concerned: int = 0
+    unchanged: int = 0
+    variants: int = 0
+
+    def add(self, found: Found) -> None:
+        """Take over the designs of a batch; no more than the limit are kept."""
+        for impact in found.designs:
+            self.counts[impact.effect] = self.counts.get(impact.effect, 0) + 1
+        self.worst = sorted([*self.worst, *found.designs], key=rank)[: self.limit]
+        self.concerned += len(found.designs) + found.unchanged
+        self.unchanged += found.unchanged
+        self.variants += found.variants
+
+
+@dataclass(frozen=True)
+class Survey:
+    """One question, with the templates as they are when it is asked."""
+
+    asked: Asked
+    database: Database
+    catalogues: Catalogues
+
+    def impact(self) -> Impact:
+        """What the version does to them."""
+        asked = self.asked
+        chosen = None if asked.body.designs is None else set(asked.body.designs)
+        tags = tuple(dict.fromkeys(map(key_of, asked.body.tags)))
+        wanted = DesignFilter(name=asked.body.name, tags=tags, template=asked.template)
+        with self.database.read() as session:
+            ids = repository.ids_of(session, wanted, chosen)
+            archived = repository.ids_of(session, replace(wanted, archived="true"), chosen)
+        tally, seen = _Tally(asked.body.limit), 0
+        for page in _pages(ids):
+            for found in self._of_page(page, seen, len(ids)):
+                tally.add(found)
+            seen += len(page)
+        return Impact(
+            template=Version(id=asked.template, version=asked.version),
+            concerned=tally.concerned,
+            moved=tally.counts.get("moved", 0),
+            refused=tally.counts.get("refused", 0),
+            needs_solids=tally.counts.get("needs_solids", 0),
+            unchanged=tally.unchanged,
+            archived=sum(len(self._concerned(page)) for page in _pages(archived)),
+            variants=tally.variants,
+            designs=tally.worst,
+        )
+
+    def _concerned(self, ids: Sequence[str]) -> list[At]:
+        """Those of some designs of which a step uses another version."""
+        with self.database.read() as session:
+            found = list(repository.newest(session, ids))
+        return [
+            (design, document)
+            for design, document in found
+            if used_steps(document, self.asked.template, self.asked.version)
+        ]
+
+    def _of_page(self, ids: Sequence[str], seen: int, total: int) -> Iterator[Found]:
+        """What is found of some designs, batch by batch."""
+        concerned = self._concerned(ids)
+        usable: list[At] = []
+        for design, document in concerned:
+            if absent := missing(document, self.catalogues):
+                about = described(design, document, self.asked.template, self.asked.version)
+                yield Found((unusable(about, absent),), 0, 0)
+            else:
+                usable.append((design, document))
+        for batch in _batches(usable):
+            yield from self._of_batch(batch, _Share(seen / total, len(ids) / total, total))
+
+    def _of_batch(self, batch: Sequence[At], share: _Share) -> Iterator[Found]:
+        """What is found of a batch; where its process ends, of smaller ones, down to one design."""
+        try:
+            yield self._compared(batch, share)
+        except LOST as error:
+            if len(batch) == 1:
+                design, document = batch[0]
+                about = described(design, document, self.asked.template, self.asked.version)
+                yield Found((unfinished(about, error),), 0, 0)
+                return
+            half = len(batch) // 2
+            yield from self._of_batch(batch[:half], share)
+            yield from self._of_batch(batch[half:], share)
+
+    def _compared(self, batch: Sequence[At], share: _Share) -> Found:
+        """A batch, calculated in the pool for the job that asks."""
+        templates, models = uses(document for _, document in batch)
+        parts = CatalogueTask.of(
+            {*templates, (self.asked.template, self.asked.version)}, models, self.catalogues
+        )
+        with self.database.read() as session:
+            solids = repository.solids_of(session, batch)
+        task = Batch(
+            self.asked.template, self.asked.version, tuple(design for design, _ in batch), parts, solids
+        )
+        if (caller := present_caller()) is None:
+            return compared(task)
+        report = caller.report
+        told = (
+            None if report is None else lambda fraction, _: report(share.at(fraction), share.text(fraction))
+        )
+        key = IMPACT, self.asked.template, self.asked.version, tuple(design.id for design, _ in batch)
+        return replace(caller, report=told).calculated(key, compared, task)
+
+
+@dataclass(frozen=True)
+class _Share:
+    """The part of a job that a page is: where it begins and how much it is, 0 to 1, of so many designs."""
+
+    begin: float
+    width: float
+    total: int
+
+    def at(self, fraction: float) -> float:
+        """How far the job is when so much of the page is done."""
+        return self.begin + self.width * fraction
+
+    def text(self, fraction: float) -> str:
+        """The same in words."""
+        return f"{int(self.at(fraction) * self.total)} of {self.total} designs"
+
+
+def _pages(ids: Sequence[str]) -> Iterator[Sequence[str]]:
+    for start in range(0, len(ids), MOST_TOGETHER):
+        yield ids[start : start + MOST_TOGETHER]
+
+
+def _batches(found: Sequence[At]) -> Iterator[list[At]]:
+    """Designs in batches of at most so many designs and variants; one design at least."""
+    batch: list[At] = []
+    count = 0
+    for at in found:
+        rows = 1 + len(at[1].variants)
+        if batch and count + rows > MOST_TOGETHER:
+            yield batch
+            batch, count = [], 0
+        batch.append(at)
+        count += rows
+    if batch:
+        yield batch

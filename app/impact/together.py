@@ -1,0 +1,200 @@
+"""Designs of one form calculated together: each is a row of the same array calls.
+
+What cannot be is left to `alone`: steps whose level follows from a tolerance, values that are measured on
+solids, iterations, inputs at several points. So is a call that refuses as a whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.catalogue.catalogues import Catalogues
+from app.designs.columns import Indices
+from app.designs.document import Document
+from app.designs.net import Net
+from app.designs.network import Block, Graph
+from app.designs.reference import Reference
+from app.designs.row_design import RowDesign, Rows, Wanted
+from app.designs.row_judging import RowJudging
+from app.designs.row_pass import RowPass
+from app.designs.rows_needed import is_member
+from app.designs.step_rows import LevelMoved, StepRows
+from app.designs.subjects import Subject
+from app.impact.outcome import Judged, Outcome
+from templates.core.arrays import Array
+from templates.core.errors import Fault, TemplateError
+from templates.core.judging.comparison import WORST_FIRST
+from templates.core.language.spec import Choice, Given, Table, Text
+from templates.core.language.template import Template
+
+
+@dataclass(frozen=True)
+class Together:
+    """A form of designs with one version of the template.
+
+    Attributes
+    ----------
+    design
+        Its places vary in which the designs differ.
+    outputs, parameters
+        What is asked for: outputs of steps, parameters of CAD models.
+    """
+
+    design: RowDesign
+    outputs: tuple[Reference, ...]
+    parameters: tuple[Reference, ...]
+    subjects: Mapping[str, Subject]
+    units: Mapping[str, str]
+
+    @classmethod
+    def of(cls, document: Document, catalogues: Catalogues, varied: Collection[Reference]) -> Together | None:
+        """A form, by the document of one of its designs; None if its designs are calculated alone."""
+        if document.iterations:
+            return None
+        try:
+            net = Net.of(document, catalogues, varied)
+        except TemplateError:
+            return None
+        graph = net.graph
+        blocks = graph.blocks.values()
+        if any(_chooses_by_tolerance(one) or _is_incomplete(one) for one in blocks) or _is_measured(graph):
+            return None
+        outputs, parameters = tuple(_outputs(graph)), tuple(_parameters(graph))
+        units = {str(reference): graph.unit_of(reference) for reference in (*outputs, *parameters)}
+        subjects = net.subjects(net.criteria())
+        return cls(net.design, outputs, parameters, subjects, units)
+
+    def outcomes(self, rows: Rows, count: int) -> list[Outcome] | None:
+        """The outcome of each row; None if they are calculated alone."""
+        found: list[Outcome] = []
+        try:
+            with np.errstate(all="ignore"):
+                for start, part in self.design.passes(rows, count, self._wanted, {}):
+                    chunk = {place: column[start : start + part.count] for place, column in rows.items()}
+                    ended = self._of_chunk(chunk, part)
+                    if ended is None:
+                        return None
+                    found += ended
+        except (LevelMoved, TemplateError):
+            return None
+        return found
+
+    @property
+    def _wanted(self) -> Wanted:
+        judged = Wanted.of(self.outputs, self.subjects.values())
+        cells = {Reference(name) for name in self.design.graph.parameters}
+        return Wanted(judged.references | cells, judged.inside | set(self.parameters))
+
+    def _of_chunk(self, rows: Rows, part: RowPass) -> list[Outcome] | None:
+        """The outcomes of one array call; rows that start at different levels are calculated apart."""
+        groups = _by_levels(part)
+        if len(groups) == 1:
+            return list(self._read(part))
+        apart: dict[int, Outcome] = {}
+        for indices in groups:
+            some = {place: column[indices] for place, column in rows.items()}
+            if (found := self.outcomes(some, indices.size)) is None:
+                return None
+            apart |= dict(zip(indices.tolist(), found, strict=True))
+        return [apart[row] for row in range(part.count)]
+
+    def _read(self, part: RowPass) -> Iterator[Outcome]:
+        """The outcome of each row of an array call."""
+        values = {str(r): part.value(r).spread(part.count) for r in self.outputs}
+        parameters = {str(r): self._parameter(part, r) for r in self.parameters}
+        judging = RowJudging(part)
+        verdicts = {name: judging.judged(subject) for name, subject in self.subjects.items()}
+        for row in range(part.count):
+            refusal = part.for_all or part.refusals.get(row)
+            if refusal is not None:
+                yield Outcome((Fault(refusal.place, refusal.code, refusal.detail),))
+                continue
+            yield Outcome(
+                values={name: column[row] for name, column in values.items()},
+                parameters={n: float(c[row]) for n, c in parameters.items() if not np.isnan(c[row])},
+                units=self.units,
+                judged={
+                    name: Judged.in_row(
+                        WORST_FIRST[int(codes[row])],
+                        self.subjects[name].criterion,
+                        float(column.margin[row]),
+                    )
+                    for name, (codes, column) in verdicts.items()
+                },
+            )
+
+    def _parameter(self, part: RowPass, reference: Reference) -> Array:
+        """A parameter of a model as the model takes it."""
+        return part.steps[reference.block].values[reference.member].spread(part.count)
+
+
+def _chooses_by_tolerance(block: Block) -> bool:
+    return block.tolerance is not None and bool(block.cls.levels) and block.level is None
+
+
+def _is_measured(graph: Graph) -> bool:
+    """Whether anything follows from a measure or an analysis of a solid."""
+    used = (reference for references in graph.used.values() for reference in references)
+    inside = (reference for reference in used if reference.block in graph.blocks)
+    return any(
+        graph.blocks[reference.block].is_model and not is_member(graph, reference) for reference in inside
+    )
+
+
+def _outputs(graph: Graph) -> Iterator[Reference]:
+    """The outputs that the steps compute, without those that are words."""
+    for block in graph.blocks.values():
+        if not block.is_model:
+            computed = graph.computed(block)
+            for name in block.cls.formulas if computed is None else computed:
+                if not isinstance(block.cls.formulas.get(name), Text):
+                    yield Reference(block.name, None, name)
+
+
+def _parameters(graph: Graph) -> Iterator[Reference]:
+    """The parameters of models that are quantities."""
+    for block in graph.blocks.values():
+        if block.is_model:
+            for name, declared in block.cls.inputs.items():
+                if not isinstance(declared, (Choice, Table)):
+                    yield Reference(block.name, None, name)
+
+
+def _is_incomplete(block: Block) -> bool:
+    """Whether a model lacks parameters, or nobody asks for any output of a step: it is checked alone."""
+    if not block.is_model:
+        return block.outputs == ()
+    inputs = block.cls.inputs.items()
+    return any(
+        isinstance(declared, (Given, Choice)) and declared.required and name not in block.cells
+        for name, declared in inputs
+    )
+
+
+def _by_levels(part: RowPass) -> list[Indices]:
+    """The rows in groups that start at the same levels when each stands alone."""
+    keys: list[list[str]] = [[] for _ in range(part.count)]
+    for step in part.steps.values():
+        cls = step.block.cls
+        if cls.levels and step.block.level is None and cls.ladder is not Template.ladder and step.has_rows:
+            for row, level in _started(step):
+                keys[row].append(level)
+    groups: dict[tuple[str, ...], list[int]] = {}
+    for row, key in enumerate(keys):
+        groups.setdefault(tuple(key), []).append(row)
+    return [np.array(rows) for rows in groups.values()]
+
+
+def _started(step: StepRows) -> Iterator[tuple[int, str]]:
+    """The level at which each row starts that has inputs."""
+    for part in step.parts:
+        shape = part.template.shape_of_points()
+        for place, row in enumerate(part.rows.tolist()):
+            if shape == part.rows.shape:
+                where = np.arange(part.rows.size) == place
+                yield row, part.template.at(part.template.level, where).starting_level()
+            else:
+                yield row, part.template.starting_level()

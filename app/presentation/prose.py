@@ -1,0 +1,29 @@
+"""Prose of users as HTML: Markdown without HTML and pictures, links to http, https and mailto alone."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+from markdown_it import MarkdownIt
+
+_LINK = re.compile(r"(?:https?://|mailto:)[^\s]+", re.IGNORECASE)
+
+
+def html_of(markdown: str) -> str:
+    """Safe HTML of a text in Markdown; what would be a tag, or another link, stays text."""
+    rendered: str = _renderer().render(markdown)
+    return rendered.strip()
+
+
+class _Prose(MarkdownIt):
+    """Markdown as users may write it."""
+
+    def validateLink(self, url: str) -> bool:
+        """Whether a link may lead there."""
+        return _LINK.fullmatch(url) is not None
+
+
+@cache
+def _renderer() -> MarkdownIt:
+    return _Prose("commonmark", {"html": False}).disable(["image", "html_block", "html_inline"])

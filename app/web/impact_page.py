@@ -1,0 +1,157 @@
+"""The page of a version's impact: a form that asks, how far the job is, and the designs that move."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from urllib.parse import quote, urlencode
+
+from fastapi import APIRouter, Depends, Request, Response
+
+from app.presentation import numbers
+from app.schemas.answers import Quantity
+from app.schemas.impact import DesignImpact, Impact
+from app.schemas.templates import Template
+from app.web.actions import forms_only
+from app.web.api import Api, Refused, TheApi, read
+from app.web.forms import fields
+from app.web.rendering import go, show, units_of
+from app.web.routes import Id, Number, Text
+
+router = APIRouter(include_in_schema=False)
+forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
+
+AT_ONCE = {"Prefer": "respond-async"}  # the page shows how it goes on
+ACCEPTED, ENDED, ILL_NAMED = 202, 409, 422
+MOST_LISTED = 200
+EFFECTS = {"moved": "moves", "refused": "refuses it", "needs_solids": "needs a solid"}
+
+
+@dataclass(frozen=True)
+class Line:
+    """A design in the table."""
+
+    impact: DesignImpact
+
+    @property
+    def effect(self) -> str:
+        """What the version does to it, in words."""
+        return EFFECTS[self.impact.effect]
+
+    @property
+    def margin(self) -> str:
+        """The margin that is lost most: `0.59 µm of thick (114 %)`."""
+        lost = self.impact.margin
+        if lost is None:
+            return ""
+        share = "" if lost.relative is None else f" ({numbers.percent(lost.relative)})"
+        return f"{numbers.told(lost.lost)} of {_placed(lost.name, lost.variant)}{share}"
+
+    @property
+    def output(self) -> str:
+        """The output that changes most: `film.minimum_film_thickness: 3.24 µm → 2.66 µm (−18 %)`."""
+        moved = self.impact.output
+        if moved is None:
+            return ""
+        sign = "" if moved.change is None else "+" if moved.change > 0 else "−"
+        change = "" if moved.change is None else f" ({sign}{numbers.percent(abs(moved.change))})"
+        ends = f"{_shown(moved.old)} → {_shown(moved.new)}"
+        return f"{_placed(moved.name, moved.variant)}: {ends}{change}"
+
+    @property
+    def parameters(self) -> list[str]:
+        """The CAD parameters that change: `shell.inner_diameter: 48.003 mm → 48.002 mm`."""
+        return [
+            f"{_placed(one.name, one.variant)}: {_shown(one.old)} → {_shown(one.new)}"
+            for one in self.impact.parameters
+        ]
+
+
+def _shown(quantity: Quantity | None) -> str:
+    return "no value" if quantity is None else numbers.told(quantity)
+
+
+def _placed(name: str, variant: str | None) -> str:
+    return name if variant is None else f"{name} of {variant}"
+
+
+@router.get("/templates/{id}/{version}/impact")
+async def impact_page(
+    id: Id, version: Number, request: Request, api: TheApi, job: Text = "", name: Text = "", tag: Text = ""
+) -> Response:
+    """The form; with a job, how far that is, or what it found."""
+    found, refusal = None, None
+    if job:
+        try:
+            response = await api.send("GET", f"/evaluations/{quote(job, safe='')}")
+        except Refused as refused:
+            refusal = refused
+        else:
+            found = None if response.status_code == ACCEPTED else read(response, Impact)
+    return await _page(request, api, id, version, {"job": job, "name": name, "tag": tag}, found, refusal)
+
+
+@forms.post("/templates/{id}/{version}/impact")
+async def ask(id: Id, version: Number, request: Request, api: TheApi) -> Response:
+    """Begin a calculation, and show it."""
+    typed = await fields(request)
+    asked = {name: typed.get(name, "").strip()[:200] for name in ("name", "tag")}
+    path = f"/templates/{id}/versions/{version}/impact"
+    query = {"units": units_of(request)}
+    try:
+        response = await api.send("POST", path, json=_body(asked), params=query, headers=AT_ONCE)
+    except Refused as refused:
+        if refused.status != ILL_NAMED:
+            raise
+        return await _page(request, api, id, version, asked, None, refused, ILL_NAMED)
+    if response.status_code != ACCEPTED:
+        return await _page(request, api, id, version, asked, read(response, Impact), None)
+    given = {name: text for name, text in asked.items() if text}
+    job = response.headers["Location"].rpartition("/")[2]
+    return go(f"/templates/{id}/{version}/impact?{urlencode({**given, 'job': job})}")
+
+
+@forms.post("/templates/{id}/{version}/impact/cancel")
+async def cancel(id: Id, version: Number, request: Request, api: TheApi) -> Response:
+    """Stop a calculation; one that has ended meanwhile stays as it is."""
+    job = (await fields(request)).get("job", "")[:64]
+    try:
+        await api.send("DELETE", f"/jobs/{quote(job, safe='')}")
+    except Refused as refused:
+        if refused.status != ENDED:
+            raise
+    return go(f"/templates/{id}/{version}/impact?{urlencode({'job': job})}")
+
+
+def _body(asked: Mapping[str, str]) -> dict[str, object]:
+    chosen: dict[str, object] = {"limit": MOST_LISTED}
+    chosen |= {"name": asked["name"]} if asked["name"] else {}
+    return chosen | ({"tags": [asked["tag"]]} if asked["tag"] else {})
+
+
+async def _page(
+    request: Request,
+    api: Api,
+    id: str,
+    version: int,
+    typed: Mapping[str, str],
+    found: Impact | None,
+    refusal: Refused | None,
+    status: int = 200,
+) -> Response:
+    template = await api.find(f"/templates/{id}/versions/{version}", Template)  # not of a draft
+    job = typed.get("job", "")
+    return show(
+        request,
+        "impact.html",
+        status=status,
+        id=id,
+        version=version,
+        is_released=template is not None,
+        withdrawn=template.withdrawn if template else None,
+        typed=typed,
+        job=job if job and found is None and refusal is None else "",
+        found=found,
+        lines=[Line(impact) for impact in found.designs] if found else [],
+        refusal=refusal.problem if refusal else None,
+    )

@@ -1,0 +1,100 @@
+"""The pages of an import from Mathcad: the form, the wait, and what became of every region."""
+
+from __future__ import annotations
+
+import re
+
+from fastapi import APIRouter, Depends, Request, Response
+
+from app.api.reading import FORM_TYPES, NotForm, check_type
+from app.schemas.jobs import Job
+from app.schemas.worksheet_imports import ImportedRegion, SheetImport
+from app.schemas.worksheets import Sheet
+from app.web.api import Api, Refused, TheApi
+from app.web.multipart import MEDIA_TYPE, read_parts
+from app.web.rendering import go, show
+from app.web.routes import Id, Text
+
+MISSED = (409, 415, 422, 429)
+"""What the form explains: the user can do something about it."""
+BINARY = {"Content-Type": "application/octet-stream"}
+_JOB = re.compile(r"[A-Za-z0-9-]{1,64}")
+
+
+async def files_only(request: Request) -> None:
+    """Let bodies through only if they are forms, with files or without."""
+    check_type(request, FORM_TYPES | {MEDIA_TYPE}, NotForm)
+
+
+router = APIRouter(include_in_schema=False)
+forms = APIRouter(include_in_schema=False, dependencies=[Depends(files_only)])
+
+
+@router.get("/worksheets/import")
+async def import_form(request: Request, api: TheApi, job: Text = "", id: Text = "") -> Response:
+    """Where a file is chosen; while its job runs, the wait; once it has ended, the regions or the refusal."""
+    if not _JOB.fullmatch(job):
+        return _form(request, id)
+    found = await api.get(f"/jobs/{job}", Job)
+    if found.state == "done" and found.result:
+        return go(f"{found.result.removeprefix('/api/v1')}/import")
+    if found.problem is not None:
+        return _form(request, id, found.problem.detail, found.problem.status)
+    answer = show(request, "import.html", typed_id=id, notice="", waiting=found)
+    answer.headers["Refresh"] = "1"  # the page needs no script to wait
+    return answer
+
+
+@forms.post("/worksheets/import")
+async def import_file(request: Request, api: TheApi) -> Response:
+    """Send the chosen file; where it is refused at once, the form again with the reason."""
+    parts = read_parts(await request.body(), request.headers.get("content-type", ""))
+    id = parts["id"].text.strip() if "id" in parts else ""
+    chosen = parts.get("file")
+    if chosen is None or not chosen.content:
+        return _form(
+            request, id, "choose a file: a .mcdx of Mathcad Prime or a .xmcd of Mathcad 11 to 15", 422
+        )
+    name = "".join(sign for sign in (chosen.file or "") if sign.isprintable())[-200:].strip()
+    query = {"id": id, **({"file": name} if name else {})}
+    try:
+        answer = await api.send(
+            "POST", "/worksheets/import", content=chosen.content, params=query, headers=BINARY
+        )
+    except Refused as refused:
+        if refused.status not in MISSED:
+            raise
+        said = "; ".join(refused.faults.values()) or refused.problem.detail
+        return _form(request, id, said, refused.status)
+    return go(f"/worksheets/import?job={answer.headers['Location'].rpartition('/')[2]}&id={id}")
+
+
+@router.get("/worksheets/{id}/import")
+async def import_report(id: Id, request: Request, api: TheApi) -> Response:
+    """Every region of the sheet, and what became of it."""
+    return await _report(request, api, id)
+
+
+async def _report(request: Request, api: Api, id: str) -> Response:
+    sheet = await api.get(f"/worksheets/{id}", Sheet)
+    report = await api.get(f"/worksheets/{id}/import", SheetImport)
+    counts = [(state, count) for state, count in report.regions if count]
+    rows = [(region, _values(region)) for region in report.items if region.kind != "text"]
+    return show(request, "import_report.html", sheet=sheet, report=report, counts=counts, rows=rows)
+
+
+def _values(region: ImportedRegion) -> tuple[str, str]:
+    """Both results in words: the first items of a list."""
+    return _written(region.mathcad, region.unit), _written(region.worksheet, region.unit)
+
+
+def _written(values: list[float] | list[float | None], unit: str | None) -> str:
+    if not values:
+        return "–"
+    some = ", ".join("none" if value is None else f"{value:.10g}" for value in values[:4])
+    more = f", … ({len(values)} items)" if len(values) > 4 else ""
+    return f"{some}{more}{'' if unit in (None, '1') else ' ' + unit}"
+
+
+def _form(request: Request, id: str, notice: str = "", status: int = 200) -> Response:
+    return show(request, "import.html", status, typed_id=id, notice=notice, waiting=None)

@@ -1,0 +1,94 @@
+"""What a worksheet that is not released would change in a design: previewed, nothing saved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from pydantic import JsonValue
+
+from app.presentation import numbers
+from app.schemas.designs import Design, DesignList, DesignSummary, Preview
+from app.schemas.worksheets import Sheet, SheetCheck
+from app.web.api import Api, Refused, read
+
+OFFERED = 50  # designs, newest first
+AT_ONCE = {"Prefer": "wait=5"}
+REFUSED = (404, 409, 413, 422, 429)
+
+
+@dataclass(frozen=True)
+class Changed:
+    """A value of a design before and with the draft."""
+
+    name: str
+    old: str
+    new: str
+
+
+@dataclass(frozen=True)
+class Tried:
+    """A design with the draft: what changes, or why that cannot be said."""
+
+    design: str
+    step: str
+    is_added: bool
+    changes: list[Changed]
+    reason: str = ""
+
+
+async def offered(api: Api, sheet: Sheet) -> list[DesignSummary]:
+    """Designs in which a draft may be tried: those that use the worksheet before all others."""
+    using = await api.get("/designs", DesignList, limit=OFFERED, template=sheet.id)
+    rest = await api.get("/designs", DesignList, limit=OFFERED)
+    return list({item.id: item for item in (*using.items, *rest.items)}.values())[:OFFERED]
+
+
+async def tried_in(api: Api, id: str, sheet: Sheet, checked: SheetCheck) -> Tried:
+    """The draft in place of the version that a design uses; as one more step, where it uses none."""
+    name, is_added, step = sheet.id, True, dict[str, JsonValue]()
+    try:
+        design = await api.get(f"/designs/{id}", Design)
+        name, is_added = _place(design, sheet)
+        step = _step(sheet, checked, is_added=is_added)
+        path = f"/designs/{id}/preview"
+        response = await api.send("POST", path, json={"steps": {name: step}}, headers=AT_ONCE)
+    except Refused as refused:
+        if refused.status not in REFUSED:
+            raise
+        reason = "; ".join(refused.faults.values()) or refused.problem.detail
+        return Tried(id, name, is_added, [], reason)
+    return Tried(design.name, name, is_added, list(_changes(read(response, Preview))))
+
+
+def _place(design: Design, sheet: Sheet) -> tuple[str, bool]:
+    """The step that holds the worksheet, or a new name for one; and whether it is new."""
+    using = next((name for name, step in design.steps.items() if step.template == sheet.id), None)
+    if using is not None:
+        return using, False
+    taken = {*design.parameters, *design.steps, *design.models}
+    return next(name for name in _names(sheet.id) if name not in taken), True
+
+
+def _names(id: str) -> Iterator[str]:
+    yield id
+    count = 2
+    while True:
+        yield f"{id}_{count}"
+        count += 1
+
+
+def _step(sheet: Sheet, checked: SheetCheck, *, is_added: bool) -> dict[str, JsonValue]:
+    if not is_added:
+        return {"version": sheet.version}
+    example = checked.template.example if checked.template else {}
+    return {"template": sheet.id, "version": sheet.version, "inputs": {**example}}
+
+
+def _changes(preview: Preview) -> Iterator[Changed]:
+    """Outputs and model parameters that differ."""
+    sides: dict[str, tuple[object, object]] = {n: (c.old, c.new) for n, c in preview.outputs.items()}
+    sides |= {name: (change.old, change.new) for name, change in preview.model_parameters.items()}
+    for name, (old, new) in sides.items():
+        if (before := numbers.told(old) or "–") != (after := numbers.told(new) or "–"):
+            yield Changed(name, before, after)

@@ -1,0 +1,74 @@
+"""The life of a worksheet as its page shows it: what is done, what comes next, and what is missing for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.schemas.worksheets import Sheet, SheetVersion
+
+ORDER = ("draft", "tested", "reviewed", "released")
+FINISHED = ("released", "withdrawn", "broken")
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One step of the life; `action` is how the interface calls it."""
+
+    action: str
+    title: str
+    explained: str
+    is_done: bool
+    missing: str
+
+    @property
+    def is_next(self) -> bool:
+        """Whether it can be done now."""
+        return not self.is_done and not self.missing
+
+
+def stages(sheet: Sheet) -> list[Stage]:
+    """Test, review and release of the newest version."""
+    reached = len(ORDER) if sheet.state in FINISHED else ORDER.index(sheet.state)
+    by = f" by {sheet.reviewer}" if sheet.reviewer else ""
+    return [
+        Stage(
+            "test",
+            "Test",
+            "The service runs the tests of the text and calculates its example.",
+            reached >= 1,
+            _faults(sheet),
+        ),
+        Stage(
+            "review",
+            f"Review{by}",
+            "Somebody else reads the text. Nobody proves the name: reports say ‘review not verified’.",
+            reached >= 2,
+            "" if reached >= 1 else "Test it first.",
+        ),
+        Stage(
+            "release",
+            f"Release version {sheet.version}",
+            "A released version never changes. Designs use it as they use every template.",
+            reached >= 3,
+            "" if reached >= 2 else "Have it reviewed first.",
+        ),
+    ]
+
+
+def _faults(sheet: Sheet) -> str:
+    """What has to be corrected before a test."""
+    count = len(sheet.faults)
+    if not count:
+        return ""
+    return f"Correct {'the fault' if count == 1 else f'the {count} faults'} in the text first."
+
+
+def newest_released(sheet: Sheet) -> SheetVersion | None:
+    """The newest version that designs can use."""
+    usable = (item for item in sheet.versions if item.state == "released")
+    return max(usable, key=lambda item: item.version, default=None)
+
+
+def begins_next(sheet: Sheet) -> bool:
+    """Whether an edit begins another version: this one is released for good."""
+    return sheet.state in FINISHED

@@ -1,0 +1,6 @@
+// A page whose answer is still calculated: follows its job, then shows what came of it.
+import { follow } from "./progress.js";
+
+const place = document.querySelector("[data-progress]");
+await follow(place.dataset.job, place, place.dataset.begins);
+location.reload();

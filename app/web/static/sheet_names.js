@@ -1,0 +1,40 @@
+// What the text of a worksheet completes: its own names, functions, units and keywords.
+import { replace } from "./sheet_text.js";
+import { completions, wordAt } from "./sheet_tokens.js";
+
+export class SheetNames {
+  constructor(text) {
+    this.text = text;
+    this.names = [];
+  }
+
+  // The names that the service read; those of before where it could read none.
+  update(names) {
+    if (names.length) this.names = names;
+  }
+
+  takes = (field) => field === this.text.area;
+
+  word = (field) => (field.selectionStart === field.selectionEnd ? wordAt(field.value, field.selectionStart) : null);
+
+  start = (field) => this.word(field)?.start ?? -1;
+
+  matching(field) {
+    const word = this.word(field);
+    return word ? completions(word, [...this.names, ...declared(field.value, new Set(this.names.map(({ name }) => name)), word)]) : [];
+  }
+
+  fits = () => true;
+
+  put = (field, name, start, end) => replace(field, name, start, end);
+
+  box = () => this.text.caretBox();
+}
+
+const DECLARATION = /^(?:(?:given|choice|curve|solve)\s+)?([\p{L}_][\p{L}\p{N}_]*)(?:\s*\[([^\]]*)\]|\s*[(=])[^"\n]*(?:"([^"\n]*)")?/gmu;
+
+// Names that the service has not read yet, because the text is not whole.
+function declared(text, known, { start }) {
+  const found = [...text.matchAll(DECLARATION)].filter(({ index, 1: name }) => !known.has(name) && (index > start || index + name.length < start));
+  return found.map(([, name, unit = "", words = ""]) => ({ name, unit, words }));
+}

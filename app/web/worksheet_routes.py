@@ -1,0 +1,166 @@
+"""The addresses of worksheets, and what their forms do: each is a call of the REST interface."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, Request, Response
+from pydantic import JsonValue
+
+from app.schemas.worksheets import Sheet
+from app.web.actions import forms_only
+from app.web.api import Api, Refused, TheApi
+from app.web.forms import fields
+from app.web.rendering import go
+from app.web.routes import Id, Text
+from app.web.worksheet_page import Unsaved, editor_page, list_page, start_page
+from templates.examples.listing import examples
+
+router = APIRouter(include_in_schema=False)
+forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
+
+NOT_NOW, STALE, ILL_NAMED = 409, 412, 422
+MISSED = (403, NOT_NOW, STALE, ILL_NAMED)
+"""What the page of the worksheet explains: the user can do something about it."""
+
+
+@router.get("/worksheets")
+async def worksheets(request: Request, api: TheApi, name: Text = "") -> Response:
+    """All worksheets, or those that fit what was typed into the search."""
+    return await list_page(request, api, name.strip())
+
+
+@router.get("/worksheets/new")
+async def new_worksheet(request: Request, api: TheApi) -> Response:
+    """Where a worksheet begins."""
+    return await start_page(request, api, dict(request.query_params))
+
+
+@router.get("/worksheets/{id}")
+async def worksheet(
+    id: Id,
+    request: Request,
+    api: TheApi,
+    design: Annotated[str, Query(max_length=64, pattern=r"^[A-Za-z0-9_]*$")] = "",
+) -> Response:
+    """The editor; `design` names one in which a draft is previewed."""
+    return await editor_page(request, api, id, design=design)
+
+
+@router.get("/worksheets/{id}/test")
+@router.get("/worksheets/{id}/review")
+@router.get("/worksheets/{id}/release")
+@router.get("/worksheets/{id}/withdraw")
+@router.get("/worksheets/{id}/delete")
+async def after_a_form(id: Id) -> Response:
+    """The worksheet: a form that was refused is shown at the address to which it was sent."""
+    return go(f"/worksheets/{id}")
+
+
+@forms.post("/worksheets")
+async def create(request: Request, api: TheApi) -> Response:
+    """A new draft, shown at once; where it is refused, the form again with what is wrong."""
+    typed = await fields(request)
+    id = typed.get("id", "").strip()
+    body: dict[str, JsonValue] = {"id": id, "text": await _start(api, typed.get("start", ""), typed)}
+    if author := typed.get("author", "").strip():
+        body["author"] = author
+    try:
+        await api.send("POST", "/worksheets", json=body)
+    except Refused as refused:
+        if refused.status not in MISSED:
+            raise
+        said = "; ".join(refused.faults.values()) or refused.problem.detail
+        return await start_page(request, api, typed, said, refused.status)
+    return go(f"/worksheets/{id}")
+
+
+async def _start(api: Api, start: str, typed: dict[str, str]) -> str:
+    """The text with which a worksheet begins: of an example, of another worksheet, or its title alone."""
+    group, _, name = start.partition(":")
+    if group == "example" and (text := next((one.text for one in examples() if one.id == name), "")):
+        return text
+    if group == "copy" and name.isidentifier():
+        return (await api.get(f"/worksheets/{name}", Sheet)).text
+    title = typed.get("title", "").strip()
+    return f"# {title}\n" if title else ""
+
+
+@forms.post("/worksheets/{id}")
+async def save(id: Id, request: Request, api: TheApi) -> Response:
+    """The text as typed; where it is refused, the page again with it and what is wrong."""
+    typed = await fields(request)
+    text = typed.get("text", "").replace("\r\n", "\n")
+    try:
+        headers = {"If-Match": typed.get("tag", "")}
+        await api.send("PATCH", f"/worksheets/{id}", json={"text": text}, headers=headers)
+    except Refused as refused:
+        if refused.status not in MISSED:
+            raise
+        return await editor_page(request, api, id, unsaved=_unsaved(text, refused))
+    return go(f"/worksheets/{id}")
+
+
+def _unsaved(text: str, refused: Refused) -> Unsaved:
+    if refused.status == STALE:
+        notice = "Somebody else saved this worksheet meanwhile. Your text is kept; theirs stands beside it."
+        return Unsaved(text, notice, STALE, is_conflict=True)
+    said = "; ".join(refused.faults.values()) or refused.problem.detail
+    return Unsaved(text, f"Nothing was saved: {said}", refused.status)
+
+
+@forms.post("/worksheets/{id}/test")
+async def test(id: Id, request: Request, api: TheApi) -> Response:
+    """Run its tests."""
+    return await _act(id, "test", {}, request, api)
+
+
+@forms.post("/worksheets/{id}/review")
+async def review(id: Id, request: Request, api: TheApi) -> Response:
+    """Somebody read the text with this digest."""
+    typed = await fields(request)
+    named: dict[str, JsonValue] = {
+        "reviewer": typed.get("reviewer", "").strip(),
+        "digest": typed.get("digest", ""),
+    }
+    return await _act(id, "review", named, request, api)
+
+
+@forms.post("/worksheets/{id}/release")
+async def release(id: Id, request: Request, api: TheApi) -> Response:
+    """Release it for designs, for good."""
+    return await _act(id, "release", {}, request, api)
+
+
+@forms.post("/worksheets/{id}/withdraw")
+async def withdraw(id: Id, request: Request, api: TheApi) -> Response:
+    """Say why a released version shall not be used any longer."""
+    typed = await fields(request)
+    return await _act(id, "withdraw", {"reason": typed.get("reason", "").strip()}, request, api)
+
+
+@forms.post("/worksheets/{id}/delete")
+async def delete(id: Id, request: Request, api: TheApi) -> Response:
+    """Remove the newest version, which was never released; then the one before it, or the list."""
+    try:
+        await api.send("DELETE", f"/worksheets/{id}")
+    except Refused as refused:
+        return await _explained(id, request, api, refused)
+    before = await api.find(f"/worksheets/{id}", Sheet)
+    return go(f"/worksheets/{id}" if before else "/worksheets")
+
+
+async def _act(id: str, action: str, body: dict[str, JsonValue], request: Request, api: Api) -> Response:
+    """One step of its life, then the page; with what is missing, where that was refused."""
+    try:
+        await api.send("POST", f"/worksheets/{id}/{action}", json=body or None)
+    except Refused as refused:
+        return await _explained(id, request, api, refused)
+    return go(f"/worksheets/{id}")
+
+
+async def _explained(id: str, request: Request, api: Api, refused: Refused) -> Response:
+    if refused.status not in MISSED:
+        raise refused
+    said = "; ".join(refused.faults.values()) or refused.problem.detail
+    return await editor_page(request, api, id, notice=said, status=refused.status)

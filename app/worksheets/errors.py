@@ -1,0 +1,76 @@
+"""What can be wrong with a request about worksheets, beyond wrong inputs.
+
+WorksheetError
+    IdTaken             a file, or another worksheet, has the id
+    OutOfOrder          the state of the worksheet does not allow it
+        OtherText       a review names another text than the one that is stored
+        Unresolved      regions of its import are not verified, and nobody has looked at them
+        TestsFailed     the worksheet has faults, or its tests fail
+    OwnReview           an author reviews their own worksheet
+    StaleWorksheet      the worksheet has changed since the client read it
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+
+class WorksheetError(Exception):
+    """Anything that worksheets refuse, beyond wrong inputs."""
+
+
+class IdTaken(WorksheetError):
+    """A file, or another worksheet, has the id."""
+
+    def __init__(self, id: str, by: str) -> None:
+        super().__init__(f"the id {id!r} belongs to {by} already; choose another, such as {id[:60]}_2")
+
+
+class OutOfOrder(WorksheetError):
+    """The state of the worksheet does not allow it."""
+
+
+class OtherText(OutOfOrder):
+    """A review names another text than the one that is stored."""
+
+    def __init__(self, named: str, digest: str | None) -> None:
+        super().__init__(
+            f"the review names digest {named[:12]}…, the worksheet has {(digest or 'none')[:12]}…: "
+            "read it again, then review that text"
+        )
+
+
+class TestsFailed(OutOfOrder):
+    """The worksheet has faults, or its tests fail; `reasons` says which."""
+
+    __test__ = False  # no test of pytest
+
+    def __init__(self, reasons: Sequence[str]) -> None:
+        self.reasons = tuple(reasons)
+        count = len(self.reasons)
+        super().__init__(f"{count} {'fault' if count == 1 else 'faults'}: {'; '.join(self.reasons)}")
+
+
+class Unresolved(OutOfOrder):
+    """Regions of the import differ, are refused or blocked, and their lines stand as imported."""
+
+    def __init__(self, reasons: Sequence[str]) -> None:
+        self.reasons = tuple(reasons)
+        count, some = len(self.reasons), "; ".join(self.reasons[:5])
+        remedy = "rewrite or remove the lines that stand for them"
+        regions = "region" if count == 1 else "regions"
+        super().__init__(f"{count} {regions} of the import unresolved: {some}: {remedy}")
+
+
+class OwnReview(WorksheetError):
+    """An author reviews their own worksheet."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f"{name!r} is the author; let another person review the worksheet")
+
+
+class StaleWorksheet(WorksheetError):
+    """The worksheet has changed since the client read it."""
+
+    def __init__(self, id: str) -> None:
+        super().__init__(f"worksheet {id} has changed meanwhile; read it again, then send your change")

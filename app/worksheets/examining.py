@@ -1,0 +1,98 @@
+"""What the service makes of a text; runs in a calculation process, because the text is a user's.
+
+Reading is bounded by the language: so many bytes, statements and operations, no loops. What is left to bound
+are time and memory, which the process does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from app.calculations.sources import SheetSource, class_of
+from templates.core.catalogue.digests import digest as digest_of
+from templates.core.catalogue.golden import record
+from templates.core.checking.golden import differences
+from templates.core.errors import InvalidInputs, TemplateError
+from templates.core.language.template import Template
+from templates.core.sheets import SheetFault, SheetRefused, TestResult, read, run_tests
+from templates.core.sheets.grammar import LANGUAGE
+
+LONGEST_TITLE = 200
+
+
+@dataclass(frozen=True)
+class Examined:
+    """What a text says of itself, and everything that is wrong with it."""
+
+    title: str
+    digest: str | None
+    faults: tuple[SheetFault, ...]
+    language: int = LANGUAGE
+
+
+@dataclass(frozen=True)
+class Tried:
+    """A text whose tests ran: why it cannot be released, or its golden record."""
+
+    tests: tuple[TestResult, ...]
+    reasons: tuple[str, ...]
+    record: Mapping[str, object] | None = None
+
+
+def examined(text: str) -> Examined:
+    """Read a text."""
+    try:
+        sheet = read(text)
+    except SheetRefused as refused:
+        return Examined(title_of(text), None, refused.faults)
+    return Examined(sheet.title[:LONGEST_TITLE], sheet.digest(), (), sheet.language)
+
+
+def tried(id: str, version: int, text: str) -> Tried:
+    """Run the tests of a text, and calculate its golden record: the example, and steps around it."""
+    try:
+        cls = read(text).template(id, version)
+    except SheetRefused as refused:
+        return Tried((), tuple(fault.sentence for fault in refused.faults))
+    tests = run_tests(cls)
+    failed = (f"line {one.line}: test {one.words!r}: {one.message}" for one in tests if not one.passed)
+    if reasons := (*failed, *_unusable(cls)):
+        return Tried(tests, reasons)
+    try:
+        return Tried(tests, (), record(cls))
+    except InvalidInputs as error:
+        return Tried(tests, tuple(f"the example: {fault.name}: {fault.detail}" for fault in error.faults))
+
+
+def _unusable(cls: type[Template]) -> Iterator[str]:
+    """What a template needs that the language does not ask for."""
+    if not cls.formulas:
+        yield "it gives nothing: write a formula"
+    required = [name for name, declared in cls.inputs.items() if declared.required]
+    for name in required:
+        if name not in cls.example:
+            yield f"{name} has no example: write (example …) behind its words"
+
+
+def as_released(
+    source: SheetSource, digest: str | None, golden: Mapping[str, object] | None
+) -> type[Template] | str:
+    """The class of a released text, or why it is not that of its release any more."""
+    try:
+        cls = class_of(source)
+    except TemplateError as error:
+        return f"its text is not understood any more: {error}"
+    if digest_of(cls) != digest:
+        return "its text is not that of the release"
+    try:
+        found = next(differences(cls, golden or {}), None)
+    except (TemplateError, LookupError, TypeError, ValueError, AttributeError) as error:
+        return f"its golden record cannot be read: {type(error).__name__}: {error}"
+    return f"its results differ: {found}" if found else cls
+
+
+def title_of(text: str) -> str:
+    """The first heading of a text, readable or not."""
+    headings = (line.lstrip("# ").strip() for line in text.splitlines() if line.startswith("#"))
+    return next((heading for heading in headings if heading), "")[:LONGEST_TITLE]

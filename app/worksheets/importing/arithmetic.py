@@ -1,0 +1,113 @@
+"""Arithmetic of Mathcad: a product of two vectors is their scalar product unless it is vectorised."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from app.worksheets.importing.errors import Untranslatable
+from app.worksheets.importing.names import key_of
+from app.worksheets.importing.said import PRODUCT, SUM, Said, binary, called, negative, number, reduced
+from app.worksheets.importing.said import power as raised
+from app.worksheets.importing.trees import Node
+from app.worksheets.importing.writer import Writer
+
+
+class Arithmetic(Writer):
+    """Writes operators."""
+
+    def times(self, left: Node, right: Node) -> Said:
+        """A product of two trees."""
+        return self.product(self.said(left), self.said(right))
+
+    def over(self, left: Node, right: Node) -> Said:
+        """A quotient of two trees."""
+        return self.quotient(self.said(left), self.said(right))
+
+    def plus(self, left: Node, right: Node) -> Said:
+        """A sum."""
+        return binary(self.value(left), "+", self.value(right), SUM)
+
+    def minus(self, left: Node, right: Node) -> Said:
+        """A difference."""
+        return binary(self.value(left), "-", self.value(right), SUM)
+
+    def negative(self, part: Node) -> Said:
+        """The negative of a tree."""
+        return negative(self.value(part))
+
+    def percent(self, part: Node) -> Said:
+        """A hundredth of a tree."""
+        return binary(self.value(part), "/", number(100), PRODUCT)
+
+    def vectorized(self, part: Node) -> Said:
+        """A tree whose operators go item by item."""
+        return replace(self, is_vectorised=True).said(part)
+
+    def product(self, left: Said, right: Said) -> Said:
+        """A product, which of two vectors is their scalar product."""
+        made = binary(left, "*", right, PRODUCT)
+        if left.is_vector and right.is_vector and not self.is_vectorised:
+            if left.is_row == right.is_row and left.is_row:
+                raise Untranslatable("matrix product", "write it as a sum of products")
+            if right.is_row and not left.is_row:
+                raise Untranslatable("matrix product", "write it as a sum of products")
+            return reduced("sum", made)
+        return made
+
+    def quotient(self, left: Said, right: Said) -> Said:
+        """A quotient."""
+        if right.is_vector and not self.is_vectorised:
+            raise Untranslatable("division by a vector", "vectorise it, or write it item by item")
+        return binary(left, "/", right, PRODUCT)
+
+    def power(self, base: Node, exponent: Node) -> Said:
+        """A power; of a vector its square alone, which is a scalar product."""
+        over = self.value(exponent)
+        if base.tag == "id" and key_of(base) == "e" and "e" not in self.scope:
+            return called("exp", over)
+        under = self.value(base)
+        if under.is_vector and not self.is_vectorised:
+            if over.number != 2:
+                raise Untranslatable("power of a vector", "vectorise it, or write it item by item")
+            return reduced("sum", raised(under, over))
+        if over.number is not None and not _is_plain(over.text):
+            over = _fraction(exponent) or number(over.number)
+        return raised(under, over)
+
+    def root(self, degree: list[Node], part: Said) -> Said:
+        """A root of any degree."""
+        if part.is_vector and not self.is_vectorised:
+            raise Untranslatable("root of a vector", "vectorise it, or write it item by item")
+        if not degree or degree[0].tag == "placeholder":
+            return called("sqrt", part)
+        by = self.value(degree[0])
+        return raised(part, binary(number(1), "/", by, PRODUCT))
+
+    def size(self, part: Said) -> Said:
+        """An absolute value, or the length of a vector."""
+        if part.is_vector and not self.is_vectorised:
+            return called("sqrt", reduced("sum", raised(part, number(2))))
+        return called("abs", part)
+
+    def factorial(self, part: Said) -> Said:
+        """A factorial, as a number."""
+        if part.number is None or part.number != int(part.number) or not 0 <= part.number <= 18:
+            raise Untranslatable("factorial", "write its value")
+        return number(math.factorial(int(part.number)))
+
+
+def _is_plain(text: str) -> bool:
+    return text.lstrip("-").replace(".", "", 1).isdigit()
+
+
+def _fraction(node: Node) -> Said | None:
+    """A quotient of two plain numbers, which an exponent may be."""
+    while node.tag == "parens" and node.parts:
+        node = node.parts[0]
+    if node.tag != "apply" or len(node.parts) != 3 or node.parts[0].tag != "div":
+        return None
+    over, under = node.parts[1], node.parts[2]
+    if over.tag != "real" or under.tag != "real" or not _is_plain(over.text + under.text):
+        return None
+    return Said(f"{over.text} / {under.text}", PRODUCT, number=float(over.text) / float(under.text))

@@ -1,0 +1,113 @@
+"""Conditions, and programs of Mathcad that are no more than cases: `if … then … else …`."""
+
+from __future__ import annotations
+
+from app.worksheets.importing.errors import Untranslatable
+from app.worksheets.importing.names import key_of
+from app.worksheets.importing.said import ATOM, LOOSE, SUM, Said
+from app.worksheets.importing.scope import Choice, Scope, Written
+from app.worksheets.importing.trees import Node
+from app.worksheets.importing.writer import Writer
+
+COMPARED = {"lessThan": "<", "lessOrEqual": "<=", "greaterThan": ">", "greaterOrEqual": ">=",
+            "equal": "==", "notEqual": "!="}  # fmt: skip
+
+_JOINED = {
+    "and": "{0} and {1}",
+    "or": "{0} or {1}",
+    "xor": "({0} and not {1}) or ({1} and not {0})",
+    "not": "not {0}",
+}
+
+
+class Conditions(Writer):
+    """Writes conditions and cases."""
+
+    def value(self, node: Node) -> Said:
+        """A quantity; a condition counts 1 where it holds and 0 where not."""
+        made = self.said(node)
+        if not made.is_truth:
+            return made
+        return Said(f"if {made.text} then 1 else 0", LOOSE).shaped(made)
+
+    def condition(self, node: Node) -> Said:
+        """A tree as a condition; of a number, whether it is not 0."""
+        if node.tag == "parens" and node.parts:
+            return self.condition(node.parts[0])
+        sign = node.parts[0].tag if node.tag == "apply" and node.parts else ""
+        sides = node.parts[1:]
+        if sign in COMPARED and len(sides) == 2:
+            return self._compared(COMPARED[sign], *sides)
+        if sign in _JOINED and len(sides) == (1 if sign == "not" else 2):
+            parts = [self.condition(side) for side in sides]
+            text = _JOINED[sign].format(*(part.bound(ATOM) for part in parts))
+            return Said(text, LOOSE, is_truth=True).shaped(*parts)
+        made = self.said(node)
+        if made.is_truth:
+            return made
+        return Said(f"{made.bound(SUM)} != 0", LOOSE, is_truth=True).shaped(made)
+
+    def _compared(self, sign: str, left: Node, right: Node) -> Said:
+        if word := self._tested(left, right) or self._tested(right, left):
+            return Said(f"not ({word})" if sign == "!=" else word, LOOSE, is_truth=True)
+        one, other = self.said(left), self.value(right)
+        start = one.text if one.is_truth else one.bound(SUM)  # a chain goes on: 1 < x <= 2
+        return Said(f"{start} {sign} {other.bound(SUM)}", LOOSE, is_truth=True).shaped(one, other)
+
+    def _tested(self, choice: Node, text: Node) -> str:
+        meant = self.scope.get(key_of(choice)) if choice.tag == "id" else None
+        if not isinstance(meant, Choice) or text.tag != "str" or text.text not in meant.words:
+            return ""
+        return f"{meant.name} is {meant.words[text.text]}"
+
+    def either(self, test: Said, one: Node, other: Node) -> Said:
+        """One of two values, by a condition."""
+        then, otherwise = self.value(one), self.value(other)
+        text = f"if {test.text} then {then.bound(SUM)} else {otherwise.text}"
+        return Said(text, LOOSE).shaped(test, then, otherwise)
+
+    def program(self, parts: list[Node]) -> Said:
+        """Definitions of local names, and then a value: each name is replaced by its expression."""
+        parts = [part for part in parts if part.tag != "placeholder"]
+        inner: Scope = dict(self.scope)
+        for place, part in enumerate(parts):
+            if part.tag == "localDefine" and len(part.parts) == 2 and part.parts[0].tag == "id":
+                inner[key_of(part.parts[0])] = Written(self.within(inner).value(part.parts[1]))
+                continue
+            at = self.within(inner)
+            if part.tag in ("if", "elseif", "alsoif", "else"):
+                return at.chain(parts[place:])
+            if part.tag == "return" and part.parts:
+                return at.value(part.parts[0])
+            if place == len(parts) - 1:
+                return at.value(part)
+            at.said(part)  # names a construct that is refused
+            raise Untranslatable("program of several values", "write one formula")
+        raise Untranslatable("program without a value", "write one formula")
+
+    def chain(self, parts: list[Node]) -> Said:
+        """Conditions one after another; the last is `else`, or there is no value."""
+        branches: list[tuple[Node, Node]] = []
+        waiting = list(parts)
+        while waiting:
+            part = waiting.pop(0)
+            inner = {child.tag: child for child in part.parts}
+            if part.tag in ("if", "elseif", "alsoif") and "test" in inner and "then" in inner:
+                branches.append((inner["test"].parts[0], inner["then"].parts[0]))
+                waiting = [
+                    child for child in part.parts if child.tag in ("elseif", "alsoif", "else")
+                ] + waiting
+            elif part.tag == "else" and part.parts and not waiting:
+                return self._cases(branches, part.parts[0])
+            else:
+                raise Untranslatable("program of several values", "write one formula with if … then … else …")
+        remedy = "say in Mathcad, or in the line, what holds otherwise"
+        raise Untranslatable("condition without otherwise", remedy)
+
+    def _cases(self, branches: list[tuple[Node, Node]], last: Node) -> Said:
+        made = self.value(last)
+        for test, then in reversed(branches):
+            held, value = self.condition(test), self.value(then)
+            text = f"if {held.text} then {value.bound(SUM)} else {made.text}"
+            made = Said(text, LOOSE).shaped(held, value, made)
+        return made

@@ -1,0 +1,208 @@
+"""Definitions and results of a sheet as statements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from app.worksheets.importing.errors import Unnamed, Untranslatable
+from app.worksheets.importing.expressions import Expressions
+from app.worksheets.importing.list_definitions import ListDefinitions
+from app.worksheets.importing.names import key_of, legal, look
+from app.worksheets.importing.outcome import Outcome, one_line
+from app.worksheets.importing.quantities import scaled, unit_named
+from app.worksheets.importing.regions import Original
+from app.worksheets.importing.said import Said
+from app.worksheets.importing.scope import Failed, Function, Scope, Value, Written
+from app.worksheets.importing.statements import without_result
+from app.worksheets.importing.trees import Node
+
+
+class Definitions(ListDefinitions):
+    """What regions define and show, as lines of a worksheet."""
+
+    def take(self, outcome: Outcome, math: Node) -> None:
+        """Write the lines of a region that calculates.
+
+        Raises
+        ------
+        Untranslatable, Unnamed
+            It has no lines; the reason.
+        """
+        self.now = outcome
+        self.owners[outcome.original.number] = outcome
+        if not self.is_labelled:
+            _label_units(math, self.scope)
+        self.expect(outcome, math.parts[1] if math.tag == "define" and len(math.parts) > 1 else math)
+        match math.tag, math.parts:
+            case "define" | "globalDefine", [target, value]:
+                self._define(outcome, target, value)
+            case "eval", [*_]:
+                self._result(outcome, math)
+            case "apply", [operator, *_] if operator.tag == "equal":
+                outcome.show("equation that calculates nothing")
+            case "symEval", _:
+                raise Untranslatable("symbolic calculation", "write its result as a formula")
+            case tag, _ if tag.endswith("Control"):
+                outcome.show("control that defines nothing")
+            case _:
+                outcome.show("expression without a result")
+        if outcome.original.failed and outcome.state != "shown":
+            raise Untranslatable("region in which Mathcad reports an error", "correct or remove it")
+
+    def fail(self, math: Node, number: str) -> None:
+        """Note that the names which a region defines have no meaning."""
+        if math.tag in ("define", "globalDefine") and math.parts:
+            for key in _defined(math.parts[0]):
+                self.scope[key] = Failed(number)
+
+    def in_block(self, region: Original) -> list[Outcome]:
+        """The regions of the same solve block."""
+        return [o for o in self.outcomes.values() if o.original.block == region.block]
+
+    def equation(self, region: Original) -> str:
+        """A constraint as far as it can be written, for a remedy."""
+        try:
+            return Expressions(self, self.scope).condition(region.math).text if region.math else ""
+        except (Untranslatable, Unnamed):
+            return "left == right"
+
+    def finish(self) -> None:
+        """Write the functions that nothing calls, of plain numbers where that fits their units."""
+        for function in self.functions:
+            outcome = self.owners[function.region]
+            if function.names or outcome.state != "unverified":
+                continue
+            try:
+                plain = [Said("1", number=1.0) for _ in function.parameters]
+                if self.function(function, plain) is not None:
+                    outcome.notes.append("nothing calls it: its parameters are taken as pure numbers")
+                    continue
+            except (Untranslatable, Unnamed):
+                pass
+            if not outcome.lines:
+                what = f"function {look(function.key)} whose units no call tells"
+                outcome.refuse(
+                    one_line(what), f"write it with its units: {legal(function.key)}(x [mm]) [1] = …"
+                )
+
+    def _define(self, outcome: Outcome, target: Node, value: Node) -> None:
+        match target.tag:
+            case "id":
+                self._single(outcome, target, value)
+            case "function" if target.parts and target.parts[0].tag == "id":
+                self._new_function(outcome, target, value)
+            case "apply" if target.parts and target.parts[0].tag == "indexer":
+                self.items_of(outcome, target, value)
+            case "matrix":
+                self.several(outcome, target, value)
+            case _:
+                raise Untranslatable("definition of what is no name", "give the result a name")
+
+    def _single(self, outcome: Outcome, target: Node, value: Node) -> None:
+        inner = without_result(value)
+        if inner.tag == "range":
+            self.range_of(outcome, target, inner)
+        elif inner.tag == "ComboBoxControl":
+            self.choose(outcome, [target], inner)
+        else:
+            self._quantity(outcome, key_of(target), value)
+
+    def _quantity(self, outcome: Outcome, key: str, value: Node) -> None:
+        inner = without_result(value)
+        literal = scaled(inner)
+        is_given = literal is not None and self._is_input(outcome.original, key)
+        said = self.expression(inner)
+        self.declare(outcome, key, said, self.asked(value, literal), is_given=is_given)
+
+    def _is_input(self, region: Original, key: str) -> bool:
+        return region.tag == "input" if self.has_tags else key not in self.fixed and not region.tag
+
+    def _new_function(self, outcome: Outcome, target: Node, value: Node) -> None:
+        key = key_of(target.parts[0])
+        bound = next((part for part in target.parts if part.tag == "boundVars"), None)
+        parameters = tuple(key_of(part) for part in bound.parts) if bound else ()
+        if len(set(parameters)) != len(parameters) or not all(parameters):
+            raise Untranslatable("function without parameters", "write a formula")
+        function = Function(key, parameters, without_result(value), dict(self.scope), outcome.original.number)
+        self._refuse_if_hopeless(function)
+        self.scope[key] = function
+        self.functions.append(function)
+
+    def _refuse_if_hopeless(self, function: Function) -> None:
+        """Name what a body has that no call can make good: a matrix, a loop, a name without meaning."""
+        inner: Scope = dict(function.scope)
+        for key in function.parameters:
+            inner[key] = Written(Said("1", axis=None))
+        before = self.now
+        trial = _Trial(self)
+        try:
+            Expressions(trial, inner).value(function.body)
+        except Untranslatable as error:
+            if error.construct in _HOPELESS:
+                raise
+        finally:
+            self.now = before
+
+    def _result(self, outcome: Outcome, math: Node) -> None:
+        """A region that shows a result: of a name, or of a formula, which gets a line."""
+        inner = math.parts[0]
+        at = Expressions(self, self.scope)
+        while inner.tag == "parens" and inner.parts:
+            inner = inner.parts[0]
+        if inner.tag == "id" and isinstance(value := self.scope.get(key_of(inner)), Value):
+            if inner.attributes.get("labels") not in ("CONSTANT", "UNIT"):
+                outcome.name = value.name
+                return
+        said = at.quantity(inner) or at.value(inner)
+        self.declare(outcome, f"result_{outcome.original.number}", said, self.asked(math))
+        del self.scope[f"result_{outcome.original.number}"]
+
+
+class _Trial:
+    """Answers what an expression asks of a sheet, and writes nothing."""
+
+    def __init__(self, sheet: Definitions) -> None:
+        self.origin, self.is_labelled = sheet.origin, sheet.is_labelled
+        self.axis = sheet.axis
+
+    def function(self, function: Function, arguments: Sequence[Said]) -> str | None:
+        """A name that nothing has."""
+        return "call"
+
+    def curve(self, across: Said, up: Said) -> str:
+        """A name that nothing has."""
+        return "curve"
+
+
+_HOPELESS = frozenset({
+    "integral", "derivative", "limit", "loop", "symbolic calculation", "text", "complex number",
+    "try and catch",
+    "matrix", "matrix product", "matrix function", "solve block", "condition without otherwise", "spline",
+    "file",
+    "random numbers", "statistical function", "item of a matrix", "column of a matrix", "row of a matrix",
+})  # fmt: skip
+
+
+def _label_units(math: Node, scope: Scope) -> None:
+    """Say which names are units, as Mathcad Prime does: those that nothing defines."""
+    own = set(_defined(math.parts[0])) if math.tag == "define" and math.parts else set[str]()
+    for tag in ("boundVars", "localDefine"):
+        own.update(key_of(name) for node in math.all(tag) for name in node.parts if name.tag == "id")
+    for node in math.all("id"):
+        key = key_of(node)
+        if key not in scope and key not in own and unit_named(key) is not None:
+            node.attributes.setdefault("labels", "UNIT")
+
+
+def _defined(target: Node) -> Iterator[str]:
+    """The names that a definition gives a meaning."""
+    match target.tag, target.parts:
+        case "id", _:
+            yield key_of(target)
+        case "function", [name, *_]:
+            yield key_of(name)
+        case "apply", [_, name, *_]:
+            yield from _defined(name)
+        case "matrix", parts:
+            for part in parts:
+                yield from _defined(part)

@@ -1,0 +1,184 @@
+"""Mathcad's trees as expressions of worksheets.
+
+A vector of Mathcad is a list. A range variable stands for its values, one by one, and so does what it
+indexes. What worksheets do not have is refused by its name.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from app.worksheets.importing.arithmetic import Arithmetic
+from app.worksheets.importing.calls import Calls
+from app.worksheets.importing.conditions import COMPARED, Conditions
+from app.worksheets.importing.errors import Unnamed, Untranslatable
+from app.worksheets.importing.lists import Lists
+from app.worksheets.importing.names import key_of, look
+from app.worksheets.importing.quantities import CONSTANTS, unit_named
+from app.worksheets.importing.said import POWER, Said, number
+from app.worksheets.importing.scope import Choice, Failed, Meant, Range, Value, Written
+from app.worksheets.importing.trees import Node
+
+REFUSED = {
+    "integral": ("integral", "give its closed form, or a sum"),
+    "derivative": ("derivative", "give its closed form"),
+    "limit": ("limit", "give its closed form"),
+    "crossProduct": ("matrix product", "write its components"),
+    "determinant": ("determinant", "write it out"),
+    "transpose": ("matrix", "write its items as lists"),
+    "matcol": ("column of a matrix", "give the column as a list of its own"),
+    "matrow": ("row of a matrix", "give the row as a list of its own"),
+    "product": ("product over an index", "write it out, or as exp(sum(log(x)))"),
+    "symEval": ("symbolic calculation", "write its result as a formula"),
+    "for": ("loop", "write the formula for a list"),
+    "while": ("loop", "write the formula for a list, or solve"),
+    "tryCatch": ("try and catch", "say with if when there is a value"),
+    "str": ("text", "use a choice, or a check"),
+    "imag": ("complex number", "calculate with real and imaginary part"),
+    "complex": ("complex number", "calculate with real and imaginary part"),
+    "elementOf": ("membership of a set", "write a comparison"),
+    "symResult": ("symbolic calculation", "write its result as a formula"),
+}
+
+
+class Expressions(Arithmetic, Lists, Calls, Conditions):
+    """Writes expressions at one place of a sheet."""
+
+    def said(self, node: Node) -> Said:
+        """The expression of a tree.
+
+        Raises
+        ------
+        Untranslatable
+            With the name of the construct that worksheets do not have.
+        Unnamed
+            A name has no meaning here.
+        """
+        if node.tag in REFUSED:
+            raise Untranslatable(*REFUSED[node.tag])
+        if write := _WRITERS.get(node.tag):
+            return write(self, node)
+        if node.tag in ("parens", "eval", "apply") and node.parts:
+            return self.applied(node) if node.tag == "apply" else self.said(node.parts[0])
+        if node.tag.endswith("Control"):
+            raise Untranslatable("control with a script", "give its value as an input")
+        raise Untranslatable(f"construct {node.tag[:30]}", "write the formula by hand")
+
+    def _real(self, node: Node) -> Said:
+        try:
+            value = float(node.text)
+        except ValueError:
+            raise Untranslatable("number that is none", "write the number") from None
+        if not math.isfinite(value) or abs(value) >= 1e300:
+            raise Untranslatable("infinity", "give a number")
+        text = node.text.strip().lstrip("+")
+        made = number(value)
+        plain = text if text.replace(".", "", 1).isdigit() and len(text) < 25 else made.text
+        return replace(made, text=plain)
+
+    def named(self, node: Node) -> Said:
+        """What a name stands for."""
+        key, label = key_of(node), node.attributes.get("labels", "")
+        if label == "UNIT":
+            return self._unit(key)
+        meant = self.scope.get(key)
+        if meant is not None and label != "CONSTANT":
+            return _meant(key, meant)
+        if key in _WELL_KNOWN:
+            return _WELL_KNOWN[key]
+        if key == "∞":
+            raise Untranslatable("infinity", "give a number")
+        if label == "CONSTANT" or (key == "e" and not self.sheet.is_labelled):
+            return _constant(key)
+        if key == "%" or (label in ("", "*", "None") and key and unit_named(key)):
+            return self._unit(key)
+        raise Unnamed(key)
+
+    def _unit(self, key: str) -> Said:
+        made = unit_named(key)
+        if made is None:
+            raise Untranslatable(f"unit {look(key)[:30]}", "write the quantity in another unit")
+        return Said(f"{number(made.number).text} {made.unit}", POWER)
+
+    def applied(self, node: Node) -> Said:
+        """An operator or a function, applied to what it takes."""
+        operator, parts = node.parts[0], list(node.parts[1:])
+        sign = operator.tag
+        if sign in REFUSED and sign not in ("transpose", "determinant"):
+            raise Untranslatable(*REFUSED[sign])
+        if len(parts) == 2 and sign in _BINARY:
+            return self.quantity(node) or _BINARY[sign](self, *parts)
+        if len(parts) == 1 and sign in _UNARY:
+            return self.quantity(node) or _UNARY[sign](self, *parts)
+        if sign == "nthRoot" and parts:
+            return self.root(parts[:-1], self.value(parts[-1]))
+        if sign == "summation":
+            return self.summed(parts)
+        if sign == "id":
+            return self.call(operator, self._arguments(parts))
+        if sign in COMPARED or sign in ("and", "or", "not", "xor"):
+            return self.condition(node)
+        raise Untranslatable(f"operator {sign[:30]}", "write the formula by hand")
+
+    def _arguments(self, parts: list[Node]) -> list[Node]:
+        return list(parts[0].parts) if len(parts) == 1 and parts[0].tag == "sequence" else parts
+
+
+def _meant(key: str, meant: Meant) -> Said:
+    match meant:
+        case Value() | Range():
+            return meant.said()
+        case Written(expression):
+            return expression
+        case Failed(region):
+            raise Unnamed(key, region)
+        case Choice():
+            raise Untranslatable("text", "test the choice, as in law is walther")
+    raise Untranslatable("function as a value", "call it with its arguments")
+
+
+def _constant(key: str) -> Said:
+    if key not in CONSTANTS:
+        raise Unnamed(key)
+    value, unit = CONSTANTS[key]
+    return number(value) if unit == "1" else Said(f"{value!r} {unit}", POWER)
+
+
+def _range(at: Expressions, node: Node) -> Said:
+    raise Untranslatable("range within a formula", "define the range by itself, above")
+
+
+def _empty(at: Expressions, node: Node) -> Said:
+    raise Untranslatable("empty place", "fill it in Mathcad, or write the line")
+
+
+_WELL_KNOWN: Mapping[str, Said] = {"π": Said("pi", number=math.pi)}
+_WRITERS: Mapping[str, Callable[[Expressions, Node], Said]] = {
+    "real": Expressions._real,
+    "id": Expressions.named,
+    "matrix": Expressions.matrix,
+    "program": lambda at, node: at.program(list(node.parts)),
+    "if": lambda at, node: at.chain([node]),
+    "range": _range,
+    "placeholder": _empty,
+}
+_UNARY: Mapping[str, Callable[[Expressions, Node], Said]] = {
+    "neg": Expressions.negative,
+    "percent": Expressions.percent,
+    "vectorize": Expressions.vectorized,
+    "absval": lambda at, part: at.size(at.value(part)),
+    "determinant": lambda at, part: at.size(at.value(part)),
+    "transpose": lambda at, part: at.transposed(at.said(part)),
+    "factorial": lambda at, part: at.factorial(at.value(part)),
+}
+_BINARY: Mapping[str, Callable[[Expressions, Node, Node], Said]] = {
+    "scale": Expressions.times,
+    "mult": Expressions.times,
+    "div": Expressions.over,
+    "plus": Expressions.plus,
+    "minus": Expressions.minus,
+    "pow": Expressions.power,
+    "indexer": Expressions.item,
+}

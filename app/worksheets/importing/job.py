@@ -1,0 +1,60 @@
+"""An import from the bytes of a file to a worksheet; runs in a process of its own, within limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.plain import JsonObject
+from app.worksheets.importing.legacy import read_legacy
+from app.worksheets.importing.outcome import Outcome, one_line
+from app.worksheets.importing.package import is_package
+from app.worksheets.importing.prime import read_prime
+from app.worksheets.importing.record import recorded
+from app.worksheets.importing.regions import OriginalSheet
+from app.worksheets.importing.translation import translated
+from app.worksheets.importing.verification import verified
+
+LONGEST_TITLE = 100
+
+
+@dataclass(frozen=True)
+class Imported:
+    """The text of the worksheet, and the record of the import."""
+
+    text: str
+    record: JsonObject
+
+
+def read_sheet(content: bytes) -> OriginalSheet:
+    """The regions of a file of either kind.
+
+    Raises
+    ------
+    SheetNotRead
+        It is no sheet of Mathcad, or it is not taken; the error says why and what would be right.
+    """
+    return read_prime(content) if is_package(content) else read_legacy(content)
+
+
+def imported(content: bytes, title: str) -> Imported:
+    """A file as a worksheet, each of its regions accounted for.
+
+    Raises
+    ------
+    SheetNotRead
+        It is no sheet of Mathcad, or it is not taken.
+    """
+    sheet = read_sheet(content)
+    outcomes = translated(sheet)
+    text = verified(_title(outcomes, title), outcomes)
+    return Imported(text, recorded(sheet, outcomes, text))
+
+
+def _title(outcomes: list[Outcome], other: str) -> str:
+    """The first text of the sheet if it is short enough for a title; else another."""
+    first = next((o for o in outcomes if o.original.kind == "text" and o.original.text), None)
+    if first is not None and len(first.original.text) <= LONGEST_TITLE and "\n" not in first.original.text:
+        if first is outcomes[0]:
+            first.lines = []
+            return one_line(first.original.text)
+    return one_line(other) or "Imported worksheet"

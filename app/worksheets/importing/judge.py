@@ -1,0 +1,132 @@
+"""What expressions measure: the language of worksheets is asked, so that its own check decides."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import lru_cache
+
+import lark
+
+from app.worksheets.importing.errors import Untranslatable
+from app.worksheets.importing.quantities import Scaled
+from templates.core.errors import FaultyText
+from templates.core.units.expressions import GRAMMAR, Sort, checked
+from templates.core.units.operations import Kind, Name
+from templates.core.units.sorts import Part
+from templates.core.units.units import compatible, registry, unit
+
+Call = Callable[[list[Part]], Part]
+
+_USUAL = ("1", "mm", "m**2", "m**3", "s", "kg", "kN", "MPa", "kN*m", "kg/m**3", "m/s", "m/s**2", "W", "K",
+          "J", "Pa*s", "m**2/s", "kN/m", "m**4", "rad/s", "1/s", "N/m**3", "A", "V",
+          "ohm")  # fmt: skip
+"""Units in which results are declared, where the sheet asks for none."""
+_SHORT = {"meter": "m", "kilogram": "kg", "second": "s", "kelvin": "K", "ampere": "A", "mole": "mol",
+          "radian": "rad", "candela": "cd"}  # fmt: skip
+
+
+@lru_cache(maxsize=1)
+def _parser() -> lark.Lark:
+    return lark.Lark(GRAMMAR, parser="lalr", start="expression", propagate_positions=True)
+
+
+@dataclass
+class Judge:
+    """The names that have lines already, as the scope of expressions."""
+
+    sorts: dict[str, Sort] = field(default_factory=dict)
+    functions: dict[str, tuple[int, Sort]] = field(default_factory=dict)
+    bound: Mapping[str, Sort] = field(default_factory=dict)
+
+    def sort(self, text: str, bound: Mapping[str, Sort] | None = None) -> Sort:
+        """What an expression gives.
+
+        Parameters
+        ----------
+        bound
+            What the parameters of a function measure, within it.
+
+        Raises
+        ------
+        Untranslatable
+            The language refuses the expression, as where units do not fit.
+        """
+        before, self.bound = self.bound, bound or {}
+        try:
+            made: Sort = checked(_parser().parse(text), self)[1]
+        except FaultyText as error:
+            raise Untranslatable(
+                f"formula that the language refuses ({error})", _remedy(error.code)
+            ) from None
+        except lark.exceptions.LarkError:
+            raise Untranslatable("formula that is not understood", "write it by hand") from None
+        finally:
+            self.bound = before
+        return made
+
+    def name(self, text: str) -> Part:
+        """What a name gives."""
+        sort = self.bound.get(text) or self.sorts.get(text)
+        if sort is None:
+            raise FaultyText("unknown_name", f"{text[:40]} is not declared")
+        return Name(text), sort
+
+    def function(self, name: str) -> Call | None:
+        """A function that has a line."""
+        if name not in self.functions:
+            return None
+        count, result = self.functions[name]
+
+        def call(arguments: list[Part]) -> Part:
+            if len(arguments) != count:
+                raise FaultyText("unknown_function", f"{name} takes {count} values")
+            axis = next((sort.axis for _, sort in arguments if sort.axis), "")
+            return Name(name), Sort(result.kind, result.weight, axis=axis)
+
+        return call
+
+    def spend(self) -> None:
+        """Count nothing: the sheet counts when it is read."""
+
+
+def _remedy(code: str) -> str:
+    remedies: Mapping[str, str] = {
+        "unit_mismatch": "write the line by hand, with the units that are meant",
+        "axis_mismatch": "write lists of equal length over one axis",
+    }
+    return remedies.get(code, "write the line by hand")
+
+
+def sort_of(text: str, axis: str = "") -> Sort:
+    """What a value measures that is declared in a unit."""
+    return Sort(Kind(unit(text).base), 0.0, axis=axis)
+
+
+def fits(text: str, sort: Sort) -> bool:
+    """Whether a value can be declared in a unit."""
+    try:
+        return compatible(unit(text).base, sort.kind.base) and not unit(text).absolute
+    except FaultyText:
+        return False
+
+
+def unit_for(sort: Sort, wanted: Sequence[str]) -> str:
+    """The unit in which a value is declared: the first wanted one that fits, else a usual one, else SI.
+
+    Raises
+    ------
+    Untranslatable
+        What it measures has no unit with whole powers.
+    """
+    if sort.kind.base == registry.Unit("radian"):
+        return next((text for text in wanted if fits(text, sort) and text != "1"), "rad")
+    found = next((text for text in (*wanted, *_USUAL) if fits(text, sort)), None)
+    if found:
+        return found
+    powers = tuple(
+        (_SHORT.get(name, name), Fraction(str(power)).limit_denominator(100))
+        for name, power in registry.Quantity(1.0, sort.kind.base).unit_items()
+    )
+    return Scaled(1.0, powers).unit

@@ -1,0 +1,104 @@
+"""Sheets of Mathcad 11 to 15 (.xmcd): one XML document, its trees brought to the form of Mathcad Prime."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from app.worksheets.importing.errors import SheetNotRead
+from app.worksheets.importing.regions import MOST_REGIONS, Kind, Original, OriginalSheet, Tag, coordinate
+from app.worksheets.importing.trees import Node, read
+
+_KINDS: Mapping[str, Kind] = {
+    "math": "math", "text": "text", "plot": "plot", "picture": "picture", "area": "area",
+    "pageBreak": "page break",
+}  # fmt: skip
+_RENAMED = {"ifThen": "if", "otherwise": "else", "sqrt": "nthRoot"}
+_SKIPPED = {"originRef", "parentRef", "comment", "originComment", "contentHash", "resultFormat"}
+
+
+def read_legacy(content: bytes) -> OriginalSheet:
+    """Read a .xmcd file.
+
+    Raises
+    ------
+    SheetNotRead
+        It is no such file, or it is larger than a sheet may be.
+    """
+    root = read(content, "the file")
+    if root.tag != "worksheet" or root.first("regions") is None:
+        what = f"its outermost element is {root.tag[:40]!a}"
+        raise SheetNotRead(
+            "no_sheet", f"{what}: send a .mcdx of Mathcad Prime or a .xmcd of Mathcad 11 to 15"
+        )
+    regions = tuple(_regions(root))
+    if len(regions) > MOST_REGIONS:
+        raise SheetNotRead("too_large", f"it has more than {MOST_REGIONS} regions: split the sheet")
+    return OriginalSheet("Mathcad", regions, _origin(root), is_labelled=False, results_carry_units=True)
+
+
+def _origin(root: Node) -> int:
+    settings = next(root.all("builtInVariables"), None)
+    text = settings.attributes.get("array-origin", "0") if settings else "0"
+    return int(text) if text.lstrip("-").isdigit() and len(text) < 6 else 0
+
+
+def _regions(root: Node) -> Iterator[Original]:
+    for group in (part for part in root.parts if part.tag == "regions"):
+        for region in group.parts:
+            if region.tag == "region" and region.parts:
+                yield _original(region)
+                yield from _regions(region.parts[0]) if region.parts[0].tag == "area" else ()
+
+
+def _original(region: Node) -> Original:
+    body = region.parts[0]
+    kind = _KINDS.get(body.tag, "other")
+    math = _math(body) if kind == "math" else None
+    cached = next(math.all("result"), None) if math else None
+    said = (" ".join(part.whole_text.split()) for part in body.all("p")) if kind == "text" else ()
+    named = region.attributes.get("tag", "").lower()
+    tag: Tag = "input" if named == "input" else "output" if named == "output" else ""
+    return Original(
+        number=region.attributes.get("region-id", "")[:20],
+        kind=kind,
+        top=coordinate(region.attributes.get("align-y") or region.attributes.get("top")),
+        left=coordinate(region.attributes.get("left")),
+        math=math,
+        cached=cached,
+        text="\n".join(said).strip(),
+        tag=tag,
+    )
+
+
+def _math(body: Node) -> Node | None:
+    math = next((part for part in body.parts if part.tag not in _SKIPPED), None)
+    while math is not None and math.tag == "provenance":  # where a formula was copied from
+        math = next((part for part in math.parts if part.tag not in _SKIPPED), None)
+    if math is not None:
+        _renew(math)
+    return math
+
+
+def _renew(node: Node) -> None:
+    """Give trees the form of Mathcad Prime, in place: names of elements, conditions, and subscripts."""
+    waiting = [node]
+    while waiting:
+        node = waiting.pop()
+        node.tag = _RENAMED.get(node.tag, node.tag)
+        unwrapped = [_unwrapped(part) for part in node.parts]
+        if unwrapped != node.parts:
+            node.parts, node.pieces = unwrapped, list(unwrapped)
+        if node.tag == "if" and len(node.parts) == 2:
+            node.parts = [Node("test", {}, "", [node.parts[0]]), Node("then", {}, "", [node.parts[1]])]
+        if node.tag == "id" and (below := node.attributes.pop("subscript", "")):
+            node.pieces.append(Node("Subscript", {}, pieces=[below]))
+        waiting.extend(node.parts)
+
+
+def _unwrapped(node: Node) -> Node:
+    while node.tag == "provenance":
+        kept = [part for part in node.parts if part.tag not in _SKIPPED]
+        if not kept:
+            break
+        node = kept[-1]
+    return node

@@ -1,0 +1,102 @@
+"""Lists of Mathcad: vectors, their items, values along a range, and sums over an index."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from app.worksheets.importing.errors import Untranslatable
+from app.worksheets.importing.names import key_of
+from app.worksheets.importing.said import PRODUCT, Said, binary, listed, number, reduced
+from app.worksheets.importing.scope import Scope, Written
+from app.worksheets.importing.trees import Node
+from app.worksheets.importing.writer import MOST_ITEMS, Writer
+
+
+class Lists(Writer):
+    """Writes lists."""
+
+    def matrix(self, node: Node) -> Said:
+        """A vector as a list; other matrices are refused."""
+        parts = [part for part in node.parts if part.tag != "display"]
+        rows, columns = node.attributes.get("rows"), node.attributes.get("cols")
+        if "1" not in (rows, columns) or not parts:
+            raise Untranslatable("matrix", "write its rows or columns as lists")
+        if len(parts) == 1:
+            return self.said(parts[0])
+        if len(parts) > MOST_ITEMS:
+            raise Untranslatable(f"list of more than {MOST_ITEMS} items", "give it as an input over an axis")
+        items = tuple(self.quantity(part) or self.said(part) for part in parts)
+        if any(item.axis for item in items):
+            raise Untranslatable("list of lists", "write each as a list of its own")
+        made = listed(items, self.sheet.axis(len(items)))
+        made = replace(made, is_row=columns != "1")
+        return made if self.keep is None else self.keep(made)
+
+    def transposed(self, part: Said) -> Said:
+        """A vector as a row, or a row as a vector."""
+        if not part.is_vector:
+            raise Untranslatable("matrix", "write its items as lists")
+        return replace(part, is_row=not part.is_row)
+
+    def item(self, whole: Node, index: Node) -> Said:
+        """An item of a list, or its items along a range."""
+        if index.tag == "sequence":
+            raise Untranslatable("item of a matrix", "write its rows or columns as lists")
+        made, at = self.said(whole), self.said(index)
+        if made.axis is None:
+            raise Untranslatable("item of what is no list", "define the list above")
+        if at.axis is not None:
+            return self._along(made, at)
+        if at.number is None or at.number != int(at.number):
+            raise Untranslatable("index that is calculated", "write the index as a number")
+        place = int(at.number) + 1 - made.axis.start
+        if not 1 <= place <= made.axis.length:
+            raise Untranslatable("item that the list does not have", "write an index within the list")
+        if not made.text.replace("_", "").isalnum() and not made.text.startswith("["):
+            raise Untranslatable("item of an expression", "give the list a name of its own")
+        return Said(f"{made.text}[{place}]")
+
+    def _along(self, made: Said, at: Said) -> Said:
+        """The items of a list along a range that names each of them."""
+        assert made.axis is not None
+        assert at.axis is not None
+        numbers = at.axis.numbers
+        wanted = tuple(float(made.axis.start + n) for n in range(made.axis.length))
+        is_index = self.is_counting or at.text.replace("_", "").isalnum()
+        if not is_index or numbers != wanted:
+            raise Untranslatable("part of a list", "give the part as a list of its own")
+        return replace(made, is_vector=False, is_row=False, axis=replace(at.axis, start=made.axis.start))
+
+    def summed(self, parts: list[Node]) -> Said:
+        """A sum over an index, or of a list."""
+        function = next((part for part in parts if part.tag == "lambda"), None)
+        bounds = {part.tag: part.parts[0] for part in parts if part.parts and part.tag.endswith("Bound")}
+        if function is None or len(function.parts) != 2:
+            raise Untranslatable("sum without a term", "write it out")
+        variable, body = function.parts[0].parts[0], function.parts[1]
+        if variable.tag != "id":
+            made = self.value(body)
+            if not made.is_vector:
+                raise Untranslatable("sum over what is no list", "write it out")
+            return reduced("sum", made)
+        if "lowerBound" not in bounds or "upperBound" not in bounds:
+            raise Untranslatable("sum over a range variable", "give its bounds, or sum the list")
+        numbers = self._counted(self.said(bounds["lowerBound"]), self.said(bounds["upperBound"]))
+        axis = replace(self.sheet.axis(len(numbers)), numbers=numbers)
+        literal = f"[{', '.join(number(n).text for n in numbers)}]"
+        inner: Scope = {**self.scope, key_of(variable): Written(Said("index", axis=axis))}
+        made = self.within(inner).value(body)
+        if "index" in made.text.replace("(", " ").replace(")", " ").split():
+            inner[key_of(variable)] = Written(Said(literal, axis=axis))
+            made = replace(self, scope=inner, is_counting=True).value(body)
+        if made.axis is None:
+            return binary(number(len(numbers)), "*", made, PRODUCT)
+        return reduced("sum", made)
+
+    def _counted(self, first: Said, last: Said) -> tuple[float, ...]:
+        if first.number is None or last.number is None:
+            raise Untranslatable("sum over a calculated range", "write its bounds as numbers")
+        count = int(last.number - first.number) + 1
+        if not 1 <= count <= MOST_ITEMS or first.number != int(first.number):
+            raise Untranslatable(f"sum over more than {MOST_ITEMS} numbers", "write its closed form")
+        return tuple(first.number + n for n in range(count))

@@ -1,0 +1,56 @@
+"""What became of each region of a sheet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from app.worksheets.importing.quantities import Result
+from app.worksheets.importing.regions import Original
+
+State = Literal["verified", "differs", "unverified", "shown", "refused", "blocked"]
+
+UNRESOLVED: frozenset[State] = frozenset({"differs", "refused", "blocked"})
+"""States that forbid a release while their lines stand in the text as they were imported."""
+
+
+@dataclass
+class Outcome:
+    """What became of a region: its state, the lines that stand for it, and both values where there are two.
+
+    `name` is that of the value which is held against `cached`; `first` is the line in which it is declared if
+    that is another region's.
+    """
+
+    original: Original
+    state: State = "unverified"
+    lines: list[str] = field(default_factory=list)
+    name: str = ""
+    cached: Result | None = None
+    ours: tuple[float, ...] = ()
+    construct: str = ""
+    remedy: str = ""
+    blocked_by: str = ""
+    notes: list[str] = field(default_factory=list)
+
+    def refuse(self, construct: str, remedy: str) -> None:
+        """Note that the region has a construct which worksheets do not have."""
+        self.state, self.construct, self.remedy = "refused", construct, remedy
+        self.name, self.blocked_by = "", ""
+        self.lines = [f"// refused: {one_line(construct)} (region {self.original.number})"]
+
+    def block(self, name: str, by: str) -> None:
+        """Note that the region needs a name whose region was not translated."""
+        self.state, self.construct, self.blocked_by = "blocked", f"needs {one_line(name)}", by
+        self.remedy, self.name = f"write what region {by} says first", ""
+        self.lines = [f"// blocked: needs {one_line(name)} of region {by} (region {self.original.number})"]
+
+    def show(self, what: str) -> None:
+        """Note that the region calculates nothing."""
+        self.state, self.construct = "shown", what
+
+
+def one_line(text: str) -> str:
+    """Text fit for a remark: one line, no signs that control anything."""
+    plain = "".join(sign if sign.isprintable() else " " for sign in text)
+    return " ".join(plain.split())[:200]

@@ -1,0 +1,140 @@
+"""The parts of a .mcdx package, unpacked within limits that are counted while reading.
+
+The sizes that a ZIP states are a client's words, so they decide nothing. A part that is a ZIP itself (a text
+region) is opened once, for its one document, and spends the same budget; nothing within it is opened.
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+import zipfile
+import zlib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from app.worksheets.importing.errors import SheetNotRead
+
+MOST_PARTS = 200
+MOST_BYTES = 32 * 2**20
+LONGEST_NAME = 200
+LONGEST_DIRECTORY = 2**18
+"""Bytes of the directory of a package: far more than its parts need."""
+
+_END, _END_SIZE, _LONGEST_COMMENT = b"PK\x05\x06", 22, 2**16
+_PIECE = 2**16
+_ENCRYPTED = 0x1
+_DAMAGES = (
+    zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, struct.error, ValueError, OverflowError,
+)  # fmt: skip
+"""What `zipfile` raises for bytes that are no ZIP, or no longer one."""
+_METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
+AGAIN = "save the sheet in Mathcad again, and send that file"
+
+
+@dataclass
+class Budget:
+    """How many bytes may still be unpacked."""
+
+    left: int = MOST_BYTES
+
+    def spend(self, size: int) -> None:
+        """Take off bytes that were unpacked; raises SheetNotRead when there are too many."""
+        self.left -= size
+        if self.left < 0:
+            what = f"its parts have more than {MOST_BYTES // 2**20} MiB unpacked"
+            raise SheetNotRead("too_large", f"{what}: remove pictures and tables of data, or split the sheet")
+
+
+class Package:
+    """The parts of a package by name, read when they are asked for.
+
+    Raises
+    ------
+    SheetNotRead
+        It is no ZIP, has too many parts, or parts that no sheet has.
+    """
+
+    def __init__(self, content: bytes, budget: Budget) -> None:
+        self._budget = budget
+        _check_directory(content)
+        try:
+            self._zip = zipfile.ZipFile(io.BytesIO(content))
+        except _DAMAGES as error:
+            raise SheetNotRead("package", f"it is no whole ZIP package ({error}): {AGAIN}") from None
+        self._parts = self._zip.infolist()
+        if len(self._parts) > MOST_PARTS:
+            raise _crowded(len(self._parts))
+        _check_names(part.filename for part in self._parts)
+        for part in self._parts:
+            _check_part(part)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the parts."""
+        return tuple(part.filename for part in self._parts)
+
+    def read(self, name: str) -> bytes | None:
+        """The content of a part, or None if there is none of this name.
+
+        Raises
+        ------
+        SheetNotRead
+            The part is damaged, or too much was unpacked.
+        """
+        if name not in self.names:
+            return None
+        pieces: list[bytes] = []
+        try:
+            with self._zip.open(name) as part:
+                while piece := part.read(_PIECE):
+                    self._budget.spend(len(piece))
+                    pieces.append(piece)
+        except _DAMAGES as error:
+            what = f"its part {name[:60]!a} is damaged ({error})"
+            raise SheetNotRead("package", f"{what}: {AGAIN}") from None
+        return b"".join(pieces)
+
+
+def is_package(content: bytes) -> bool:
+    """Whether a file begins as a ZIP does."""
+    return content.startswith(b"PK\x03\x04")
+
+
+def _check_directory(content: bytes) -> None:
+    """Judge the directory before `zipfile` reads it: it makes an object of every entry."""
+    place = len(content) - _END_SIZE
+    if content[place : place + 4] != _END or content[-2:] != b"\0\0":
+        place = content.rfind(_END, max(0, place - _LONGEST_COMMENT))
+    if place < 0 or len(content) < place + _END_SIZE:
+        raise SheetNotRead("package", f"it is no whole ZIP package (its directory is missing): {AGAIN}")
+    entries, size = struct.unpack("<HI", content[place + 10 : place + 16])
+    if entries > MOST_PARTS:
+        raise _crowded(entries)
+    if size > LONGEST_DIRECTORY:
+        raise SheetNotRead("package", f"its directory has {size} bytes, which no sheet needs: {AGAIN}")
+
+
+def _crowded(parts: int) -> SheetNotRead:
+    what = f"it has {parts} parts; a sheet may have {MOST_PARTS}"
+    return SheetNotRead("too_large", f"{what}: split the sheet, or remove text regions")
+
+
+def _check_names(names: Iterable[str]) -> None:
+    seen = set[str]()
+    for name in names:
+        steps = name.replace("\\", "/").split("/")
+        if len(name) > LONGEST_NAME or name.startswith(("/", "\\")) or ".." in steps or ":" in name:
+            raise SheetNotRead("package", f"its part {name[:60]!a} leads out of the package: {AGAIN}")
+        if name in seen:
+            raise SheetNotRead("package", f"it has two parts of the name {name[:60]!a}: {AGAIN}")
+        seen.add(name)
+
+
+def _check_part(part: zipfile.ZipInfo) -> None:
+    if part.flag_bits & _ENCRYPTED:
+        what = f"its part {part.filename[:60]!a} is encrypted"
+        raise SheetNotRead("encrypted", f"{what}: take the password off in Mathcad, and send that file")
+    if part.compress_type not in _METHODS:
+        what = f"its part {part.filename[:60]!a} is packed by method {part.compress_type}"
+        raise SheetNotRead("package", f"{what}; a sheet has deflated parts: {AGAIN}")

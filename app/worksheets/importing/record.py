@@ -1,0 +1,99 @@
+"""The record of an import, kept with its worksheet: its regions, and which of them are unresolved now.
+
+A region that differs, is refused or is blocked forbids a release while every line that stood for it is
+still in the text as it was imported. To change one of these lines, or to remove one, is to resolve the
+region: somebody has looked at it. Blanks do not count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from app.plain import JsonObject
+from app.storage.tables import WorksheetVersionRow as Row
+from app.worksheets.errors import Unresolved
+from app.worksheets.importing.outcome import UNRESOLVED, Outcome
+from app.worksheets.importing.regions import MATHEMATICAL, OriginalSheet
+
+STATES = ("verified", "differs", "unverified", "shown", "refused", "blocked")
+
+
+def recorded(sheet: OriginalSheet, outcomes: Sequence[Outcome], text: str) -> JsonObject:
+    """The record as JSON."""
+    lines = {_plain(line): number for number, line in reversed(list(enumerate(text.split("\n"), 1)))}
+    owners = {o.name: o for o in outcomes if o.name and o.lines}
+    return {
+        "program": sheet.program,
+        "origin": sheet.origin,
+        "regions": [_region(outcome, lines, owners) for outcome in outcomes],
+    }
+
+
+def _region(outcome: Outcome, lines: dict[str, int], owners: dict[str, Outcome]) -> JsonObject:
+    original, cached = outcome.original, outcome.cached
+    own = outcome.lines or (owners[outcome.name].lines if outcome.name in owners else [])
+    first = lines.get(_plain(own[-1].split("\n")[0])) if own else None
+    factor = cached.factor if cached else 1.0
+    return {
+        "region": original.number,
+        "kind": original.kind,
+        "is_mathematical": original.kind in MATHEMATICAL,
+        "top": original.top,
+        "left": original.left,
+        "state": outcome.state,
+        "name": outcome.name,
+        "line": first,
+        "lines": own,
+        "reason": outcome.construct,
+        "remedy": outcome.remedy,
+        "blocked_by": outcome.blocked_by,
+        "mathcad": [value / factor for value in cached.values] if cached else [],
+        "worksheet": [_finite(value / factor) for value in outcome.ours],
+        "unit": cached.unit if cached else None,
+        "is_list": bool(cached and cached.is_list),
+        "notes": outcome.notes,
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if abs(value) < 1e308 else None
+
+
+def unresolved(record: JsonObject, text: str) -> list[JsonObject]:
+    """The regions of a record that forbid a release of this text."""
+    present = {_plain(line) for line in text.split("\n")}
+    return [region for region in record["regions"] if _stands(region, present)]
+
+
+def _stands(region: JsonObject, present: set[str]) -> bool:
+    if region["state"] not in UNRESOLVED:
+        return False
+    lines = [_plain(part) for line in region["lines"] for part in line.split("\n")]
+    return all(line in present for line in lines)
+
+
+def require_resolved(row: Row) -> None:
+    """Return if no region of the import of a version forbids its release.
+
+    Raises
+    ------
+    Unresolved
+        With each region that does.
+    """
+    if row.imported is not None and (found := unresolved(row.imported, row.text)):
+        raise Unresolved([_told(region) for region in found])
+
+
+def _told(region: JsonObject) -> str:
+    what = "its result differs from Mathcad's" if region["state"] == "differs" else region["reason"]
+    return f"region {region['region']} ({region['state']}: {what})"
+
+
+def counted(record: JsonObject) -> dict[str, int]:
+    """How many mathematical regions are in each state."""
+    found = [region["state"] for region in record["regions"] if region["is_mathematical"]]
+    return {state: found.count(state) for state in STATES}
+
+
+def _plain(line: str) -> str:
+    return " ".join(line.split())

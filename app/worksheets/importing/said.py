@@ -1,0 +1,124 @@
+"""An expression of a worksheet while it is being written: its text, how tightly it binds, and its shape."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from app.worksheets.importing.errors import Untranslatable
+
+LOOSE, SUM, PRODUCT, SIGNED, POWER, ATOM = range(6)
+"""How tightly an expression binds; a condition or an `if` binds least."""
+
+LONGEST = 1_800
+"""Characters of one expression: a statement of a worksheet has at most 2,000."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What a list runs over: the range or the list that gave it its name.
+
+    `start` is the index of the first item in Mathcad's count. `numbers` are the values of a range.
+    """
+
+    name: str
+    length: int
+    start: int
+    numbers: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Said:
+    """An expression of a worksheet.
+
+    A list is either a vector of Mathcad, for which a product is a scalar product, or values taken one by one
+    along a range, which Mathcad calculates with as with single numbers. `number` is the value where it is
+    known without calculating the sheet.
+    """
+
+    text: str
+    tight: int = ATOM
+    axis: Axis | None = None
+    is_vector: bool = False
+    is_row: bool = False
+    is_truth: bool = False
+    number: float | None = None
+
+    def __post_init__(self) -> None:
+        if len(self.text) > LONGEST:
+            remedy = "split it into formulas with names of their own, in Mathcad or in the worksheet"
+            raise Untranslatable("formula of more than 1,800 characters", remedy)
+
+    def bound(self, least: int) -> str:
+        """The text, in parentheses where it binds more loosely than its place needs."""
+        return self.text if self.tight >= least else f"({self.text})"
+
+    def shaped(self, *others: Said) -> Said:
+        """The same text with the shape that it gets from what it is made of."""
+        lists = [(part, part.axis) for part in others if part.axis is not None]
+        if not lists:
+            return self
+        if len({axis.length for _, axis in lists}) > 1:
+            remedy = "give both as many items, or write the formula for each item"
+            raise Untranslatable("lists of different lengths in one formula", remedy)
+        axis = next((axis for part, axis in lists if not part.is_vector), lists[0][1])
+        is_vector, is_row = (all(getattr(p, name) for p, _ in lists) for name in ("is_vector", "is_row"))
+        return replace(self, axis=axis, is_vector=is_vector, is_row=is_row)
+
+
+def binary(left: Said, sign: str, right: Said, tight: int) -> Said:
+    """An operator between two expressions; sums and products go on from the left."""
+    text = f"{left.bound(tight)} {sign} {right.bound(tight + 1)}"
+    return Said(text, tight, number=_folded(left.number, sign, right.number)).shaped(left, right)
+
+
+def power(base: Said, exponent: Said) -> Said:
+    """A power; its exponent may be a signed number without parentheses."""
+    text = f"{base.bound(ATOM)}**{exponent.bound(ATOM)}"
+    return Said(text, POWER, number=_folded(base.number, "**", exponent.number)).shaped(base, exponent)
+
+
+def negative(part: Said) -> Said:
+    """The negative of an expression."""
+    number = None if part.number is None else -part.number
+    return Said(f"-{part.bound(POWER)}", SIGNED, number=number).shaped(part)
+
+
+def called(name: str, *parts: Said) -> Said:
+    """A function of expressions, item by item where they are lists."""
+    return Said(f"{name}({', '.join(part.text for part in parts)})").shaped(*parts)
+
+
+def reduced(name: str, part: Said) -> Said:
+    """A function that makes one value of a list."""
+    return Said(f"{name}({part.text})")
+
+
+def number(value: float) -> Said:
+    """A plain number."""
+    text = repr(float(value)).removesuffix(".0")
+    return Said(text, SIGNED if value < 0 else ATOM, number=float(value))
+
+
+def listed(items: tuple[Said, ...], axis: Axis) -> Said:
+    """A list of single values, as a vector."""
+    return Said(f"[{', '.join(item.text for item in items)}]", ATOM, axis, is_vector=True)
+
+
+def _folded(left: float | None, sign: str, right: float | None) -> float | None:
+    if left is None or right is None:
+        return None
+    try:
+        match sign:
+            case "+":
+                value = left + right
+            case "-":
+                value = left - right
+            case "*":
+                value = left * right
+            case "/":
+                value = left / right
+            case _:
+                value = float(left) ** float(right) if abs(right) < 100 else float("nan")
+    except (ArithmeticError, TypeError, ValueError):
+        return None
+    return value if isinstance(value, float) and abs(value) < 1e15 else None

@@ -1,0 +1,79 @@
+"""What Mathcad's names mean at one place of a sheet: each sees the definitions above it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from app.worksheets.importing.said import Axis, Said
+from app.worksheets.importing.trees import Node
+
+
+@dataclass(frozen=True)
+class Value:
+    """A quantity with a line of its own."""
+
+    name: str
+    axis: Axis | None = None
+    is_vector: bool = False
+    is_row: bool = False
+    number: float | None = None
+    region: str = ""
+
+    def said(self) -> Said:
+        """The name as an expression."""
+        return Said(
+            self.name, axis=self.axis, is_vector=self.is_vector, is_row=self.is_row, number=self.number
+        )
+
+
+@dataclass(frozen=True)
+class Range:
+    """A range variable; in a formula it stands for its values one by one."""
+
+    name: str
+    axis: Axis
+
+    def said(self) -> Said:
+        """The name as an expression."""
+        return Said(self.name, axis=self.axis)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A choice among words; `words` is by Mathcad's text."""
+
+    name: str
+    words: dict[str, str] = field(hash=False)
+
+
+@dataclass(frozen=True)
+class Written:
+    """An expression without a line of its own: a parameter, or a local name of a program."""
+
+    expression: Said
+
+
+@dataclass(eq=False)
+class Function:
+    """A function of Mathcad with what its names mean where it stands; each use by other units is another one.
+
+    `names` are those that its statements got, by the units with which they are called.
+    """
+
+    key: str
+    parameters: tuple[str, ...]
+    body: Node
+    scope: Scope
+    region: str
+    names: dict[tuple[str, ...], str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Failed:
+    """A name whose region was not translated."""
+
+    region: str
+
+
+Meant = Value | Range | Choice | Written | Function | Failed
+Scope = dict[str, Meant]

@@ -1,0 +1,101 @@
+"""Imports as jobs: the file is kept by its hash, read in a process of its own, and becomes a draft."""
+
+from __future__ import annotations
+
+from sqlalchemy.orm import Session
+
+from app.catalogue.catalogues import Catalogues
+from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
+from app.plain import JsonObject
+from app.storage.artifacts import ArtifactStore
+from app.storage.database import Database
+from app.storage.errors import ArtifactDamaged, ArtifactMissing
+from app.storage.idempotency import Once
+from app.workers.base import Limits
+from app.worksheets import repository
+from app.worksheets.errors import IdTaken, WorksheetError
+from app.worksheets.importing.errors import SheetNotRead
+from app.worksheets.importing.job import imported
+from app.worksheets.naming import require_free
+from app.worksheets.schemas import SheetIn
+from app.worksheets.service import Worksheets
+from templates.core.errors import TemplateError
+
+IMPORT = "worksheet_import"
+LIMITS = Limits(deadline=20.0, memory_mb=512)
+MOST_BYTES = 16 * 2**20
+"""Of a file; the public sheets have at most 0.6 MB."""
+
+
+class Imports:
+    """Queues imports, and is the handler of such jobs."""
+
+    def __init__(
+        self,
+        database: Database,
+        store: ArtifactStore,
+        jobs: Jobs,
+        catalogues: Catalogues,
+        worksheets: Worksheets,
+    ) -> None:
+        self.database, self.store, self.jobs = database, store, jobs
+        self.catalogues, self.worksheets = catalogues, worksheets
+
+    def begin(self, content: bytes, id: str, file: str, once: Once) -> str:
+        """Queue the import of a file as a worksheet; the id of the job.
+
+        Raises
+        ------
+        SheetNotRead
+            If the file is empty or too large.
+        IdTaken, InvalidInputs
+            If no worksheet may have the id.
+        QueueFull
+            Too many jobs are waiting.
+        """
+        if not 0 < len(content) <= MOST_BYTES:
+            what = "the body is empty" if not content else f"it has more than {MOST_BYTES // 2**20} MiB"
+            raise SheetNotRead(
+                "too_large" if content else "no_sheet", f"{what}: send one .mcdx or .xmcd file"
+            )
+        require_free(id, self.catalogues)
+        payload: JsonObject = {"file": self.store.put(content), "id": id, "name": file, "client": once.client}
+
+        def unit(session: Session) -> str:
+            if before := once.find(session):
+                return str(before["job"])
+            if repository.versions(session, id):
+                raise IdTaken(id, "another worksheet")
+            job = self.jobs.enqueue(session, IMPORT, payload, client=once.client)
+            once.keep(session, 202, {"job": job})
+            return job
+
+        job = self.database.write(unit)
+        self.jobs.wake()
+        return job
+
+    def __call__(self, job: Job, context: JobContext) -> Completion:
+        """Import the file of a job; its result is the worksheet.
+
+        Raises
+        ------
+        JobFailed
+            The file is not taken, or the id is taken meanwhile.
+        """
+        payload = job.payload
+        id, sha, name = payload["id"], payload["file"], payload["name"]
+        try:
+            content = self.store.read(sha)
+            context.progress(0.1, "reading the sheet")
+            made = context.run(imported, content, name or id.replace("_", " ").capitalize(), limits=LIMITS)
+            context.progress(0.9, "saving the draft")
+            once = Once(f"import {job.id}", IMPORT, sha, payload["client"])
+            body = SheetIn(id=id, text=made.text)
+            self.worksheets.create(body, once, (sha, {**made.record, "file": name}))
+        except (SheetNotRead, WorksheetError, TemplateError, ArtifactMissing, ArtifactDamaged) as error:
+            raise JobFailed(error) from error
+        link = f"/api/v1/worksheets/{id}"
+        return lambda session: link
+
+    def failed(self, session: Session, job: Job, problem: JsonObject) -> None:
+        """Nothing is left behind by an import that failed; retention takes its file."""

@@ -1,0 +1,242 @@
+"""Lines of a worksheet as they are written: names, units, words, functions, curves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from app.worksheets.importing.errors import Untranslatable
+from app.worksheets.importing.expressions import Expressions
+from app.worksheets.importing.judge import Judge, sort_of, unit_for
+from app.worksheets.importing.names import Names, key_of, look, symbol
+from app.worksheets.importing.outcome import Outcome
+from app.worksheets.importing.quantities import Scaled, is_infinite, result_of, scaled
+from app.worksheets.importing.regions import OriginalSheet
+from app.worksheets.importing.said import Axis, Said, number
+from app.worksheets.importing.scope import Function, Scope, Value, Written
+from app.worksheets.importing.trees import Node
+from templates.core.language.template import Template
+from templates.core.units.expressions import Sort, constant
+from templates.core.units.units import registry, unit
+
+RESERVED = frozenset(
+    "if then else and or not is to so that over from within gives given choice curve solve require check test"
+    " level ledger held published example source symbol remedy also with pi abs sqrt min max"
+    " sin cos tan asin acos atan exp log log10 sinh cosh tanh atan2 floor ceil sum mean"
+    " count index linear interpolated".split()
+) | frozenset(name for name in dir(Template))
+
+
+class Statements:
+    """The worksheet while it is written."""
+
+    def __init__(self, sheet: OriginalSheet) -> None:
+        self.sheet = sheet
+        self.origin, self.is_labelled = sheet.origin, sheet.is_labelled
+        self.scope: Scope = {}
+        self.judge = Judge()
+        self.names = Names(RESERVED)
+        self.outcomes: dict[int, Outcome] = {}
+        self._words = set[str]()
+        self.owners: dict[str, Outcome] = {}  # outcomes of functions and curves, by region
+        self.functions: list[Function] = []
+        self.has_tags = any(region.tag for region in sheet.regions)
+        self.fixed = frozenset(_structural(sheet))
+        self.now: Outcome | None = None
+
+    def axis(self, length: int) -> Axis:
+        """The axis of the vectors of a length."""
+        return Axis(f"items_{length}", length, self.origin)
+
+    def function(self, function: Function, arguments: Sequence[Said]) -> str | None:
+        """The name of the statement of a function for arguments of these units; written at its first call."""
+        sorts = [self.judge.sort(part.text, self.judge.bound) for part in arguments]
+        units = tuple(
+            "1" if part.is_truth else _parameter_unit(sort)
+            for part, sort in zip(arguments, sorts, strict=True)
+        )
+        if units in function.names:
+            return function.names[units] or None
+        keys = function.parameters
+        inner: Scope = dict(function.scope)
+        own, parameters = Names(RESERVED | self.judge.sorts.keys() | self.judge.functions.keys()), list[str]()
+        for key in keys:
+            parameters.append(own.take(key))
+            inner[key] = Written(Said(parameters[-1]))
+        function.names[units] = ""  # a function that calls itself is written out, and refused as too deep
+        bound = {name: sort_of(unit) for name, unit in zip(parameters, units, strict=True)}
+        before, self.judge.bound = self.judge.bound, bound
+        caller, self.now = self.now, self.owners[function.region]
+        try:
+            body = Expressions(self, inner).value(function.body)
+            if body.axis is not None or not parameters:
+                return None
+            sort = self.judge.sort(body.text, bound)
+            unit = unit_for(sort, self.asked(function.body))
+        finally:
+            self.judge.bound, self.now = before, caller
+        name = self.names.take(function.key)
+        function.names[units] = name
+        self.judge.functions[name] = len(parameters), sort_of(unit)
+        takes = ", ".join(f"{own} [{unit}]" for own, unit in zip(parameters, units, strict=True))
+        self.owners[function.region].lines.append(f"{name}({takes}) [{unit}] = {body.text}")
+        return name
+
+    def curve(self, across: Said, up: Said) -> str:
+        """The name of a curve through the points of two lists that are written out."""
+        assert self.now is not None
+        points = list(zip(items_in(across), items_in(up), strict=False))
+        if len(points) < 2 or across.axis is None or up.axis is None or across.axis.length != up.axis.length:
+            raise Untranslatable("interpolation in calculated lists", "write the points as a curve")
+        x_unit = unit_for(self.judge.sort(items_in(across)[0], self.judge.bound), [])
+        y_unit = unit_for(self.judge.sort(items_in(up)[0], self.judge.bound), [])
+        name = self.names.take("interpolation")
+        rows = [f"  {_in(x, x_unit)} -> {_in(y, y_unit)}" for x, y in points]
+        heights = [row.rpartition(" ")[2] for row in rows]
+        is_flat = heights[0] == heights[1] and heights[-1] == heights[-2]
+        held = " (held)" if is_flat else ""  # where the ends are level, Mathcad's straight lines are so too
+        head = f'curve {name}(x [{x_unit}]) [{y_unit}] "{self.words_for(name)}"{held}:'
+        self.now.lines.append("\n".join([head, *rows]))
+        if not is_flat:
+            self.now.notes.append("outside its points the curve has no value; Mathcad goes on along its ends")
+        self.judge.functions[name] = 1, sort_of(y_unit)
+        return name
+
+    def expression(self, node: Node) -> Said:
+        """The expression of a tree; lists within it get lines of their own."""
+        at = Expressions(self, self.scope)
+        if node.tag in ("matrix", "parens", "transpose"):
+            return at.value(node)
+        at.keep = self._keep
+        return at.quantity(node) or at.value(node)
+
+    def _keep(self, said: Said) -> Said:
+        """A list within a formula gets a line of its own: only lists over one axis meet."""
+        assert self.now is not None
+        sort = self.judge.sort(said.text, None)
+        unit, name = unit_for(sort, []), self.names.take("items")
+        assert said.axis is not None
+        self.now.lines.append(f'{name} [{unit}] over {said.axis.name} = {said.text} "{self.words_for(name)}"')
+        self.judge.sorts[name] = sort_of(unit, said.axis.name)
+        return replace(said, text=name)
+
+    def declare(
+        self,
+        outcome: Outcome,
+        key: str,
+        said: Said,
+        wanted: Sequence[str],
+        *,
+        is_given: bool = False,
+        words: str = "",
+    ) -> Value:
+        """Write the line of a value, and let the name mean it from here on."""
+        sort = self.judge.sort(said.text, None)
+        unit = unit_for(sort, wanted)
+        name = self.names.take(key)
+        if key in self.scope:
+            outcome.notes.append(f"{look(key)} is defined again here: from here on it is {name}")
+        axis = said.axis
+        over = f" over {axis.name}" if axis else ""
+        kind = "given " if is_given else ""
+        clause = self._symbol(key, name)
+        line = f'{kind}{name} [{unit}]{over} = {said.text} "{self.words_for(words or name)}"{clause}'
+        outcome.lines.append(line)
+        outcome.name = name
+        self.judge.sorts[name] = sort_of(unit, axis.name if axis else "")
+        known = None if is_given else said.number
+        value = Value(
+            name, axis, said.is_vector or axis is not None, said.is_row, known, outcome.original.number
+        )
+        self.scope[key] = value
+        return value
+
+    def _symbol(self, key: str, name: str) -> str:
+        """A clause where the name has lost the look that it had."""
+        made = symbol(key)
+        return f' (symbol "{made}")' if made and (name != look(key)) else ""
+
+    def words_for(self, name: str) -> str:
+        """Words that no other quantity has; they make its name in the interface."""
+        words, count = name, 1
+        while words.casefold() in self._words:
+            count += 1
+            words = f"{name} no {count}"
+        self._words.add(words.casefold())
+        return words
+
+    def asked(self, value: Node, literal: Scaled | None = None) -> list[str]:
+        """Units to declare a value in: that which the region asks for, that in which it is typed."""
+        asked = value.first("unitOverride") if value.tag == "eval" else None
+        found = [scaled(asked.parts[0], is_unit=True)] if asked is not None and asked.parts else []
+        units = []
+        for made in (*found, literal):
+            if made is not None and made.powers:
+                try:
+                    units.append(made.unit)
+                except Untranslatable:
+                    continue
+        return units
+
+    def expect(self, outcome: Outcome, value: Node) -> None:
+        """Keep Mathcad's own result, to be held against the value here.
+
+        Raises
+        ------
+        Untranslatable
+            It is a complex number, or infinity.
+        """
+        cached = outcome.original.cached
+        if cached is None:
+            return
+        if any(part.tag in ("complex", "imag") for part in cached.parts):
+            raise Untranslatable("complex number", "calculate with real and imaginary part")
+        if any(part.tag == "real" and is_infinite(part.text) for part in cached.parts):
+            raise Untranslatable("infinity", "give a number")
+        asked = value.first("unitOverride") if value.tag == "eval" else None
+        unit = asked.parts[0] if asked is not None and asked.parts else None
+        outcome.cached = result_of(cached, unit, self.sheet.results_carry_units)
+
+
+def without_result(node: Node) -> Node:
+    """What a region calculates, without the place of its result."""
+    return node.parts[0] if node.tag == "eval" and node.parts else node
+
+
+def _structural(sheet: OriginalSheet) -> Iterator[str]:
+    """Names that say how long lists are: their values are fixed when the sheet is imported."""
+    for region in sheet.regions:
+        if region.math is None:
+            continue
+        for tag in ("range", "lowerBound", "upperBound"):
+            for node in region.math.all(tag):
+                yield from (key_of(name) for name in node.all("id"))
+        for node in region.math.all("apply"):
+            if len(node.parts) == 3 and node.parts[0].tag == "indexer":
+                yield from (key_of(name) for name in node.parts[2].all("id"))
+
+
+def _parameter_unit(sort: Sort) -> str:
+    unit = unit_for(sort, [])
+    return "1" if sort.kind.base == registry.Unit("") else unit
+
+
+def items_in(said: Said) -> list[str]:
+    """The items of a list that is written out; none of another."""
+    if not said.text.startswith("["):
+        return []
+    items, depth, start = [], 0, 1
+    for place, sign in enumerate(said.text):
+        depth += (sign in "[(") - (sign in "])")
+        if (sign == "," and depth == 1) or place == len(said.text) - 1:
+            items.append(said.text[start:place].strip())
+            start = place + 1
+    return items
+
+
+def _in(text: str, unit_text: str) -> str:
+    try:
+        value = float(unit(unit_text).from_si(constant(text).value))
+    except ValueError:
+        raise Untranslatable("interpolation in calculated lists", "write the points as a curve") from None
+    return number(value).text

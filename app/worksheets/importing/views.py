@@ -1,0 +1,42 @@
+"""Imports as the interface answers them."""
+
+from __future__ import annotations
+
+from app.plain import JsonObject
+from app.schemas.worksheet_imports import SheetImport, SheetOrigin
+from app.storage.errors import NotFound
+from app.storage.tables import WorksheetVersionRow as Row
+from app.worksheets.importing.record import counted, unresolved
+
+
+def origin(row: Row) -> SheetOrigin | None:
+    """What a version was imported from, in short; None if somebody typed it."""
+    return SheetOrigin.model_validate(_short(row)) if row.imported is not None else None
+
+
+def imported(row: Row) -> SheetImport:
+    """Every region of the sheet that a version was imported from.
+
+    Raises
+    ------
+    NotFound
+        If it was not imported.
+    """
+    record = row.imported
+    if record is None:
+        raise NotFound(f"worksheet {row.id} was typed, not imported")
+    open_ = {id(region) for region in unresolved(record, row.text)}
+    items = [{**region, "is_unresolved": id(region) in open_} for region in record["regions"]]
+    return SheetImport.model_validate({**_short(row), "origin": record["origin"], "items": items})
+
+
+def _short(row: Row) -> JsonObject:
+    record = row.imported
+    assert record is not None
+    return {
+        "program": record["program"],
+        "file": record["file"],
+        "sha256": row.import_sha256,
+        "regions": counted(record),
+        "unresolved": len(unresolved(record, row.text)),
+    }

@@ -1,0 +1,89 @@
+"""What all writers of expressions share: the place in the sheet, and what they ask of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol, Self
+
+from app.worksheets.importing.quantities import scaled
+from app.worksheets.importing.said import POWER, Axis, Said, number
+from app.worksheets.importing.scope import Function, Scope
+from app.worksheets.importing.trees import Node
+
+MOST_INLINED = 12
+"""Functions within functions that are written out."""
+MOST_ITEMS = 300
+
+
+class Sheets(Protocol):
+    """What an expression asks of the sheet that is being written."""
+
+    origin: int
+    is_labelled: bool
+
+    def function(self, function: Function, arguments: Sequence[Said]) -> str | None:
+        """The name of a function's statement for these arguments; None where it must be written out."""
+
+    def curve(self, across: Said, up: Said) -> str:
+        """The name of a curve through points."""
+
+    def axis(self, length: int) -> Axis:
+        """The axis of the vectors of a length."""
+
+
+@dataclass
+class Writer:
+    """Writes expressions at one place of a sheet.
+
+    `keep` gives a list within a formula a line of its own. `is_counting` says that the index of a sum is a
+    number in its term.
+    """
+
+    sheet: Sheets
+    scope: Scope
+    is_vectorised: bool = False
+    is_counting: bool = False
+    depth: int = 0
+    keep: Callable[[Said], Said] | None = None
+
+    def within(self, scope: Scope) -> Self:
+        """The same with other meanings of names."""
+        return replace(self, scope=scope)
+
+    def said(self, node: Node) -> Said:
+        """The expression of a tree.
+
+        Raises
+        ------
+        Untranslatable
+            With the name of the construct that worksheets do not have.
+        Unnamed
+            A name has no meaning here.
+        """
+        raise NotImplementedError
+
+    def value(self, node: Node) -> Said:
+        """A quantity; a condition counts 1 where it holds and 0 where not."""
+        raise NotImplementedError
+
+    def condition(self, node: Node) -> Said:
+        """A tree as a condition; of a number, whether it is not 0."""
+        raise NotImplementedError
+
+    def either(self, test: Said, one: Node, other: Node) -> Said:
+        """One of two values, by a condition."""
+        raise NotImplementedError
+
+    def quantity(self, node: Node) -> Said | None:
+        """A tree of numbers and units alone as one quantity."""
+        made = scaled(node)
+        if made is None or not made.powers:
+            return None
+        unit = made.unit
+        sign = number(made.number)
+        return Said(sign.text if unit == "1" else f"{sign.text} {unit}", min(sign.tight, POWER))
+
+    def argument(self, node: Node) -> Said:
+        """A quantity as it is typed, or any value."""
+        return self.quantity(node) or self.value(node)

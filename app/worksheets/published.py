@@ -1,0 +1,118 @@
+"""Which worksheets stand among the templates: read again from the database, held against their releases."""
+
+from __future__ import annotations
+
+import logging
+import threading
+
+from app.calculations.sources import SheetSource, loaded
+from app.catalogue.catalogues import Catalogues
+from app.catalogue.sheets import Key, ReleasedSheet, Sheets
+from app.storage.database import Database
+from app.storage.errors import NotFound
+from app.storage.tables import WorksheetVersionRow as Row
+from app.worksheets import repository
+from app.worksheets.examining import as_released
+from app.worksheets.repository import RELEASED
+from templates.core.errors import TemplateError, UnreleasedTemplate
+from templates.core.language.template import Template
+
+logger = logging.getLogger(__name__)
+
+EVERY = 1.0  # how often a server looks what another one on its database has released [s]
+
+
+class Published:
+    """Keeps the worksheets among the templates as the database has them.
+
+    A released version is read from its text once in every server. If its digest or its golden results are not
+    those of the release, it is broken: nothing is calculated by it.
+    """
+
+    def __init__(self, database: Database, catalogues: Catalogues, *, is_shared: bool) -> None:
+        self.database, self.catalogues = database, catalogues
+        self._looking = threading.Lock()
+        self._states: tuple[repository.State, ...] = ()
+        self._read: dict[Key, tuple[str, ReleasedSheet | str]] = {}  # by edit
+        self._ending = threading.Event()
+        watching = threading.Thread(target=self._watch, name="worksheets", daemon=True)
+        self._thread = watching if is_shared else None
+        self.look()
+
+    @property
+    def broken(self) -> dict[Key, str]:
+        """Why released versions are broken."""
+        return {key: found for key, (_, found) in self._read.items() if isinstance(found, str)}
+
+    def start(self) -> None:
+        """Begin to look what other servers release, if there may be others on this database."""
+        if self._thread is not None:
+            self._thread.start()
+
+    def stop(self) -> None:
+        """Look no more."""
+        self._ending.set()
+        if self._thread is not None and self._thread.is_alive():
+            self._thread.join()
+
+    def look(self) -> None:
+        """Take notice of what has changed in the database."""
+        with self._looking:
+            with self.database.read() as session:
+                states = repository.states(session)
+                if states == self._states:
+                    return
+                released = {(state.id, state.number): state for state in states if state.state in RELEASED}
+                new = [key for key, state in released.items() if self._edit(key) != state.edit]
+                rows = [repository.version(session, *key) for key in new]
+            known = {key: kept for key, kept in self._read.items() if key in released}
+            self._read = {**known, **{(row.id, row.number): (row.edit, _verified(row)) for row in rows}}
+            self._states = states
+            self.catalogues.publish(self._sheets(), self.draft)
+
+    def draft(self, id: str, version: int) -> type[Template]:
+        """The draft of a worksheet as it is now.
+
+        Raises
+        ------
+        UnreleasedTemplate
+            If it has faults, or has been deleted.
+        """
+        try:
+            with self.database.read() as session:
+                row = repository.version(session, id, version)
+            return loaded(SheetSource(id, version, row.text, None))
+        except NotFound as error:
+            raise UnreleasedTemplate(id, str(error)) from None
+        except TemplateError as error:
+            raise UnreleasedTemplate(id, f"the draft of {id} version {version} has faults: {error}") from None
+
+    def _edit(self, key: Key) -> str | None:
+        return self._read[key][0] if key in self._read else None
+
+    def _sheets(self) -> Sheets:
+        sound = {key: found for key, (_, found) in self._read.items() if isinstance(found, ReleasedSheet)}
+        broken = {key: f"its worksheet is broken: {reason}" for key, reason in self.broken.items()}
+        drafts = (state for state in self._states if state.state not in RELEASED)
+        return Sheets(sound, broken, {(one.id, one.number): _remedy(one) for one in drafts})
+
+    def _watch(self) -> None:
+        while not self._ending.wait(EVERY):
+            try:
+                self.look()
+            except Exception:
+                logger.exception("The worksheets could not be looked at")
+
+
+def _remedy(state: repository.State) -> str:
+    place = f"POST /api/v1/worksheets/{state.id}"
+    return f"it is a {state.state} worksheet; release it first, by {place}/test, …/review and …/release"
+
+
+def _verified(row: Row) -> ReleasedSheet | str:
+    """A released version, or why it is broken."""
+    source = SheetSource(row.id, row.number, row.text, row.withdrawn)
+    if isinstance(found := as_released(source, row.digest, row.record), str):
+        logger.error("Worksheet %s version %d is broken: %s", row.id, row.number, found)
+        return found
+    return ReleasedSheet(found, "withdrawn" if row.withdrawn else "released", row.author, row.reviewer)

@@ -1,0 +1,120 @@
+"""All SQL of worksheets; every function runs in its caller's transaction."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from sqlalchemy import and_, delete, func, select, update
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
+
+from app.storage.errors import NotFound
+from app.storage.identity import new_id, now
+from app.storage.tables import WorksheetVersionRow as Row
+from app.worksheets.errors import StaleWorksheet
+
+RELEASED = ("released", "withdrawn")
+"""States in which nothing of a version but its withdrawal changes any more."""
+
+
+class State(NamedTuple):
+    """What a version is at present; another `edit` says that something of it has changed."""
+
+    id: str
+    number: int
+    state: str
+    edit: str
+
+
+def newest(session: Session, id: str) -> Row:
+    """The newest version of a worksheet.
+
+    Raises
+    ------
+    NotFound
+        If there is none of this id.
+    """
+    rows = select(Row).where(Row.id == id).order_by(Row.number.desc()).limit(1)
+    if (row := session.scalar(rows)) is None:
+        raise NotFound(f"there is no worksheet {id[:64]!r}")
+    return row
+
+
+def version(session: Session, id: str, number: int) -> Row:
+    """One version of a worksheet.
+
+    Raises
+    ------
+    NotFound
+        If there is none of this id or number.
+    """
+    if (row := session.get(Row, (id, number))) is None:
+        raise NotFound(f"worksheet {id[:64]!r} has no version {number}")
+    return row
+
+
+def versions(session: Session, id: str) -> list[Row]:
+    """All versions of a worksheet, ascending."""
+    return list(session.scalars(select(Row).where(Row.id == id).order_by(Row.number)))
+
+
+def page(session: Session, limit: int, after: str | None) -> list[Row]:
+    """The newest versions in the order of their ids, one more than `limit`."""
+    last = select(Row.id, func.max(Row.number).label("number")).group_by(Row.id).subquery()
+    rows = select(Row).join(last, and_(Row.id == last.c.id, Row.number == last.c.number))
+    if after is not None:
+        rows = rows.where(Row.id > after)
+    return list(session.scalars(rows.order_by(Row.id).limit(limit + 1)))
+
+
+def states(session: Session) -> tuple[State, ...]:
+    """What every version is at present."""
+    rows = select(Row.id, Row.number, Row.state, Row.edit).order_by(Row.id, Row.number)
+    return tuple(State(*row) for row in session.execute(rows))
+
+
+def add(session: Session, row: Row) -> None:
+    """A new version.
+
+    Raises
+    ------
+    StaleWorksheet
+        Another server has made it meanwhile.
+    """
+    row.edit, row.created = new_id(session), now()
+    row.updated = row.created
+    session.add(row)
+    try:
+        session.flush()
+    except IntegrityError:
+        raise StaleWorksheet(row.id) from None
+
+
+def save(session: Session, row: Row, **changes: object) -> Row:
+    """Change a version that is still as it was read: two servers on one database never both succeed.
+
+    Raises
+    ------
+    StaleWorksheet
+        It has changed since.
+    """
+    same = and_(Row.id == row.id, Row.number == row.number, Row.edit == row.edit)
+    values = {**changes, "edit": new_id(session), "updated": now()}
+    changed = update(Row).where(same).values(values).execution_options(synchronize_session=False)
+    if not session.execute(changed.returning(Row.id)).all():
+        raise StaleWorksheet(row.id)
+    return version(session, row.id, row.number)
+
+
+def discard(session: Session, row: Row) -> None:
+    """Delete a version that was never released and is still as it was read.
+
+    Raises
+    ------
+    StaleWorksheet
+        It has changed since.
+    """
+    same = and_(Row.id == row.id, Row.number == row.number, Row.edit == row.edit)
+    gone = delete(Row).where(same).execution_options(synchronize_session=False)
+    if not session.execute(gone.returning(Row.id)).all():
+        raise StaleWorksheet(row.id)

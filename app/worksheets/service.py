@@ -1,0 +1,316 @@
+"""What can be done with worksheets: draft → tested → reviewed → released → withdrawn.
+
+An edit returns to draft; of a released version it begins the next one. Whatever reads a text runs in a
+calculation process. A change is written only if the version is still as it was read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import TimeoutError as NotReady
+from dataclasses import asdict
+from typing import TypeVar, TypeVarTuple
+
+from sqlalchemy.orm import Session
+
+from app.calculations.pool import CalculationPool
+from app.catalogue.catalogues import Catalogues
+from app.plain import JsonObject
+from app.storage.database import Database
+from app.storage.idempotency import Once
+from app.storage.identity import now
+from app.storage.tables import WorksheetVersionRow as Row
+from app.workers.errors import DeadlineExceeded
+from app.worksheets import repository
+from app.worksheets.errors import IdTaken, OtherText, OutOfOrder, OwnReview, StaleWorksheet, TestsFailed
+from app.worksheets.examining import Examined, Tried, examined, tried
+from app.worksheets.importing.record import require_resolved
+from app.worksheets.naming import is_same_person, require_free
+from app.worksheets.published import Published
+from app.worksheets.repository import RELEASED
+from app.worksheets.schemas import ReviewIn, SheetIn, SheetPatch, WithdrawIn
+
+T = TypeVar("T")
+Ts = TypeVarTuple("Ts")
+
+Imported = tuple[str, JsonObject]
+"""The SHA-256 of the file that a worksheet comes from, and what the import says of its regions."""
+
+PATIENCE = 30.0  # for a text to be read and tried, its turn included [s]
+
+
+class Worksheets:
+    """All changes of worksheets; every method answers with the version that it led to."""
+
+    def __init__(
+        self, database: Database, catalogues: Catalogues, pool: CalculationPool, published: Published
+    ) -> None:
+        self.database, self.catalogues, self.pool, self.published = database, catalogues, pool, published
+
+    def create(self, body: SheetIn, once: Once, imported: Imported | None = None) -> Row:
+        """A new worksheet, a draft.
+
+        Raises
+        ------
+        IdTaken
+            If a file or another worksheet has the id.
+        InvalidInputs
+            If no worksheet may have it.
+        """
+        if (before := self._repeated(once)) is not None:
+            return before
+        require_free(body.id, self.catalogues)
+        found = self.calculated(once.client, examined, body.text)
+
+        def unit(session: Session) -> Row:
+            if location := once.find(session):
+                return repository.newest(session, location["id"])
+            if repository.versions(session, body.id):
+                raise IdTaken(body.id, "another worksheet")
+            row = _draft(body.id, 1, body.text, found)
+            row.author = body.author
+            if imported is not None:
+                row.import_sha256, row.imported = imported
+            try:
+                repository.add(session, row)
+            except StaleWorksheet:
+                raise IdTaken(body.id, "another worksheet") from None
+            once.keep(session, 201, {"id": body.id})
+            return row
+
+        return self._written(unit)
+
+    def change(self, id: str, body: SheetPatch, expected: str | None, once: Once) -> Row:
+        """An edit: a draft again, or the draft of the next version if this one is released.
+
+        Raises
+        ------
+        StaleWorksheet
+            If `expected` (an If-Match) is not the newest version as it is now.
+        """
+        if (before := self._repeated(once)) is not None:
+            return before
+        row = self.newest(id, expected)
+        text = row.text if body.text is None else body.text
+        author = row.author if body.author is None else body.author
+        if (text, author) == (row.text, row.author):
+            return row
+        found = self.calculated(once.client, examined, text)
+
+        def unit(session: Session) -> Row:
+            if location := once.find(session):
+                return repository.newest(session, location["id"])
+            draft = _draft(id, row.number + 1, text, found)
+            draft.author = author
+            if row.state in RELEASED:
+                if repository.newest(session, id).number != row.number:
+                    raise StaleWorksheet(id)
+                draft.import_sha256, draft.imported = row.import_sha256, row.imported
+                repository.add(session, draft)
+            else:
+                draft = repository.save(session, row, **_edited(draft))
+            once.keep(session, 200, {"id": id})
+            return draft
+
+        return self._written(unit)
+
+    def test(self, id: str, expected: str | None, client: str) -> Row:
+        """Run the tests and the golden steps: tested, if all is well.
+
+        Raises
+        ------
+        OutOfOrder
+            If the newest version is released, or reviewed already.
+        TestsFailed
+            With everything that is wrong; the state stays.
+        """
+        row = self.newest(id, expected)
+        _require(row, "draft", "tested")
+        result = self._tried(client, row)
+        return self._saved(row, state="tested", tests=list(map(asdict, result.tests)))
+
+    def review(self, id: str, body: ReviewIn, expected: str | None) -> Row:
+        """Note who reviewed the text.
+
+        Raises
+        ------
+        OutOfOrder
+            If the newest version is not tested.
+        OtherText
+            If the review is of another text.
+        OwnReview
+            If the reviewer is the author.
+        """
+        row = self.newest(id, expected)
+        if row.author is not None and is_same_person(body.reviewer, row.author):
+            raise OwnReview(body.reviewer)
+        _require(row, "tested", "reviewed")
+        if body.digest != row.digest:
+            raise OtherText(body.digest, row.digest)
+        return self._saved(row, state="reviewed", reviewer=body.reviewer)
+
+    def release(self, id: str, expected: str | None, client: str) -> Row:
+        """Make the reviewed version a template that never changes; its golden record is kept.
+
+        Raises
+        ------
+        OutOfOrder
+            If the newest version is not reviewed.
+        Unresolved
+            If regions of its import are not verified, and their lines stand as imported.
+        TestsFailed
+            If the tests fail by now, as after an update of the program.
+        """
+        row = self.newest(id, expected)
+        _require(row, "reviewed")
+        require_free(id, self.catalogues)
+        require_resolved(row)
+        result = self._tried(client, row)
+        return self._saved(
+            row, state="released", tests=list(map(asdict, result.tests)), record=result.record, released=now()
+        )
+
+    def withdraw(self, id: str, body: WithdrawIn, expected: str | None) -> Row:
+        """Say why a released version shall not be used any longer; designs that use it still calculate.
+
+        Raises
+        ------
+        OutOfOrder
+            If it is not released, or withdrawn already.
+        """
+        with self.database.read() as session:
+            rows = repository.versions(session, id) or [repository.newest(session, id)]
+        numbers = [row.number for row in rows if row.state in RELEASED]
+        number = body.version or max(numbers, default=rows[-1].number)
+        row = self.version(id, number)
+        _require_match(expected, row)
+        _require(row, "released")
+        return self._saved(row, state="withdrawn", withdrawn=body.reason)
+
+    def delete(self, id: str, expected: str | None) -> None:
+        """Delete the newest version, which was never released.
+
+        Raises
+        ------
+        OutOfOrder
+            If it was.
+        """
+        row = self.newest(id, expected)
+        if row.state in RELEASED:
+            raise OutOfOrder(f"{id} version {row.number} is {row.state}, so it stays; withdraw it instead")
+        self.database.write(lambda session: repository.discard(session, row))
+        self.published.look()
+
+    def newest(self, id: str, expected: str | None = None) -> Row:
+        """The newest version of a worksheet.
+
+        Raises
+        ------
+        NotFound
+            If there is none.
+        StaleWorksheet
+            If `expected` (an If-Match) names another state of it.
+        """
+        with self.database.read() as session:
+            row = repository.newest(session, id)
+        _require_match(expected, row)
+        return row
+
+    def version(self, id: str, number: int) -> Row:
+        """One version of a worksheet.
+
+        Raises
+        ------
+        NotFound
+            If there is none.
+        """
+        with self.database.read() as session:
+            return repository.version(session, id, number)
+
+    def calculated(self, client: str, function: Callable[[*Ts], T], *args: *Ts) -> T:
+        """What a function makes of a text, in a calculation process.
+
+        Raises
+        ------
+        TooManyCalculations
+            As many wait as may.
+        DeadlineExceeded
+            It took too long.
+        """
+        calculation = self.pool.submit(client, function, *args)
+        try:
+            result: T = calculation.future.result(PATIENCE)
+        except NotReady:
+            raise DeadlineExceeded(PATIENCE) from None
+        finally:
+            self.pool.cancel(calculation)
+        return result
+
+    def _tried(self, client: str, row: Row) -> Tried:
+        result = self.calculated(client, tried, row.id, row.number, row.text)
+        if result.reasons:
+            raise TestsFailed(result.reasons)
+        return result
+
+    def _saved(self, row: Row, **changes: object) -> Row:
+        return self._written(lambda session: repository.save(session, row, **changes))
+
+    def _written(self, unit: Callable[[Session], Row]) -> Row:
+        row = self.database.write(unit)
+        self.published.look()
+        return row
+
+    def _repeated(self, once: Once) -> Row | None:
+        if not once.key:
+            return None
+        with self.database.read() as session:
+            location = once.find(session)
+            return repository.newest(session, location["id"]) if location else None
+
+
+def _draft(id: str, number: int, text: str, found: Examined) -> Row:
+    return Row(
+        id=id,
+        number=number,
+        text=text,
+        state="draft",
+        title=found.title,
+        language=found.language,
+        digest=found.digest,
+        faults=[asdict(fault) for fault in found.faults],
+        tests=[],
+    )
+
+
+def _edited(draft: Row) -> dict[str, object]:
+    """What an edit changes in the row of a version; who reviewed the old text did not review this one."""
+    names = ("text", "title", "language", "digest", "faults", "author")
+    return {"state": "draft", "reviewer": None, "tests": [], **{name: getattr(draft, name) for name in names}}
+
+
+def _require(row: Row, *allowed: str) -> None:
+    """Return if a version is in one of these states.
+
+    Raises
+    ------
+    OutOfOrder
+        If it is in another one.
+    """
+    if row.state not in allowed:
+        wanted = " or ".join(allowed)
+        raise OutOfOrder(f"{row.id} version {row.number} is {row.state}, not {wanted}{NEXT[row.state]}")
+
+
+NEXT = {
+    "draft": "; test it first",
+    "tested": "; let another person review it first",
+    "reviewed": "; an edit returns it to draft",
+    "released": "; an edit begins the next version",
+    "withdrawn": "; an edit begins the next version",
+}
+"""By state, what is to be done next."""
+
+
+def _require_match(expected: str | None, row: Row) -> None:
+    if expected is not None and expected.strip() not in ("*", f'"{row.edit}"'):
+        raise StaleWorksheet(row.id)

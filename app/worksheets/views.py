@@ -1,0 +1,73 @@
+"""Worksheets as the interface answers them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from app.catalogue.sheets import Key
+from app.schemas.worksheets import Sheet, SheetSummary, SheetVersion, State
+from app.storage.tables import WorksheetVersionRow as Row
+from app.worksheets.importing.views import origin
+
+Broken = Mapping[Key, str]
+"""Why released versions are broken."""
+
+
+def sheet(row: Row, versions: Sequence[Row], broken: Broken) -> Sheet:
+    """One version with its text, and all versions of its worksheet."""
+    reason = broken.get((row.id, row.number))
+    return Sheet.model_validate(
+        {
+            "id": row.id,
+            "version": row.number,
+            "edit": row.edit,
+            "state": state(row, broken),
+            "title": row.title,
+            "text": row.text,
+            "digest": row.digest,
+            "language": row.language,
+            "author": row.author,
+            "reviewer": row.reviewer,
+            "review_verified": False,
+            "faults": row.faults,
+            "tests": row.tests,
+            "withdrawn": row.withdrawn,
+            **({"broken": reason} if reason else {}),
+            "created": row.created,
+            "updated": row.updated,
+            "released": row.released,
+            "versions": [_version(one, broken) for one in versions],
+            "import": origin(row),
+        }
+    )
+
+
+def summary(row: Row, broken: Broken) -> SheetSummary:
+    """A worksheet in a list."""
+    return SheetSummary(
+        id=row.id,
+        version=row.number,
+        state=state(row, broken),
+        title=row.title,
+        author=row.author,
+        reviewer=row.reviewer,
+        review_verified=False,
+        faults=len(row.faults),
+        updated=row.updated,
+    )
+
+
+def _version(row: Row, broken: Broken) -> SheetVersion:
+    return SheetVersion(
+        version=row.number,
+        state=state(row, broken),
+        digest=row.digest,
+        released=row.released,
+        withdrawn=row.withdrawn,
+    )
+
+
+def state(row: Row, broken: Broken) -> State:
+    """The state of a version: as stored, unless it is broken."""
+    stored: State = row.state  # type: ignore[assignment] # only `app.worksheets.service` writes it
+    return "broken" if (row.id, row.number) in broken else stored

@@ -1,0 +1,32 @@
+"""What stands in the place of a formula's function where there is no Python function: a checked tree.
+
+A worksheet is text of a user, of which no Python is made. Its formulas, rules and defaults are bodies: they
+are called with a template as functions are, and say themselves what they use and how they are written.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import Any
+
+
+class Body(ABC):
+    """A checked tree that is called with a template and gives an SI value.
+
+    `uses` are the attributes that it reads; `line` is that of the worksheet where it stands.
+    """
+
+    uses: tuple[str, ...]
+    line: int
+    name = ""  # the attribute that it calculates
+    inputs: tuple[str, ...] = ()  # those that it is about, if it is a rule
+    has_numbers = True  # whether it is written once more with numbers in the place of attributes
+
+    @abstractmethod
+    def __call__(self, template: Any) -> Any:
+        """The SI value for the values of a template."""
+
+    @abstractmethod
+    def latex(self, symbols: Mapping[str, str], times: str) -> str:
+        """How it is written, with symbols or numbers in the place of attributes."""

@@ -1,0 +1,108 @@
+"""A checked tree in the place of a formula's function: called with a template, it gives the value."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterator, Mapping
+from functools import cached_property, reduce
+from typing import Any
+
+import numpy as np
+
+from templates.core.errors import Fault, InvalidInputs
+from templates.core.language.body import Body
+from templates.core.paper.expressions import latex
+from templates.core.paper.mathml import named_symbol
+from templates.core.sheets.partial import explain, explained_in
+from templates.core.units.closures import closure
+from templates.core.units.operations import Apply, Name
+from templates.core.units.walking import nodes_of
+
+_SIGNS = {
+    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq,
+    "!=": operator.ne,
+}  # fmt: skip
+_JOINED = {"and": np.logical_and, "or": np.logical_or}
+
+
+def unequal_lengths(body: Body, template: Any) -> InvalidInputs:
+    """The refusal where lists of different lengths meet: it names the result, or the inputs of a rule."""
+    made = getattr(template, "declarations", {}).get(body.name)
+    names = body.inputs or (made.name if made else f"line {body.line}",)
+    detail = "lists of different lengths meet here; give lists of one length"
+    return InvalidInputs([Fault(names[0], "shape", detail, names[1:])])
+
+
+class TreeBody(Body):
+    """A tree whose units were checked; `name` is the attribute that it calculates."""
+
+    def __init__(self, node: Any, line: int, name: str = "") -> None:
+        self.node, self.line, self.name = node, line, name
+        self.uses = tuple(dict.fromkeys(names_in(node)))
+        self.__doc__: str | None = None
+        self.__qualname__ = f"line {line}"
+        self._run = closure(node)
+        self._explained = explained_in(node)
+        self.first: tuple[str, ...] = ()  # the formulas of a long chain beneath it, the deepest first
+
+    def __call__(self, template: Any) -> Any:
+        """The SI value for the values of a template.
+
+        Raises
+        ------
+        InvalidInputs
+            If lists of different lengths meet.
+        """
+        for name in self.first:
+            getattr(template, name)
+        try:
+            value = self._run(template)
+        except ValueError:
+            raise unequal_lengths(self, template) from None
+        if self._explained and np.isnan(value).any() and hasattr(template, "ledger"):
+            explain(template, self.name, self._explained)
+        return value
+
+    def latex(self, symbols: Mapping[str, str], times: str) -> str:
+        """How it is written, with symbols or numbers in the place of attributes."""
+        return latex(self.node, {**self._letters, **symbols}, times)
+
+    @cached_property
+    def _letters(self) -> dict[str, str]:
+        """The symbols of curves, which are called by their names."""
+        return {one.sign: named_symbol(one.sign) for one, _ in self._explained}
+
+
+class RuleBody(TreeBody):
+    """A condition, whose comparisons a report can record; `sentence` is what the rule says.
+
+    One `of_items` of a list holds for all of them.
+    """
+
+    def __init__(self, node: Any, line: int, sentence: str, *, of_items: bool) -> None:
+        super().__init__(node, line)
+        self.__doc__ = sentence
+        self._run = _everywhere(_truth(node)) if of_items else _truth(node)
+        self._explained = []
+
+
+def _everywhere(run: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """A condition on a list: it holds at all its places."""
+    return lambda template: np.all(run(template), axis=-1)
+
+
+def _truth(node: Any) -> Callable[[Any], Any]:
+    """A condition as a function, its comparisons made by Python's operators, which records follow."""
+    sign = node.operation.sign if isinstance(node, Apply) else ""
+    if sign in _SIGNS:
+        compare, left, right = _SIGNS[sign], *map(closure, node.arguments)
+        return lambda template: compare(left(template), right(template))
+    if sign in _JOINED:
+        join, parts = _JOINED[sign], [_truth(part) for part in node.arguments]
+        return lambda template: reduce(join, (part(template) for part in parts))
+    return closure(node)
+
+
+def names_in(node: Any) -> Iterator[str]:
+    """The names that a tree reads, in order of appearance."""
+    return (part.name for part in nodes_of(node) if isinstance(part, Name))

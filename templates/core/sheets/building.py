@@ -1,0 +1,242 @@
+"""From the statements of a worksheet to what its class is made of; every fault is collected."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import lark
+
+from templates.core.errors import FaultyText
+from templates.core.language.meaning import Meaning
+from templates.core.language.spec import (
+    Choice,
+    Curve,
+    Declaration,
+    Derived,
+    Formula,
+    Given,
+    Profile,
+    Requirement,
+)
+from templates.core.sheets.body import RuleBody, TreeBody
+from templates.core.sheets.built import RULE, Built
+from templates.core.sheets.clauses import meaning_of, said_in, words_of
+from templates.core.sheets.criteria import criterion_of
+from templates.core.sheets.curves import curve_of, points_of
+from templates.core.sheets.expecting import test_of
+from templates.core.sheets.expressions import Reader
+from templates.core.sheets.faults import FollowsFromFault, Refusal
+from templates.core.sheets.functions import function_of
+from templates.core.sheets.grammar import Parsed, name_of, parsed
+from templates.core.sheets.lines import Chunk
+from templates.core.sheets.names import Names, sort_of
+from templates.core.sheets.solving import SolveBody, equation_of
+from templates.core.units.sorts import Sort
+
+_ORDER = (("function", "curve"), ("choice", "given", "formula", "solve"), ("require", "check"), ("test",))
+"""Functions are known to all others, rules know all quantities, tests know everything."""
+
+
+class Builder:
+    """Reads statement after statement; what one refuses does not hide what is wrong with the next."""
+
+    def __init__(self, chunks: list[Chunk]) -> None:
+        self.built, self.names = Built(), Names()
+        self.reader = Reader(self.names)
+        self.refused: set[int] = set()  # lines of statements with a fault
+        for chunk in chunks:
+            self._try(self._parse, chunk)
+        for statement in self.built.statements:
+            self._try(self._announce, statement)
+        for kinds in _ORDER:
+            for statement in self.built.statements:
+                if statement.kind in kinds and self._goes_on(statement):
+                    self._try(getattr(self, f"_{statement.kind}"), statement)
+
+    def _goes_on(self, statement: Parsed) -> bool:
+        """Whether to read a statement on: one fault of it is enough, and so is a worksheet too large."""
+        return statement.chunk.line not in self.refused and self.names.fuel >= 0
+
+    def _try(self, step: Callable[[Any], None], statement: Parsed | Chunk) -> None:
+        """Take a step, and note the fault that it meets."""
+        try:
+            step(statement)
+        except Refusal as refusal:
+            self.built.faults.append(refusal.fault)
+        except FollowsFromFault:
+            pass
+        else:
+            return
+        chunk = statement.chunk if isinstance(statement, Parsed) else statement
+        self.names.broken.add(name_of(chunk))
+        self.refused.add(chunk.line)
+
+    def _parse(self, chunk: Chunk) -> None:
+        self.built.statements.append(parsed(chunk))
+
+    def _announce(self, statement: Parsed) -> None:
+        """Let other statements use a name before the formula behind it is read."""
+        match statement.kind:
+            case "given" | "formula":
+                name, unit_text, axis = statement.parts[:3]
+                sort = self._sort(statement, unit_text, str(axis or ""))
+            case "solve":
+                name, unit_text = statement.parts[:2]
+                sort = self._sort(statement, unit_text, "")
+            case "choice":
+                name, options = statement.parts[0], statement.parts[3].children
+                sort = Sort(words=tuple(map(str, options)))
+            case _:
+                return
+        self._check_new(statement, name, str(name))
+        self.names.sorts[str(name)] = sort
+
+    def _sort(self, statement: Parsed, unit_text: lark.Token, axis: str) -> Sort:
+        wanted = sort_of(self.reader.declared_unit(statement, unit_text))
+        return Sort(wanted.kind, wanted.weight, axis=axis)
+
+    def _check_new(self, statement: Parsed, at: lark.Token, name: str) -> None:
+        try:
+            self.names.check_new(name)
+        except FaultyText as error:
+            remedy = "choose another name, as in p_max"
+            raise statement.refuse(error.code, str(error), at, remedy) from None
+
+    def _function(self, statement: Parsed) -> None:
+        self._check_new(statement, statement.parts[0], statement.parts[0][:-1])
+        function = function_of(statement, self.reader)
+        self.names.functions[function.name] = function.call
+        self.built.note(statement, function.name, function.unit, "", function.node)
+
+    def _curve(self, statement: Parsed) -> None:
+        called, parameter, unit_text, words, clauses, *rest = statement.parts
+        name = str(called)[:-1]
+        self._check_new(statement, called, name)
+        if axis := parameter.children[2]:
+            raise statement.refuse("curve", "a curve takes a single value, or each of a list", axis)
+        texts = (parameter.children[1], unit_text)
+        along, of = (self.reader.declared_unit(statement, text) for text in texts)
+        said = said_in(statement, clauses, self.reader)
+        call = curve_of(statement, self.reader, name, (along, of), points_of(rest), said)
+        self.names.functions[name] = call
+        self.built.note(statement, name, of, words_of(statement, words))
+
+    def _choice(self, statement: Parsed) -> None:
+        name, default, words, options, *clauses = statement.parts
+        names = tuple(map(str, options.children))
+        if len(set(names)) < len(names) or any("." in option for option in names):
+            raise statement.refuse("choice", "each option is one word, and stands once", options)
+        if default is not None and str(default) not in names:
+            message = f"the default {default} is no option"
+            raise statement.refuse("choice", message, default, f"write one of {', '.join(names)}")
+        keywords: dict[str, Any] = {}
+        for clause in clauses:
+            self._choose(statement, clause, names, keywords)
+        meant = self._meant(statement, "1", words, lark.Tree("clauses", keywords.pop("said", [])))
+        if "example" in keywords:
+            self.built.example[meant.name] = keywords["example"]
+        self._make(statement, str(name), Choice(meant, names, str(default) if default else None), None)
+
+    def _choose(
+        self, statement: Parsed, clause: Any, options: tuple[str, ...], found: dict[str, Any]
+    ) -> None:
+        """Sort a clause of a choice: an option as its example, or words."""
+        if clause.data != "example":
+            found.setdefault("said", []).append(clause)
+            return
+        tree = clause.children[0]
+        word = str(tree.children[0]) if tree.data == "name" else ""
+        if word not in options:
+            raise statement.refuse(
+                "choice", "the example is no option", tree, f"write one of {', '.join(options)}"
+            )
+        found["example"] = word
+
+    def _given(self, statement: Parsed) -> None:
+        name, unit_text, axis, tree, words, clauses = statement.parts
+        meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
+        node, default = None, None
+        if tree is not None:
+            node = self._node(statement, str(name), meant, str(axis or ""), tree)
+            body = TreeBody(node, statement.chunk.line, str(name))
+            if body.uses and axis is None:
+                self._make(statement, str(name), Derived(body, meant), node)
+                return
+            default = self.reader.number(statement, node, tree, meant.unit, f"the default of {name}")
+        made = Given(meant, default) if axis is None else Curve(meant, default, along=str(axis))
+        self._make(statement, str(name), made, node)
+
+    def _formula(self, statement: Parsed) -> None:
+        name, unit_text, axis, tree, words, clauses = statement.parts
+        meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
+        node = self._node(statement, str(name), meant, str(axis or ""), tree)
+        body = TreeBody(node, statement.chunk.line, str(name))
+        made = Formula(body, meant) if axis is None else Profile(body, meant, None, str(axis), 1)
+        self._make(statement, str(name), made, node)
+
+    def _solve(self, statement: Parsed) -> None:
+        name, unit_text, low, high, tree, words, clauses = statement.parts
+        meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
+        bounds = tuple(self._node(statement, f"a bound of {name}", meant, "", end) for end in (low, high))
+        equation = equation_of(statement, self.reader, tree, str(name))
+        lists = frozenset(n for n, sort in self.names.sorts.items() if sort.axis)
+        body = SolveBody(str(name), equation, bounds, statement.chunk.line, meant.words, lists)
+        self._make(statement, str(name), Formula(body, meant), equation)
+
+    def _require(self, statement: Parsed) -> None:
+        tree, words, clauses = statement.parts
+        node, of_items = self._condition(statement, tree)
+        remedy = said_in(statement, clauses, self.reader).keywords.get("remedy")
+        body = RuleBody(node, statement.chunk.line, words_of(statement, words).rstrip("."), of_items=of_items)
+        blamed = body.inputs = self.built.inputs_beneath(body.uses)
+        if not blamed:
+            advice = "compare a given with something"
+            raise statement.refuse("no_truth", "the rule is about no input", tree, advice)
+        rule = Requirement(body, blamed, remedy or f"change {' or '.join(blamed)}", False, "")
+        self.built.made[f"{RULE} {statement.chunk.line}"] = rule
+        self.built.note(statement, f"{RULE} {statement.chunk.line}", "", rule.sentence, node)
+
+    def _check(self, statement: Parsed) -> None:
+        tree, words, clauses = statement.parts
+        node, _ = self._condition(statement, tree)
+        said, text = said_in(statement, clauses, self.reader), words_of(statement, words)
+        name, criterion = criterion_of(statement, node, text, said, self.built.made)
+        if name in self.built.criteria:
+            raise statement.refuse("name", f"another check is named {name}", words, "say it in other words")
+        self.built.criteria[name] = criterion
+        self.built.note(statement, name, "", text, node)
+
+    def _test(self, statement: Parsed) -> None:
+        test = test_of(statement, self.reader, self.built.made)
+        self.built.tests.append(test)
+        self.built.note(statement, "", "", test.words)
+
+    def _condition(self, statement: Parsed, tree: lark.Tree[Any]) -> tuple[Any, bool]:
+        node, sort = self.reader.part(statement, tree)
+        if not sort.truth:
+            remedy = "write it as in p <= 30 MPa"
+            raise statement.refuse("no_truth", "this is a quantity, not a condition", tree, remedy)
+        return node, bool(sort.axis)
+
+    def _node(self, statement: Parsed, name: str, meant: Meaning, axis: str, tree: lark.Tree[Any]) -> Any:
+        """The tree of a value that is a list over an axis exactly where that is declared."""
+        part = self.reader.part(statement, tree)
+        return self.reader.fitting(statement, part, meant.unit, name, tree, axis)
+
+    def _meant(self, statement: Parsed, unit_text: str, words: lark.Token, clauses: Any) -> Meaning:
+        """The meaning of a declaration whose API name is no other's; its example is noted."""
+        if str(statement.parts[0]) not in self.names.sorts:
+            raise FollowsFromFault(str(statement.parts[0]))
+        meant, said = meaning_of(statement, unit_text, words, clauses, self.reader)
+        other = self.built.lines.setdefault(meant.name, statement.chunk.line)
+        if other != statement.chunk.line:
+            message = f"line {other} has the same words, or words that make the name {meant.name} as well"
+            raise statement.refuse("name", message, words, "say it in other words")
+        if said.example is not None and statement.kind == "given":
+            self.built.example[meant.name] = said.example
+        return meant
+
+    def _make(self, statement: Parsed, name: str, made: Declaration, node: Any) -> None:
+        self.built.made[name] = made
+        self.built.note(statement, name, made.meaning.unit, made.meaning.words, node)

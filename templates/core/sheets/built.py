@@ -1,0 +1,75 @@
+"""What the statements of a worksheet make, before it is a class."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import dataclass, field
+from typing import Any
+
+from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given, Requirement
+from templates.core.sheets.faults import SheetFault
+from templates.core.sheets.grammar import Parsed
+from templates.core.sheets.names import Named
+from templates.core.sheets.testing import SheetTest
+
+Made = Declaration | Requirement
+RULE = "line"
+"""A rule stands in the class under its line, `line 14`: a name that no user can write."""
+
+
+@dataclass
+class Built:
+    """What the statements of a worksheet make; `faults` are all that is wrong with them.
+
+    Attributes
+    ----------
+    made
+        Declarations and rules by attribute.
+    criteria
+        As a template declares them, by name.
+    example
+        By API name, as typed.
+    lines
+        Of API names.
+    called, said, trees
+        By line: the name that a statement declares, its words, and the tree that is written on paper.
+    """
+
+    statements: list[Parsed] = field(default_factory=list)
+    faults: list[SheetFault] = field(default_factory=list)
+    made: dict[str, Made] = field(default_factory=dict)
+    criteria: dict[str, dict[str, str]] = field(default_factory=dict)
+    example: dict[str, Any] = field(default_factory=dict)
+    tests: list[SheetTest] = field(default_factory=list)
+    named: dict[str, Named] = field(default_factory=dict)
+    lines: dict[str, int] = field(default_factory=dict)
+    called: dict[int, str] = field(default_factory=dict)
+    said: dict[int, str] = field(default_factory=dict)
+    trees: dict[int, Any] = field(default_factory=dict)
+
+    def note(self, statement: Parsed, name: str, unit: str, words: str, node: Any = None) -> None:
+        """Note what a statement declares, for the editor."""
+        line = statement.chunk.line
+        self.called[line], self.said[line] = name, words
+        if node is not None:
+            self.trees[line] = node
+        if statement.kind not in ("require", "check", "test"):
+            self.named[name] = Named(name, unit, words, statement.kind)
+
+    def declarations(self) -> dict[str, Made]:
+        """Declarations and rules for another class; each learns its attribute from the class it is in."""
+        return {name: copy(made) for name, made in self.made.items()}
+
+    def inputs_beneath(self, names: tuple[str, ...]) -> tuple[str, ...]:
+        """The API names of inputs from which names follow, those nearest first."""
+        inputs: dict[str, None] = {}
+        waiting, seen = list(names), set(names)
+        for name in waiting:
+            made = self.made.get(name)
+            if isinstance(made, (Given, Choice, Derived)):
+                inputs[made.name] = None
+            elif isinstance(made, Formula):
+                new = [used for used in made.uses if used not in seen]
+                seen.update(new)
+                waiting += new
+        return tuple(inputs)

@@ -1,0 +1,136 @@
+"""The clauses of a declaration, `(> 0; example 48 mm; also "load")`: what a number means."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any, cast
+
+import lark
+
+from templates.core.language.meaning import Keywords, Meaning, meaning
+from templates.core.sheets.expressions import Reader
+from templates.core.sheets.grammar import Parsed
+
+LONGEST_WORDS = 200
+_BOUNDS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge"}
+_GREEK = (
+    "alpha|beta|gamma|delta|epsilon|varepsilon|zeta|eta|theta|vartheta|kappa|lambda|mu|nu|xi|pi|rho|sigma|tau|phi"
+    "|varphi|chi|psi|omega|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Phi|Psi|Omega"
+)
+_ACCENT = "bar|dot|ddot|hat|tilde|mathrm|mathit"
+_LETTER = rf"(?:[A-Za-z]|\\(?:{_GREEK})(?![A-Za-z])|\\(?:{_ACCENT})\{{[A-Za-z]{{1,20}}\}})"
+_SYMBOL = re.compile(rf"{_LETTER}(?:[_^](?:[A-Za-z0-9]|\{{[A-Za-z0-9,*+ ]{{1,20}}\}})){{0,2}}")
+
+
+@dataclass
+class Said:
+    """What the clauses of a statement say."""
+
+    keywords: Keywords = field(default_factory=lambda: Keywords())
+    example: Any = None
+    is_held: bool = False
+
+
+def meaning_of(
+    statement: Parsed, unit_text: str, words: lark.Token, clauses: lark.Tree[Any], reader: Reader
+) -> tuple[Meaning, Said]:
+    """What a declared number means, and its example.
+
+    Raises
+    ------
+    Refusal
+        With code `clause`, `limit`, `name` or `unit_mismatch`.
+    """
+    said = said_in(statement, clauses, reader, unit_text)
+    return _meaning(statement, unit_text, words, said), said
+
+
+def _meaning(statement: Parsed, unit_text: str, words: lark.Token, said: Said) -> Meaning:
+    text = words_of(statement, words)
+    try:
+        return meaning(unit_text, text, **said.keywords)
+    except TypeError:
+        message = f"the words {text[:60]!r} make no name: they need a letter first"
+        raise statement.refuse("name", message, words, 'write words as in "bearing diameter"') from None
+
+
+def words_of(statement: Parsed, words: lark.Token) -> str:
+    """The words between quotation marks.
+
+    Raises
+    ------
+    Refusal
+        With code `too_large` or `name`, if they are too long, or there are none.
+    """
+    text = " ".join(words[1:-1].split())
+    if len(text) > LONGEST_WORDS:
+        raise statement.refuse("too_large", f"words have at most {LONGEST_WORDS} characters", words)
+    if not text:
+        raise statement.refuse("name", "the words are missing", words, "say what it is")
+    return text
+
+
+def said_in(
+    statement: Parsed, clauses: lark.Tree[Any] | None, reader: Reader, unit_text: str | None = None
+) -> Said:
+    """What clauses say; bounds need the unit of the declaration."""
+    said, keys = Said(), set[str]()
+    for clause in clauses.children if clauses else ():
+        if clause is not None:
+            key, value = _clause(statement, clause, reader, unit_text)
+            if key in keys:
+                raise statement.refuse("clause", f"{clause_name(clause)} is said twice", clause)
+            keys.add(key)
+            if key == "example":
+                said.example = value
+            elif key == "held":
+                said.is_held = True
+            else:
+                said.keywords[key] = value  # type: ignore[literal-required]
+    return said
+
+
+def clause_name(clause: lark.Tree[Any]) -> str:
+    """How a clause begins."""
+    return str(clause.children[0]) if clause.data in ("bound", "said") else str(clause.data)
+
+
+def _clause(
+    statement: Parsed, clause: lark.Tree[Any], reader: Reader, unit_text: str | None
+) -> tuple[str, Any]:
+    if clause.data == "said":
+        return _said(statement, clause)
+    if clause.data == "held" and statement.kind == "curve":
+        return "held", True
+    if unit_text is None or clause.data == "held":
+        message = f"{clause_name(clause)} has no place here"
+        raise statement.refuse("clause", message, clause, 'write (source "…") or (remedy "…")')
+    numbers = [part for part in clause.children if isinstance(part, lark.Tree)]
+    if clause.data == "whole":
+        return "integer", True
+    if clause.data == "example":
+        return "example", reader.typed(statement, numbers[0], unit_text, "the example")
+    limits = [reader.limit(statement, part, unit_text) for part in numbers]
+    if clause.data == "published":
+        if not limits[0] < limits[1]:
+            remedy = "write the smaller one first"
+            raise statement.refuse("limit", "the published range is empty", clause, remedy)
+        return "published", tuple(limits)
+    sign = str(clause.children[0])
+    if sign not in _BOUNDS:
+        raise statement.refuse("limit", f"{sign} is no bound", clause, "a bound is <, <=, > or >=")
+    return _BOUNDS[sign], limits[0]
+
+
+def _said(statement: Parsed, clause: lark.Tree[Any]) -> tuple[str, Any]:
+    key, *texts = cast(list[lark.Token], clause.children)
+    said = [words_of(statement, text) for text in texts]
+    if key == "also":
+        return "also", tuple(said)
+    if len(said) > 1:
+        raise statement.refuse("clause", f"{key} takes one text", clause)
+    if key == "symbol" and not _SYMBOL.fullmatch(said[0]):
+        remedy = r'write a letter with a subscript, as in symbol "\eta_{0}"'
+        raise statement.refuse("clause", f"{said[0][:40]!a} is no symbol", clause, remedy)
+    return str(key), said[0]

@@ -1,0 +1,78 @@
+"""A `check` of a worksheet as a criterion of the template: a comparison of its inputs and outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from templates.core.errors import FaultyText
+from templates.core.judging.criterion import read_criterion
+from templates.core.language.criteria import known_names
+from templates.core.language.meaning import api_name
+from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given
+from templates.core.sheets.clauses import Said
+from templates.core.sheets.grammar import Parsed
+from templates.core.units.lists import OVER_LISTS, TRAILING
+from templates.core.units.operations import CONSTANTS, FUNCTIONS, Apply, Constant, Name
+
+WARNING = "check_not_met"
+_OPERATORS = frozenset({"+", "-", "*", "/", "**"})
+
+
+def criterion_of(
+    statement: Parsed, node: Any, words: str, said: Said, made: Mapping[str, Any]
+) -> tuple[str, dict[str, str]]:
+    """Name and content of a criterion, as templates declare them.
+
+    Raises
+    ------
+    Refusal
+        With code `check`, if it is no single comparison by <= or >=, or as `read_criterion` says.
+    """
+    at = statement.parts[0]
+    remedy = "write p <= 30 MPa; several conditions are several checks"
+    if not (isinstance(node, Apply) and node.operation.sign in ("<=", ">=")):
+        raise statement.refuse("check", "a check compares two sides by one <= or >=", at, remedy)
+    names = {n: d.name for n, d in made.items() if isinstance(d, Declaration)}
+    try:
+        left, right = (relation_text(side, names) for side in node.arguments)
+        content = {"require": f"{left} {node.operation.sign} {right}", "words": words, "warning": WARNING}
+        if source := said.keywords.get("source"):
+            content["source"] = source
+        inputs = {d.name: d for d in made.values() if isinstance(d, (Given, Choice, Derived))}
+        formulas = {d.name: d for d in made.values() if isinstance(d, Formula) and d.name not in inputs}
+        read_criterion(api_name(words) or "check", content, known_names(inputs, formulas))
+    except FaultyText as error:
+        raise statement.refuse("check", str(error), at, remedy) from None
+    return api_name(words) or f"check_{statement.chunk.line}", content
+
+
+def relation_text(node: Any, names: Mapping[str, str]) -> str:
+    """A tree as a relation between inputs and outputs by their API names.
+
+    Raises
+    ------
+    FaultyText
+        With code `check`, for what a criterion cannot say.
+    """
+    match node:
+        case Constant(text=text) if text:
+            return text
+        case Constant():
+            return next(name for name, constant in CONSTANTS.items() if constant == node)
+        case Name(name=name) if name in names:
+            return names[name]
+        case Apply(arguments=(part,)) if node.operation is TRAILING:
+            return relation_text(part, names)
+        case Apply(operation=operation, arguments=arguments):
+            return _applied(operation.sign, [(part, relation_text(part, names)) for part in arguments])
+    raise FaultyText("check", "a check compares quantities; give this one a name of its own")
+
+
+def _applied(sign: str, parts: list[tuple[Any, str]]) -> str:
+    if sign not in _OPERATORS and sign not in FUNCTIONS and sign not in OVER_LISTS:
+        raise FaultyText("check", "a check compares quantities; give this one a name of its own")
+    if sign not in _OPERATORS:
+        return f"{sign}({', '.join(text for _, text in parts)})"
+    texts = [f"({text})" if isinstance(part, Apply) else text for part, text in parts]
+    return f"-{texts[0]}" if len(texts) == 1 else f" {sign} ".join(texts)

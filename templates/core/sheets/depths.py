@@ -1,0 +1,51 @@
+"""How deep formulas call each other: a long chain of them is calculated from its beginning, step by step.
+
+A formula asks for what it uses when it is first asked itself. In a worksheet of 400 statements in any order
+that would nest too deep for Python; so some formulas of a long chain are asked first, the deepest before all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
+from typing import Any
+
+from templates.core.language.spec import Derived, Formula, Requirement
+from templates.core.sheets.built import Built
+from templates.core.sheets.faults import SheetFault
+from templates.core.units.operations import Apply
+
+MOST_NESTED = 150
+"""Calls within calls, from one formula that is asked first to the next."""
+_CALLS = 3  # of a formula, beside those within its expression
+
+
+def set_order(built: Built) -> Iterator[SheetFault]:
+    """Set what each formula of a worksheet without loops asks first; a fault for defaults nested too deep."""
+    bodies: dict[str, Any] = {
+        n: m.function for n, m in built.made.items() if isinstance(m, (Formula, Derived, Requirement))
+    }
+    uses = {name: [used for used in body.uses if used in bodies] for name, body in bodies.items()}
+    nested: dict[str, int] = {}
+    first: dict[str, dict[str, None]] = {}  # beneath each name, itself included where it is asked first
+    lines = {name: line for line, name in built.called.items()}
+    for name in TopologicalSorter(uses).static_order():
+        depth = _CALLS + _height(bodies[name]) + max((nested[used] for used in uses[name]), default=0)
+        before = {one: None for used in uses[name] for one in first[used]}
+        bodies[name].first = tuple(before)
+        is_default = isinstance(built.made[name], Derived)
+        if is_default and depth > 2 * MOST_NESTED:
+            message = f"the default of {name} follows from too many others in a row"
+            yield SheetFault(lines[name], 1, "too_large", message, remedy="make formulas of some defaults")
+        is_first = depth > MOST_NESTED and not is_default
+        nested[name] = 0 if is_first else depth
+        first[name] = {} if is_default else before | ({name: None} if is_first else {})
+
+
+def _height(body: Any) -> int:
+    """How deep the expression of a formula is."""
+    height, level = 0, [body.node]
+    while level:
+        height += 1
+        level = [part for node in level if isinstance(node, Apply) for part in node.arguments]
+    return height

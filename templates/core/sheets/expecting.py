@@ -1,0 +1,96 @@
+"""From a `test` statement to what it gives and expects."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import lark
+import numpy as np
+
+from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given, Text
+from templates.core.sheets.body import TreeBody
+from templates.core.sheets.clauses import words_of
+from templates.core.sheets.expressions import Reader
+from templates.core.sheets.faults import FollowsFromFault
+from templates.core.sheets.grammar import Parsed
+from templates.core.sheets.testing import Expected, SheetTest
+from templates.core.units.rules import is_number
+
+Made = Mapping[str, Any]
+
+
+def test_of(statement: Parsed, reader: Reader, made: Made) -> SheetTest:
+    """The test that a statement describes.
+
+    Raises
+    ------
+    Refusal
+        If a name is no input or no output, or a value does not measure what its name does.
+    """
+    words, *parts, tolerance = statement.parts
+    given, expected = {}, []
+    for part in (part for part in parts if part is not None):
+        name, tree = part.children
+        if part.data == "setting":
+            declared = _declared(statement, reader, made, name, (Given, Choice, Derived), "an input")
+            given[declared.name] = _set(statement, reader, declared, tree, str(name))
+        else:
+            declared = _declared(statement, reader, made, name, (Formula,), "a result")
+            expected.append(_expected(statement, reader, declared, tree, tolerance, str(name)))
+    return SheetTest(statement.chunk.line, words_of(statement, words), given, tuple(expected))
+
+
+def _declared(
+    statement: Parsed, reader: Reader, made: Made, name: lark.Token, kinds: tuple[type, ...], wanted: str
+) -> Any:
+    declared = made.get(str(name))
+    if declared is None and (str(name) in reader.names.broken or str(name) in reader.names.sorts):
+        raise FollowsFromFault(str(name))
+    if not isinstance(declared, kinds) or isinstance(declared, Text):
+        raise statement.refuse("unknown_name", f"{str(name)[:60]} is not {wanted} of this worksheet", name)
+    return declared
+
+
+def _set(statement: Parsed, reader: Reader, declared: Declaration, tree: lark.Tree[Any], name: str) -> Any:
+    if isinstance(declared, Choice):
+        word = str(tree.children[0]) if tree.data == "name" else ""
+        if word not in declared.options:
+            options = ", ".join(declared.options)
+            raise statement.refuse("unknown_name", f"{name} is one of {options}", tree)
+        return word
+    return _value(statement, reader, declared, tree, name)
+
+
+def _value(statement: Parsed, reader: Reader, declared: Declaration, tree: lark.Tree[Any], name: str) -> Any:
+    """The SI value of an expression without names."""
+    part = reader.part(statement, tree)
+    body = TreeBody(reader.fitting(statement, part, declared.meaning.unit, name, tree), statement.chunk.line)
+    if body.uses:
+        raise statement.refuse("unknown_name", "a test takes numbers, not names", tree, "write its value")
+    with np.errstate(all="ignore"):
+        value = body(None)
+    if not np.isfinite(value).all():
+        raise statement.refuse("limit", f"the value of {name} is not finite", tree)
+    return value
+
+
+def _expected(
+    statement: Parsed, reader: Reader, declared: Declaration, tree: lark.Tree[Any], within: Any, name: str
+) -> Expected:
+    value = _value(statement, reader, declared, tree, name)
+    tolerance, sort = reader.part(statement, within)
+    size = TreeBody(tolerance, statement.chunk.line)
+    if size.uses or sort.truth:
+        raise statement.refuse("limit", "a tolerance is one number", within, "write within 0.2 %")
+    text = statement.text_of(within)
+    number = abs(float(size(None)))
+    if text.endswith("%"):
+        number *= float(np.max(np.abs(value)))
+    elif is_number(sort.kind) and not is_number(reader.sort_of(declared.meaning.unit).kind):
+        message = f"{text} has no unit"
+        raise statement.refuse("limit", message, within, "write within 0.2 %, or within 1 um")
+    elif text != "0":
+        difference = declared.meaning.unit if not declared.meaning.scale.absolute else "K"
+        reader.fitting(statement, (tolerance, sort), difference, "the tolerance", within)
+    return Expected(declared.name, value, number, f"{statement.text_of(tree)} within {text}")

@@ -1,0 +1,156 @@
+"""Expressions within statements: their trees, what they measure, and limits that are one number."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import lark
+import numpy as np
+
+from templates.core.errors import FaultyText
+from templates.core.sheets.body import TreeBody
+from templates.core.sheets.grammar import Parsed
+from templates.core.sheets.names import Names, sort_of
+from templates.core.units.expressions import FaultyPlace, checked
+from templates.core.units.operations import Constant
+from templates.core.units.rules import is_number, told
+from templates.core.units.sorts import Part, Sort
+from templates.core.units.units import compatible, unit
+
+
+class Reader:
+    """Reads the expressions of statements, all within the names of one worksheet."""
+
+    def __init__(self, names: Names) -> None:
+        self.names = names
+
+    sort_of = staticmethod(sort_of)
+
+    def part(self, statement: Parsed, tree: lark.Tree[Any]) -> Part:
+        """An expression and what it gives.
+
+        Raises
+        ------
+        Refusal
+            With the place of what is wrong.
+        """
+        try:
+            return checked(tree, self.names)
+        except FaultyPlace as error:
+            message, _, remedy = str(error).partition("; ")
+            raise statement.at(error.code, message, error.meta, remedy) from None
+
+    def fitting(
+        self, statement: Parsed, part: Part, unit_text: str, name: str, at: Any, axis: str | None = None
+    ) -> Any:
+        """The tree of an expression that gives what is declared; the `axis` is any, if None.
+
+        Raises
+        ------
+        Refusal
+            With code `unit_mismatch`, `axis_mismatch` or `no_truth`.
+        """
+        tree, got = part
+        wanted = sort_of(unit_text)
+        if got.truth:
+            message = f"{name} is a quantity, but this is a condition"
+            raise statement.refuse("no_truth", message, at, "write if … then … else …")
+        if not compatible(got.kind.base, wanted.kind.base):
+            message = f"{name} is declared in {unit_text}, but this gives {told(got.kind)}"
+            raise statement.refuse("unit_mismatch", message, at, "correct the unit or the formula")
+        if axis is not None:
+            self._along(statement, got, axis, name, at)
+        if unit(unit_text).absolute and not _is_temperature(tree, got):
+            message = f"{name} is a difference of temperatures, or no plain one"
+            raise statement.refuse("unit_mismatch", message, at, "declare it in K")
+        return tree
+
+    def _along(self, statement: Parsed, got: Sort, axis: str, name: str, at: Any) -> None:
+        """Refuse a list where a single value is declared, and the other way round."""
+        if got.axis and not axis:
+            message = f"{name} is a single value, but this is a list over {got.axis}"
+            over = f"over {got.axis}" if " " not in got.axis else "over the name of its axis"
+            raise statement.refuse("axis_mismatch", message, at, f"declare it {over}, or take max(…) of it")
+        if axis and got.axis != axis and not is_literal(got.axis):
+            what = f"a list over {got.axis}" if got.axis else "a single value"
+            message = f"{name} is declared over {axis}, but this is {what}"
+            raise statement.refuse("axis_mismatch", message, at, "declare what it gives")
+
+    def limit(self, statement: Parsed, tree: lark.Tree[Any], unit_text: str) -> float:
+        """A limit in the declared unit: typed in it without a unit, or in any other with one.
+
+        Raises
+        ------
+        Refusal
+            With code `limit` if it is not one number, or `unit_mismatch`.
+        """
+        part = self.part(statement, tree)
+        constant, sort = part
+        if not isinstance(constant, Constant):
+            raise statement.refuse("limit", "a limit is one number", tree, "write it as in <= 2 m")
+        if next(tree.find_data("quantity"), None) is None and is_number(sort.kind):
+            return float(constant.value)
+        value = self.fitting(statement, part, unit_text, "a limit", tree).value
+        return float(unit(unit_text).from_si(value))
+
+    def typed(self, statement: Parsed, tree: lark.Tree[Any], unit_text: str, name: str) -> Any:
+        """A value without names as a user types it: a text where it is one number, else a list or a number.
+
+        Raises
+        ------
+        Refusal
+            With code `limit` if it needs a name, or is not finite; else as `fitting`.
+        """
+        part = self.part(statement, tree)
+        if isinstance(part[0], Constant) and part[0].text and " " not in part[0].text:
+            return part[0].text if unit_text == "1" else f"{part[0].text} {unit_text}"
+        node = self.fitting(statement, part, unit_text, name, tree)
+        return self.number(statement, node, tree, unit_text, name)
+
+    def number(self, statement: Parsed, node: Any, tree: lark.Tree[Any], unit_text: str, name: str) -> Any:
+        """A checked tree without names as a user types it.
+
+        Raises
+        ------
+        Refusal
+            With code `limit` if it needs a name, or is not finite.
+        """
+        body = TreeBody(node, statement.chunk.line)
+        if body.uses:
+            raise statement.refuse("limit", f"{name} takes numbers, not names", tree, "write its value")
+        if isinstance(node, Constant) and node.text:
+            return node.text
+        with np.errstate(all="ignore"):
+            value = np.asarray(body(None), dtype=float)
+        if not np.isfinite(value).all():
+            raise statement.refuse("limit", f"{name} is not finite", tree)
+        shown = np.asarray(unit(unit_text).from_si(value))
+        return {"value": shown.tolist(), "unit": unit_text}
+
+    def declared_unit(self, statement: Parsed, text: lark.Token) -> str:
+        """The unit between brackets.
+
+        Raises
+        ------
+        Refusal
+            With code `unknown_unit`.
+        """
+        name = text[1:-1].strip()
+        try:
+            sort_of(name)
+        except FaultyText as error:
+            message, _, remedy = str(error).partition("; ")
+            raise statement.refuse(error.code, message, text, remedy) from None
+        return name
+
+
+def is_literal(axis: str) -> bool:
+    """Whether an axis is that of a list that is written out: `3 items`."""
+    return " " in axis
+
+
+def _is_temperature(node: Any, got: Sort) -> bool:
+    """Whether a tree gives one temperature: not a difference, and no sum of several."""
+    if isinstance(node, Constant) and " " in node.text:
+        return not unit(node.text.partition(" ")[2]).difference
+    return abs((got.weight or 0.0) - 1) < 1e-9

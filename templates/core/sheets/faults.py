@@ -1,0 +1,46 @@
+"""What is wrong with a worksheet: each fault with its place, a code, a sentence and a remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from templates.core.errors import TemplateError
+
+
+@dataclass(frozen=True, order=True)
+class SheetFault:
+    """One fault of a worksheet; lines and columns count from 1."""
+
+    line: int
+    column: int
+    code: str
+    message: str
+    end_column: int | None = None
+    remedy: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """The fault in one line: `line 9, column 5: …; write …`."""
+        remedy = f"; {self.remedy}" if self.remedy else ""
+        return f"line {self.line}, column {self.column}: {self.message}{remedy}"
+
+
+class SheetRefused(TemplateError):
+    """A worksheet with faults, all of them at once, in the order of its lines."""
+
+    def __init__(self, faults: Iterable[SheetFault]) -> None:
+        self.faults = tuple(sorted(set(faults), key=lambda fault: (fault.line, fault.column, fault.message)))
+        super().__init__("; ".join(fault.sentence for fault in self.faults))
+
+
+class Refusal(TemplateError):
+    """A single fault on its way to the others; its place counts from the beginning of the sheet."""
+
+    def __init__(self, fault: SheetFault) -> None:
+        self.fault = fault
+        super().__init__(fault.sentence)
+
+
+class FollowsFromFault(TemplateError):
+    """A statement uses a name whose own statement is refused: that fault is reported, this is none."""

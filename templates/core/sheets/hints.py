@@ -1,0 +1,57 @@
+"""What would be right where a statement is not understood: by the sign there, else by what is missing."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+
+_SIGNS = (  # what stands before, what stands there, and what would be right
+    ("", r"\^", "a power is written **, as in D**2"),
+    (r"\d", r",\d", "decimals take a point, as in 2.5"),
+    ("", r":=", "write =, without a colon"),
+    (r"\d", r"[A-Za-zµ°%]", "put a blank between a number and its unit, as in 25 kN"),
+    ("", r"<>|=<|=>|≤|≥|≠", "a comparison is one of < <= > >= == !="),
+    ("", r"×|·|÷", "operators are + - * / **"),
+)
+_MISSING = {  # what the parser expects, and how it is written
+    "UNIT": "the unit is missing here: write it in brackets, as in [kN], or [1] for a pure number",
+    "KEY": 'clauses are > 0, <= 2 m, published 1 to 2, example 3 mm, source "…", remedy "…", also "…"',
+    "TEXT": 'words between quotation marks are missing here, as in "bearing diameter"',
+    "ELSE": "every if has its else",
+    "THEN": "behind the condition of an if stands then",
+    "WITHIN": "say how near: within 0.2 %",
+}
+_FORMULA = 'p [MPa] = F / (D * B) "projected pressure"'
+_FORMS = {
+    "given": 'given D [mm] "bearing diameter" (> 0; example 48 mm)',
+    "choice": 'choice law = walther "viscosity law" (walther | vogel)',
+    "curve": 'curve mu(T [degC]) [mPa*s] "viscosity": 40 -> 80 100 -> 9',
+    "solve": 'solve x [mm] from 1 mm to 2 m so that F / x**2 == 10 MPa "width"',
+    "require": 'require B <= D "The bush is not longer than wide"',
+    "check": 'check p <= 30 MPa "white metal carries it"',
+    "test": 'test "by hand" with F = 25 kN gives p = 21.7 MPa within 0.2 %',
+}
+
+
+def remedy_of(statement: str, before: str, there: str, expected: Collection[str]) -> str:
+    """What would be right in a statement.
+
+    Parameters
+    ----------
+    statement
+        Its text.
+    before, there
+        The line up to the place that is not understood, and from there on.
+    expected
+        The terminals of the grammar that could stand there.
+    """
+    word = statement.split(maxsplit=1)[0]
+    if word not in _FORMS and word.lower() in _FORMS:
+        return f"write {word.lower()} in small letters"
+    for last, first, remedy in _SIGNS:
+        if re.match(first, there) and re.search(f"(?:{last})$", before):
+            return remedy
+    for terminal, remedy in _MISSING.items():
+        if terminal in expected:
+            return remedy
+    return f"write it as in: {_FORMS.get(word, _FORMULA)}"

@@ -1,0 +1,89 @@
+"""From the text of a worksheet to its statements: what is indented goes on, `#` and `>` begin prose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from templates.core.errors import excerpt
+from templates.core.sheets.faults import SheetFault, SheetRefused
+
+MOST_BYTES = 64 * 1024
+MOST_STATEMENTS = 400
+LONGEST_STATEMENT = 2000
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """One statement as it was written: its first line, and its text with the line ends in it."""
+
+    line: int
+    text: str
+    kind: str = ""  # `prose`, `remark`; else the grammar says
+
+    @property
+    def last_line(self) -> int:
+        """The last line of the statement."""
+        return self.line + self.text.count("\n")
+
+
+def normal(text: str) -> str:
+    """A text without a byte order mark, its lines ended as the language ends them."""
+    return text.removeprefix("\ufeff").replace("\r\n", "\n")
+
+
+def chunks_of(text: str) -> list[Chunk]:
+    """The statements of a text, prose and remarks included, in the order of its lines.
+
+    Raises
+    ------
+    SheetRefused
+        If the text is too large, or holds what is no text.
+    """
+    if faults := list(_faults_of_text(text)):
+        raise SheetRefused(faults)
+    chunks: list[Chunk] = []
+    for number, line in enumerate(text.split("\n"), 1):
+        before = chunks[-1] if chunks and chunks[-1].last_line == number - 1 else None
+        if line[:1] in (" ", "\t") and line.strip() and before and not before.kind:
+            chunks[-1] = Chunk(before.line, f"{before.text}\n{line}")
+        elif line.startswith(">") and before and before.kind == "prose" and before.text.startswith(">"):
+            chunks[-1] = Chunk(before.line, f"{before.text}\n{line}", "prose")
+        elif line.strip():
+            chunks.append(Chunk(number, line, _kind(line)))
+    if faults := list(_faults_of_size(chunks)):
+        raise SheetRefused(faults)
+    return chunks
+
+
+def _kind(line: str) -> str:
+    return "prose" if line.startswith(("#", ">")) else "remark" if line.startswith("//") else ""
+
+
+def _faults_of_text(text: str) -> Iterator[SheetFault]:
+    if len(text) > MOST_BYTES or len(text.encode("utf-8", "replace")) > MOST_BYTES:
+        message = f"a worksheet has at most {MOST_BYTES // 1024} KiB"
+        yield SheetFault(1, 1, "too_large", message, remedy="make two worksheets of it")
+        return
+    for number, line in enumerate(text.split("\n"), 1):
+        column = next((place for place, sign in enumerate(line, 1) if _is_no_text(sign)), None)
+        if column is not None:
+            message = f"{excerpt(line[column - 1])} is no letter, digit or sign that a text may hold"
+            yield SheetFault(number, column, "syntax", message, column + 1, "take it away")
+
+
+def _is_no_text(sign: str) -> bool:
+    """Whether a sign is a lone surrogate, or controls a terminal."""
+    return "\ud800" <= sign <= "\udfff" or (sign < " " and sign != "\t") or sign == "\x7f"
+
+
+def _faults_of_size(chunks: list[Chunk]) -> Iterator[SheetFault]:
+    statements = [chunk for chunk in chunks if not chunk.kind]
+    if len(statements) > MOST_STATEMENTS:
+        message = f"a worksheet has at most {MOST_STATEMENTS} statements"
+        line = statements[MOST_STATEMENTS].line
+        yield SheetFault(line, 1, "too_large", message, remedy="make two worksheets of it")
+    for chunk in statements:
+        if len(chunk.text) > LONGEST_STATEMENT:
+            message = f"a statement has at most {LONGEST_STATEMENT} characters"
+            yield SheetFault(chunk.line, 1, "too_large", message, remedy="give its parts names of their own")

@@ -1,0 +1,32 @@
+"""Declarations that follow from themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
+
+from templates.core.sheets.built import Built
+from templates.core.sheets.faults import SheetFault
+
+MOST_LOOPS = 10
+
+
+def faults_of_loops(built: Built) -> Iterator[SheetFault]:
+    """A fault for every loop, at the first line of it."""
+    lines = {name: line for line, name in built.called.items()}
+    uses = {name: set(getattr(made, "uses", ())) & built.made.keys() for name, made in built.made.items()}
+    for _ in range(MOST_LOOPS):
+        try:
+            TopologicalSorter(uses).prepare()
+            return
+        except CycleError as error:
+            loop = list(reversed(error.args[1]))
+        uses[loop[0]] = uses[loop[0]] - {loop[1]}
+        names = sorted(set(loop), key=lambda name: lines[name])
+        message = (
+            f"{names[0]} follows from itself" if len(names) == 1
+            else f"{', '.join(names)} follow from each other"
+        )  # fmt: skip
+        yield SheetFault(
+            lines[names[0]], 1, "loop", message, remedy="let one of them follow from something else"
+        )

@@ -1,0 +1,124 @@
+"""The names of a worksheet: what each measures, its functions, and how much may still be calculated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from templates.core.errors import FaultyText, unknown_name
+from templates.core.language.template import Template
+from templates.core.sheets.faults import FollowsFromFault
+from templates.core.units.lists import OVER_LISTS
+from templates.core.units.operations import CONSTANTS, FUNCTIONS, Kind, Name
+from templates.core.units.sorts import Part, Sort
+from templates.core.units.units import unit
+
+FUEL = 10_000
+"""Operations of a worksheet, its functions written out."""
+
+LONGEST_NAME = 60
+_WORDS = frozenset({
+    "then", "else", "and", "or", "is", "to", "so", "that", "over", "from", "with", "within", "gives",
+    "if", "not", "given", "choice", "curve", "solve", "require", "check", "test",
+    "level", "ledger",
+})  # fmt: skip
+
+Call = Callable[[list[Part]], Part]
+
+
+@dataclass(frozen=True)
+class Named:
+    """A name that formulas may use, for completion in an editor."""
+
+    name: str
+    unit: str
+    words: str
+    kind: str
+
+
+@dataclass
+class Names:
+    """What the names of a worksheet mean, as `Scope` of its expressions."""
+
+    sorts: dict[str, Sort] = field(default_factory=dict)
+    functions: dict[str, Call] = field(default_factory=dict)
+    broken: set[str] = field(default_factory=set)  # names whose statement is refused
+    parameters: dict[str, Part] = field(default_factory=dict)  # of the function that is written out now
+    fuel: int = FUEL
+
+    def name(self, text: str) -> Part:
+        """What a name stands for.
+
+        Raises
+        ------
+        FaultyText
+            With code `unknown_name`.
+        FollowsFromFault
+            If its own statement is refused.
+        """
+        if text in self.parameters:
+            return self.parameters[text]
+        if text in self.sorts:
+            return Name(text), self.sorts[text]
+        if text in self.broken:
+            raise FollowsFromFault(text)
+        fault = unknown_name(text, [*self.parameters, *self.sorts], "name")
+        raise FaultyText("unknown_name", fault.detail)
+
+    def function(self, name: str) -> Call | None:
+        """The function of the worksheet with this name, if it has one.
+
+        Raises
+        ------
+        FollowsFromFault
+            If the statement of the function is refused.
+        """
+        if name not in self.functions and name in self.broken:
+            raise FollowsFromFault(name)
+        return self.functions.get(name)
+
+    def spend(self) -> None:
+        """Count one operation.
+
+        Raises
+        ------
+        FaultyText
+            With code `too_large`, if there are too many.
+        """
+        self.fuel -= 1
+        if self.fuel < 0:
+            detail = f"a worksheet has at most {FUEL} operations, its functions written out"
+            raise FaultyText("too_large", detail)
+
+    def check_new(self, name: str) -> None:
+        """Refuse a name that is taken, or that means something in the language.
+
+        Raises
+        ------
+        FaultyText
+            With code `name`.
+        """
+        if name in self.sorts or name in self.functions:
+            raise FaultyText("name", f"{name[:LONGEST_NAME]} is declared above already")
+        if len(name) > LONGEST_NAME or "." in name:
+            raise FaultyText("name", f"a name has at most {LONGEST_NAME} letters, digits and _, and no dot")
+        if (
+            name in _WORDS
+            or name in CONSTANTS
+            or name in FUNCTIONS
+            or name in OVER_LISTS
+            or hasattr(Template, name)
+        ):
+            raise FaultyText("name", f"{name} has a meaning of its own")
+
+
+def sort_of(text: str) -> Sort:
+    """What a value measures that is declared in a unit.
+
+    Raises
+    ------
+    FaultyText
+        With code `unknown_unit`.
+    """
+    scale = unit(text)
+    return Sort(Kind(scale.base), float(scale.absolute))

@@ -1,0 +1,55 @@
+"""Operations that give a value not everywhere, and say why: a curve has none outside its points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from templates.core.language.ledger import Mask
+from templates.core.units.closures import closure
+from templates.core.units.lists import ITEM
+from templates.core.units.operations import Apply, Operation
+from templates.core.units.walking import nodes_of
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Partial(Operation):
+    """An operation without a value where `is_missing` holds of its arguments, for a reason.
+
+    It may be applied to each item of a list: then it `is_of_items`, and one item suffices.
+    """
+
+    is_missing: Callable[..., Any]
+    reason: str
+    is_of_items: bool = False
+
+
+def _no_item(values: Any, index: Any) -> Any:
+    return np.logical_or(index != np.floor(index), (index < 1) | (index > np.shape(values)[-1]))
+
+
+_ITEM = Partial(
+    ITEM.sign, ITEM.calculate, ITEM.kind, ITEM.arity,
+    is_missing=_no_item, reason="the list has no item of this index",
+)  # fmt: skip
+
+Explained = tuple[Partial, list[Callable[[Any], Any]]]
+
+
+def explained_in(node: Any) -> list[Explained]:
+    """The partial operations of a tree, with functions for their arguments."""
+    applied = (part for part in nodes_of(node) if isinstance(part, Apply))
+    found = ((_ITEM if part.operation is ITEM else part.operation, part.arguments) for part in applied)
+    return [(one, list(map(closure, arguments))) for one, arguments in found if isinstance(one, Partial)]
+
+
+def explain(template: Any, attribute: str, operations: list[Explained]) -> None:
+    """Note in the ledger of a template why a value does not exist, and at which points."""
+    for operation, arguments in operations:
+        missing = np.asarray(operation.is_missing(*(argument(template) for argument in arguments)))
+        where = np.asarray(missing.any(axis=-1)) if operation.is_of_items else missing
+        if where.any():
+            template.ledger.masks.append(Mask((attribute,), where, operation.reason, explains=True))

@@ -1,0 +1,133 @@
+"""A worksheet: text that was read and checked whole, and the template class that it makes."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from templates.core.language.template import Template
+from templates.core.sheets.building import Builder
+from templates.core.sheets.built import Built
+from templates.core.sheets.classes import made
+from templates.core.sheets.depths import set_order
+from templates.core.sheets.faults import SheetRefused
+from templates.core.sheets.grammar import LANGUAGE
+from templates.core.sheets.lines import Chunk, chunks_of, normal
+from templates.core.sheets.loops import faults_of_loops
+from templates.core.sheets.names import Named
+from templates.core.sheets.paper import latex_of
+from templates.core.sheets.prose import documentation_of, markdown_of, title_of
+from templates.core.sheets.testing import SheetTest
+
+_ID = re.compile(r"[a-z][a-z0-9_]*")
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A statement as an editor shows it.
+
+    Attributes
+    ----------
+    kind
+        given, choice, curve, formula, function, solve, require, check, test, prose or remark.
+    name
+        The attribute of the class: a symbol, or that of a rule; of a check the name of its criterion.
+    words
+        What it says: words of a quantity, the sentence of a rule, Markdown of prose.
+    latex
+        The line on paper; empty where it has no formula.
+    """
+
+    kind: str
+    name: str
+    line: int
+    last_line: int
+    words: str
+    latex: str = ""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A worksheet without faults."""
+
+    text: str
+    chunks: tuple[Chunk, ...] = field(repr=False)
+    built: Built = field(repr=False, compare=False)
+    language: int = LANGUAGE
+
+    @property
+    def title(self) -> str:
+        """The first heading; empty where there is none."""
+        return title_of(self.chunks)
+
+    @property
+    def tests(self) -> tuple[SheetTest, ...]:
+        """The tests that it holds; `run_tests` runs them."""
+        return tuple(self.built.tests)
+
+    @cached_property
+    def names(self) -> tuple[Named, ...]:
+        """What formulas may use, for completion."""
+        return tuple(self.built.named.values())
+
+    def digest(self) -> str:
+        """SHA-256 of the statements and the version of the language; prose and layout do not count."""
+        return self._digest
+
+    @cached_property
+    def _digest(self) -> str:
+        statements = [statement.words for statement in self.built.statements]
+        content = json.dumps([self.language, statements], separators=(",", ":"))
+        return hashlib.sha256(content.encode()).hexdigest()
+
+    @cached_property
+    def statements(self) -> tuple[Statement, ...]:
+        """Every statement with prose and remarks, in the order of the lines."""
+        lines = {statement.chunk.line: statement for statement in self.built.statements}
+        written = latex_of(self.template("worksheet", 1), self.built)
+        return tuple(self._statement(chunk, lines.get(chunk.line), written) for chunk in self.chunks)
+
+    def _statement(self, chunk: Chunk, parsed: Any, written: dict[int, str]) -> Statement:
+        if parsed is None:
+            words = markdown_of(chunk)
+            return Statement(chunk.kind, "", chunk.line, chunk.last_line, words)
+        name, words = self.built.called.get(chunk.line, ""), self.built.said.get(chunk.line, "")
+        return Statement(parsed.kind, name, chunk.line, chunk.last_line, words, written.get(chunk.line, ""))
+
+    def template(self, id: str, version: int) -> type[Template]:
+        """The class of the worksheet under an id and version.
+
+        Raises
+        ------
+        ValueError
+            If the id is no name in snake_case, or the version is below 1.
+        """
+        if not _ID.fullmatch(id) or version < 1:
+            raise ValueError(f"{id!r} {version!r} is no id in snake_case with a version from 1")
+        parts = {
+            "__doc__": documentation_of(self.chunks) or id.replace("_", " ").capitalize(),
+            "example": self.built.example,
+            "criteria": self.built.criteria,
+            **self.built.declarations(),
+        }
+        return made(self, id, version, parts)
+
+
+def read(text: str) -> Sheet:
+    """Read a worksheet.
+
+    Raises
+    ------
+    SheetRefused
+        With every fault, each with its line and column, a code, a sentence and a remedy.
+    """
+    text = normal(text)
+    chunks = chunks_of(text)
+    built = Builder([chunk for chunk in chunks if not chunk.kind]).built
+    if faults := [*built.faults, *faults_of_loops(built)] or [*set_order(built)]:
+        raise SheetRefused(faults)
+    return Sheet(text, tuple(chunks), built)

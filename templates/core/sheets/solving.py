@@ -1,0 +1,131 @@
+"""`solve x from a to b so that … == …`: the root between two bounds, at all points at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import reduce
+from operator import attrgetter
+from types import SimpleNamespace
+from typing import Any
+
+import lark
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import elementwise
+
+from templates.core.language.body import Body
+from templates.core.language.ledger import Mask
+from templates.core.paper.expressions import latex
+from templates.core.sheets.body import names_in, unequal_lengths
+from templates.core.sheets.expressions import Reader
+from templates.core.sheets.grammar import Parsed
+from templates.core.units.closures import closure
+from templates.core.units.operations import Apply
+
+NEAR = (
+    1e-6  # how far both sides differ at a root, beside their difference at the bounds; at a pole it is more
+)
+
+
+class SolveBody(Body):
+    """An equation in the place of a formula's function: called with a template, it gives the unknown.
+
+    Source: Chandrupatla, Advances in Engineering Software 28(3), 1997, by SciPy's `find_root`.
+    """
+
+    has_numbers = False
+
+    def __init__(
+        self,
+        name: str,
+        equation: Apply,
+        bounds: tuple[Any, ...],
+        line: int,
+        words: str,
+        lists: frozenset[str],
+    ) -> None:
+        self.node, self.first = equation, tuple[str, ...]()
+        self.name, self.line, self.equation, self.bounds, self._lists = name, line, equation, bounds, lists
+        self.reason = f"there is no {words} {self._between()} for which the equation holds"
+        self._sides = [closure(side) for side in equation.arguments]
+        self._bounds = [closure(bound) for bound in bounds]
+        inside = dict.fromkeys(names_in(equation))
+        self._known = tuple(known for known in inside if known != name)
+        self.uses = tuple(dict.fromkeys([*self._known, *(n for bound in bounds for n in names_in(bound))]))
+        self.__doc__ = None
+        self.__qualname__ = f"line {line}"
+
+    def __call__(self, template: Any) -> Any:
+        """The root [SI]; NaN where there is none, and the ledger says why."""
+        for name in self.first:
+            getattr(template, name)
+        values = {name: attrgetter(name)(template) for name in self._known}
+        low, high = (np.asarray(bound(template), dtype=float) for bound in self._bounds)
+        singles = [value for name, value in values.items() if _is_number(value) and name not in self._lists]
+        firsts = [np.asarray(values[name])[..., 0] for name in self._lists & values.keys()]
+        shape = np.broadcast_shapes(low.shape, high.shape, *(np.shape(v) for v in (*singles, *firsts)))
+        try:
+            roots = self._roots(values, np.broadcast_to(low, shape), np.broadcast_to(high, shape))
+        except ValueError:
+            raise unequal_lengths(self, template) from None
+        missing = np.isnan(roots)
+        if missing.any() and (ledger := getattr(template, "ledger", None)):
+            ledger.masks.append(Mask((self.name,), missing, self.reason, explains=True))
+        return roots[()]
+
+    def _roots(self, values: Mapping[str, Any], low: NDArray[Any], high: NDArray[Any]) -> NDArray[Any]:
+        flat = {name: self._flat(name, value, low.shape) for name, value in values.items()}
+        places = np.arange(low.size)
+        ends = np.minimum(low, high).ravel(), np.maximum(low, high).ravel()
+
+        def residual(unknown: NDArray[Any], at: NDArray[Any]) -> NDArray[Any]:
+            here = SimpleNamespace(**{self.name: unknown}, **{n: pick(at) for n, pick in flat.items()})
+            left, right = (side(here) for side in self._sides)
+            return np.broadcast_to(np.subtract(left, right), unknown.shape).copy()
+
+        with np.errstate(all="ignore"):
+            found = elementwise.find_root(residual, ends, args=(places,))
+            scale = reduce(np.maximum, (np.abs(residual(end, places)) for end in ends))
+            near = np.abs(residual(found.x, places)) <= NEAR * scale
+        return np.where(found.success & near, found.x, np.nan).reshape(low.shape)
+
+    def _flat(self, name: str, value: Any, shape: tuple[int, ...]) -> Callable[[NDArray[Any]], Any]:
+        """A value at some of the points, which are counted in one row."""
+        if not isinstance(value, np.ndarray):
+            return lambda at: value
+        if name in self._lists:
+            rows = np.broadcast_to(value, (*shape, value.shape[-1])).reshape(-1, value.shape[-1])
+            return lambda at: rows[at]
+        row = np.broadcast_to(value, shape).ravel()
+        return lambda at: row[at]
+
+    def _between(self) -> str:
+        low, high = (getattr(bound, "text", "") for bound in self.bounds)
+        return f"between {low} and {high}" if low and high else "between its bounds"
+
+    def latex(self, symbols: Mapping[str, str], times: str) -> str:
+        """The equation, with symbols or numbers in the place of attributes."""
+        return rf"\text{{root of }}\ {latex(self.equation, symbols, times)}"
+
+
+def _is_number(value: Any) -> bool:
+    return not isinstance(value, str)
+
+
+def equation_of(statement: Parsed, reader: Reader, tree: lark.Tree[Any], name: str) -> Apply:
+    """The equation behind `so that`: two sides that are equal.
+
+    Raises
+    ------
+    Refusal
+        With code `equation`.
+    """
+    node, sort = reader.part(statement, tree)
+    if not (isinstance(node, Apply) and node.operation.sign == "=="):
+        raise statement.refuse("equation", "this is no equation", tree, "write it as in F / A == 10 MPa")
+    if sort.axis:
+        message = f"the equation holds a list over {sort.axis}"
+        raise statement.refuse("axis_mismatch", message, tree, "take max(…) or sum(…) of it")
+    if name not in names_in(node):
+        raise statement.refuse("equation", f"{name} does not stand in the equation", tree)
+    return node

@@ -1,0 +1,93 @@
+"""Tests that a worksheet holds: inputs, and what must come out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from templates.core.errors import TemplateError
+from templates.core.language.intake import as_typed
+from templates.core.language.template import Template
+from templates.core.units.units import Unit
+
+
+@dataclass(frozen=True)
+class Expected:
+    """One result: the value [SI] that must come out, and how far from it a result may be [SI]."""
+
+    name: str
+    value: Any
+    tolerance: float
+    shown: str  # as typed: `21.7 MPa within 0.2 %`
+
+
+@dataclass(frozen=True)
+class SheetTest:
+    """Inputs [SI, or words] by API name, beside those of the example, and the results expected of them."""
+
+    line: int
+    words: str
+    given: Mapping[str, Any]
+    expected: tuple[Expected, ...]
+
+
+@dataclass(frozen=True)
+class TestResult:
+    """How a test ended; the message says what came out."""
+
+    __test__ = False  # of no interest to pytest
+
+    line: int
+    words: str
+    passed: bool
+    message: str
+
+
+def run_tests(cls: type[Template]) -> tuple[TestResult, ...]:
+    """Run the tests of the worksheet from which a class was made; a class from a file has none."""
+    return tuple(_run(cls, test) for test in getattr(cls.sheet, "tests", ()))
+
+
+def _run(cls: type[Template], test: SheetTest) -> TestResult:
+    given = {name: as_typed(cls, name, value) for name, value in test.given.items()}
+    try:
+        template = cls.from_quantities({**cls.example, **given})
+        with np.errstate(all="ignore"):
+            messages = list(_missed(template, test))
+    except TemplateError as error:
+        return TestResult(test.line, test.words, False, f"the inputs are refused: {error}")
+    if messages:
+        return TestResult(test.line, test.words, False, "; ".join(messages))
+    return TestResult(test.line, test.words, True, "; ".join(_met(template, one) for one in test.expected))
+
+
+def _met(template: Template, one: Expected) -> str:
+    """What came out as expected."""
+    declared = template.formulas[one.name]
+    shown = _shown(getattr(template, declared.attribute), declared.meaning.scale)
+    return f"{declared.meaning.words} is {shown}: {one.shown}"
+
+
+def _missed(template: Template, test: SheetTest) -> Iterator[str]:
+    """What came out otherwise than expected."""
+    for one in test.expected:
+        declared = template.formulas[one.name]
+        value = getattr(template, declared.attribute)
+        try:
+            is_near = bool(np.all(np.abs(value - one.value) <= one.tolerance))
+        except ValueError:
+            is_near = False
+        if not is_near:
+            shown = _shown(value, declared.meaning.scale)
+            yield f"{declared.meaning.words} is {shown}, not {one.shown}"
+
+
+def _shown(value: Any, scale: Unit) -> str:
+    if np.ndim(value):
+        return f"an array of {np.size(value)} values"
+    if np.isnan(value):
+        return "without a value"
+    return f"{float(scale.from_si(value)):.9g}{'' if scale.text == '1' else f' {scale.text}'}"

@@ -1,0 +1,79 @@
+"""A checked tree as nested functions of the object that has its names: walked once, called often."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from templates.core.units.conditions import COMPARISONS, IF, IS, LOGIC
+from templates.core.units.nodes import Constant, Name, Operation, Word
+from templates.core.units.operations import OPERATORS
+from templates.core.units.units import Value
+
+Closure = Callable[[Any], Any]
+
+
+def _quotient(over: Value, under: Value) -> Value:
+    try:
+        return over / under
+    except ZeroDivisionError:  # of two floats of Python
+        return np.divide(over, under)
+
+
+def _power(base: Value, exponent: Value) -> Value:
+    return (np.float64(base) if type(base) is float else base) ** exponent
+
+
+_PLAIN: dict[
+    Operation, Callable[..., Any]
+] = {  # Python's operators are quicker on single values than NumPy's functions
+    OPERATORS["add"]: operator.add,
+    OPERATORS["subtract"]: operator.sub,
+    OPERATORS["multiply"]: operator.mul,
+    OPERATORS["divide"]: _quotient,
+    OPERATORS["power"]: _power,
+    OPERATORS["negative"]: operator.neg,
+}
+
+
+def closure(node: Any) -> Closure:
+    """A tree as a function; of a condition it gives truths, and what is not known is not true.
+
+    The function takes an object with an attribute for each name of the tree, in SI: single values, or arrays
+    whose first axis is that of the points.
+    """
+    run = _closure(node)
+    return (lambda template: np.equal(run(template), 1.0)) if is_condition(node) else run
+
+
+def is_condition(node: Any) -> bool:
+    """Whether a tree is a condition."""
+    operation = getattr(node, "operation", None)
+    if operation is IF:
+        return is_condition(node.arguments[1])
+    return operation is IS or operation in LOGIC.values() or operation in COMPARISONS.values()
+
+
+def _closure(node: Any) -> Closure:
+    match node:
+        case Constant(value=value):
+            plain = np.float64(value)  # a float of Python would raise at 1/0
+            return lambda template: plain
+        case Word(text=text):
+            return lambda template: text
+        case Name(name=name):
+            return operator.attrgetter(name)
+    calculate, parts = _calculation(node.operation), [_closure(part) for part in node.arguments]
+    match parts:
+        case [only]:
+            return lambda template: calculate(only(template))
+        case [left, right]:
+            return lambda template: calculate(left(template), right(template))
+    return lambda template: calculate(*[part(template) for part in parts])
+
+
+def _calculation(operation: Operation) -> Callable[..., Any]:
+    return _PLAIN.get(operation, operation.calculate)

@@ -1,0 +1,89 @@
+"""Conditions: comparisons, `and`, `or`, `not`, the test of a choice, and `if`.
+
+A condition is 1 where it holds, 0 where it does not, and NaN where one of its values is missing: what is not
+known decides nothing. So a formula has no value behind a condition that has none.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from functools import reduce
+from typing import Any
+
+import numpy as np
+
+from templates.core.errors import FaultyText
+from templates.core.units.nodes import Kind, Operation
+from templates.core.units.rules import same, told
+from templates.core.units.units import Value, compatible
+
+_TRUE, _FALSE, _UNKNOWN = np.float64(1.0), np.float64(0.0), np.float64(np.nan)
+
+
+def _compared(test: Callable[[Value, Value], Any]) -> Callable[[Value, Value], Value]:
+    def calculate(one: Value, other: Value) -> Value:
+        if isinstance(one, float) and isinstance(other, float):
+            if one != one or other != other:
+                return _UNKNOWN
+            return _TRUE if test(one, other) else _FALSE
+        holds, unknown = test(one, other), np.not_equal(one, one) | np.not_equal(other, other)
+        return np.where(unknown, np.nan, holds)[()] if np.any(unknown) else holds
+
+    return calculate
+
+
+def _all(*conditions: Value) -> Value:
+    return reduce(np.minimum, conditions)
+
+
+def _any(*conditions: Value) -> Value:
+    return reduce(np.maximum, conditions)
+
+
+def _chosen(condition: Value, one: Value, other: Value) -> Value:
+    """Either value, wherever the condition is known; both are calculated."""
+    if isinstance(condition, np.ndarray) or isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        if isinstance(condition, np.ndarray) and condition.dtype == bool:  # all of it is known
+            return np.where(condition, one, other)
+        holds = np.equal(condition, 1.0)
+        return np.where(holds, one, np.where(np.equal(condition, 0.0), other, np.nan))
+    return one if condition == 1.0 else other if condition == 0.0 else np.float64(np.nan)
+
+
+def _compared_kind(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -> Kind:
+    same(operation, kinds, arguments)
+    return Kind()
+
+
+def _condition(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
+    return Kind()
+
+
+def _either(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
+    one, other = kinds[1:]
+    if not compatible(one.base, other.base):
+        what = f"{told(one)} and {told(other)}"
+        raise FaultyText("unit_mismatch", f"then and else need equal units, not {what}")
+    return Kind(one.base, one.absolute or other.absolute)
+
+
+COMPARISONS = {
+    operation.sign: operation
+    for operation in (
+        Operation("<", _compared(operator.lt), _compared_kind),
+        Operation("<=", _compared(operator.le), _compared_kind),
+        Operation(">", _compared(operator.gt), _compared_kind),
+        Operation(">=", _compared(operator.ge), _compared_kind),
+        Operation("==", _compared(operator.eq), _compared_kind),
+        Operation("!=", _compared(operator.ne), _compared_kind),
+    )
+}
+LOGIC = {
+    "and": Operation("and", _all, _condition),
+    "or": Operation("or", _any, _condition),
+    "not": Operation("not", lambda condition: 1.0 - condition, _condition),
+}
+IS = Operation("is", lambda choice, word: np.float64(choice == word), _condition)
+IF = Operation("if", _chosen, _either)
+CONDITIONS = frozenset({*COMPARISONS.values(), *LOGIC.values(), IS, IF})

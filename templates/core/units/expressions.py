@@ -1,0 +1,271 @@
+"""Expressions of relations and worksheets: from the parser's tree to a checked tree of our own nodes.
+
+Both share the grammar of `relation.lark`. A worksheet knows what its names are when it is read, and asks for
+`checked`; a relation of a design learns it later, and asks for `built`. What a scope knows of a name replaces
+the name: a parameter of a function becomes the expression with which the function is called.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from importlib.resources import files
+from typing import Any, Protocol
+
+import lark
+import numpy as np
+
+from templates.core.errors import FaultyText, excerpt, unknown_name
+from templates.core.units.conditions import COMPARISONS, IF, IS, LOGIC
+from templates.core.units.lists import ITEM, LIST, OVER_LISTS
+from templates.core.units.operations import (
+    CONSTANTS,
+    FUNCTIONS,
+    OPERATORS,
+    Apply,
+    Constant,
+    Item,
+    Kind,
+    Name,
+    Operation,
+    Word,
+)
+from templates.core.units.sorts import Part, Sort, applied
+from templates.core.units.units import Unit, unit
+
+__all__ = ["GRAMMAR", "FaultyPlace", "Scope", "Sort", "applied", "built", "checked", "height"]
+
+GRAMMAR = files(__package__).joinpath("relation.lark").read_text(encoding="utf-8")
+"""The grammar; its rule `expression` is the one to use in statements."""
+
+MAX_INDEX = 10**9
+RESERVED = frozenset({"if", "then", "else", "and", "or", "not", "is"})
+"""Words of the grammar; only `if` and `not` may not stand for names in front of a value."""
+
+_OPERATIONS = {**OPERATORS, **LOGIC, "if": IF, "list": LIST}
+
+
+class Scope(Protocol):
+    """What the names of an expression mean."""
+
+    def name(self, text: str) -> Part:
+        """The node of a name, and what it gives.
+
+        Raises
+        ------
+        FaultyText
+            With code `unknown_name`.
+        """
+
+    def function(self, name: str) -> Callable[[list[Part]], Part] | None:
+        """A function of the user's own, called with its arguments; None if there is none of this name."""
+
+    def spend(self) -> None:
+        """Count an operation.
+
+        Raises
+        ------
+        FaultyText
+            With code `too_large`.
+        """
+
+
+class FaultyPlace(FaultyText):
+    """What is wrong with an expression, and where: `meta` has `line`, `column` and `end_column`."""
+
+    def __init__(self, error: FaultyText, meta: Any) -> None:
+        super().__init__(error.code, str(error))
+        self.meta = meta
+
+
+def checked(tree: lark.Tree[Any], scope: Scope) -> Part:
+    """A checked expression, and what it gives.
+
+    Raises
+    ------
+    FaultyPlace
+        With code `unknown_name`, `unknown_function`, `unknown_unit`, `unit_mismatch`, `no_truth`,
+        `axis_mismatch`, `index`, `syntax`, `not_finite` or `too_large`.
+    """
+    return _Checked(scope).part(tree)
+
+
+def built(tree: lark.Tree[Any]) -> Any:
+    """The tree of an expression of which no name is known yet: every unit, function and number is checked.
+
+    Raises
+    ------
+    FaultyText
+        With code `unknown_function`, `unknown_unit`, `syntax` or `not_finite`.
+    """
+    return _Builder().part(tree)[0]
+
+
+def height(tree: lark.Tree[Any]) -> int:
+    """How deep a parser's tree is; without recursion."""
+    deep, level = 0, [tree]
+    while level:
+        deep += 1
+        level = [child for node in level for child in node.children if isinstance(child, lark.Tree)]
+    return deep
+
+
+class _Builder:
+    """Builds a tree; what its names are is checked later."""
+
+    def part(self, tree: lark.Tree[Any]) -> Part:
+        match str(tree.data), tree.children:
+            case "quantity" | "number", [text]:
+                return self.constant(str(text))
+            case "negative", [lark.Tree(data="quantity" | "number", children=[text])]:
+                return self.constant(f"-{text}")
+            case "name", [text]:
+                return self.constant_or_name(str(text))
+            case "item", [whole, lark.Token() as index]:
+                return self.item(whole, index)
+            case "is", [name, word]:
+                return self.choice(str(name), str(word).strip('"'))
+            case "call", [called, *arguments]:
+                return self.call(str(called)[:-1], self.parts(arguments))
+            case "compare", [first, *rest]:
+                return self.compared(self.parts([first, *rest[1::2]]), [str(sign) for sign in rest[::2]])
+            case operator, arguments:
+                return self.apply(_OPERATIONS[operator], self.parts(arguments))
+
+    def parts(self, trees: Sequence[Any]) -> list[Part]:
+        return list(map(self.part, trees))
+
+    def constant(self, text: str) -> Part:
+        return constant(text), Sort()
+
+    def constant_or_name(self, text: str) -> Part:
+        return (CONSTANTS[text], Sort()) if text in CONSTANTS else self.name(text)
+
+    def name(self, text: str) -> Part:
+        return Name(text), Sort()
+
+    def item(self, whole: Any, index: lark.Token) -> Part:
+        """An item of an array or of a list that is written out."""
+        shown = excerpt(f"{whole if isinstance(whole, lark.Token) else 'the list'}[{index}]")
+        if whole in CONSTANTS or index in CONSTANTS:
+            raise FaultyText("syntax", f"{shown}: pi is no array, and no index")
+        place = str(index) if index.type == "NAME" else _place(shown, float(index))
+        if isinstance(whole, lark.Token):
+            return self.named_item(str(whole), place)
+        return self.apply(ITEM, [self.part(whole), self.index(place)])
+
+    def index(self, place: int | str) -> Part:
+        if isinstance(place, str):
+            return self.name(place)
+        return Constant(float(place), Kind(), str(place)), Sort()
+
+    def named_item(self, name: str, index: int | str) -> Part:
+        return Item(name, index), Sort()
+
+    def choice(self, name: str, word: str) -> Part:
+        return self.apply(IS, [(Name(name), Sort()), (Word(word), Sort())])
+
+    def call(self, called: str, arguments: list[Part]) -> Part:
+        first, second = (OVER_LISTS, FUNCTIONS) if len(arguments) == 1 else (FUNCTIONS, OVER_LISTS)
+        operation = first.get(called) or second.get(called)
+        if operation is None:
+            known = ", ".join(dict.fromkeys([*FUNCTIONS, *OVER_LISTS]))
+            raise FaultyText("unknown_function", f"{called[:60]} is no function; there are {known}")
+        if operation.arity not in (None, len(arguments)):
+            count = f"{operation.arity} value{'s' if operation.arity != 1 else ''}"
+            raise FaultyText("syntax", f"{called} takes {count}, not {len(arguments)}")
+        return self.apply(operation, arguments)
+
+    def compared(self, sides: list[Part], signs: list[str]) -> Part:
+        """A comparison; of a chain, all of them hold."""
+        pairs = zip(signs, sides, sides[1:], strict=False)
+        tests = [self.apply(COMPARISONS[sign], [one, other]) for sign, one, other in pairs]
+        return tests[0] if len(tests) == 1 else self.apply(LOGIC["and"], tests)
+
+    def apply(self, operation: Operation, parts: Sequence[Part]) -> Part:
+        return Apply(operation, tuple(node for node, _ in parts)), Sort()
+
+
+class _Checked(_Builder):
+    """Builds a tree whose names are known, and checks each node."""
+
+    def __init__(self, scope: Scope) -> None:
+        self.scope = scope
+
+    def part(self, tree: lark.Tree[Any]) -> Part:
+        try:
+            self.scope.spend()
+            return super().part(tree)
+        except FaultyPlace:
+            raise
+        except FaultyText as error:
+            raise FaultyPlace(error, tree.meta) from None
+
+    def constant(self, text: str) -> Part:
+        made = constant(text)
+        kind = Kind(made.kind.base)
+        return Constant(made.value, kind, text), Sort(kind, float(made.kind.absolute))
+
+    def name(self, text: str) -> Part:
+        return self.scope.name(text)
+
+    def named_item(self, name: str, index: int | str) -> Part:
+        return self.apply(ITEM, [self.name(name), self.index(index)])
+
+    def choice(self, name: str, word: str) -> Part:
+        node, sort = self.name(name)
+        check_word(name, word, sort.words)
+        return self.apply(IS, [(node, sort), (Word(word), Sort())])
+
+    def call(self, called: str, arguments: list[Part]) -> Part:
+        own = self.scope.function(called)
+        return super().call(called, arguments) if own is None else own(arguments)
+
+    def apply(self, operation: Operation, parts: Sequence[Part]) -> Part:
+        return applied(operation, parts)
+
+
+def check_word(name: str, word: str, options: Sequence[str]) -> None:
+    """Refuse a test of a choice that it never passes.
+
+    Raises
+    ------
+    FaultyText
+        With code `no_truth`, where the name is no choice; `unknown_name`, where the word is no option of it.
+    """
+    if not options:
+        raise FaultyText("no_truth", f"{name[:60]} is no choice; compare it with < <= > >= == or !=")
+    if word not in options:
+        raise FaultyText("unknown_name", unknown_name(word, options, f"option of {name[:60]}").detail)
+
+
+def _place(shown: str, number: float) -> int:
+    if not number.is_integer() or not 1 <= number <= MAX_INDEX:
+        raise FaultyText("syntax", f"{shown}: an index is a whole number from 1 to the length of the list")
+    return int(number)
+
+
+def constant(text: str) -> Constant:
+    """A number, or a number and its unit; its sign belongs to it, so that -20 degC is a temperature.
+
+    Raises
+    ------
+    FaultyText
+        With code `unknown_unit` or `not_finite`.
+    """
+    number, _, name = text.partition(" ")
+    scale = _unit(name or "1")
+    return Constant(_finite(float(scale.to_si(float(number)))), Kind(scale.base, scale.absolute), text)
+
+
+def _unit(name: str) -> Unit:
+    try:
+        return unit(name)
+    except FaultyText as error:
+        hint = f"if {name[:60]} holds a name, put blanks around * and /"
+        raise FaultyText("unknown_unit", f"{error} ({hint})") from None
+
+
+def _finite(value: float) -> float:
+    if not np.isfinite(value):
+        raise FaultyText("not_finite", "a number in the expression is too large")
+    return value

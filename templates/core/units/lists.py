@@ -1,0 +1,69 @@
+"""Lists: `[a, b]`, `x[3]`, `sum`, `mean`, `count`, `min` and `max` of one list.
+
+A list is the last axis of an array; the axes before it are those of points.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from templates.core.errors import FaultyText
+from templates.core.units.nodes import Kind, Operation
+from templates.core.units.rules import keep, relative, same, told
+from templates.core.units.units import Value
+
+
+def _stacked(*items: Value) -> Value:
+    return np.stack(np.broadcast_arrays(*items), axis=-1)
+
+
+def _item(values: Value, index: Value) -> Value:
+    """The item of a list at an index from 1; NaN where the list has none."""
+    whole, place = np.asarray(values, dtype=float), np.asarray(index, dtype=float)
+    right = (place == np.floor(place)) & (place >= 1) & (place <= whole.shape[-1])
+    at = np.where(right, place, 1.0).astype(np.intp) - 1
+    at, _ = np.broadcast_arrays(at, whole[..., 0])
+    chosen = np.take_along_axis(np.broadcast_to(whole, (*at.shape, whole.shape[-1])), at[..., None], axis=-1)
+    return np.where(right, chosen[..., 0], np.nan)[()]
+
+
+def _count(values: Value) -> Value:
+    """How many items; NaN where one of them is missing."""
+    return np.where(np.isnan(np.sum(values, axis=-1)), np.nan, float(np.shape(values)[-1]))[()]
+
+
+def _summed(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
+    relative(operation, kinds)
+    return kinds[0]
+
+
+def _counted(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
+    return Kind()
+
+
+def _indexed(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
+    if kinds[1] != Kind():
+        raise FaultyText("index", f"an index is a pure number, not {told(kinds[1])}")
+    return kinds[0]
+
+
+def _trailing(value: Value) -> Value:
+    return value[..., None] if isinstance(value, np.ndarray) and value.ndim else value
+
+
+LIST = Operation("list", _stacked, same)
+ITEM = Operation("item", _item, _indexed, 2)
+TRAILING = Operation("trailing", _trailing, keep, 1)
+"""A single value beside a list: an axis behind those of its points."""
+OVER_LISTS = {
+    operation.sign: operation
+    for operation in (
+        Operation("sum", lambda values: np.sum(values, axis=-1), _summed, 1),
+        Operation("mean", lambda values: np.mean(values, axis=-1), keep, 1),
+        Operation("count", _count, _counted, 1),
+        Operation("min", lambda values: np.min(values, axis=-1), keep, 1),
+        Operation("max", lambda values: np.max(values, axis=-1), keep, 1),
+    )
+}

@@ -1,0 +1,171 @@
+"""What a node of an expression gives: a quantity, a temperature, a condition, a list, a choice."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from templates.core.errors import FaultyText
+from templates.core.units.conditions import COMPARISONS, IF, IS, LOGIC
+from templates.core.units.lists import ITEM, LIST, OVER_LISTS, TRAILING
+from templates.core.units.nodes import Apply, Constant, Kind, Operation, Word
+from templates.core.units.rules import plain_number
+from templates.core.units.units import registry
+
+MAX_NODES_DEEP = 200
+PURE = Kind()
+
+
+@dataclass(frozen=True)
+class Sort:
+    """What a node gives.
+
+    Attributes
+    ----------
+    kind
+        What it is measured in.
+    weight
+        How many temperatures it adds up: `(T_1 + T_2)/2` one, `T_1 - T_2` none. None: it cannot be said.
+    truth
+        Whether it is a condition, which is no quantity.
+    axis
+        The name of what its list runs over; empty for a single value.
+    words
+        The options of a choice.
+    depth
+        Of its tree, which is bounded.
+    """
+
+    kind: Kind = PURE
+    weight: float | None = 0.0
+    truth: bool = False
+    axis: str = ""
+    words: tuple[str, ...] = ()
+    depth: int = 1
+
+
+Part = tuple[Any, Sort]
+"""A node and what it gives."""
+
+
+def applied(operation: Operation, parts: Sequence[Part]) -> Part:
+    """An operation applied to its parts, and what it gives.
+
+    A single value that meets a list is given a trailing axis here, once.
+
+    Raises
+    ------
+    FaultyText
+        With code `unit_mismatch`, `no_truth`, `axis_mismatch`, `index` or `too_large`.
+    """
+    sorts = [sort for _, sort in parts]
+    axis, meeting = _axis(operation, sorts)
+    nodes = tuple(_widened(node, sort) if meeting and not sort.axis else node for node, sort in parts)
+    return Apply(operation, nodes), sorted_by(operation, parts, axis)
+
+
+def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> Sort:
+    """What an operation gives, whatever its lists run over.
+
+    Raises
+    ------
+    FaultyText
+        With code `unit_mismatch`, `no_truth`, `index` or `too_large`.
+    """
+    nodes, sorts = tuple(node for node, _ in parts), [sort for _, sort in parts]
+    truth = _truth(operation, sorts)
+    depth = 1 + max(sort.depth for sort in sorts)
+    if depth > MAX_NODES_DEEP:
+        raise FaultyText("too_large", f"an expression is at most {MAX_NODES_DEEP} operations deep")
+    kind = operation.kind(operation, [sort.kind for sort in sorts], nodes)
+    return Sort(kind, _weight(operation, kind, parts), truth, axis, depth=depth)
+
+
+def _truth(operation: Operation, sorts: list[Sort]) -> bool:
+    """Whether the result is a condition, if conditions and quantities stand in their places."""
+    if operation is not IS and (words := next((sort.words for sort in sorts if sort.words), ())):
+        raise FaultyText("no_truth", f"a choice is no quantity: test it, as in law is {words[0]}")
+    truths = [sort.truth for sort in sorts]
+    if operation is IF:
+        if not truths[0]:
+            raise FaultyText("no_truth", "behind `if` stands a condition, such as x < 3 mm, not a quantity")
+        if truths[1] != truths[2]:
+            raise FaultyText("no_truth", "then and else are two quantities or two conditions")
+        return truths[1]
+    is_logic = operation in LOGIC.values()
+    if is_logic and not all(truths):
+        raise FaultyText("no_truth", f"`{operation.sign}` joins conditions, such as x < 3 mm, not quantities")
+    if not is_logic and any(truths):
+        raise FaultyText(
+            "no_truth",
+            f"{operation.sign} takes quantities, and a condition is none; write if … then … else …",
+        )
+    return is_logic or operation is IS or operation in COMPARISONS.values()
+
+
+def _axis(operation: Operation, sorts: list[Sort]) -> tuple[str, bool]:
+    """What the result runs over, and whether single values meet a list."""
+    axes = list(dict.fromkeys(sort.axis for sort in sorts if sort.axis))
+    if operation is LIST:
+        if axes:
+            raise FaultyText("axis_mismatch", f"an item of a list is a single value, no list over {axes[0]}")
+        return literal_axis(len(sorts)), False
+    if operation is ITEM:
+        return _single_item(*sorts), False
+    if operation in OVER_LISTS.values():
+        if not axes:
+            raise FaultyText("axis_mismatch", f"{operation.sign} takes a list; this is a single value")
+        return "", False
+    if len(axes) > 1:
+        raise FaultyText(
+            "axis_mismatch", f"{operation.sign} joins a list over {axes[0]} and one over {axes[1]}"
+        )
+    return (axes[0], True) if axes else ("", False)
+
+
+def _single_item(whole: Sort, index: Sort) -> str:
+    if not whole.axis:
+        raise FaultyText("axis_mismatch", "a single value has no items")
+    if index.axis:
+        raise FaultyText("axis_mismatch", f"an index is a single number, no list over {index.axis}")
+    return ""
+
+
+def literal_axis(count: int) -> str:
+    """The axis of a list that is written out."""
+    return f"{count} item{'s' if count > 1 else ''}"
+
+
+def _widened(node: Any, sort: Sort) -> Any:
+    return node if isinstance(node, (Constant, Word)) or sort.words else Apply(TRAILING, (node,))
+
+
+def _weight(operation: Operation, kind: Kind, parts: Sequence[Part]) -> float | None:
+    """How many temperatures a result adds up; None where that cannot be said."""
+    if kind.base != registry.kelvin:
+        return 0.0
+    sign, nodes, weights = operation.sign, [node for node, _ in parts], [sort.weight for _, sort in parts]
+    match sign, weights:
+        case "+" | "-", [float(one), float(other)]:
+            return one + other if sign == "+" else one - other
+        case "-", [float(one)]:
+            return -one
+        case "*" | "/", [one, other]:
+            return _scaled(sign, nodes, one, other)
+        case "sum", [0.0]:
+            return 0.0
+        case "abs" | "mean" | "item" | "if" | "min" | "max" | "list", _:
+            among = weights[1:] if operation is IF else weights[:1] if operation is ITEM else weights
+            return among[0] if len(set(among)) == 1 else None
+    return None
+
+
+def _scaled(sign: str, nodes: list[Any], one: float | None, other: float | None) -> float | None:
+    """The weight of a product or quotient with a plain number; of nothing else but of differences."""
+    factor, divided = plain_number(nodes[1]), plain_number(nodes[0])
+    if factor is not None and one is not None:
+        return one * factor if sign == "*" else one / factor if factor else None
+    if sign == "*" and divided is not None and other is not None:
+        return divided * other
+    return 0.0 if one == other == 0.0 else None

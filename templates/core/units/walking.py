@@ -1,0 +1,92 @@
+"""A tree walked with the values of its names: what a relation comes to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from templates.core.errors import FaultyText
+from templates.core.units.lists import ITEM, LIST, OVER_LISTS
+from templates.core.units.nodes import Apply, Constant, Item, Name, Operation, Word
+from templates.core.units.units import Value
+
+LISTWISE = frozenset({LIST, ITEM, *OVER_LISTS.values()})
+"""The operations that make lists or take them as a whole; all others go place by place."""
+
+
+def value_of(node: Any, values: Mapping[str, Value]) -> Value:
+    """The value of a tree, from those of its names and items by their text.
+
+    Raises
+    ------
+    FaultyText
+        With code `shape`, where a single value stands in place of a list, or a list in place of one.
+    """
+    match node:
+        case Constant(value=value):
+            return value
+        case Name(name=name):
+            return values[name]
+        case Item():
+            return values[node.text]
+        case Word(text=text):
+            return text  # type: ignore[return-value] # a word is compared with a word
+    if node.operation in LISTWISE:
+        parts = [value_of(argument, values) for argument in node.arguments]
+        return listwise(node.operation, parts, [np.ndim(part) for part in parts])
+    return node.operation.calculate(*(value_of(argument, values) for argument in node.arguments))
+
+
+def listwise(operation: Operation, parts: list[Value], ranks: list[int]) -> Value:
+    """An operation that takes or makes a list, of parts that have so many axes at one point.
+
+    Raises
+    ------
+    FaultyText
+        With code `shape`.
+    """
+    check_ranks(operation, ranks)
+    if operation in OVER_LISTS.values() and not ranks[0]:
+        return parts[0]
+    return operation.calculate(*parts)
+
+
+def check_ranks(operation: Operation, ranks: list[int]) -> None:
+    """Refuse single values in place of lists, and lists in place of single values.
+
+    Raises
+    ------
+    FaultyText
+        With code `shape`.
+    """
+    if operation is LIST and any(ranks):
+        detail = "each item of a list is a single value, but an expression in it gives an array"
+        raise FaultyText("shape", detail)
+    if operation is ITEM and ranks[1]:
+        raise FaultyText("shape", "an index is a single number, not an array")
+    if operation in OVER_LISTS.values() and not ranks[0] and operation.sign not in ("min", "max"):
+        raise FaultyText("shape", f"{operation.sign} takes a list, and this is a single value")
+
+
+def applied_in(node: Any) -> Iterator[Apply]:
+    """The operations of a tree."""
+    return (part for part in nodes_of(node) if isinstance(part, Apply))
+
+
+def nodes_of(node: Any) -> Iterator[Any]:
+    """The nodes of a tree, each before its arguments."""
+    left = [node]
+    while left:
+        yield (first := left.pop())
+        left += reversed(getattr(first, "arguments", ()))
+
+
+def depth_of(node: Any) -> int:
+    """How deep a tree is."""
+    depth, level = 0, [node]
+    while level:
+        depth += 1
+        level = [argument for part in level for argument in getattr(part, "arguments", ())]
+    return depth
