@@ -4,15 +4,14 @@ import logging
 import threading
 import time
 from collections.abc import Callable
-from typing import Protocol, TypeVar, TypeVarTuple
+from typing import TypeVar, TypeVarTuple
 
 from app.jobs import repository
 from app.jobs.events import Events
 from app.jobs.job import Job
 from app.observation import metrics
 from app.storage.database import Database
-from app.workers.base import BatchWorker, Limits, Runner
-from templates.core.progress import Reporter
+from app.workers.base import Batch, Limits, Runner
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
@@ -34,7 +33,7 @@ class JobContext:
         self,
         job: Job,
         database: Database,
-        worker: BatchWorker,
+        batch: Batch,
         limits: Limits,
         events: Events,
         cancelled: threading.Event,
@@ -42,7 +41,7 @@ class JobContext:
         self.log: list[str] = []
         self._job = job
         self._database = database
-        self._batch = worker.batch()
+        self._batch = batch
         self._limits = limits
         self._events = events
         self._cancelled = cancelled
@@ -68,26 +67,17 @@ class JobContext:
         WorkerError
             See `Worker.run`.
         """
-        return self._run(self.progress, function, *args, limits=limits)
-
-    def quietly(self) -> Runner:
-        """Run functions of which nobody hears how far they are: they are many, and the job counts them."""
-        return _Quietly(self._run)
-
-    def _run(
-        self,
-        on_progress: Reporter | None,
-        function: Callable[[*Ts], T],
-        *args: *Ts,
-        limits: Limits | None = None,
-    ) -> T:
         return self._batch.run(
             function,
             *args,
             limits=limits or self._limits,
-            on_progress=on_progress,
+            on_progress=self.progress,
             cancelled=self._cancelled,
         )
+
+    def quietly(self) -> Runner:
+        """Run functions of which nobody hears how far they are: they are many, and the job counts them."""
+        return _Quietly(self._batch, self._limits, self._cancelled)
 
     def close(self) -> None:
         """End the process of the job; called when its handler has ended."""
@@ -104,28 +94,15 @@ class JobContext:
             self._stored = time.monotonic()
 
 
-class _Running(Protocol):
-    """Runs a function in the worker, with whoever hears how far it is."""
-
-    def __call__(
-        self,
-        on_progress: Reporter | None,
-        function: Callable[[*Ts], T],
-        /,
-        *args: *Ts,
-        limits: Limits | None = None,
-    ) -> T: ...
-
-
 class _Quietly:
-    """Runs functions in the worker; see `Runner`."""
+    """Runs functions of a job without progress; see `Runner`."""
 
-    def __init__(self, run: _Running) -> None:
-        self._run = run
+    def __init__(self, batch: Batch, limits: Limits, cancelled: threading.Event) -> None:
+        self._batch, self._limits, self._cancelled = batch, limits, cancelled
 
     def run(self, function: Callable[[*Ts], T], *args: *Ts, limits: Limits | None = None) -> T:
-        """Run a function without progress."""
-        return self._run(None, function, *args, limits=limits)
+        """Run a function; see `JobContext.run`."""
+        return self._batch.run(function, *args, limits=limits or self._limits, cancelled=self._cancelled)
 
 
 def publish(events: Events, job: Job, name: str, **more: object) -> None:

@@ -167,7 +167,8 @@ class Dispatcher:
         if self._stopping.is_set():  # it was claimed while `stop` went through the running jobs
             cancelled.set()
         logger.info("job %s (%s) begins", job.id, job.kind, extra={"job": job.id})
-        context = JobContext(job, self._database, self._worker, self._limits, self._events, cancelled)
+        batch = self._worker.batch()
+        context = JobContext(job, self._database, batch, self._limits, self._events, cancelled)
         publish(self._events, job, "running")
         try:
             with closing(context):
