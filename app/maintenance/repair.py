@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable
 from datetime import UTC, datetime
@@ -70,7 +71,7 @@ class Repair:
         self.database, self.store = database, store
         files = loaded(settings.template_folders)
         self.catalogues = Catalogues(files.templates, files.models)
-        Published(database, self.catalogues, is_shared=False)
+        Published(database, self.catalogues, is_shared=False, at_once=math.inf)
         self.builds = Builds(database, store)
         longest = Limits(settings.analysis_deadline, settings.analysis_memory_mb)
         self.analysing = Analysing(database, store, longest)

@@ -10,8 +10,15 @@ from click.testing import CliRunner
 from serving import API, PATIENCE, ServerProcess, problem, serving
 from sheets import BUSH, WIDER, drafted, edited, place, released, reviewed, step
 
+from app.catalogue.catalogues import Catalogues
+from app.catalogue.finding import find_templates
 from app.cli import main
 from app.settings import Settings
+from app.storage.database import Database
+from app.storage.folder import DataFolder
+from app.worksheets.published import Published
+from cad.catalogue import models as find_models
+from templates.core.errors import QuarantinedTemplate
 
 INPUTS = {"radial_load": "20 kN", "bearing_diameter": "50 mm"}
 ORDER = ("draft", "tested", "reviewed", "released", "withdrawn")
@@ -162,3 +169,21 @@ def test_a_kill_loses_no_state_that_was_answered(tmp_path):
             assert ORDER.index(after) >= ORDER.index(state), id
             if after in ("released", "withdrawn"):
                 assert evaluated(http, id).status_code == 200
+
+
+def test_releases_that_wait_to_be_read_calculate_nothing_until_then(tmp_path):
+    data = tmp_path / "data"
+    with serving(Settings(data=data)) as server, asking(server.url) as http:
+        for id in ("first", "second"):
+            released(http, id=id)
+    database = Database(DataFolder(data).database_url)
+    catalogues = Catalogues(find_templates(()), find_models())
+    published = Published(database, catalogues, is_shared=False, at_once=0)
+    assert catalogues.templates.get("first", 1).sheet is not None
+    with pytest.raises(QuarantinedTemplate, match="is being read again"):
+        catalogues.templates.get("second", 1)
+    published.look()
+    assert catalogues.templates.get("second", 1).sheet is not None
+    published.start()
+    published.stop()
+    database.close()
