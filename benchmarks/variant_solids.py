@@ -116,7 +116,7 @@ def rounds(server: Server, count: int, number: int) -> Iterator[tuple[str, float
     )
     with httpx.Client(base_url=server.url, timeout=PATIENCE, trust_env=False) as http:
         yield "separate", measured(server, lambda: separate(http, own, "step"))
-        yield "separate_with_pictures", measured(server, lambda: separate(http, pictured, "step", "png"))
+        yield "separate_with_pictures", measured(server, lambda: separate(http, pictured, "step", "svg"))
         paths: list[str] = []
         yield "variants", measured(server, lambda: paths.append(saved(http, other)))
         yield "zip", measured(server, lambda: zipped(http, paths[0], count))
@@ -134,7 +134,7 @@ def main() -> None:
         crankwright(Path(folder), **ROOMY) as server,
     ):
         with httpx.Client(base_url=server.url, timeout=PATIENCE, trust_env=False) as http:
-            separate(http, ["35 mm"], "step", "png")  # what is loaded once does not count
+            separate(http, ["35 mm"], "step", "svg")  # what is loaded once does not count
             reported(http, saved(http, ["36 mm"]))
         _settle(server)
         found = [dict(rounds(server, asked.count, number)) for number in range(asked.rounds)]

@@ -23,7 +23,7 @@ from app.reports.cells import Cell, cell, clean, typed
 from app.reports.content import Line, Model, Report, Round, Step
 from app.reports.models import model_of
 from app.reports.steps import step_of
-from app.reports.typesetting import DRAWING, PICTURE
+from app.reports.typesetting import DRAWING, PICTURE, SKETCH
 from app.reports.variants import variants_of
 from app.reports.verdict import judged
 from app.schemas import designs as schemas
@@ -80,8 +80,8 @@ class Reports:
             row = repository.revision(session, id, number)
             keys = {model.build_key for model in row.variant_models if model.build_key}
             there = rows.artifacts_of(session, rows.builds(session, keys))
-        missing = sorted(key for key, files in there.items() if PICTURE in self._missing(files))
-        return [self.models.request_files_of_all(missing, (PICTURE,), client)] if missing else []
+        missing = sorted(key for key, files in there.items() if self._missing(files, (SKETCH,)))
+        return [self.models.request_files_of_all(missing, (SKETCH,), client)] if missing else []
 
     def gather_variants(self, id: str, number: int, system: System, *, pending: bool) -> Report:
         """The report of a revision with all its variants.
@@ -149,11 +149,12 @@ class Reports:
             for name, shas in files.items()
         }
         solids = report.variants.solids if report.variants else []
-        return own | {one.name: {PICTURE: self.store.read(one.file.sha256)} for one in solids if one.file}
+        return own | {one.name: {SKETCH: self.store.read(one.file.sha256)} for one in solids if one.file}
 
-    def _missing(self, there: Mapping[str, str]) -> tuple[str, ...]:
+    def _missing(
+        self, there: Mapping[str, str], shown: Sequence[str] = (PICTURE, DRAWING)
+    ) -> tuple[str, ...]:
         """The pictures of a build that no job has drawn yet, or that are lost."""
-        shown = (PICTURE, DRAWING)
         return tuple(kind for kind in shown if kind not in there or not self.store.exists(there[kind]))
 
     def _model(

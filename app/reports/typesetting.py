@@ -19,7 +19,8 @@ import typst
 from app.plain import Json, JsonObject
 from app.presentation.bidi import bare_everywhere
 
-PICTURE, DRAWING = "png", "drawing.svg"  # kinds of files that a report shows
+PICTURE, DRAWING = "png", "drawing.svg"  # kinds of files that a report shows of a model
+SKETCH = "svg"  # and of each solid of variants: its lines, which cost a tenth of a shaded picture
 
 Pictures = Mapping[str, Mapping[str, bytes]]  # by model and kind
 
@@ -46,7 +47,8 @@ def _illustrated(parts: Sequence[JsonObject], pictures: Pictures) -> list[JsonOb
 
 def _as_svg(files: Mapping[str, bytes]) -> dict[str, str]:
     """Pictures as SVG texts, for the typesetter's data is text: a PNG is put into one."""
-    pictures = {"drawing": files[DRAWING].decode()} if DRAWING in files else {}
+    kinds = {"drawing": DRAWING, "picture": SKETCH}
+    pictures = {name: files[kind].decode() for name, kind in kinds.items() if kind in files}
     if PICTURE in files:
         coded = base64.b64encode(files[PICTURE]).decode()
         pictures["picture"] = (

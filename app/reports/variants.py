@@ -9,12 +9,12 @@ from app.presentation import numbers
 from app.presentation.criteria import Line, line, tone
 from app.reports.cells import clean
 from app.reports.content import Columns, File, Judged, Solid, VariantLine, Variants
+from app.reports.typesetting import SKETCH
 from app.reports.verdict import governing_sentence, row_of
 from app.schemas.criteria import Criterion
 from app.schemas.variants import VariantResult, VariantsOut
 
 MOST_COLUMNS = 6  # of one table on paper, beside the names
-PICTURE = "png"
 SIGNS = {"met": "met", "not_met": "NOT MET", "undecided": "undecided", "not_checked": "not checked"}
 
 
@@ -130,8 +130,8 @@ def _solids(rows: Sequence[VariantResult], *, pending: bool) -> list[Solid]:
 
 
 def _solid(name: str, build: str, those: Sequence[VariantResult], pending: bool) -> Solid:
-    sha = those[0].models[name].artifacts.get(PICTURE)
+    sha = those[0].models[name].artifacts.get(SKETCH)
     words = f"{name} of {', '.join(_called(row) for row in those)}"
     missing = "its picture was still being made" if pending else "no picture could be made of it"
-    file = File(PICTURE, sha) if sha else None
+    file = File(SKETCH, sha) if sha else None
     return Solid(f"{name}-{build[:16]}", clean(words), file, "" if file else missing)
