@@ -33,9 +33,10 @@ def require_free(id: str, catalogues: Catalogues) -> None:
 
 
 def is_same_person(one: str, other: str) -> bool:
-    """Whether two typed names are the same but for letter case and blanks."""
+    """Whether two typed names are the same but for letter case, blanks and signs that nobody sees."""
     return _folded(one) == _folded(other)
 
 
 def _folded(name: str) -> str:
-    return " ".join(unicodedata.normalize("NFKC", name).casefold().split())
+    seen = "".join(sign for sign in name if unicodedata.category(sign) != "Cf")
+    return " ".join(unicodedata.normalize("NFKC", seen).casefold().split())

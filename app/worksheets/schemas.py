@@ -31,8 +31,23 @@ def storable(text: str) -> str:
     return text
 
 
+def legible(name: str) -> str:
+    """A name of a person that can be read.
+
+    Raises
+    ------
+    ValueError
+        If it has no letter and no digit, as a name of blanks that nobody sees.
+    """
+    if not any(map(str.isalnum, name)):
+        raise ValueError("a name has a letter or a digit; write it as in A. Weber")
+    return name
+
+
 Text = Annotated[str, AfterValidator(storable), Field(max_length=LONGEST_TEXT, description="the worksheet")]
-Person = Annotated[str, Field(min_length=1, max_length=100, pattern=NAME, examples=["A. Weber"])]
+Person = Annotated[
+    str, AfterValidator(legible), Field(min_length=1, max_length=100, pattern=NAME, examples=["A. Weber"])
+]
 
 
 EXAMPLE = """# Bush duty

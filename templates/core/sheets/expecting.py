@@ -81,16 +81,20 @@ def _expected(
     value = _value(statement, reader, declared, tree, name)
     tolerance, sort = reader.part(statement, within)
     size = TreeBody(tolerance, statement.chunk.line)
-    if size.uses or sort.truth:
+    if size.uses or sort.truth or sort.axis:
         raise statement.refuse("limit", "a tolerance is one number", within, "write within 0.2 %")
     text = statement.text_of(within)
-    number = abs(float(size(None)))
+    number = float(size(None))
     if text.endswith("%"):
-        number *= float(np.max(np.abs(value)))
+        with np.errstate(all="ignore"):
+            number *= float(np.max(np.abs(value)))
     elif is_number(sort.kind) and not is_number(reader.sort_of(declared.meaning.unit).kind):
         message = f"{text} has no unit"
         raise statement.refuse("limit", message, within, "write within 0.2 %, or within 1 um")
     elif text != "0":
         difference = declared.meaning.unit if not declared.meaning.scale.absolute else "K"
         reader.fitting(statement, (tolerance, sort), difference, "the tolerance", within)
+    if not 0 <= number < np.inf:
+        message = f"{text} is no tolerance: it is finite, and not below 0"
+        raise statement.refuse("limit", message, within, "write within 0.2 %")
     return Expected(declared.name, value, number, f"{statement.text_of(tree)} within {text}")

@@ -34,11 +34,19 @@ class Reader:
         Refusal
             With the place of what is wrong.
         """
+        before = self.names.fuel
         try:
-            return checked(tree, self.names)
+            part = checked(tree, self.names)
         except FaultyPlace as error:
             message, _, remedy = str(error).partition("; ")
             raise statement.at(error.code, message, error.meta, remedy) from None
+        try:  # what stands at several places, as an argument of a function may, was built once only
+            self.names.spend(max(0, part[1].size - (before - self.names.fuel)))
+        except FaultyText as error:
+            raise statement.refuse(
+                error.code, str(error), tree, "give its parts names of their own"
+            ) from None
+        return part
 
     def fitting(
         self, statement: Parsed, part: Part, unit_text: str, name: str, at: Any, axis: str | None = None

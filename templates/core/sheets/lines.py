@@ -11,6 +11,8 @@ from templates.core.sheets.faults import SheetFault, SheetRefused
 MOST_BYTES = 64 * 1024
 MOST_STATEMENTS = 400
 LONGEST_STATEMENT = 2000
+_CONTROLS = frozenset("\x7f\x85\u2028\u2029\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+"""Signs that end a line, or turn the direction of reading."""
 
 
 @dataclass(frozen=True)
@@ -73,8 +75,8 @@ def _faults_of_text(text: str) -> Iterator[SheetFault]:
 
 
 def _is_no_text(sign: str) -> bool:
-    """Whether a sign is a lone surrogate, or controls a terminal."""
-    return "\ud800" <= sign <= "\udfff" or (sign < " " and sign != "\t") or sign == "\x7f"
+    """Whether a sign is a lone surrogate, controls a terminal, or shows another text than is read."""
+    return "\ud800" <= sign <= "\udfff" or (sign < " " and sign != "\t") or sign in _CONTROLS
 
 
 def _faults_of_size(chunks: list[Chunk]) -> Iterator[SheetFault]:

@@ -77,15 +77,15 @@ class Names:
             raise FollowsFromFault(name)
         return self.functions.get(name)
 
-    def spend(self) -> None:
-        """Count one operation.
+    def spend(self, operations: int = 1) -> None:
+        """Count operations.
 
         Raises
         ------
         FaultyText
             With code `too_large`, if there are too many.
         """
-        self.fuel -= 1
+        self.fuel -= operations
         if self.fuel < 0:
             detail = f"a worksheet has at most {FUEL} operations, its functions written out"
             raise FaultyText("too_large", detail)

@@ -31,6 +31,7 @@ from templates.core.units.operations import (
 )
 from templates.core.units.sorts import Part, Sort, applied
 from templates.core.units.units import Unit, unit
+from templates.core.units.walking import nodes_of
 
 __all__ = ["GRAMMAR", "FaultyPlace", "Scope", "Sort", "applied", "built", "checked", "height"]
 
@@ -38,6 +39,8 @@ GRAMMAR = files(__package__).joinpath("relation.lark").read_text(encoding="utf-8
 """The grammar; its rule `expression` is the one to use in statements."""
 
 MAX_INDEX = 10**9
+MAX_TWICE = 1000
+"""Nodes of what stands between two signs of a chained comparison."""
 RESERVED = frozenset({"if", "then", "else", "and", "or", "not", "is"})
 """Words of the grammar; only `if` and `not` may not stand for names in front of a value."""
 
@@ -176,7 +179,17 @@ class _Builder:
         return self.apply(operation, arguments)
 
     def compared(self, sides: list[Part], signs: list[str]) -> Part:
-        """A comparison; of a chain, all of them hold."""
+        """A comparison; of a chain, all of them hold.
+
+        Raises
+        ------
+        FaultyText
+            With code `too_large`: what stands between two signs is compared, and so calculated, twice.
+        """
+        if any(_size(node) > MAX_TWICE for node, _ in sides[1:-1]):
+            raise FaultyText(
+                "too_large", "chained comparisons stand in each other too often; join them by `and`"
+            )
         pairs = zip(signs, sides, sides[1:], strict=False)
         tests = [self.apply(COMPARISONS[sign], [one, other]) for sign, one, other in pairs]
         return tests[0] if len(tests) == 1 else self.apply(LOGIC["and"], tests)
@@ -236,6 +249,10 @@ def check_word(name: str, word: str, options: Sequence[str]) -> None:
         raise FaultyText("no_truth", f"{name[:60]} is no choice; compare it with < <= > >= == or !=")
     if word not in options:
         raise FaultyText("unknown_name", unknown_name(word, options, f"option of {name[:60]}").detail)
+
+
+def _size(node: Any) -> int:
+    return sum(1 for _ in nodes_of(node))
 
 
 def _place(shown: str, number: float) -> int:

@@ -13,7 +13,7 @@ from templates.core.units.nodes import Apply, Constant, Kind, Operation, Word
 from templates.core.units.rules import plain_number
 from templates.core.units.units import registry
 
-MAX_NODES_DEEP = 200
+MAX_NODES, MAX_NODES_DEEP = 10_000, 200
 PURE = Kind()
 
 
@@ -33,8 +33,8 @@ class Sort:
         The name of what its list runs over; empty for a single value.
     words
         The options of a choice.
-    depth
-        Of its tree, which is bounded.
+    depth, size
+        Of its tree, which are bounded; a part at two places is calculated twice, and counts twice.
     """
 
     kind: Kind = PURE
@@ -43,6 +43,7 @@ class Sort:
     axis: str = ""
     words: tuple[str, ...] = ()
     depth: int = 1
+    size: int = 1
 
 
 Part = tuple[Any, Sort]
@@ -78,8 +79,12 @@ def sorted_by(operation: Operation, parts: Sequence[Part], axis: str = "") -> So
     depth = 1 + max(sort.depth for sort in sorts)
     if depth > MAX_NODES_DEEP:
         raise FaultyText("too_large", f"an expression is at most {MAX_NODES_DEEP} operations deep")
+    size = 1 + sum(sort.size for sort in sorts)
+    if size > MAX_NODES:
+        detail = f"an expression has at most {MAX_NODES} operations, its functions written out"
+        raise FaultyText("too_large", detail)
     kind = operation.kind(operation, [sort.kind for sort in sorts], nodes)
-    return Sort(kind, _weight(operation, kind, parts), truth, axis, depth=depth)
+    return Sort(kind, _weight(operation, kind, parts), truth, axis, depth=depth, size=size)
 
 
 def _truth(operation: Operation, sorts: list[Sort]) -> bool:

@@ -303,3 +303,11 @@ class TestFuzz:
         except FaultyText as refusal:
             is_answered = bool(str(refusal).encode("utf-8"))
         assert is_answered
+
+
+def test_chained_comparisons_in_each_other_are_bounded():
+    assert value("= if 1 < (if 1 < n < 9 then 2 else 3) < 9 then 4 else 5", n=1.0) == 4
+    text = "if 1 < (" * 40 + "n" + ") < 9 then 2 else 3" * 40
+    with pytest.raises(FaultyText) as error:
+        parse(f"= {text}")
+    assert error.value.code == "too_large"

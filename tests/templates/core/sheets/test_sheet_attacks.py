@@ -16,6 +16,9 @@ FIRST = SHEET.count("\n") + 1
 DOUBLING = "f0(x [1]) [1] = x + x\n" + "\n".join(
     f"f{n}(x [1]) [1] = f{n - 1}(x) + f{n - 1}(x)" for n in range(1, 30)
 )
+MULTIPLYING = "f(x [1]) [1] = x*x*x*x\np [1] = " + "f(" * 12 + "x" + ")" * 12 + ' "p"'
+MANY = "f(x [1]) [1] = x*x*x*x\n" + "\n".join(f'p{n} [1] = f(f(f(f(f(x))))) "p{n}"' for n in range(9))
+CHAINED = "if 1 < (" * 40 + "x" + ") < 9 then 2 else 3" * 40
 DEFAULTS = "\n".join(f'given d{n} [mm] = d{n - 1} + 1 mm "d{n}"' for n in range(300, 0, -1))
 
 ATTACKS = {
@@ -55,6 +58,9 @@ ATTACKS = {
     "function of itself": ('f(x [1]) [1] = f(x)', "unknown_function"),
     "functions of each other": ('f(x [1]) [1] = h(x)\nh(x [1]) [1] = f(x)', "unknown_function"),
     "doubling functions": (DOUBLING, "too_large"),
+    "arguments that multiply": (MULTIPLYING, "too_large"),
+    "arguments that multiply in many lines": (MANY, "too_large"),
+    "chained comparisons in each other": (f'p [1] = {CHAINED} "p"', "too_large"),
     "formula of itself": ('p [m] = p "x"', "loop"),
     "formulas of each other": ('p [m] = q "a"\nq [m] = p "b"', "loop"),
     "defaults in a row": (f'given d0 [mm] "d0"\n{DEFAULTS}', "too_large"),
@@ -63,6 +69,9 @@ ATTACKS = {
     "look-alike letter": ('р [1] = x "x"', "syntax"),  # Cyrillic er
     "look-alike in a formula": ('p [1] = х "x"', "syntax"),  # Cyrillic ha
     "look-alike digit": ('p [1] = １ "x"', "syntax"),
+    "right to left in words": ('p [1] = x "a\u202eb"', "syntax"),
+    "right to left in a remark": ("// a\u2066b", "syntax"),
+    "line that is none": ("// a\u2028p", "syntax"),
     "right to left": ('p [1] = \u202ex "x"', "syntax"),
     "no-break space": ('p\u00a0[1] = x "x"', "syntax"),
     "lone surrogate": ('p [1] = x "a\ud800"', "syntax"),
@@ -83,6 +92,9 @@ ATTACKS = {
     "bound by ==": ('given y [1] "y" (== 1)', "limit"),
     "words that are others'": ('p [N] = F "load"', "name"),
     "words without letters": ('p [N] = F "…"', "name"),
+    "tolerance below nothing": ('p [1] = x "p"\ntest "t" gives p = 2 within -50 %', "limit"),
+    "tolerance that is a list": ('p [1] = x "p"\ntest "t" gives p = 2 within [1, 2]', "limit"),
+    "tolerance that is infinite": ('p [1] = x "p"\ntest "t" gives p = 5000 within 1e308 %', "limit"),
     "statement that ends": ("p [N] =", "syntax"),
     "statement that is none": ("hello", "syntax"),
 }  # fmt: skip
