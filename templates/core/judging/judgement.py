@@ -90,6 +90,11 @@ def sentence(judgement: Judgement) -> str:
     return f"{sides[0]} {opposite} {sides[1]}{used}: {judgement.verdict.replace('_', ' ')}"
 
 
+def not_judged(judgement: Judgement) -> str:
+    """Why there is no verdict, as a sentence."""
+    return f"{judgement.words} cannot be judged: {judgement.reason}"
+
+
 def _with_value(text: str, value: float | None, unit: str) -> str:
     """A side and its value; a number stands for itself."""
     if value is None or text[0].isdigit():

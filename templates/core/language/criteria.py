@@ -13,7 +13,7 @@ import numpy as np
 from templates.core.errors import FaultyText
 from templates.core.judging.bands import Estimate
 from templates.core.judging.criterion import Criterion, Known, Limit, Missing, is_angle, read_criterion
-from templates.core.judging.judgement import Judgement, sentence
+from templates.core.judging.judgement import Judgement, not_judged, sentence
 from templates.core.judging.judging import Absent, Along, Instead, judge
 from templates.core.judging.limits import GivenLimit
 from templates.core.judging.summary import worst_first
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from templates.core.language.levels import Accuracy
     from templates.core.language.template import Template
 
+NOT_JUDGED = "check_not_judged"
 RIGHT_ANGLE = math.pi / 2  # to which the errors of angles are relative [rad]
 
 
@@ -335,9 +336,15 @@ def warned(cls: type[Template], judgements: list[Judgement]) -> Iterator[Notice]
     """A warning for every criterion that declares one and is not met, or whose value misses its limit.
 
     Where the limit lies within the error of a value that misses it, the verdict is undecided: a film of 1 nm
-    whose error is not known is warned of all the same.
+    whose error is not known is warned of all the same. So is a check of a worksheet that cannot be judged.
     """
     for judgement in judgements:
         if judgement.warning and judgement.misses:
-            criterion = next(c for c in cls.declared_criteria if c.name == judgement.name)
-            yield Notice(judgement.warning, criterion.names[0], sentence(judgement))
+            yield Notice(judgement.warning, _about(cls, judgement), sentence(judgement))
+        elif cls.sheet and judgement.warning and judgement.reason and judgement.verdict == "not_checked":
+            yield Notice(NOT_JUDGED, _about(cls, judgement), not_judged(judgement))
+
+
+def _about(cls: type[Template], judgement: Judgement) -> str:
+    """The name that a warning is about: the first of its criterion."""
+    return next(c for c in cls.declared_criteria if c.name == judgement.name).names[0]

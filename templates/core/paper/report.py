@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from templates.core.language.body import Body
 from templates.core.language.spec import Choice
 from templates.core.language.template import Template
 from templates.core.paper.mathml import amount, expression, mathml, symbol, symbols
@@ -48,17 +49,20 @@ def rows(template: Template, units: Mapping[str, str] | None = None) -> Iterator
     cls = type(template)
     names, shown_in = symbols(cls), units or {}
     values = {attribute: shown(template, attribute, shown_in) for attribute in cls.declarations}
+    tested = {a: names[a] for a, declared in cls.declarations.items() if isinstance(declared, Choice)}
     result = {a: shown(template, a, shown_in, absolute=True) for a in cls.declarations}
     for formula in cls.formulas.values():
         if formula.attribute in vars(template):
             side, is_words = right_side(cls, formula, names, template.level)
+            # a worksheet tests a choice: "law = walther", not "vogel = walther"
+            filled = {**values, **tested} if isinstance(formula.function, Body) else values
             complete = not is_words and all(values.get(used) not in (None, "", NONE) for used in formula.uses)
             yield Row(
                 name=formula.name,
                 words=formula.meaning.words,
                 symbol=symbol(formula),
                 expression=side,
-                numbers=expression(formula, values, r"\cdot ") if complete and formula.latex is None else "",
+                numbers=expression(formula, filled, r"\cdot ") if complete and formula.latex is None else "",
                 result=result[formula.attribute],
                 source=formula.meaning.source,
             )

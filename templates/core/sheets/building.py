@@ -93,7 +93,9 @@ class Builder:
         self.names.sorts[str(name)] = sort
 
     def _sort(self, statement: Parsed, unit_text: lark.Token, axis: str) -> Sort:
-        wanted = sort_of(self.reader.declared_unit(statement, unit_text))
+        text = self.reader.declared_unit(statement, unit_text)
+        self.names.units.setdefault(str(statement.parts[0]), text)
+        wanted = sort_of(text)
         return Sort(wanted.kind, wanted.weight, axis=axis)
 
     def _check_new(self, statement: Parsed, at: lark.Token, name: str) -> None:
@@ -114,7 +116,8 @@ class Builder:
         name = str(called)[:-1]
         self._check_new(statement, called, name)
         if axis := parameter.children[2]:
-            raise statement.refuse("curve", "a curve takes a single value, or each of a list", axis)
+            remedy = "leave out over and the name behind it"
+            raise statement.refuse("curve", "a curve takes a single value, or each of a list", axis, remedy)
         texts = (parameter.children[1], unit_text)
         along, of = (self.reader.declared_unit(statement, text) for text in texts)
         said = said_in(statement, clauses, self.reader)
@@ -126,7 +129,8 @@ class Builder:
         name, default, words, options, *clauses = statement.parts
         names = tuple(map(str, options.children))
         if len(set(names)) < len(names) or any("." in option for option in names):
-            raise statement.refuse("choice", "each option is one word, and stands once", options)
+            remedy = "write different words, as in (walther | vogel)"
+            raise statement.refuse("choice", "each option is one word, and stands once", options, remedy)
         if default is not None and str(default) not in names:
             message = f"the default {default} is no option"
             raise statement.refuse("choice", message, default, f"write one of {', '.join(names)}")

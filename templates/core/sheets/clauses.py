@@ -65,7 +65,8 @@ def words_of(statement: Parsed, words: lark.Token) -> str:
     """
     text = " ".join(words[1:-1].split())
     if len(text) > LONGEST_WORDS:
-        raise statement.refuse("too_large", f"words have at most {LONGEST_WORDS} characters", words)
+        message = f"words have at most {LONGEST_WORDS} characters"
+        raise statement.refuse("too_large", message, words, "write the rest as prose, behind >")
     if not text:
         raise statement.refuse("name", "the words are missing", words, "say what it is")
     return text
@@ -80,7 +81,8 @@ def said_in(
         if clause is not None:
             key, value = _clause(statement, clause, reader, unit_text)
             if key in keys:
-                raise statement.refuse("clause", f"{clause_name(clause)} is said twice", clause)
+                message = f"{clause_name(clause)} is said twice"
+                raise statement.refuse("clause", message, clause, "leave out one of the two")
             keys.add(key)
             if key == "example":
                 said.example = value
@@ -129,7 +131,7 @@ def _said(statement: Parsed, clause: lark.Tree[Any]) -> tuple[str, Any]:
     if key == "also":
         return "also", tuple(said)
     if len(said) > 1:
-        raise statement.refuse("clause", f"{key} takes one text", clause)
+        raise statement.refuse("clause", f"{key} takes one text", clause, "leave out the other texts")
     if key == "symbol" and not _SYMBOL.fullmatch(said[0]):
         remedy = r'write a letter with a subscript, as in symbol "\eta_{0}"'
         raise statement.refuse("clause", f"{said[0][:40]!a} is no symbol", clause, remedy)

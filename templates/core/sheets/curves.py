@@ -11,7 +11,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText
 from templates.core.sheets.clauses import Said
-from templates.core.sheets.expressions import Reader
+from templates.core.sheets.expressions import Reader, is_temperature, no_temperature
 from templates.core.sheets.grammar import Parsed
 from templates.core.sheets.names import Call, sort_of
 from templates.core.sheets.partial import Partial
@@ -68,9 +68,11 @@ def _called(name: str, units: tuple[str, str], operation: Partial) -> Call:
     def call(arguments: list[Part]) -> Part:
         if len(arguments) != 1:
             raise FaultyText("unknown_function", f"{name} takes one value in {units[0]}")
-        ((_, got),) = arguments
+        ((given_node, got),) = arguments
         if not compatible(got.kind.base, wanted.kind.base):
             raise FaultyText("unit_mismatch", f"{name} takes a value in {units[0]}, not {told(got.kind)}")
+        if wanted.weight and not is_temperature(given_node, got):
+            raise FaultyText("unit_mismatch", no_temperature(f"the value that {name} takes"))
         node, sort = applied(replace(operation, is_of_items=bool(got.axis)), arguments)
         return node, replace(sort, weight=given.weight)
 

@@ -8,6 +8,7 @@ from typing import Any
 import lark
 import numpy as np
 
+from templates.core.errors import unknown_name
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given, Text
 from templates.core.sheets.body import TreeBody
 from templates.core.sheets.clauses import words_of
@@ -48,7 +49,13 @@ def _declared(
     if declared is None and (str(name) in reader.names.broken or str(name) in reader.names.sorts):
         raise FollowsFromFault(str(name))
     if not isinstance(declared, kinds) or isinstance(declared, Text):
-        raise statement.refuse("unknown_name", f"{str(name)[:60]} is not {wanted} of this worksheet", name)
+        fitting = (own for own, one in made.items() if isinstance(one, kinds) and not isinstance(one, Text))
+        fault = unknown_name(str(name), fitting, wanted)
+        message, remedy = (
+            f"{fault.name[:60]} is not {wanted} of this worksheet",
+            fault.detail.partition("; ")[2],
+        )
+        raise statement.refuse("unknown_name", message, name, remedy)
     return declared
 
 
@@ -56,8 +63,8 @@ def _set(statement: Parsed, reader: Reader, declared: Declaration, tree: lark.Tr
     if isinstance(declared, Choice):
         word = str(tree.children[0]) if tree.data == "name" else ""
         if word not in declared.options:
-            options = ", ".join(declared.options)
-            raise statement.refuse("unknown_name", f"{name} is one of {options}", tree)
+            remedy = f"write one of {', '.join(declared.options)}"
+            raise statement.refuse("unknown_name", f"this is no option of {name}", tree, remedy)
         return word
     return _value(statement, reader, declared, tree, name)
 
@@ -71,7 +78,8 @@ def _value(statement: Parsed, reader: Reader, declared: Declaration, tree: lark.
     with np.errstate(all="ignore"):
         value = body(None)
     if not np.isfinite(value).all():
-        raise statement.refuse("limit", f"the value of {name} is not finite", tree)
+        remedy = "write a number below 1e308, and divide by none that is 0"
+        raise statement.refuse("limit", f"the value of {name} is not finite", tree, remedy)
     return value
 
 

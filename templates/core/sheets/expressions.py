@@ -11,6 +11,7 @@ from templates.core.errors import FaultyText
 from templates.core.sheets.body import TreeBody
 from templates.core.sheets.grammar import Parsed
 from templates.core.sheets.names import Names, sort_of
+from templates.core.sheets.remedies import declared_in, remedy_at
 from templates.core.units.expressions import FaultyPlace, checked
 from templates.core.units.operations import Constant
 from templates.core.units.rules import is_number, told
@@ -39,6 +40,9 @@ class Reader:
             part = checked(tree, self.names)
         except FaultyPlace as error:
             message, _, remedy = str(error).partition("; ")
+            if error.code == "axis_mismatch":  # whose second half says what stands there
+                message, remedy = str(error), ""
+            remedy = remedy or remedy_at(error.code, tree, error.meta, self.names)
             raise statement.at(error.code, message, error.meta, remedy) from None
         try:  # what stands at several places, as an argument of a function may, was built once only
             self.names.spend(max(0, part[1].size - (before - self.names.fuel)))
@@ -65,10 +69,12 @@ class Reader:
             raise statement.refuse("no_truth", message, at, "write if … then … else …")
         if not compatible(got.kind.base, wanted.kind.base):
             message = f"{name} is declared in {unit_text}, but this gives {told(got.kind)}"
-            raise statement.refuse("unit_mismatch", message, at, "correct the unit or the formula")
+            is_declared = str(statement.parts[0]).rstrip("(") == name
+            remedy = declared_in(name, got.kind.base) if is_declared else _given_in(unit_text)
+            raise statement.refuse("unit_mismatch", message, at, remedy)
         if axis is not None:
             self._along(statement, got, axis, name, at)
-        if unit(unit_text).absolute and not _is_temperature(tree, got):
+        if unit(unit_text).absolute and not is_temperature(tree, got):
             message = f"{name} is a difference of temperatures, or no plain one"
             raise statement.refuse("unit_mismatch", message, at, "declare it in K")
         return tree
@@ -82,7 +88,7 @@ class Reader:
         if axis and got.axis != axis and not is_literal(got.axis):
             what = f"a list over {got.axis}" if got.axis else "a single value"
             message = f"{name} is declared over {axis}, but this is {what}"
-            raise statement.refuse("axis_mismatch", message, at, "declare what it gives")
+            raise statement.refuse("axis_mismatch", message, at, _along_of(got.axis))
 
     def limit(self, statement: Parsed, tree: lark.Tree[Any], unit_text: str) -> float:
         """A limit in the declared unit: typed in it without a unit, or in any other with one.
@@ -131,7 +137,8 @@ class Reader:
         with np.errstate(all="ignore"):
             value = np.asarray(body(None), dtype=float)
         if not np.isfinite(value).all():
-            raise statement.refuse("limit", f"{name} is not finite", tree)
+            remedy = "write a number below 1e308, and divide by none that is 0"
+            raise statement.refuse("limit", f"{name} is not finite", tree, remedy)
         shown = np.asarray(unit(unit_text).from_si(value))
         return {"value": shown.tolist(), "unit": unit_text}
 
@@ -157,7 +164,25 @@ def is_literal(axis: str) -> bool:
     return " " in axis
 
 
-def _is_temperature(node: Any, got: Sort) -> bool:
+def _given_in(unit_text: str) -> str:
+    """The advice to write a value in a unit."""
+    return "write it without a unit" if unit_text == "1" else f"write it in {unit_text} or its like"
+
+
+def _along_of(axis: str) -> str:
+    """The advice to declare what runs over an axis, or over none."""
+    return f"declare it over {axis}" if axis else "leave out over and the name behind it"
+
+
+def no_temperature(parameter: str) -> str:
+    """Why a value that is no temperature does not fit a parameter in degC, and what would."""
+    return (
+        f"{parameter} is a temperature, and this is a difference of temperatures, or no plain one; "
+        "give a temperature, or declare the parameter in K"
+    )
+
+
+def is_temperature(node: Any, got: Sort) -> bool:
     """Whether a tree gives one temperature: not a difference, and no sum of several."""
     if isinstance(node, Constant) and " " in node.text:
         return not unit(node.text.partition(" ")[2]).difference

@@ -8,7 +8,7 @@ from typing import Any
 import lark
 
 from templates.core.errors import FaultyText
-from templates.core.sheets.expressions import Reader
+from templates.core.sheets.expressions import Reader, is_temperature, no_temperature
 from templates.core.sheets.grammar import Parsed
 from templates.core.sheets.names import Names, sort_of
 from templates.core.units.expressions import FaultyPlace, checked
@@ -41,10 +41,12 @@ class Function:
         if len(arguments) != len(self.parameters):
             detail = f"{self.name} takes {self.takes}, not {len(arguments)} values"
             raise FaultyText("unknown_function", detail)
-        for (_, got), (_, wanted) in zip(arguments, self.parameters, strict=True):
+        for (node, got), (own, wanted) in zip(arguments, self.parameters, strict=True):
             if got.truth or not compatible(got.kind.base, wanted.kind.base):
                 given = "a condition" if got.truth else told(got.kind)
                 raise FaultyText("unit_mismatch", f"{self.name} takes {self.takes}, not {given}")
+            if wanted.weight and not is_temperature(node, got):
+                raise FaultyText("unit_mismatch", no_temperature(f"{own} of {self.name}"))
             if wanted.axis and not got.axis:
                 raise FaultyText("axis_mismatch", f"{self.name} takes {self.takes}, not a single value")
         names = (name for name, _ in self.parameters)

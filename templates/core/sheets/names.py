@@ -41,6 +41,7 @@ class Names:
     """What the names of a worksheet mean, as `Scope` of its expressions."""
 
     sorts: dict[str, Sort] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)  # as declared
     functions: dict[str, Call] = field(default_factory=dict)
     broken: set[str] = field(default_factory=set)  # names whose statement is refused
     parameters: dict[str, Part] = field(default_factory=dict)  # of the function that is written out now

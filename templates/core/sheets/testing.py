@@ -82,7 +82,20 @@ def _missed(template: Template, test: SheetTest) -> Iterator[str]:
             is_near = False
         if not is_near:
             shown = _shown(value, declared.meaning.scale)
-            yield f"{declared.meaning.words} is {shown}, not {one.shown}"
+            missed = _distance(value, one.value, declared.meaning.scale)
+            yield f"{declared.meaning.words} is {shown}, not {one.shown}{missed}"
+
+
+def _distance(value: Any, wanted: Any, scale: Unit) -> str:
+    """How far a single value lies from what is expected: `: 8.3 MPa (28 %) too low`."""
+    if np.ndim(value) or np.ndim(wanted) or np.isnan(value):
+        return ""
+    difference, size = float(value) - float(wanted), abs(float(scale.from_si(wanted)))
+    measured = " K" if scale.absolute else "" if scale.text == "1" else f" {scale.text}"
+    share = f" ({100 * abs(difference) / scale.factor / size:.3g} %)" if size and not scale.absolute else ""
+    return (
+        f": {abs(difference) / scale.factor:.4g}{measured}{share} too {'high' if difference > 0 else 'low'}"
+    )
 
 
 def _shown(value: Any, scale: Unit) -> str:

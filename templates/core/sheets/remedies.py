@@ -1,0 +1,102 @@
+"""What would be right where an expression is refused: by what is wrong, and by the operation at its place."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import lark
+import pint
+
+from templates.core.sheets.names import Names
+from templates.core.units.operations import FUNCTIONS
+from templates.core.units.rules import told
+from templates.core.units.units import compatible, unit
+
+MOST_NAMES = 4
+_COMMON = (
+    "1", "mm", "mm**2", "mm**3", "s", "m/s", "m/s**2", "kg", "kg/m**3", "kg*m**2", "N", "MPa", "N*m", "N/mm",
+    "W", "K", "mPa*s", "mm**2/s", "rpm", "Hz", "W/(m*K)", "J/(kg*K)", "W/(m**2*K)", "N/mm**3", "N*s/m",
+    "mm**4", "1/m", "1/K", "A", "V", "m**3/s", "kg/s",
+)  # fmt: skip
+_EQUAL = frozenset({"add", "subtract", "compare", "if", "list"})
+_EQUAL_CALLS = frozenset({"min", "max", "atan2"})
+_TRUTHS = {
+    "if": "write a comparison behind if, as in x < 3 mm",
+    "and": "write a comparison on each side, as in x < 3 mm and y > 1 mm",
+    "or": "write a comparison on each side, as in x < 3 mm or y > 1 mm",
+    "not": "write a comparison behind not, as in not x < 3 mm",
+}
+_AXES = {
+    "item": "write the name without an index, or take a list and one number, as in x[2]",
+    "list": "write single values between the brackets, as in [max(x), 3 mm]",
+    "call": "give a list, as in max([a, b]), or take max(…) of each list first",
+}
+_GENERAL = {
+    "no_truth": "test a choice by is, and make a quantity of a condition by if … then … else …",
+    "axis_mismatch": "take max(…), mean(…) or an item of one of the lists, or declare both over one name",
+    "index": "count from 1, with a whole number or a name in [1]",
+    "unknown_function": "correct the name, or declare the function above this line",
+    "unknown_unit": "write a unit as in kN, mm**2/s, W/(m*K)",
+    "syntax": "write it as in log(x), max(a, b), x[2]",
+    "not_finite": "write a number below 1e308",
+    "too_large": "give its parts names of their own, and call functions less often",
+}
+
+
+def remedy_at(code: str, tree: lark.Tree[Any], meta: Any, names: Names) -> str:
+    """What would be right in an expression.
+
+    Parameters
+    ----------
+    code
+        That of the fault.
+    tree
+        The expression.
+    meta
+        The place of the fault in it.
+    names
+        Those of the worksheet.
+    """
+    at = next((part for part in tree.iter_subtrees() if part.meta is meta), tree)
+    if code == "unit_mismatch":
+        return "; ".join(filter(None, (_equal(at, names), _units(at, names))))
+    special = {"no_truth": _TRUTHS, "axis_mismatch": _AXES}.get(code, {})
+    return special.get(str(at.data), _GENERAL.get(code, ""))
+
+
+def declared_in(name: str, base: pint.Unit) -> str:
+    """The advice to declare a name in a unit that fits what its formula gives."""
+    return f"declare {name} in {common_unit(base)}, or correct the formula"
+
+
+def common_unit(base: pint.Unit) -> str:
+    """A unit that engineers write for a base unit, such as MPa for a pressure."""
+    return next((text for text in _COMMON if compatible(unit(text).base, base)), f"{base:~C}")
+
+
+def _equal(at: lark.Tree[Any], names: Names) -> str:
+    """What the operation at a place needs."""
+    called = str(at.children[0])[:-1] if at.data == "call" else ""
+    if at.data in _EQUAL or called in _EQUAL_CALLS:
+        return "write both in the same unit"
+    if at.data == "power":
+        return "write a plain number as exponent, as in d**2, and divide by a unit first, as in (d / 1 mm)**x"
+    if called in FUNCTIONS and called not in names.functions:
+        return f"divide by a unit first, as in {called}(x / 1 mm)"
+    if called in names.functions:
+        return f"give {called} values in the units of its declaration"
+    return "divide by a unit first, as in x / 1 mm"
+
+
+def _units(at: lark.Tree[Any], names: Names) -> str:
+    """What the names of an expression measure: `F is in kN, D in mm`."""
+    used = map(str, at.scan_values(lambda token: getattr(token, "type", "") == "NAME"))
+    shown = {name: text for name in used if (text := _unit_of(name, names))}
+    parts = [f"{name} in {text}" for name, text in list(shown.items())[:MOST_NAMES]]
+    return ", ".join([parts[0].replace(" in ", " is in ", 1), *parts[1:]]) if parts else ""
+
+
+def _unit_of(name: str, names: Names) -> str:
+    if name in names.parameters:
+        return told(names.parameters[name][1].kind)
+    return names.units.get(name, "")
