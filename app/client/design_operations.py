@@ -170,9 +170,12 @@ def auto_map(id: str) -> Exchange[list[Proposal]]:
     return (yield from answered(Proposals, request)).proposals
 
 
-def explain(id: str, name: str) -> Exchange[Explanation]:
-    """Where a model parameter, such as `model.inner_diameter`, or the verdict of a criterion comes from."""
-    return answered(Explanation, get(f"/designs/{id}/explain/{name}"))
+def explain(id: str, name: str, *, units: System = "si") -> Exchange[Explanation]:
+    """Where a model parameter, such as `model.inner_diameter`, or the verdict of a criterion comes from.
+
+    The quantities of the answer are in `units`, "si" or "us".
+    """
+    return answered(Explanation, get(f"/designs/{id}/explain/{name}", (("units", units),)))
 
 
 def network(id: str) -> Exchange[DesignNetwork]:

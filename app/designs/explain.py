@@ -7,10 +7,9 @@ import numpy as np
 from app.calculations import rendering
 from app.designs.analyses import measured_unit
 from app.designs.calculate import Calculation
-from app.designs.network import Cell, Solid, SolidAnalysis
+from app.designs.network import Block, Cell, Solid, SolidAnalysis
 from app.designs.reference import Reference
 from app.plain import JsonObject
-from app.storage.errors import NotFound
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Derived, Formula
 from templates.core.paper.expressions import relation_latex
@@ -21,29 +20,27 @@ from templates.core.units.units import Value, unit
 DEEPEST = 50  # links; JSON that nests deeper is refused by many readers, and by our own writer
 
 
-def explain(calculation: Calculation, name: str) -> JsonObject:
+def explain(calculation: Calculation, parameter: str) -> JsonObject:
     """The chain behind a model parameter, as nested `because`; what was explained once is named only.
 
     A chain is followed over 50 links; what lies `deeper` has its value only.
-
-    Raises
-    ------
-    NotFound
-        If no model has this parameter.
     """
-    return Explainer(calculation).of(Reference.parse(_full_name(calculation, name)))
+    return Explainer(calculation).of(Reference.parse(parameter))
 
 
-def _full_name(calculation: Calculation, name: str) -> str:
-    """The name with its model: `inner_diameter` is enough where there is one model."""
-    models = [block for block in calculation.graph.blocks.values() if block.is_model]
-    for block in models:
-        if name in (f"{block.name}.{tail}" for tail in block.cls.inputs) or (
-            len(models) == 1 and name in block.cls.inputs
-        ):
-            return name if "." in name else f"{block.name}.{name}"
-    names = [f"{block.name}.{tail}" for block in models for tail in block.cls.inputs]
-    raise NotFound(f"no model has the parameter {name[:80]!r}; there are {', '.join(names)}")
+def model_parameters(calculation: Calculation) -> list[str]:
+    """The parameters of all models by their full names: `shell.inner_diameter`."""
+    return [f"{block.name}.{tail}" for block in _models(calculation) for tail in block.cls.inputs]
+
+
+def full_name(calculation: Calculation, name: str) -> str:
+    """The name with its model, where there is one model: `inner_diameter` is enough then."""
+    models = _models(calculation)
+    return f"{models[0].name}.{name}" if len(models) == 1 and name in models[0].cls.inputs else name
+
+
+def _models(calculation: Calculation) -> list[Block]:
+    return [block for block in calculation.graph.blocks.values() if block.is_model]
 
 
 class Explainer:

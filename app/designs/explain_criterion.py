@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from app.calculations.criteria import criterion as rendered
 from app.designs.calculation import Calculation
 from app.designs.document import Document
-from app.designs.explain import Explainer, explain, shown
+from app.designs.explain import Explainer, explain, full_name, model_parameters, shown
 from app.designs.judging import Judging
 from app.designs.reference import Reference
 from app.designs.subjects import Subject
@@ -27,14 +27,22 @@ def explain_any(document: Document, calculation: Calculation, name: str) -> Json
     NotFound
         If nothing is called so.
     """
-    names = Judging(calculation).names()
-    try:
-        return explain(calculation, name)
-    except NotFound as error:
-        if name.removeprefix(PREFIX) in names:
-            return explain_criterion(document, calculation, name)
-        criteria = f"no criterion either; there are {', '.join(names)}" if names else "it has no criteria"
-        raise NotFound(f"{error}; {criteria}") from None
+    parameters, criteria = model_parameters(calculation), list(Judging(calculation).names())
+    if (parameter := full_name(calculation, name)) in parameters:
+        return explain(calculation, parameter)
+    if name.removeprefix(PREFIX) in criteria:
+        return explain_criterion(document, calculation, name)
+    detail = f"nothing that can be explained is called {name[:80]!r}"
+    raise NotFound(f"{detail}; {_explainable(parameters, criteria)}")
+
+
+def _explainable(parameters: Sequence[str], criteria: Sequence[str]) -> str:
+    """What can be explained in a design, in words."""
+    kinds = {"parameters of models": parameters, "verdicts of criteria": criteria}
+    there = [f"{kind} ({', '.join(names)})" for kind, names in kinds.items() if names]
+    if not there:
+        return f"{' and '.join(kinds)} can be explained, and this design has neither models nor criteria"
+    return f"there are {' and '.join(there)}"
 
 
 def explain_criterion(document: Document, calculation: Calculation, name: str) -> JsonObject:

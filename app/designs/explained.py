@@ -8,11 +8,16 @@ from app.designs.document import Document
 from app.designs.explain_criterion import explain_any
 from app.designs.judging import Judging
 from app.designs.sensitivities import Asked, sensitivities
+from app.presentation.units import System
 from app.schemas.designs import Explanation
 
 
-def explained(document: Document, calculation: Calculation, catalogues: Catalogues, name: str) -> Explanation:
+def explained(
+    document: Document, calculation: Calculation, catalogues: Catalogues, name: str, system: System = "si"
+) -> Explanation:
     """Where a parameter of a model, or the verdict of a criterion, comes from, with sensitivities.
+
+    Quantities and slopes are in a system of units; what was typed stays as it is.
 
     Raises
     ------
@@ -21,6 +26,6 @@ def explained(document: Document, calculation: Calculation, catalogues: Catalogu
     """
     chain = Explanation.model_validate(explain_any(document, calculation, name))
     subject = Judging(calculation).subject(chain.name) if chain.kind == "criterion" else None
-    found = sensitivities(document, calculation, catalogues, Asked(chain.name, subject))
+    found = sensitivities(document, calculation, catalogues, Asked(chain.name, subject, system))
     reason = {} if found.reason is None else {"reason": found.reason}
-    return chain.model_copy(update={"sensitivities": list(found.items), **reason})
+    return chain.in_units(system).model_copy(update={"sensitivities": list(found.items), **reason})

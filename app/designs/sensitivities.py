@@ -24,6 +24,7 @@ from app.designs.row_design import MOST_VALUES, Wanted
 from app.designs.size import MOST_OPERATIONS
 from app.designs.slopes import Local, Slopes, slope_in, slopes_at
 from app.designs.subjects import Subject
+from app.presentation.units import System, shown_unit
 from app.schemas.designs import Sensitivity
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs, listed
@@ -37,10 +38,14 @@ STEP = 1e-4  # of the value of a place, or of its unit where it is 0
 
 @dataclass(frozen=True)
 class Asked:
-    """What is looked at: the value of a name, or what a criterion of this name compares."""
+    """What is looked at: the value of a name, or what a criterion of this name compares.
+
+    Slopes are those between units of `system`.
+    """
 
     name: str
     subject: Subject | None = None
+    system: System = "si"
 
     @property
     def values(self) -> list[Reference]:
@@ -225,7 +230,8 @@ class Surroundings:
     def _item(self, number: int, slopes: Slopes) -> Sensitivity:
         name, place = str(self.places[number]), float(self._points.at[number])
         over, under = self.asked.unit(self._net), self._net.unit(self.places[number])
-        slope = slope_in(over, under, float(slopes.slopes[number]))
+        system, slope_si = self.asked.system, float(slopes.slopes[number])
+        slope = slope_in(shown_unit(over, system), shown_unit(under, system), slope_si)
         if slope is None:
             return Sensitivity(name=name, reason="its slope is not finite")
         elasticity = float(slopes.elasticities[number])

@@ -198,7 +198,7 @@ async def explanation(
     """Where a model parameter, or the verdict of a criterion, comes from."""
     design, chain = await asyncio.gather(
         api.get(f"/designs/{id}", Design),
-        api.get(f"/designs/{id}/explain/{quote(name, safe='')}", Explanation),
+        api.get(f"/designs/{id}/explain/{quote(name, safe='')}", Explanation, units=units_of(request)),
     )
     judged = line(chain.criterion) if chain.criterion else None
     slopes = sensitivity_lines(chain.sensitivities or [])

@@ -82,6 +82,46 @@ def test_an_unknown_name_lists_what_there_is(http, design):
     assert "film.film" in refusal["detail"]
 
 
+def test_a_design_without_models_says_that_criteria_can_be_explained(http, design):
+    detail = problem(http.get(f"{DESIGNS}/{design}/explain/colour"), 404, "not-found")["detail"]
+    assert detail.startswith(
+        "nothing that can be explained is called 'colour'; there are verdicts of criteria ("
+    )
+    assert "parameters of models" not in detail
+
+
+def test_a_design_without_models_and_criteria_says_that_it_has_none(http):
+    bare = created(http, {"name": "bare", "parameters": {"half": "0.5"}})["id"]
+    detail = problem(http.get(f"{DESIGNS}/{bare}/explain/half"), 404, "not-found")["detail"]
+    assert detail == (
+        "nothing that can be explained is called 'half'; parameters of models and verdicts of criteria "
+        "can be explained, and this design has neither models nor criteria"
+    )
+
+
+def test_an_explanation_in_american_units(http, client, design):
+    si, us = explained(http, design, "own"), explained(http, design, "own?units=us")
+    assert us["criterion"]["value"]["unit"] == "thou"
+    value, metric = sides(us)["value"], sides(si)["value"]
+    assert value["value"] == {"value": pytest.approx(metric["value"]["value"] / 25.4), "unit": "thou"}
+    assert [link.get("typed") for link in value["because"]] == [
+        link.get("typed") for link in metric["because"]
+    ]
+    slopes = {one["name"]: one for one in us["sensitivities"]}
+    metric_slopes = {one["name"]: one for one in si["sensitivities"]}
+    load, newtons = slopes["film.radial_load"], metric_slopes["film.radial_load"]
+    assert load["slope"]["unit"] == "thou/lbf"
+    assert load["slope"]["value"] == pytest.approx(newtons["slope"]["value"] / 25.4 * 4.4482216152605)
+    oil = slopes["film.oil_inlet_temperature"]["slope"]
+    assert oil["unit"] == "thou/delta_degF"
+    assert oil["value"] == pytest.approx(
+        metric_slopes["film.oil_inlet_temperature"]["slope"]["value"] / 25.4 / 1.8
+    )
+    elasticities = {name: one.get("elasticity") for name, one in metric_slopes.items()}
+    assert {name: one.get("elasticity") for name, one in slopes.items()} == elasticities
+    assert client.explain(design, "own", units="us").plain() == us
+
+
 def test_the_page_says_where_a_verdict_comes_from(http, design):
     page = http.get(f"/designs/{design}").text
     assert f'href="/designs/{design}/explain/film.own_film"' in page

@@ -38,6 +38,40 @@ def test_a_verdict_leads_to_value_and_limit_and_who_gave_it(watched, shell):
     assert watched.faults() == []
 
 
+def test_the_table_of_sensitivities_shows_slopes_and_what_helps(watched, http, shell):
+    page = watched.page
+    watched.open(f"{shell}/explain/film.own_film")
+    page.get_by_role("link", name="How much each typed value matters").click()
+    expect(page).to_have_url(re.compile("#changes$"))
+    rows = page.locator("table.sensitivities tbody tr")
+    answer = http.get(f"{API}{shell}/explain/film.own_film").json()["sensitivities"]
+    expect(rows.locator("th")).to_have_text([one["name"] for one in answer])
+    sizes = [abs(one["elasticity"]) for one in answer if one.get("elasticity")]
+    assert sizes == sorted(sizes, reverse=True)
+    load = rows.filter(has=page.get_by_role("rowheader", name="film.radial_load", exact=True))
+    expect(load).to_contain_text("µm/N")
+    expect(load).to_contain_text("lower it")
+    bar = load.get_by_role("img", name=re.compile("^elasticity [-−]"))
+    expect(bar).to_have_class("bar falls")
+    longest = rows.first.locator("rect.used")
+    assert float(longest.get_attribute("width")) == 50
+    assert float(bar.locator("rect.used").get_attribute("width")) <= 50
+    assert watched.faults() == []
+
+
+def test_the_table_of_sensitivities_in_american_units_on_a_narrow_page(watched, shell):
+    page = watched.page
+    page.set_viewport_size({"width": 390, "height": 800})
+    watched.open(f"{shell}/explain/film.own_film?units=us#changes")
+    region = page.get_by_role("region", name="Sensitivities")
+    expect(region).to_contain_text("mil/lbf")
+    region.focus()
+    expect(region).to_be_focused()
+    wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+    assert wide <= 0
+    assert watched.faults() == []
+
+
 def test_a_verdict_that_the_browser_writes_leads_there_too(watched, shell):
     watched.open(shell, wait_until="networkidle")
     payload = {"criteria": CRITERIA, "verdict": verdict(*CRITERIA)}

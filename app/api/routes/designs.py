@@ -298,7 +298,12 @@ def show_measurements(id: Id, database: TheDatabase, units: Units = "si") -> dic
 
 @router.get("/{id}/explain/{name}", responses=refusals(404))
 async def explain_name(
-    id: Id, name: Explained, designs: TheDesigns, threads: TheThreads, request: Request
+    id: Id,
+    name: Explained,
+    designs: TheDesigns,
+    threads: TheThreads,
+    request: Request,
+    units: Units = "si",
 ) -> Explanation:
     """Where a model parameter or the verdict of a criterion comes from.
 
@@ -310,7 +315,7 @@ async def explain_name(
     def explained() -> Explanation:
         with designs.database.read() as session:
             row = repository.head(session, id).document
-        return explanation(*designs.prepare(row), designs.catalogues, name)
+        return explanation(*designs.prepare(row), designs.catalogues, name, units)
 
     return await threads.run_for(request, explained)
 
