@@ -9,7 +9,8 @@ from app.catalogue.catalogues import Catalogues
 from app.worksheets.errors import IdTaken
 from templates.core.errors import Fault, InvalidInputs
 
-RESERVED = frozenset({"check", "import", "new"})  # words of paths
+RESERVED = frozenset({"check", "import", "new"})
+"""Words with a path of their own, such as `/worksheets/check`: no worksheet may have one as its id."""
 _LIKE_A_VERSION = re.compile(r".*_v[0-9]+")
 
 
@@ -24,7 +25,7 @@ def require_free(id: str, catalogues: Catalogues) -> None:
         If a template or a CAD model has it.
     """
     if id in RESERVED or _LIKE_A_VERSION.fullmatch(id):
-        why = "is a word of paths" if id in RESERVED else "ends like a version"
+        why = "has an address of its own" if id in RESERVED else "ends like a version"
         raise InvalidInputs([Fault("id", "name", f"{id!r} {why}; choose another, such as bush_duty")])
     files = catalogues.files
     for catalogue in (files.templates, files.models):

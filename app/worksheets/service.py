@@ -15,7 +15,6 @@ from sqlalchemy.orm import Session
 
 from app.calculations.pool import CalculationPool
 from app.catalogue.catalogues import Catalogues
-from app.plain import JsonObject
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.storage.identity import now
@@ -24,7 +23,7 @@ from app.workers.errors import DeadlineExceeded
 from app.worksheets import repository
 from app.worksheets.errors import IdTaken, OtherText, OutOfOrder, OwnReview, StaleWorksheet, TestsFailed
 from app.worksheets.examining import Examined, Tried, examined, tried
-from app.worksheets.importing.record import require_resolved
+from app.worksheets.importing.record import ImportRecord, require_resolved
 from app.worksheets.naming import is_same_person, require_free
 from app.worksheets.published import Published
 from app.worksheets.repository import RELEASED
@@ -33,7 +32,7 @@ from app.worksheets.schemas import ReviewIn, SheetIn, SheetPatch, WithdrawIn
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
 
-Imported = tuple[str, JsonObject]
+Imported = tuple[str, ImportRecord]
 """The SHA-256 of the file that a worksheet comes from, and what the import says of its regions."""
 
 PATIENCE = 30.0  # for a text to be read and tried, its turn included [s]
@@ -70,7 +69,7 @@ class Worksheets:
             row = _draft(body.id, 1, body.text, found)
             row.author = body.author
             if imported is not None:
-                row.import_sha256, row.imported = imported
+                row.import_sha256, row.imported = imported[0], dict(imported[1])
             try:
                 repository.add(session, row)
             except StaleWorksheet:

@@ -4,6 +4,7 @@ CRANKWRIGHT_TEST_SEED chooses other requests; pytest prints the seed of a run th
 test_contract_at_length.py asks many more in the slow lane.
 """
 
+import re
 from pathlib import Path
 
 import httpx
@@ -15,6 +16,7 @@ from schemathesis.config import SchemathesisConfig
 from seeds import CHOSEN, seeded
 from serving import API, HANG, created, moody
 
+from app.api.gate.allow import METHODS
 from app.api.routes.film_pressure import TYPICAL
 from app.main import create_app
 from app.settings import Settings
@@ -95,11 +97,22 @@ ALLOWED = {
     "/api/v1/jobs/some": "GET, DELETE",
     "/api/v1/worksheets/some": "GET, PATCH, DELETE",
     "/api/v1/worksheets/check": "POST",
+    "/api/v1/worksheets/import": "POST",
     "/api/v1/templates/oil_film/versions/1/evaluate": "POST",
     "/healthz": "GET",
     "/": "GET",
     "/static/style.css": "GET, HEAD",
 }
+
+
+def test_allow_names_the_methods_of_each_path_alone(http):
+    paths = http.get("/openapi.json").json()["paths"]
+    assert len(paths) > 100
+    for path, item in paths.items():
+        response = http.request("TRACE", re.sub(r"{\w+}", "1", path))
+        described = {method.upper() for method in item} & set(METHODS)
+        assert response.status_code == 405, path
+        assert set(response.headers["allow"].split(", ")) == described, path
 
 
 @pytest.mark.parametrize(("path", "allowed"), ALLOWED.items())

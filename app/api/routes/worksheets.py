@@ -22,14 +22,15 @@ from app.schemas.worksheets import Sheet, SheetCheck, SheetList
 from app.storage.tables import WorksheetVersionRow
 from app.worksheets import repository, views
 from app.worksheets.checking import checked
+from app.worksheets.naming import RESERVED
 from app.worksheets.schemas import ReviewIn, SheetCheckIn, SheetIn, SheetPatch, WithdrawIn
 from app.worksheets.service import Worksheets
 
 
 class SheetId(StringConvertor):
-    """The id in a path that may end with a word of its own, such as `/worksheets/check`."""
+    """An id at the end of a path, where no word stands that has a path of its own: `/worksheets/check`."""
 
-    regex = "(?!(?:check|import)$)[^/]+"
+    regex = f"(?!(?:{'|'.join(sorted(RESERVED))})$)[^/]+"
 
 
 register_url_convertor("sheet", SheetId())

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.plain import JsonObject
 from app.worksheets.importing.legacy import read_legacy
 from app.worksheets.importing.outcome import Outcome, one_line
 from app.worksheets.importing.package import is_package
 from app.worksheets.importing.prime import read_prime
-from app.worksheets.importing.record import recorded
+from app.worksheets.importing.record import SheetRecord, recorded
 from app.worksheets.importing.regions import OriginalSheet
 from app.worksheets.importing.translation import translated
 from app.worksheets.importing.verification import verified
@@ -22,7 +21,7 @@ class Imported:
     """The text of the worksheet, and the record of the import."""
 
     text: str
-    record: JsonObject
+    record: SheetRecord
 
 
 def read_sheet(content: bytes) -> OriginalSheet:

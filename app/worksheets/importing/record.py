@@ -8,18 +8,59 @@ region: somebody has looked at it. Blanks do not count.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypedDict, cast
 
-from app.plain import JsonObject
 from app.storage.tables import WorksheetVersionRow as Row
 from app.worksheets.errors import Unresolved
-from app.worksheets.importing.outcome import UNRESOLVED, Outcome
+from app.worksheets.importing.outcome import UNRESOLVED, Outcome, State
 from app.worksheets.importing.regions import MATHEMATICAL, OriginalSheet
 
-STATES = ("verified", "differs", "unverified", "shown", "refused", "blocked")
+STATES: tuple[State, ...] = ("verified", "differs", "unverified", "shown", "refused", "blocked")
 
 
-def recorded(sheet: OriginalSheet, outcomes: Sequence[Outcome], text: str) -> JsonObject:
-    """The record as JSON."""
+class RegionRecord(TypedDict):
+    """One region; `app.schemas.worksheet_imports.ImportedRegion` says what each member is."""
+
+    region: str
+    kind: str
+    is_mathematical: bool
+    top: float
+    left: float
+    state: State
+    name: str
+    line: int | None
+    lines: list[str]
+    reason: str
+    remedy: str
+    blocked_by: str
+    mathcad: list[float]
+    worksheet: list[float | None]
+    unit: str | None
+    is_list: bool
+    notes: list[str]
+
+
+class SheetRecord(TypedDict):
+    """What an import says of a sheet."""
+
+    program: str
+    origin: int
+    regions: list[RegionRecord]
+
+
+class ImportRecord(SheetRecord):
+    """The record as a worksheet keeps it: with the name of the file."""
+
+    file: str
+
+
+def record_of(row: Row) -> ImportRecord | None:
+    """The record of a version; None if somebody typed it. Nothing but an import writes records."""
+    return cast("ImportRecord | None", row.imported)
+
+
+def recorded(sheet: OriginalSheet, outcomes: Sequence[Outcome], text: str) -> SheetRecord:
+    """The record of an import, fit for JSON."""
     lines = {_plain(line): number for number, line in reversed(list(enumerate(text.split("\n"), 1)))}
     owners = {o.name: o for o in outcomes if o.name and o.lines}
     return {
@@ -29,7 +70,7 @@ def recorded(sheet: OriginalSheet, outcomes: Sequence[Outcome], text: str) -> Js
     }
 
 
-def _region(outcome: Outcome, lines: dict[str, int], owners: dict[str, Outcome]) -> JsonObject:
+def _region(outcome: Outcome, lines: dict[str, int], owners: dict[str, Outcome]) -> RegionRecord:
     original, cached = outcome.original, outcome.cached
     own = outcome.lines or (owners[outcome.name].lines if outcome.name in owners else [])
     first = lines.get(_plain(own[-1].split("\n")[0])) if own else None
@@ -59,13 +100,13 @@ def _finite(value: float) -> float | None:
     return value if abs(value) < 1e308 else None
 
 
-def unresolved(record: JsonObject, text: str) -> list[JsonObject]:
+def unresolved(record: SheetRecord, text: str) -> list[RegionRecord]:
     """The regions of a record that forbid a release of this text."""
     present = {_plain(line) for line in text.split("\n")}
     return [region for region in record["regions"] if _stands(region, present)]
 
 
-def _stands(region: JsonObject, present: set[str]) -> bool:
+def _stands(region: RegionRecord, present: set[str]) -> bool:
     if region["state"] not in UNRESOLVED:
         return False
     lines = [_plain(part) for line in region["lines"] for part in line.split("\n")]
@@ -80,19 +121,20 @@ def require_resolved(row: Row) -> None:
     Unresolved
         With each region that does.
     """
-    if row.imported is not None and (found := unresolved(row.imported, row.text)):
-        raise Unresolved([_told(region) for region in found])
+    record = record_of(row)
+    if record is not None and (open_regions := unresolved(record, row.text)):
+        raise Unresolved([_reason(region) for region in open_regions])
 
 
-def _told(region: JsonObject) -> str:
+def _reason(region: RegionRecord) -> str:
     what = "its result differs from Mathcad's" if region["state"] == "differs" else region["reason"]
     return f"region {region['region']} ({region['state']}: {what})"
 
 
-def counted(record: JsonObject) -> dict[str, int]:
+def counted(record: SheetRecord) -> dict[State, int]:
     """How many mathematical regions are in each state."""
-    found = [region["state"] for region in record["regions"] if region["is_mathematical"]]
-    return {state: found.count(state) for state in STATES}
+    states = [region["state"] for region in record["regions"] if region["is_mathematical"]]
+    return {state: states.count(state) for state in STATES}
 
 
 def _plain(line: str) -> str:

@@ -16,6 +16,7 @@ from app.worksheets import repository
 from app.worksheets.errors import IdTaken, WorksheetError
 from app.worksheets.importing.errors import SheetNotRead
 from app.worksheets.importing.job import imported
+from app.worksheets.importing.record import ImportRecord
 from app.worksheets.naming import require_free
 from app.worksheets.schemas import SheetIn
 from app.worksheets.service import Worksheets
@@ -59,7 +60,7 @@ class Imports:
                 "too_large" if content else "no_sheet", f"{what}: send one .mcdx or .xmcd file"
             )
         require_free(id, self.catalogues)
-        payload: JsonObject = {"file": self.store.put(content), "id": id, "name": file, "client": once.client}
+        payload = {"file": self.store.put(content), "id": id, "name": file, "client": once.client}
 
         def unit(session: Session) -> str:
             if before := once.find(session):
@@ -91,7 +92,8 @@ class Imports:
             context.progress(0.9, "saving the draft")
             once = Once(f"import {job.id}", IMPORT, sha, payload["client"])
             body = SheetIn(id=id, text=made.text)
-            self.worksheets.create(body, once, (sha, {**made.record, "file": name}))
+            record: ImportRecord = {**made.record, "file": name}
+            self.worksheets.create(body, once, (sha, record))
         except (SheetNotRead, WorksheetError, TemplateError, ArtifactMissing, ArtifactDamaged) as error:
             raise JobFailed(error) from error
         link = f"/api/v1/worksheets/{id}"

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from app.plain import JsonObject
 from app.schemas.worksheet_imports import SheetImport, SheetOrigin
 from app.storage.errors import NotFound
 from app.storage.tables import WorksheetVersionRow as Row
-from app.worksheets.importing.record import counted, unresolved
+from app.worksheets.importing.record import ImportRecord, counted, record_of, unresolved
 
 
 def origin(row: Row) -> SheetOrigin | None:
     """What a version was imported from, in short; None if somebody typed it."""
-    return SheetOrigin.model_validate(_short(row)) if row.imported is not None else None
+    record = record_of(row)
+    return SheetOrigin.model_validate(_short(row, record)) if record is not None else None
 
 
 def imported(row: Row) -> SheetImport:
@@ -22,17 +22,15 @@ def imported(row: Row) -> SheetImport:
     NotFound
         If it was not imported.
     """
-    record = row.imported
+    record = record_of(row)
     if record is None:
         raise NotFound(f"worksheet {row.id} was typed, not imported")
     open_ = {id(region) for region in unresolved(record, row.text)}
     items = [{**region, "is_unresolved": id(region) in open_} for region in record["regions"]]
-    return SheetImport.model_validate({**_short(row), "origin": record["origin"], "items": items})
+    return SheetImport.model_validate({**_short(row, record), "origin": record["origin"], "items": items})
 
 
-def _short(row: Row) -> JsonObject:
-    record = row.imported
-    assert record is not None
+def _short(row: Row, record: ImportRecord) -> dict[str, object]:
     return {
         "program": record["program"],
         "file": record["file"],

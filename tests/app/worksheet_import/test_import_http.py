@@ -4,11 +4,13 @@ import asyncio
 
 import pytest
 from mathcad_files import apply, call, define, math, name, packed, parts_of, prime, real, scale, shown, united
+from serving import faults
 
 from app.client import Problem
 from app.retention.rows import referenced_files
 from app.worksheets.importing import service
 from app.worksheets.importing.record import unresolved
+from app.worksheets.naming import RESERVED
 
 BINARY = {"Content-Type": "application/octet-stream"}
 SOUND = prime(
@@ -109,6 +111,8 @@ def test_what_can_be_refused_at_once_is(http):
     assert post(http, "import_taken", SOUND).status_code == 409
     assert post(http, "oil_film", SOUND).status_code == 409
     assert post(http, "No Id", SOUND).status_code == 422
+    for id in sorted(RESERVED):
+        assert faults(post(http, id, SOUND)) == {"id": "name"}
     assert post(http, "import_empty", b"").status_code == 422
     other = http.post("/api/v1/worksheets/import?id=import_other", json={"a": 1})
     assert other.status_code == 415
