@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import reduce
+from functools import cached_property, reduce
 from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
@@ -16,15 +16,17 @@ from scipy.optimize import elementwise
 from templates.core.language.body import Body
 from templates.core.language.ledger import Mask
 from templates.core.paper.expressions import latex
-from templates.core.sheets.body import names_in, unequal_lengths
+from templates.core.sheets.body import names_in, operations_seconds, unequal_lengths
 from templates.core.sheets.expressions import Reader
 from templates.core.sheets.grammar import Parsed
 from templates.core.units.closures import closure
 from templates.core.units.operations import Apply
+from templates.core.units.walking import nodes_of
 
 NEAR = (
     1e-6  # how far both sides differ at a root, beside their difference at the bounds; at a pole it is more
 )
+STEPS, PER_STEP = 40, 2e-4  # that a search takes, and of each, beside the operations of the equation [s]
 
 
 class SolveBody(Body):
@@ -72,6 +74,14 @@ class SolveBody(Body):
         if missing.any() and (ledger := getattr(template, "ledger", None)):
             ledger.masks.append(Mask((self.name,), missing, self.reason, explains=True))
         return roots[()]
+
+    def seconds(self, points: int) -> float:
+        """How long the search takes at so many points, as an order of magnitude [s]."""
+        return STEPS * (PER_STEP + operations_seconds(self._operations, points))
+
+    @cached_property
+    def _operations(self) -> int:
+        return sum(1 for _ in nodes_of(self.equation))
 
     def _roots(self, values: Mapping[str, Any], low: NDArray[Any], high: NDArray[Any]) -> NDArray[Any]:
         flat = {name: self._flat(name, value, low.shape) for name, value in values.items()}
