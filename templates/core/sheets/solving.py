@@ -27,6 +27,7 @@ NEAR = (
     1e-6  # how far both sides differ at a root, beside their difference at the bounds; at a pole it is more
 )
 STEPS, PER_STEP = 40, 2e-4  # that a search takes, and of each, beside the operations of the equation [s]
+SEVERAL = "the equation holds at both bounds, so it does not say which value is meant"
 
 
 class SolveBody(Body):
@@ -67,12 +68,14 @@ class SolveBody(Body):
         firsts = [np.asarray(values[name])[..., 0] for name in self._lists & values.keys()]
         shape = np.broadcast_shapes(low.shape, high.shape, *(np.shape(v) for v in (*singles, *firsts)))
         try:
-            roots = self._roots(values, np.broadcast_to(low, shape), np.broadcast_to(high, shape))
+            roots, several = self._roots(values, np.broadcast_to(low, shape), np.broadcast_to(high, shape))
         except ValueError:
             raise unequal_lengths(self, template) from None
         missing = np.isnan(roots)
         if missing.any() and (ledger := getattr(template, "ledger", None)):
-            ledger.masks.append(Mask((self.name,), missing, self.reason, explains=True))
+            reasons = ((missing & ~several, self.reason), (several, SEVERAL))
+            masks = (Mask((self.name,), where, why, explains=True) for where, why in reasons if where.any())
+            ledger.masks.extend(masks)
         return roots[()]
 
     def seconds(self, points: int) -> float:
@@ -83,7 +86,10 @@ class SolveBody(Body):
     def _operations(self) -> int:
         return sum(1 for _ in nodes_of(self.equation))
 
-    def _roots(self, values: Mapping[str, Any], low: NDArray[Any], high: NDArray[Any]) -> NDArray[Any]:
+    def _roots(
+        self, values: Mapping[str, Any], low: NDArray[Any], high: NDArray[Any]
+    ) -> tuple[NDArray[Any], NDArray[Any]]:
+        """The roots, NaN where there is none, and the points at which both bounds are roots."""
         flat = {name: self._flat(name, value, low.shape) for name, value in values.items()}
         places = np.arange(low.size)
         ends = np.minimum(low, high).ravel(), np.maximum(low, high).ravel()
@@ -97,7 +103,9 @@ class SolveBody(Body):
             found = elementwise.find_root(residual, ends, args=(places,))
             scale = reduce(np.maximum, (np.abs(residual(end, places)) for end in ends))
             near = np.abs(residual(found.x, places)) <= NEAR * scale
-        return np.where(found.success & near, found.x, np.nan).reshape(low.shape)
+        several = (scale == 0) & (ends[0] < ends[1])
+        roots = np.where(found.success & near & ~several, found.x, np.nan)
+        return roots.reshape(low.shape), several.reshape(low.shape)
 
     def _flat(self, name: str, value: Any, shape: tuple[int, ...]) -> Callable[[NDArray[Any]], Any]:
         """A value at some of the points, which are counted in one row."""
