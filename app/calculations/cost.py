@@ -10,12 +10,14 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from app.calculations.size import arrays, spanned
 from app.plain import Raw
 from templates.core.errors import InvalidInputs
+from templates.core.language.body import Body
 from templates.core.language.climbing import reachable
 from templates.core.language.confirming import POLISHES
 from templates.core.language.levels import SINGLE, accuracy
@@ -66,6 +68,7 @@ def array_seconds(
     """
     wanted = _wanted(cls, outputs)
     plain = calls * (PER_CALL + PER_OUTPUT * len(wanted)) + PER_POINT * points * places * len(wanted)
+    plain += _bodies_seconds(cls, points * places) if calls else 0.0
     if level is None or not any("level" in cls.ancestors(cls.formulas[n].attribute) for n in wanted):
         return plain
     measured = accuracy(cls)
@@ -102,11 +105,28 @@ def is_quick(cls: type[Template]) -> bool:
     """Whether a few points take, at every level, no longer than a thread needs to begin."""
     if cls not in _quick:
         levels = cls.levels or (SINGLE,)
-        _quick[cls] = not cls.most_points and all(_level_seconds(cls, n, 1) <= QUICK for n in levels)
+        seconds = [_level_seconds(cls, level, 1) for level in levels] + [_bodies_seconds(cls, 1)]
+        _quick[cls] = not cls.most_points and max(seconds) <= QUICK
     return _quick[cls]
 
 
-_quick: dict[type[Template], bool] = {}
+_quick: WeakKeyDictionary[type[Template], bool] = WeakKeyDictionary()
+
+
+def _bodies_seconds(cls: type[Template], points: int) -> float:
+    """How long the bodies of a worksheet take together at so many points [s]; nothing, if it is a file."""
+    if cls.sheet is None:
+        return 0.0
+    if cls not in _costs:
+        bodies = [formula.function for formula in cls.formulas.values()]
+        one, two = (sum(body.seconds(n) for body in bodies if isinstance(body, Body)) for n in (1, 2))
+        _costs[cls] = 2 * one - two, two - one
+    single, each = _costs[cls]
+    return single + points * each
+
+
+_costs: WeakKeyDictionary[type[Template], tuple[float, float]] = WeakKeyDictionary()
+"""Of worksheets: what all bodies take, and beside that at each point [s]."""
 
 
 def _points(cls: type[Template], shapes: Mapping[str, tuple[int, ...]]) -> Iterable[tuple[int, ...]]:
@@ -177,6 +197,7 @@ def _evaluating(
     """How long one evaluation of so many points takes at these levels together [s]."""
     wanted = _wanted(cls, outputs)
     plain = PER_CALL + PER_OUTPUT * len(wanted) + PER_VALUE * points * len(wanted)
+    plain += _bodies_seconds(cls, points)
     fine = (n for n in wanted if not cls.levels or "level" in cls.ancestors(cls.formulas[n].attribute))
     if next(fine, None) is None:
         return plain

@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Sequence
 
-from app.calculations.sources import SheetSource, loaded
+from app.calculations.sources import SheetSource, class_of
 from app.catalogue.catalogues import Catalogues
 from app.catalogue.sheets import Key, ReleasedSheet, Sheets
 from app.storage.database import Database
@@ -87,7 +87,7 @@ class Published:
         try:
             with self.database.read() as session:
                 row = repository.version(session, id, version)
-            return loaded(SheetSource(id, version, row.text, None))
+            return class_of(SheetSource(id, version, row.text, None))  # `loaded` keeps a thousand texts
         except NotFound as error:
             raise UnreleasedTemplate(id, str(error)) from None
         except TemplateError as error:

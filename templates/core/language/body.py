@@ -27,6 +27,10 @@ class Body(ABC):
     def __call__(self, template: Any) -> Any:
         """The SI value for the values of a template."""
 
+    def seconds(self, points: int) -> float:
+        """How long it takes at so many points, as an order of magnitude [s]."""
+        return 0.0
+
     @abstractmethod
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
         """How it is written, with symbols or numbers in the place of attributes."""

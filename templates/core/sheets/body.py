@@ -25,6 +25,14 @@ _SIGNS = {
 _JOINED = {"and": np.logical_and, "or": np.logical_or}
 
 
+PER_OPERATION, PER_PLACE = 1e-6, 5e-9  # of an operation, and beside it at each point [s]
+
+
+def operations_seconds(operations: int, points: int) -> float:
+    """How long operations take at so many points, as an order of magnitude [s]."""
+    return operations * (PER_OPERATION + PER_PLACE * points)
+
+
 def unequal_lengths(body: Body, template: Any) -> InvalidInputs:
     """The refusal where lists of different lengths meet: it names the result, or the inputs of a rule."""
     made = getattr(template, "declarations", {}).get(body.name)
@@ -62,6 +70,14 @@ class TreeBody(Body):
         if self._explained and np.isnan(value).any() and hasattr(template, "ledger"):
             explain(template, self.name, self._explained)
         return value
+
+    def seconds(self, points: int) -> float:
+        """How long its operations take at so many points, as an order of magnitude [s]."""
+        return operations_seconds(self._operations, points)
+
+    @cached_property
+    def _operations(self) -> int:
+        return sum(1 for _ in nodes_of(self.node))
 
     def latex(self, symbols: Mapping[str, str], times: str) -> str:
         """How it is written, with symbols or numbers in the place of attributes."""

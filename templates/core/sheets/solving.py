@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import reduce
+from functools import cached_property, reduce
 from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
@@ -16,15 +16,18 @@ from scipy.optimize import elementwise
 from templates.core.language.body import Body
 from templates.core.language.ledger import Mask
 from templates.core.paper.expressions import latex
-from templates.core.sheets.body import names_in, unequal_lengths
+from templates.core.sheets.body import names_in, operations_seconds, unequal_lengths
 from templates.core.sheets.expressions import Reader
 from templates.core.sheets.grammar import Parsed
 from templates.core.units.closures import closure
 from templates.core.units.operations import Apply
+from templates.core.units.walking import nodes_of
 
 NEAR = (
     1e-6  # how far both sides differ at a root, beside their difference at the bounds; at a pole it is more
 )
+STEPS, PER_STEP = 40, 2e-4  # that a search takes, and of each, beside the operations of the equation [s]
+SEVERAL = "the equation holds at both bounds, so it does not say which value is meant"
 
 
 class SolveBody(Body):
@@ -65,15 +68,28 @@ class SolveBody(Body):
         firsts = [np.asarray(values[name])[..., 0] for name in self._lists & values.keys()]
         shape = np.broadcast_shapes(low.shape, high.shape, *(np.shape(v) for v in (*singles, *firsts)))
         try:
-            roots = self._roots(values, np.broadcast_to(low, shape), np.broadcast_to(high, shape))
+            roots, several = self._roots(values, np.broadcast_to(low, shape), np.broadcast_to(high, shape))
         except ValueError:
             raise unequal_lengths(self, template) from None
         missing = np.isnan(roots)
         if missing.any() and (ledger := getattr(template, "ledger", None)):
-            ledger.masks.append(Mask((self.name,), missing, self.reason, explains=True))
+            reasons = ((missing & ~several, self.reason), (several, SEVERAL))
+            masks = (Mask((self.name,), where, why, explains=True) for where, why in reasons if where.any())
+            ledger.masks.extend(masks)
         return roots[()]
 
-    def _roots(self, values: Mapping[str, Any], low: NDArray[Any], high: NDArray[Any]) -> NDArray[Any]:
+    def seconds(self, points: int) -> float:
+        """How long the search takes at so many points, as an order of magnitude [s]."""
+        return STEPS * (PER_STEP + operations_seconds(self._operations, points))
+
+    @cached_property
+    def _operations(self) -> int:
+        return sum(1 for _ in nodes_of(self.equation))
+
+    def _roots(
+        self, values: Mapping[str, Any], low: NDArray[Any], high: NDArray[Any]
+    ) -> tuple[NDArray[Any], NDArray[Any]]:
+        """The roots, NaN where there is none, and the points at which both bounds are roots."""
         flat = {name: self._flat(name, value, low.shape) for name, value in values.items()}
         places = np.arange(low.size)
         ends = np.minimum(low, high).ravel(), np.maximum(low, high).ravel()
@@ -87,7 +103,9 @@ class SolveBody(Body):
             found = elementwise.find_root(residual, ends, args=(places,))
             scale = reduce(np.maximum, (np.abs(residual(end, places)) for end in ends))
             near = np.abs(residual(found.x, places)) <= NEAR * scale
-        return np.where(found.success & near, found.x, np.nan).reshape(low.shape)
+        several = (scale == 0) & (ends[0] < ends[1])
+        roots = np.where(found.success & near & ~several, found.x, np.nan)
+        return roots.reshape(low.shape), several.reshape(low.shape)
 
     def _flat(self, name: str, value: Any, shape: tuple[int, ...]) -> Callable[[NDArray[Any]], Any]:
         """A value at some of the points, which are counted in one row."""

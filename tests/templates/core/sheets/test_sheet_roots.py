@@ -1,0 +1,33 @@
+"""An equation that holds at both of its bounds says no value: any answer would be an arbitrary one."""
+
+import numpy as np
+import pytest
+
+from templates.core.language.evaluate import evaluate
+from templates.core.sheets import read
+
+SHEET = 'given a [1] "factor" (example 1)\nsolve x [1] from 0 to 10 so that {} == 0 "root"'
+
+
+def roots(equation, factor):
+    cls = read(SHEET.format(equation)).template("duty", 1)
+    return evaluate(cls, {"factor": factor}).outputs["root"]
+
+
+@pytest.mark.parametrize("equation", ["a * x * (x - 10)", "a * x * 0"])
+def test_an_equation_that_holds_at_both_bounds_has_no_value(equation):
+    found = roots(equation, 1)
+    assert found.value is None
+    assert "holds at both bounds" in found.reason
+
+
+def test_other_points_keep_their_root():
+    found = roots("(x - a) * x", [5.0, 10.0])
+    assert found.value[0] == 0
+    assert np.isnan(found.value[1])
+    assert roots("(x - a) / (1 + x)", [5.0, 10.0]).value == pytest.approx([5, 10])
+
+
+def test_a_root_at_one_bound_is_one():
+    assert roots("x - 10 * a", 1).value == 10
+    assert roots("sin(x) - 0 * a", 1).value == 0
