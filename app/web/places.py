@@ -31,6 +31,15 @@ def varied(design: Design, network: DesignNetwork) -> list[PlaceOption]:
     ]
 
 
+def related(design: Design) -> list[str]:
+    """Parameters and inputs of steps that a relation sets, each with its relation."""
+    return [
+        f"{name} {text}"
+        for name, text in _typed(design)
+        if text.startswith("=") and name.partition(".")[0] not in design.models
+    ]
+
+
 def outputs(network: DesignNetwork) -> list[NetworkName]:
     """What steps compute."""
     return [name for name in network.names if name.role == "output"]

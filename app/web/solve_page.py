@@ -18,7 +18,7 @@ from app.schemas.designs import Design
 from app.schemas.networks import DesignNetwork
 from app.schemas.solve import DesignRoot, DesignSolution
 from app.web.api import Api, Refused, read
-from app.web.places import PlaceOption, outputs, suggested, varied
+from app.web.places import PlaceOption, outputs, related, suggested, varied
 from app.web.rendering import go, show, units_of
 
 FIELDS = ("unknown", "low", "high", "output", "value", "tolerance", "other", "other_value")
@@ -87,6 +87,7 @@ async def solve_page(request: Request, api: Api, id: str) -> Response:
         "solve.html",
         design=design,
         places=places,
+        related=related(design),
         outputs=outputs(network),
         asked=asked,
         beside=asked.saved_beside(),

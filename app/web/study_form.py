@@ -12,7 +12,7 @@ from app.presentation.typed import value_of
 from app.schemas.designs import Design, RevisionWorksheet
 from app.schemas.networks import DesignNetwork, NetworkName
 from app.web.api import Api, Refused
-from app.web.places import outputs, suggested, varied
+from app.web.places import outputs, related, suggested, varied
 from app.web.rendering import show
 
 LINES = 4
@@ -125,6 +125,7 @@ async def study_form(request: Request, api: Api, id: str, typed: Typed, status: 
         status=status,
         design=design,
         places=places,
+        related=related(design),
         bounds={place.name: suggested(place) for place in places},
         outputs=named,
         judged=_judged(revision, named),

@@ -6,7 +6,7 @@ It runs in a calculation process, as everything that reads a user's text does.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 
 from app.calculations import rendering
 from app.presentation.prose import html_of
@@ -16,6 +16,7 @@ from app.worksheets.examining import LONGEST_TITLE, title_of
 from templates.core.errors import Fault, InvalidInputs, TemplateError
 from templates.core.judging.judgement import Judgement, sentence
 from templates.core.language.evaluate import Evaluation, evaluate
+from templates.core.language.ledger import Notice
 from templates.core.language.spec import Requirement
 from templates.core.language.template import Template
 from templates.core.paper.mathml import mathml
@@ -113,9 +114,10 @@ class _Result:
 
 @dataclass(frozen=True)
 class _Example:
-    """The example as far as it was calculated: values by name, verdicts of checks, and what refuses it."""
+    """The example as far as it was calculated: values, warnings, verdicts of checks, and what refuses it."""
 
     values: Mapping[str, _Result] = field(default_factory=dict)
+    warnings: tuple[Notice, ...] = ()
     judgements: Mapping[str, Judgement] = field(default_factory=dict)
     faults: tuple[Fault, ...] = ()
 
@@ -128,7 +130,7 @@ def _example(cls: type[Template]) -> _Example:
     except TemplateError as refusal:
         return _Example(faults=(Fault("", "refused", str(refusal)),))
     judged = {judgement.name: judgement for judgement in evaluation.criteria}
-    return _Example(_values(evaluation), judged)
+    return _Example(_values(evaluation), tuple(evaluation.warnings), judged)
 
 
 def _values(evaluation: Evaluation) -> dict[str, _Result]:
@@ -166,8 +168,10 @@ def _result(statement: Statement, cls: type[Template], example: _Example) -> _Re
 
 
 def _of_value(name: str, example: _Example) -> _Result:
-    missing = _Result(message=next((fault.detail for fault in example.faults if name in fault.names), None))
-    return example.values.get(name, missing)
+    refused = _Result(message=next((fault.detail for fault in example.faults if name in fault.names), None))
+    result = example.values.get(name, refused)
+    warned = next((warning.detail for warning in example.warnings if warning.name == name), None)
+    return replace(result, message=result.message or warned)
 
 
 def _of_rule(rule: Requirement | None, example: _Example) -> _Result:

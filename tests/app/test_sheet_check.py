@@ -47,6 +47,16 @@ def test_the_example_may_miss_a_check_and_a_rule(http):
     assert lines["formula"]["value"] is None
 
 
+def test_a_value_outside_its_published_range_is_warned_of(http):
+    formula = 'p [MPa] = F / (D * B) "projected pressure"'
+    assert formula in BUSH
+    for greatest, words in ((20, "≤ 20 MPa"), (40, None)):
+        check = checked(http, BUSH.replace(formula, f"{formula} (published 1 to {greatest})"))
+        line = next(line for line in check["lines"] if line["name"] == "p")
+        assert line["value"] == pytest.approx(25e3 / (48e-3 * 24e-3) / 1e6)
+        assert words in line["message"] if words else line["message"] is None
+
+
 def test_the_template_is_described(http):
     check = checked(http, BUSH, id="bush_duty")
     assert check["template"]["id"] == "bush_duty"

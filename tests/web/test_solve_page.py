@@ -100,3 +100,9 @@ def test_a_solution_is_saved_with_the_other_value(http):
     step = http.get(f"{API}/designs/{design}/revisions/2").json()["steps"]["idle"]
     assert step["inputs"]["bearing_width"]["value"] == 40
     assert abs(step["outputs"]["power_loss"]["value"] / 50 - 1) < 1e-12
+
+
+def test_values_that_a_relation_sets_are_named_with_it(http):
+    design = created(http, PETROFF)["id"]
+    for path in (f"/designs/{design}/solve", f"/designs/{design}/studies/new"):
+        assert "<code>idle.speed = speed</code>" in http.get(path).text, path

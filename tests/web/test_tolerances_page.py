@@ -55,6 +55,8 @@ def test_the_button_shows_yields_limits_and_pictures(watched, toleranced, http):
     assert result.locator("svg").count() >= 2
     expect(result.locator("svg").first).to_be_visible()
     assert http.get(f"{API}{toleranced}").json()["revision"] == 1
+    page.set_viewport_size({"width": 390, "height": 844})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
     assert watched.faults() == []
 
 

@@ -119,6 +119,6 @@ export function valueOf({ value, unit: symbol, text }) {
 
 function faultOf(fault) {
   const made = element("p", "field-error", element("b", "", `Line ${fault.line}, column ${fault.column}: `), isolated(fault.message));
-  if (fault.remedy) made.append(" ", element("span", "remedy", isolated(fault.remedy)));
+  if (fault.remedy) made.append(": ", element("span", "remedy", isolated(fault.remedy)));
   return made;
 }
