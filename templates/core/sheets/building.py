@@ -28,13 +28,19 @@ from templates.core.sheets.expecting import test_of
 from templates.core.sheets.expressions import Reader
 from templates.core.sheets.faults import FollowsFromFault, Refusal
 from templates.core.sheets.functions import function_of
-from templates.core.sheets.grammar import Parsed, name_of, parsed
+from templates.core.sheets.grammar import Parsed, declared_by, name_of, parsed
+from templates.core.sheets.linear import MOST_UNKNOWNS, LinearBody, system_of
 from templates.core.sheets.lines import Chunk
 from templates.core.sheets.names import Names, sort_of
 from templates.core.sheets.solving import SolveBody, equation_of
 from templates.core.units.sorts import Sort
 
-_ORDER = (("function", "curve"), ("choice", "given", "formula", "solve"), ("require", "check"), ("test",))
+_ORDER = (
+    ("function", "curve"),
+    ("choice", "given", "formula", "solve", "system"),
+    ("require", "check"),
+    ("test",),
+)
 """Functions are known to all others, rules know all quantities, tests know everything."""
 
 
@@ -69,7 +75,10 @@ class Builder:
         else:
             return
         chunk = statement.chunk if isinstance(statement, Parsed) else statement
-        self.names.broken.add(name_of(chunk))
+        if isinstance(statement, Parsed):
+            self.names.broken.update(declared_by(statement))
+        else:
+            self.names.broken.add(name_of(chunk))
         self.refused.add(chunk.line)
 
     def _parse(self, chunk: Chunk) -> None:
@@ -80,21 +89,24 @@ class Builder:
         match statement.kind:
             case "given" | "formula":
                 name, unit_text, axis = statement.parts[:3]
-                sort = self._sort(statement, unit_text, str(axis or ""))
+                self._name(statement, name, self._sort(statement, name, unit_text, str(axis or "")))
             case "solve":
                 name, unit_text = statement.parts[:2]
-                sort = self._sort(statement, unit_text, "")
+                self._name(statement, name, self._sort(statement, name, unit_text, ""))
+            case "system":
+                for name, unit_text in (unknown.children[:2] for unknown in statement.parts[:-1]):
+                    self._name(statement, name, self._sort(statement, name, unit_text, ""))
             case "choice":
                 name, options = statement.parts[0], statement.parts[3].children
-                sort = Sort(words=tuple(map(str, options)))
-            case _:
-                return
+                self._name(statement, name, Sort(words=tuple(map(str, options))))
+
+    def _name(self, statement: Parsed, name: lark.Token, sort: Sort) -> None:
         self._check_new(statement, name, str(name))
         self.names.sorts[str(name)] = sort
 
-    def _sort(self, statement: Parsed, unit_text: lark.Token, axis: str) -> Sort:
+    def _sort(self, statement: Parsed, name: lark.Token, unit_text: lark.Token, axis: str) -> Sort:
         text = self.reader.declared_unit(statement, unit_text)
-        self.names.units.setdefault(str(statement.parts[0]), text)
+        self.names.units.setdefault(str(name), text)
         wanted = sort_of(text)
         return Sort(wanted.kind, wanted.weight, axis=axis)
 
@@ -188,6 +200,27 @@ class Builder:
         body = SolveBody(str(name), equation, bounds, statement.chunk.line, meant.words, lists)
         self._make(statement, str(name), Formula(body, meant), equation)
 
+    def _system(self, statement: Parsed) -> None:
+        *parts, tree = statement.parts
+        unknowns = [str(unknown.children[0]) for unknown in parts]
+        if len(unknowns) > MOST_UNKNOWNS:
+            message = f"a system has at most {MOST_UNKNOWNS} unknowns"
+            raise statement.refuse("too_large", message, parts[MOST_UNKNOWNS], "solve for some in formulas")
+        meanings: dict[str, Meaning] = {}
+        for unknown in parts:
+            name, unit_text, words, clauses = unknown.children
+            meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
+            if meant.name in meanings:
+                message = f"two unknowns have the name {meant.name}"
+                raise statement.refuse("name", message, words, "say it in other words")
+            meanings[meant.name] = meant
+        system = system_of(statement, self.reader, tree, unknowns)
+        for name, meant in zip(unknowns, meanings.values(), strict=True):
+            body = LinearBody(name, system, statement.chunk.line)
+            self._make(statement, name, Formula(body, meant), system.tree)
+        first = next(iter(meanings.values()))  # after which the line is called
+        self.built.note(statement, unknowns[0], first.unit, first.words, system.tree)
+
     def _require(self, statement: Parsed) -> None:
         tree, words, clauses = statement.parts
         node, of_items = self._condition(statement, tree)
@@ -230,8 +263,8 @@ class Builder:
 
     def _meant(self, statement: Parsed, unit_text: str, words: lark.Token, clauses: Any) -> Meaning:
         """The meaning of a declaration whose API name is no other's; its example is noted."""
-        if str(statement.parts[0]) not in self.names.sorts:
-            raise FollowsFromFault(str(statement.parts[0]))
+        if missing := [name for name in declared_by(statement) if name not in self.names.sorts]:
+            raise FollowsFromFault(missing[0])
         meant, said = meaning_of(statement, unit_text, words, clauses, self.reader)
         other = self.built.lines.setdefault(meant.name, statement.chunk.line)
         if other != statement.chunk.line:

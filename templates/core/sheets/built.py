@@ -31,6 +31,8 @@ class Built:
         By API name, as typed.
     lines
         Of API names.
+    places
+        The line of each name; one that solves for several unknowns has several.
     called, said, trees
         By line: the name that a statement declares, its words, and the tree that is written on paper.
     """
@@ -44,6 +46,7 @@ class Built:
     named: dict[str, Named] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
     called: dict[int, str] = field(default_factory=dict)
+    places: dict[str, int] = field(default_factory=dict)
     said: dict[int, str] = field(default_factory=dict)
     trees: dict[int, Any] = field(default_factory=dict)
 
@@ -51,6 +54,7 @@ class Built:
         """Note what a statement declares, for the editor."""
         line = statement.chunk.line
         self.called[line], self.said[line] = name, words
+        self.places[name] = line
         if node is not None:
             self.trees[line] = node
         if statement.kind not in ("require", "check", "test"):

@@ -28,7 +28,6 @@ def set_order(built: Built) -> Iterator[SheetFault]:
     uses = {name: [used for used in body.uses if used in bodies] for name, body in bodies.items()}
     nested: dict[str, int] = {}
     first: dict[str, dict[str, None]] = {}  # beneath each name, itself included where it is asked first
-    lines = {name: line for line, name in built.called.items()}
     for name in TopologicalSorter(uses).static_order():
         depth = _CALLS + _height(bodies[name]) + max((nested[used] for used in uses[name]), default=0)
         before = {one: None for used in uses[name] for one in first[used]}
@@ -36,7 +35,9 @@ def set_order(built: Built) -> Iterator[SheetFault]:
         is_default = isinstance(built.made[name], Derived)
         if is_default and depth > 2 * MOST_NESTED:
             message = f"the default of {name} follows from too many others in a row"
-            yield SheetFault(lines[name], 1, "too_large", message, remedy="make formulas of some defaults")
+            yield SheetFault(
+                built.places[name], 1, "too_large", message, remedy="make formulas of some defaults"
+            )
         is_first = depth > MOST_NESTED and not is_default
         nested[name] = 0 if is_first else depth
         first[name] = {} if is_default else before | ({name: None} if is_first else {})

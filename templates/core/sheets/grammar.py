@@ -101,6 +101,13 @@ def name_of(chunk: Chunk) -> str:
     return match[1] if match else ""
 
 
+def declared_by(statement: Parsed) -> list[str]:
+    """The names that a statement declares, if it does."""
+    if statement.kind == "system":
+        return [str(unknown.children[0]) for unknown in statement.parts[:-1]]
+    return [str(statement.parts[0]).rstrip("(")] if statement.kind not in ("require", "check", "test") else []
+
+
 def _parts(tree: lark.Tree[Any]) -> int:
     return sum(1 for _ in tree.iter_subtrees())
 

@@ -16,6 +16,7 @@ _SIGNS = (  # what stands before, what stands there, and what would be right
 _MISSING = {  # what the parser expects, and how it is written
     "UNIT": "the unit is missing here: write it in brackets, as in [kN], or [1] for a pure number",
     "KEY": 'clauses are > 0, <= 2 m, published 1 to 2, example 3 mm, source "…", remedy "…", also "…"',
+    "FROM": 'write bounds, as in from 1 mm to 2 m; of several unknowns each its words, as in "width"',
     "TEXT": 'words between quotation marks are missing here, as in "bearing diameter"',
     "ELSE": "every if has its else",
     "THEN": "behind the condition of an if stands then",

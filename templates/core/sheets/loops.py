@@ -13,7 +13,6 @@ MOST_LOOPS = 10
 
 def faults_of_loops(built: Built) -> Iterator[SheetFault]:
     """A fault for every loop, at the first line of it."""
-    lines = {name: line for line, name in built.called.items()}
     uses = {name: set(getattr(made, "uses", ())) & built.made.keys() for name, made in built.made.items()}
     for _ in range(MOST_LOOPS):
         try:
@@ -22,11 +21,11 @@ def faults_of_loops(built: Built) -> Iterator[SheetFault]:
         except CycleError as error:
             loop = list(reversed(error.args[1]))
         uses[loop[0]] = uses[loop[0]] - {loop[1]}
-        names = sorted(set(loop), key=lambda name: lines[name])
+        names = sorted(set(loop), key=built.places.__getitem__)
         message = (
             f"{names[0]} follows from itself" if len(names) == 1
             else f"{', '.join(names)} follow from each other"
         )  # fmt: skip
         yield SheetFault(
-            lines[names[0]], 1, "loop", message, remedy="let one of them follow from something else"
+            built.places[names[0]], 1, "loop", message, remedy="let one of them follow from something else"
         )

@@ -9,7 +9,7 @@ from templates.core.paper.expressions import latex
 from templates.core.paper.mathml import named_symbol, symbols
 from templates.core.sheets.body import names_in
 from templates.core.sheets.built import Built
-from templates.core.sheets.grammar import Parsed
+from templates.core.sheets.grammar import Parsed, declared_by
 
 
 def latex_of(cls: type[Template], built: Built) -> dict[int, str]:
@@ -29,6 +29,10 @@ def _written(statement: Parsed, built: Built, letters: Mapping[str, str]) -> str
         return right
     if statement.kind == "solve":
         right = rf"\text{{root of }}\ {right}"
+    if statement.kind == "system":
+        right = rf"\text{{solution of }}\ {right}"
+        name = ", ".join(letters.get(one, one) for one in declared_by(statement))
+        return f"{name}={right}"
     return "=".join(filter(None, (_left(statement, name, letters), right)))
 
 

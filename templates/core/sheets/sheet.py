@@ -96,7 +96,8 @@ class Sheet:
             words = markdown_of(chunk)
             return Statement(chunk.kind, "", chunk.line, chunk.last_line, words)
         name, words = self.built.called.get(chunk.line, ""), self.built.said.get(chunk.line, "")
-        return Statement(parsed.kind, name, chunk.line, chunk.last_line, words, written.get(chunk.line, ""))
+        kind = "solve" if parsed.kind == "system" else parsed.kind
+        return Statement(kind, name, chunk.line, chunk.last_line, words, written.get(chunk.line, ""))
 
     def template(self, id: str, version: int) -> type[Template]:
         """The class of the worksheet under an id and version.
