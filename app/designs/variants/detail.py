@@ -5,8 +5,10 @@ A revision keeps the single outputs of its variants; the curves of 200 variants 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+
+from pydantic import TypeAdapter
 
 from app.calculations import rendering
 from app.calculations.criteria import rendered
@@ -20,8 +22,8 @@ from app.designs.service import analysed, built
 from app.designs.variants.names import BASE
 from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available, together
-from app.plain import Json, JsonObject
 from app.presentation.units import System
+from app.schemas.evaluations import Output
 from app.schemas.variants import VariantDetail
 from app.storage.errors import NotFound
 from templates.core.errors import Fault, InvalidInputs, unknown_names
@@ -43,6 +45,9 @@ class WantedVariant:
     outputs: tuple[str, ...] = ()
     revision: int | None = None
     system: System = "si"
+
+
+_WANTED = TypeAdapter(WantedVariant)
 
 
 class VariantDetails(LongAnswers):
@@ -68,9 +73,9 @@ class VariantDetails(LongAnswers):
         payload = {**vars(wanted), "revision": number, "outputs": list(wanted.outputs)}
         return None, self.queued(payload, None, client)
 
-    def calculated(self, payload: JsonObject, body: Json) -> VariantDetail:
+    def calculated(self, payload: Mapping[str, object], body: object) -> VariantDetail:
         """The whole answer to what a job holds."""
-        wanted = WantedVariant(**{**payload, "outputs": tuple(payload["outputs"])})
+        wanted = _WANTED.validate_python(payload)
         return _shown(wanted, *self._calculated(wanted))
 
     def _calculated(self, wanted: WantedVariant) -> tuple[int, Outcome]:
@@ -114,7 +119,7 @@ def _shown(wanted: WantedVariant, number: int, outcome: Outcome) -> VariantDetai
     ).in_units(wanted.system)
 
 
-def _outputs(calculation: Calculation) -> Iterator[tuple[str, JsonObject]]:
+def _outputs(calculation: Calculation) -> Iterator[tuple[str, Output]]:
     """Every output of every step by its name in relations; null with its reason where the step waits."""
     for block in calculation.graph.blocks.values():
         if block.is_model:
@@ -122,7 +127,7 @@ def _outputs(calculation: Calculation) -> Iterator[tuple[str, JsonObject]]:
         evaluation = calculation.evaluations.get(block.name)
         if evaluation is None:
             waiting = calculation.graph.computed(block) or tuple(block.cls.formulas)
-            yield from ((f"{block.name}.{name}", {"value": None, "reason": WAITS}) for name in waiting)
+            yield from ((f"{block.name}.{name}", Output(value=None, reason=WAITS)) for name in waiting)
         else:
             shown = rendering.outputs(evaluation.outputs)
-            yield from ((f"{block.name}.{name}", output) for name, output in shown.items())
+            yield from ((f"{block.name}.{name}", Output.model_validate(one)) for name, one in shown.items())
