@@ -24,6 +24,7 @@ from app.designs.recent import Recent
 from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.designs.solved import solved
+from app.designs.variants.detail import VariantDetails
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
 from app.observation import metrics
@@ -89,7 +90,8 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
     about = database, catalogues, store, jobs, calculations.steps
     previews, decisions, impacts = Previews(*about), Decisions(*about), Impacts(*about)
     solving, tolerances = Asking(SOLUTION, solved, *about), Asking(TOLERANCE, analysed, *about)
-    register_answers(jobs, previews, decisions, solving, tolerances, impacts)
+    variant_details = VariantDetails(*about)
+    register_answers(jobs, previews, decisions, solving, tolerances, impacts, variant_details)
     designs = Designs(database, jobs, catalogues, recent)
     solids = SolidMaking(database, builds, analysing, settings.workers)
     parts = Parts(database, store, catalogues, calculations.pool, jobs, calculations.steps, solids)
@@ -120,6 +122,7 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         imports=imports,
         solving=solving,
         tolerances=tolerances,
+        variant_details=variant_details,
         impacts=impacts,
         models=models,
         analyses=analyses,

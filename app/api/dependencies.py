@@ -23,6 +23,7 @@ from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.service import Designs
+from app.designs.variants.detail import VariantDetails
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
 from app.presentation.units import System
@@ -71,6 +72,7 @@ ThePreviews = Annotated[Previews, Depends(_part("previews"))]
 TheDecisions = Annotated[Decisions, Depends(_part("decisions"))]
 TheSolving = Annotated[Asking[DesignSolution], Depends(_part("solving"))]
 TheTolerances = Annotated[Asking[ToleranceAnalysis], Depends(_part("tolerances"))]
+TheVariantDetails = Annotated[VariantDetails, Depends(_part("variant_details"))]
 TheImpacts = Annotated[Impacts, Depends(_part("impacts"))]
 TheModels = Annotated[Models, Depends(_part("models"))]
 TheAnalyses = Annotated[Analyses, Depends(_part("analyses"))]

@@ -26,7 +26,7 @@ def operation_id(route: APIRoute) -> str:
 
     It is the name of the route's function; one that serves several paths says which.
     """
-    if not route.name.endswith(("_report", "_worksheet", "_file", "show_variants")):
+    if not route.name.endswith(("_report", "_worksheet", "_file", "show_variant", "show_variants")):
         return route.name
     ends = (("/revisions/{number}", "_of_revision"), ("/models/{name}", "_of_model"), (".{kind}", "_as"))
     return route.name + "".join(end for part, end in ends if part in route.path)

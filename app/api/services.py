@@ -16,6 +16,7 @@ from app.designs.decisions import Decisions
 from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.service import Designs
+from app.designs.variants.detail import VariantDetails
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
 from app.reports.paper import Press
@@ -55,6 +56,7 @@ class Services:
     imports: Imports
     solving: Asking[DesignSolution]
     tolerances: Asking[ToleranceAnalysis]
+    variant_details: VariantDetails
     impacts: Impacts
     models: Models
     analyses: Analyses

@@ -28,8 +28,8 @@ from templates.core.errors import TemplateError
 from templates.core.language.template import Template
 
 CALCULATION, PREVIEW, DECISION = "calculation", "preview", "decision"
-TOLERANCE, SOLUTION, IMPACT = "tolerance", "solution", "impact"
-ANSWERS = (CALCULATION, PREVIEW, DECISION, TOLERANCE, SOLUTION, IMPACT)
+TOLERANCE, SOLUTION, IMPACT, VARIANT = "tolerance", "solution", "impact", "variant"
+ANSWERS = (CALCULATION, PREVIEW, DECISION, TOLERANCE, SOLUTION, IMPACT, VARIANT)
 """Kinds of jobs whose result is an answer: what a request asked for, and nobody waited for."""
 GLANCE = 0.1  # how often a thread looks whether its job was cancelled [s]
 AGAIN = "again"  # in a payload: the job whose lost answer is calculated again

@@ -16,6 +16,7 @@ from app.client.exchange import (
     Request,
     answered,
     awaited,
+    calculated,
     followed,
     get,
     job_of,
@@ -23,8 +24,9 @@ from app.client.exchange import (
     written,
 )
 from app.client.files import File
+from app.presentation.units import System
 from app.schemas.designs import Design
-from app.schemas.variants import VariantsOut
+from app.schemas.variants import VariantDetail, VariantsOut
 
 Table = Mapping[str, Mapping[str, object]]
 """Values by variant and place: `{"main_1": {"clearance": "55 um"}}`."""
@@ -34,6 +36,21 @@ def variants(id: str, revision: int | None = None, *, outputs: Sequence[str] = (
     """The variants of a design's revision, the newest if none is named; with some of their outputs."""
     one = f"/revisions/{revision}" if revision else ""
     return answered(VariantsOut, get(f"/designs/{id}{one}/variants", tuple(("output", o) for o in outputs)))
+
+
+def variant(
+    id: str,
+    name: str,
+    revision: int | None = None,
+    *,
+    outputs: Sequence[str] = (),
+    units: System = "si",
+    on_progress: Progress | None = None,
+) -> Exchange[VariantDetail]:
+    """One variant with all its outputs, or some of them, curves included; `base` is the design itself."""
+    one = f"/revisions/{revision}" if revision else ""
+    query = (("units", units), *(("output", output) for output in outputs))
+    return calculated(VariantDetail, get(f"/designs/{id}{one}/variants/{name}", query), on_progress)
 
 
 def put_variants(

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, JsonValue, WithJsonSchema
 from pydantic.config import JsonDict
 
+from app.presentation.units import System
 from app.schemas.answers import Answer, Measured, Quantity, Shown, Value, Values, Version, Warning
 from app.schemas.criteria import Criterion, Verdict
 
@@ -95,6 +96,11 @@ class Jump(Quantity):
 
     before: Quantity = Field(description="the output just below")
     after: Quantity = Field(description="the output just above")
+
+    def in_units(self, system: System) -> Self:
+        """Where it is, and both sides of it, in a system of units."""
+        sides = {"before": self.before.in_units(system), "after": self.after.in_units(system)}
+        return super().in_units(system).model_copy(update=sides)
 
 
 class TracedCurve(Answer):

@@ -46,6 +46,20 @@ class VariantResult(Answer):
     problem: Problem | None = Field(None, description="why the variant failed; absent if it did not")
 
 
+class VariantDetail(Answer):
+    """One variant, calculated when it is asked for: all outputs of its steps, curves included."""
+
+    design: str
+    revision: int
+    name: str = Field(description="`base`: the design itself")
+    values: dict[str, Shown] = Field(
+        description="overridden places as quantities, relations resolved; a place absent here is the design's"
+    )
+    outputs: dict[str, Output] = Field(description="those asked for, else all, by their names in relations")
+    criteria: list[Criterion] = Field([], description="as in designs, worst first; absent if there are none")
+    verdict: Verdict | None = Field(None, description="over all criteria of the variant")
+
+
 class VariantColumn(Answer):
     """A column of the table: a place that at least one variant overrides."""
 

@@ -25,6 +25,7 @@ from app.web.rendering import go, show, units_of
 from app.web.sensitivities import sensitivity_lines
 from app.web.stored_page import is_unusable, stored_page
 from app.web.template_page import template_page
+from app.web.template_solve_page import template_solve_page
 from app.web.tolerances_page import tolerances_page
 
 router = APIRouter(include_in_schema=False)
@@ -115,6 +116,12 @@ async def newest_template(id: Id, api: TheApi) -> Response:
 async def template(id: Id, version: Number, request: Request, api: TheApi) -> Response:
     """A template, with a form to try it; what is typed stands in the address."""
     return await template_page(request, api, id, version)
+
+
+@router.get("/templates/{id}/{version}/solve")
+async def solve_template(id: Id, version: Number, request: Request, api: TheApi) -> Response:
+    """Which values of one input give a wanted output; question and inputs stand in the address."""
+    return await template_solve_page(request, api, id, version)
 
 
 @router.get("/models/{id}")

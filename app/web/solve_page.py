@@ -5,27 +5,23 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
-from urllib.parse import quote, urlencode
+from urllib.parse import urlencode
 
-import httpx
 from fastapi import Request, Response
 
 from app.presentation import numbers
 from app.presentation.typed import value_of
-from app.reports.charts import Chart, Series, svg
 from app.schemas.answers import Accepted
 from app.schemas.designs import Design
 from app.schemas.networks import DesignNetwork
 from app.schemas.solve import DesignRoot, DesignSolution
-from app.web.api import Api, Refused, read
+from app.web.api import Api, read
 from app.web.places import PlaceOption, outputs, related, suggested, varied
 from app.web.rendering import go, show, units_of
+from app.web.solution import Drawing, Reply, ShownRoot, asked
 
 FIELDS = ("unknown", "low", "high", "output", "value", "tolerance", "other", "other_value")
 OPTIONAL = ("tolerance", "other", "other_value")
-PATIENT = {"Prefer": "wait=5"}  # the page shows how a longer calculation goes on
-ANSWERED, ACCEPTED = 422, 202
-"""Status of a question that is wrong; the page shows why beside the form."""
 
 
 @dataclass(frozen=True)
@@ -67,21 +63,14 @@ async def solve_page(request: Request, api: Api, id: str) -> Response:
     design = await api.get(f"/designs/{id}", Design)
     network = await api.get(f"/designs/{id}/network", DesignNetwork)
     places = varied(design, network)
-    asked, job = _with_bounds(Asked.of(request), places), request.query_params.get("job", "")
-    solution, refusal = None, None
-    if asked.is_whole:
-        try:
-            response = await _answer(request, api, id, asked, job)
-        except Refused as refused:
-            if refused.status != ANSWERED:
-                raise
-            refusal = refused
-        else:
-            if response.status_code == ACCEPTED and not job:
-                return go(
-                    f"?{urlencode({**asked.typed, 'job': read(response, Accepted).job.rpartition('/')[2]})}"
-                )
-            solution = None if response.status_code == ACCEPTED else read(response, DesignSolution)
+    question, job = _with_bounds(Asked.of(request), places), request.query_params.get("job", "")
+    reply = Reply(None)
+    if question.is_whole:
+        reply = await asked(api, f"/designs/{id}/solve", question.body(), units_of(request), job)
+    if reply.response and reply.goes_on and not job:
+        job = read(reply.response, Accepted).job.rpartition("/")[2]
+        return go(f"?{urlencode({**question.typed, 'job': job})}")
+    solution = read(reply.answer, DesignSolution) if reply.answer else None
     return show(
         request,
         "solve.html",
@@ -89,43 +78,21 @@ async def solve_page(request: Request, api: Api, id: str) -> Response:
         places=places,
         related=related(design),
         outputs=outputs(network),
-        asked=asked,
-        beside=asked.saved_beside(),
+        asked=question,
+        beside=question.saved_beside(),
         solution=solution,
-        chart=drawn(solution) if solution else "",
+        drawing=_drawing(solution) if solution else None,
         roots=_saved(design, solution) if solution else [],
-        refusal=refusal,
-        job=job if asked.is_whole and not solution and not refusal else "",
+        refusal=reply.refusal,
+        job=job if reply.goes_on else "",
     )
 
 
-async def _answer(request: Request, api: Api, id: str, asked: Asked, job: str) -> httpx.Response:
-    """The solution, or that its job still goes on."""
-    if job:
-        return await api.send("GET", f"/evaluations/{quote(job, safe='')}")
-    query = {"units": units_of(request)}
-    return await api.send("POST", f"/designs/{id}/solve", json=asked.body(), params=query, headers=PATIENT)
-
-
-def drawn(solution: DesignSolution) -> str:
-    """The curve between the bounds with the value that is wanted, and the roots, as SVG."""
-    curve, target = solution.curve, solution.target
-    x = [float(value) for value in curve.x.value]
-    y = [None if value is None else float(value) for value in _list(curve.y.value)]
-    found = [*solution.roots, *solution.touching]
-    wanted, words = target.value, target.name.rpartition(".")[2].replace("_", " ")
-    series = [
-        Series(words, x, y),
-        Series("wanted", [x[0], x[-1]], [wanted, wanted], dashed=True),
-        Series("solutions", [root.value for root in found], [wanted] * len(found), marked=True, joined=False),
-    ]
-    axis = f"{solution.unknown} [{numbers.unit(curve.x.unit)}]", f"{words} [{numbers.unit(target.unit)}]"
-    return svg(Chart(*axis, series))
-
-
-def _list(value: object) -> list[float | None]:
-    assert isinstance(value, list)
-    return value
+def _drawing(solution: DesignSolution) -> Drawing:
+    """The curve of an answer, with what gives the target."""
+    target = solution.target
+    roots = [*solution.roots, *solution.touching]
+    return Drawing(solution.unknown, target.name, target.value, solution.curve, roots, solution.jumps)
 
 
 def _with_bounds(asked: Asked, places: list[PlaceOption]) -> Asked:
@@ -156,14 +123,9 @@ def _counted(root: DesignRoot) -> str:
 
 
 @dataclass(frozen=True)
-class SavedRoot:
-    """A solution as the page lists it, and the field of the design's form that takes it."""
+class SavedRoot(ShownRoot):
+    """A root of a design, and the field of the design's form that takes it."""
 
-    text: str
-    shown: str
-    rises: str
-    level: str
-    error: str
     open: list[tuple[str, str]]  # criteria that are not met or undecided
     rest: str  # how many are met, and not checked
     field: str
@@ -181,11 +143,7 @@ def _saved(design: Design, solution: DesignSolution) -> list[SavedRoot]:
     target = f"{solution.target.name} = {numbers.plain(solution.target.value)} {solution.target.unit}"
     return [
         SavedRoot(
-            text=f"{root.value!r} {root.unit}" if root.unit != "1" else repr(root.value),
-            shown=numbers.told(root),
-            rises={1: "rises", -1: "falls", 0: "touches"}[root.slope],
-            level=(root.level or "").replace("_", " ") + ("" if root.confirmed else " (not confirmed)"),
-            error="not stated" if root.error is None else f"± {numbers.percent(root.error)}",
+            **vars(ShownRoot.of(root)),
             open=sorted((n, v) for n, v in root.verdicts.items() if v in OPEN),
             rest=_counted(root),
             field=control,

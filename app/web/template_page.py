@@ -29,8 +29,8 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
     """The page, with the answer to what the address asks; to the example, where it asks nothing."""
     path = f"/templates/{id}/versions/{version}"
     template = await api.get(path, Template)
-    typed = {name: text for name, text in request.query_params.items() if name not in ABOUT}
-    inputs, chosen, limits = _asked(template, typed)
+    typed = typed_in(request)
+    inputs, chosen, limits = inputs_of(template, typed)
     tables = await library(api)
     measured = await api.find(f"{path}/accuracy", Accuracy)
     written = await api.find(f"/worksheets/{id}/versions/{version}", Sheet) if template.worksheet else None
@@ -64,7 +64,12 @@ async def template_page(request: Request, api: Api, id: str, version: int) -> Re
 Values = dict[str, JsonValue]
 
 
-def _asked(template: Template, typed: Mapping[str, str]) -> tuple[Values, Values, Values]:
+def typed_in(request: Request) -> dict[str, str]:
+    """What was typed, by control."""
+    return {name: text for name, text in request.query_params.items() if name not in ABOUT}
+
+
+def inputs_of(template: Template, typed: Mapping[str, str]) -> tuple[Values, Values, Values]:
     """The inputs, the options and the limits of a calculation for what was typed."""
     filled = {name: text.strip() for name, text in typed.items() if text.strip()}
     chosen = {f"@{option}": option for option in OPTIONS}

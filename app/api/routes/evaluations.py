@@ -24,6 +24,7 @@ from app.schemas.impact import Impact
 from app.schemas.problems import refusals
 from app.schemas.solve import DesignSolution
 from app.schemas.tolerances import ToleranceAnalysis
+from app.schemas.variants import VariantDetail
 from app.storage.artifacts import ArtifactStore
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.workers.pieces import Pieces
@@ -33,7 +34,13 @@ router = APIRouter(prefix="/api/v1/evaluations", tags=["templates"])
 
 @router.get(
     "/{job}",
-    response_model=AnyCalculation | Preview | Decision | DesignSolution | ToleranceAnalysis | Impact,
+    response_model=AnyCalculation
+    | Preview
+    | Decision
+    | DesignSolution
+    | ToleranceAnalysis
+    | Impact
+    | VariantDetail,
     responses={**LATER, **UNAVAILABLE, **refusals(404, 409, 429)},
 )
 async def show_evaluation(

@@ -28,6 +28,7 @@ from app.api.dependencies import (
     TheOnce,
     TheStore,
     TheThreads,
+    TheVariantDetails,
     Units,
 )
 from app.api.gate.clients import TheClient
@@ -36,18 +37,19 @@ from app.api.routes.design_files import FILES, Accept, IfNoneMatch, Wanted, mode
 from app.api.routes.designs import Id, IfMatch, Number, Prefer
 from app.api.sheets import ANSWERS, BODIES
 from app.api.stored import UNAVAILABLE, lost
-from app.api.waiting import finished, later, patience, written
+from app.api.waiting import LATER, accepted, finished, later, patience, written
 from app.designs.document import Overrides, Word
 from app.designs.schemas import Note
 from app.designs.service import Designs, Saved
 from app.designs.variants import views
+from app.designs.variants.detail import WantedVariant
 from app.designs.variants.files import STEP, Entry, entries, variant_model
 from app.designs.variants.names import MOST_VARIANTS
 from app.designs.variants.saving import replace_variants as replaced
 from app.jobs.service import Jobs
 from app.schemas.bounded import Bounded, at_most
 from app.schemas.problems import Responses, refusals
-from app.schemas.variants import VariantsOut
+from app.schemas.variants import VariantDetail, VariantsOut
 from app.storage.artifacts import ArtifactStore
 from app.storage.tables import RevisionModelRow
 from cad.stamp import stamped
@@ -150,6 +152,33 @@ def _table(designs: Designs, saved: Saved, is_done: bool) -> Response:
     )
     headers = {"ETag": f'"{saved.revision}"', "Location": place}
     return written(out, 200 if is_done else 202, headers)
+
+
+@router.get(
+    "/{id}/variants/{variant}", response_model=VariantDetail, responses={**LATER, **refusals(404, 422, 429)}
+)
+@router.get(
+    "/{id}/revisions/{number}/variants/{variant}",
+    response_model=VariantDetail,
+    responses={**LATER, **refusals(404, 422, 429)},
+)
+async def show_variant(
+    id: Id,
+    variant: VariantName,
+    details: TheVariantDetails,
+    threads: TheThreads,
+    client: TheClient,
+    request: Request,
+    number: Number | None = None,
+    output: Outputs = [],  # noqa: B006 - FastAPI copies it
+    units: Units = "si",
+    prefer: Prefer = None,
+) -> Response:
+    """One variant with its outputs, curves included; `base` is the design itself. Nothing is saved."""
+    wanted = WantedVariant(id, variant, tuple(dict.fromkeys(output)), number, units)
+    seconds = patience(prefer, details.steps.deadline)
+    answer, job = await threads.run_within(seconds, request, details.answer, wanted, client)
+    return accepted(job) if answer is None else written(answer)
 
 
 @router.get("/{id}/variants/{variant}/model", **FILES)

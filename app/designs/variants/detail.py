@@ -1,0 +1,133 @@
+"""One variant with every output of its steps, curves included, calculated when it is asked for.
+
+A revision keeps the single outputs of its variants; the curves of 200 variants would fill the database.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from pydantic import TypeAdapter
+
+from app.calculations import rendering
+from app.calculations.criteria import rendered
+from app.calculations.jobs import VARIANT
+from app.designs import repository
+from app.designs.calculation import Calculation
+from app.designs.document import Document
+from app.designs.graph import raise_if
+from app.designs.long_answers import LongAnswers
+from app.designs.service import analysed, built
+from app.designs.variants.names import BASE
+from app.designs.variants.outcome import Outcome
+from app.designs.variants.together import Available, together
+from app.presentation.units import System
+from app.schemas.evaluations import Output
+from app.schemas.variants import VariantDetail
+from app.storage.errors import NotFound
+from templates.core.errors import Fault, InvalidInputs, unknown_names
+from templates.core.judging.summary import worst_first
+
+WAITS = "it waits for a solid that is not built, or for a step that waits for one"
+ITERATED = "a design that iterates does so only as it is saved: make the variant a design of its own"
+
+
+@dataclass(frozen=True)
+class WantedVariant:
+    """Which variant of a design, `base` for the design itself, and which of its outputs; none: all.
+
+    `revision` is the newest, if it is None.
+    """
+
+    design: str
+    variant: str
+    outputs: tuple[str, ...] = ()
+    revision: int | None = None
+    system: System = "si"
+
+
+_WANTED = TypeAdapter(WantedVariant)
+
+
+class VariantDetails(LongAnswers):
+    """Calculates single variants, makes jobs of those that take long, and is the handler of such jobs."""
+
+    kind = VARIANT
+
+    def answer(self, wanted: WantedVariant, client: str) -> tuple[VariantDetail | None, str | None]:
+        """The variant, or the job that calculates it where its caller does not wait so long.
+
+        Raises
+        ------
+        NotFound
+            If there is no such design, revision or variant.
+        InvalidInputs
+            If an output is unknown, or the variant cannot be calculated.
+        QueueFull, TooManyCalculations
+            Too many jobs, or calculations, are waiting.
+        """
+        number, outcome = self._calculated(wanted)
+        if not outcome.is_deferred:
+            return _shown(wanted, number, outcome), None
+        payload = {**vars(wanted), "revision": number, "outputs": list(wanted.outputs)}
+        return None, self.queued(payload, None, client)
+
+    def calculated(self, payload: Mapping[str, object], body: object) -> VariantDetail:
+        """The whole answer to what a job holds."""
+        wanted = _WANTED.validate_python(payload)
+        return _shown(wanted, *self._calculated(wanted))
+
+    def _calculated(self, wanted: WantedVariant) -> tuple[int, Outcome]:
+        with self.database.read() as session:
+            number = wanted.revision or repository.head(session, wanted.design).number
+            document = Document.model_validate(repository.document(session, wanted.design, number))
+        own = _alone(document, wanted)
+        available = Available(self.catalogues, built(self.database), analysed(self.database))
+        [outcome] = together(own, available)
+        raise_if(list(outcome.faults))
+        return number, outcome
+
+
+def _alone(document: Document, wanted: WantedVariant) -> Document:
+    """The document with one of its variants only."""
+    known = {BASE: {}, **document.variants}
+    if wanted.variant not in known:
+        raise NotFound(
+            f"design {wanted.design}: no variant is called {wanted.variant!r}; there are {', '.join(known)}"
+        )
+    if document.iterations:
+        raise InvalidInputs([Fault("iterations", "iterated", ITERATED)])
+    return document.model_copy(update={"variants": {wanted.variant: known[wanted.variant]}})
+
+
+def _shown(wanted: WantedVariant, number: int, outcome: Outcome) -> VariantDetail:
+    assert outcome.calculation is not None, "it has no faults"
+    outputs = dict(_outputs(outcome.calculation))
+    unknown = [name for name in wanted.outputs if name not in outputs]
+    if unknown:
+        raise InvalidInputs(fault.within("outputs") for fault in unknown_names(unknown, outputs, "output"))
+    return VariantDetail.model_validate(
+        {
+            "design": wanted.design,
+            "revision": number,
+            "name": wanted.variant,
+            "values": outcome.values,
+            "outputs": {name: outputs[name] for name in wanted.outputs or outputs},
+            **rendered(worst_first(outcome.judgements)),
+        }
+    ).in_units(wanted.system)
+
+
+def _outputs(calculation: Calculation) -> Iterator[tuple[str, Output]]:
+    """Every output of every step by its name in relations; null with its reason where the step waits."""
+    for block in calculation.graph.blocks.values():
+        if block.is_model:
+            continue
+        evaluation = calculation.evaluations.get(block.name)
+        if evaluation is None:
+            waiting = calculation.graph.computed(block) or tuple(block.cls.formulas)
+            yield from ((f"{block.name}.{name}", Output(value=None, reason=WAITS)) for name in waiting)
+        else:
+            shown = rendering.outputs(evaluation.outputs)
+            yield from ((f"{block.name}.{name}", Output.model_validate(one)) for name, one in shown.items())

@@ -1,0 +1,127 @@
+"""What the pages that solve a design and a template share: the question's answer, its curve and its roots."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from urllib.parse import quote
+
+import httpx
+
+from app.presentation import numbers
+from app.presentation.units import System
+from app.reports.charts import Chart, Series, svg
+from app.schemas.evaluations import Jump, Root, TracedCurve
+from app.web.api import Api, Refused
+
+PATIENT = {"Prefer": "wait=5"}  # the page shows how a longer calculation goes on
+ANSWERED, ACCEPTED = 422, 202
+"""Status of a question that is wrong, which its page shows beside the form; and of one that takes longer."""
+
+
+@dataclass(frozen=True)
+class ShownRoot:
+    """A root as a page lists it."""
+
+    text: str  # as it is typed
+    shown: str
+    rises: str
+    level: str
+    error: str
+
+    @classmethod
+    def of(cls, root: Root) -> ShownRoot:
+        """A crossing of the target, or an extremum that touches it."""
+        return cls(
+            text=f"{root.value!r} {root.unit}" if root.unit != "1" else repr(root.value),
+            shown=numbers.told(root),
+            rises={1: "rises", -1: "falls", 0: "touches"}[root.slope],
+            level=(root.level or "").replace("_", " ") + ("" if root.confirmed else " (not confirmed)"),
+            error="not stated" if root.error is None else f"± {numbers.percent(root.error)}",
+        )
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A curve between two bounds, the value that is wanted, in the unit of the curve, and what gives it."""
+
+    unknown: str
+    target: str
+    wanted: float
+    curve: TracedCurve
+    roots: Sequence[Root]  # and extrema that touch
+    jumps: Sequence[Jump]
+
+    @property
+    def level(self) -> str:
+        """The level of all points, in words."""
+        return (self.curve.level or "").replace("_", " ")
+
+    def svg(self) -> str:
+        """The drawing as SVG."""
+        curve = self.curve
+        x = [float(value) for value in curve.x.value]
+        y = [None if value is None else float(value) for value in _list(curve.y.value)]
+        words = self.target.rpartition(".")[2].replace("_", " ")
+        across = [root.value for root in self.roots]
+        series = [
+            Series(words, x, y),
+            Series("wanted", [x[0], x[-1]], [self.wanted, self.wanted], dashed=True),
+            Series("solutions", across, [self.wanted] * len(across), marked=True, joined=False),
+        ]
+        axis = f"{self.unknown} [{numbers.unit(curve.x.unit)}]", f"{words} [{numbers.unit(curve.y.unit)}]"
+        return svg(Chart(*axis, [*series, *_jumps(self.jumps)]))
+
+
+def _jumps(jumps: Sequence[Jump]) -> list[Series]:
+    """The places where the output jumps across the target, as a dashed line from one side to the other."""
+    if not jumps:
+        return []
+    across: list[float | None] = []
+    upright: list[float | None] = []
+    for jump in jumps:
+        across += [jump.value, jump.value, None]
+        upright += [jump.before.value, jump.after.value, None]
+    return [Series("jumps", across, upright, dashed=True)]
+
+
+def _list(value: object) -> list[float | None]:
+    assert isinstance(value, list)
+    return value
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What the interface said to a question: an answer, that a job makes it, or what is wrong."""
+
+    response: httpx.Response | None
+    refusal: Refused | None = None
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether a job makes the answer."""
+        return self.response is not None and self.response.status_code == ACCEPTED
+
+    @property
+    def answer(self) -> httpx.Response | None:
+        """The answer, once it is there."""
+        return None if self.goes_on else self.response
+
+
+async def asked(api: Api, path: str, body: Mapping[str, object], units: System | None, job: str) -> Reply:
+    """Send a question, or look for the answer of the job that it became.
+
+    Raises
+    ------
+    Refused
+        For anything but a question that is wrong.
+    """
+    try:
+        if job:
+            return Reply(await api.send("GET", f"/evaluations/{quote(job, safe='')}"))
+        params = {"units": units} if units else {}
+        return Reply(await api.send("POST", path, json=body, params=params, headers=PATIENT))
+    except Refused as refused:
+        if refused.status != ANSWERED:
+            raise
+        return Reply(None, refused)

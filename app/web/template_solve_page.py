@@ -1,0 +1,146 @@
+"""The page that solves a template: which values of one input give a wanted output, with the curve."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from urllib.parse import urlencode
+
+import numpy as np
+from fastapi import Request, Response
+from pydantic import JsonValue
+
+from app.presentation.typed import text_of, value_of
+from app.schemas.answers import Accepted
+from app.schemas.declared import Declared, properties
+from app.schemas.evaluations import Solution
+from app.schemas.templates import Template
+from app.web.api import Api, read
+from app.web.places import PlaceOption, suggested
+from app.web.rendering import go, show, units_of
+from app.web.solution import Drawing, Reply, ShownRoot, asked
+from app.web.template_page import inputs_of, typed_in
+from templates.core.units.quantity import read as read_quantity
+from templates.core.units.units import unit
+
+FIELDS = ("unknown", "low", "high", "output", "value")
+MARK = "?"  # before the names of these fields in the address: no input is called so
+JOB = f"{MARK}job"
+
+
+@dataclass(frozen=True)
+class Question:
+    """What stands in the form, and the inputs that came with it from the template's page."""
+
+    typed: Mapping[str, str]  # by field
+    inputs: Mapping[str, str]  # and options, by control of the template's form; empty: the example
+
+    @classmethod
+    def of(cls, request: Request) -> Question:
+        """The question in the address."""
+        query = typed_in(request)
+        inputs = {name: text for name, text in query.items() if not name.startswith(MARK)}
+        return cls({name: query.get(f"{MARK}{name}", "").strip()[:200] for name in FIELDS}, inputs)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether everything is given that an answer needs."""
+        return all(self.typed.values())
+
+    def body(self, template: Template) -> dict[str, object]:
+        """The question as the interface takes it."""
+        typed, (inputs, options) = self.typed, self._given(template)
+        return {
+            "inputs": {name: value for name, value in inputs.items() if name != typed["unknown"]},
+            "unknown": typed["unknown"],
+            "bounds": [value_of(typed["low"]), value_of(typed["high"])],
+            "target": {typed["output"]: value_of(typed["value"])},
+            "outputs": [typed["output"]],
+            **options,
+        }
+
+    def present(self, template: Template) -> dict[str, str]:
+        """The inputs as texts."""
+        return {name: text_of(value) for name, value in self._given(template)[0].items()}
+
+    def _given(self, template: Template) -> tuple[dict[str, JsonValue], dict[str, JsonValue]]:
+        inputs, options, _ = inputs_of(template, self.inputs)
+        return inputs, options
+
+    def with_bounds(self, places: list[PlaceOption]) -> Question:
+        """With half and twice the present value as bounds, where an input is chosen and no bound given."""
+        chosen = next((place for place in places if place.name == self.typed["unknown"]), None)
+        if chosen is None or self.typed["low"] or self.typed["high"]:
+            return self
+        low, high = suggested(chosen)
+        return Question({**self.typed, "low": low, "high": high}, self.inputs)
+
+    def address(self, **more: str) -> str:
+        """The query of this page that asks the same."""
+        marked = {f"{MARK}{name}": text for name, text in self.typed.items()}
+        return urlencode({**self.inputs, **marked, **more})
+
+    def tried_with(self, template: Template, value: str) -> str:
+        """The query of the template's page with a value of the unknown."""
+        inputs = self.inputs or self.present(template)
+        return urlencode({**inputs, self.typed["unknown"]: value})
+
+
+async def template_solve_page(request: Request, api: Api, id: str, version: int) -> Response:
+    """The form, and the answer once the form is filled in."""
+    path = f"/templates/{id}/versions/{version}"
+    template = await api.get(path, Template)
+    question, job = Question.of(request), request.query_params.get(JOB, "")
+    places = list(_varied(template, question.present(template)))
+    question = question.with_bounds(places)
+    reply = Reply(None)
+    if question.is_whole:
+        reply = await asked(api, f"{path}/solve", question.body(template), None, job)
+    if reply.response and reply.goes_on and not job:
+        accepted = read(reply.response, Accepted).job.rpartition("/")[2]
+        return go(f"?{question.address(**{JOB: accepted})}")
+    solution = read(reply.answer, Solution).in_units(units_of(request)) if reply.answer else None
+    drawing = _drawing(question, solution) if solution else None
+    return show(
+        request,
+        "template_solve.html",
+        template=template,
+        question=question,
+        places=places,
+        outputs=list(_outputs(template)),
+        inputs=urlencode(question.inputs),
+        solution=solution,
+        drawing=drawing,
+        roots=[ShownRoot.of(root) for root in drawing.roots] if drawing else [],
+        refusal=reply.refusal,
+        job=job if reply.goes_on else "",
+    )
+
+
+def _varied(template: Template, present: Mapping[str, str]) -> Iterator[PlaceOption]:
+    """The inputs that hold one quantity."""
+    for name, declared in properties(template.inputs).items():
+        if _is_single(declared):
+            yield PlaceOption(name, declared.title, declared.unit or "", present.get(name, ""))
+
+
+def _outputs(template: Template) -> Iterator[PlaceOption]:
+    """The outputs that are one quantity."""
+    for name, declared in properties(template.outputs).items():
+        if _is_single(declared):
+            yield PlaceOption(name, declared.title, declared.unit or "")
+
+
+def _is_single(declared: Declared) -> bool:
+    return declared.unit is not None and not declared.along and not declared.is_list
+
+
+def _drawing(question: Question, solution: Solution) -> Drawing | None:
+    """The curve of an answer; answers of earlier program versions have none."""
+    curve = solution.curve
+    if curve is None or curve.y.unit is None:
+        return None
+    typed = read_quantity(value_of(question.typed["value"]), curve.y.unit)
+    wanted = float(np.asarray(unit(curve.y.unit).from_si(typed.si)))
+    roots = [*solution.roots, *solution.touching]
+    return Drawing(question.typed["unknown"], question.typed["output"], wanted, curve, roots, solution.jumps)
