@@ -345,10 +345,3 @@ def test_a_cancelled_study_stops_and_is_removed(http, served, twice):
     assert 0 < now["done"] < 10**6
     assert http.delete(f"{API}/studies/{study['id']}").status_code == 204
     problem(http.get(f"{API}/studies/{study['id']}"), 404, "not-found")
-
-
-def test_a_study_whose_job_is_cancelled_is_cancelled(http, twice):
-    study = begun(http, twice, method="sample", points=10**6, vary=LENGTHS, outputs=[OUT])
-    assert http.delete(study["job"]).status_code == 200
-    now = ended(http, study)
-    assert (now["state"], now["problem"]["type"]) == ("cancelled", "/problems/cancelled")
