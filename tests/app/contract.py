@@ -1,10 +1,10 @@
-"""How STEP and XLSX files are sent, which schemathesis cannot know; `schemathesis.toml` names this file."""
+"""How files of STEP, XLSX and Mathcad are sent, which schemathesis cannot know; see `schemathesis.toml`."""
 
 import schemathesis
 
 XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 
 
-@schemathesis.serializer("model/step", XLSX)
+@schemathesis.serializer("model/step", "application/zip", XLSX)
 def as_bytes(context, value):
     return value if isinstance(value, bytes) else str(value).encode("utf-8", "replace")

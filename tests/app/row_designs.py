@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import numpy as np
+import pytest
 
 from app.designs.calculate import calculate
 from app.designs.document import Document
@@ -10,6 +11,7 @@ from app.designs.graph import Catalogues, build_graph
 from app.designs.net import Net
 from app.designs.reference import Reference
 from cad.catalogue import models
+from templates.core.errors import InvalidInputs
 from templates.core.units.units import unit
 from templates.door import built_in
 
@@ -150,3 +152,10 @@ def _assert_equal_errors(one, row, table):
         np.testing.assert_array_equal(errors[row], np.nan if stated is None else stated)
     for step, level in table.levels.items():
         assert one.evaluations[step].level == level
+
+
+def codes(raw, *varied, **options):
+    """The faults with which rows are refused, name → code, and the message."""
+    with pytest.raises(InvalidInputs) as refused:
+        net_of(raw, *varied, **options)
+    return {fault.name: fault.code for fault in refused.value.faults}, str(refused.value)

@@ -32,6 +32,7 @@ FILM = {
     },
     "criteria": {"thick_enough": {"require": "film.minimum_film_thickness >= 1.8 um"}},
 }
+LENGTHS = {"length": {"between": ["0 mm", "10 mm"]}}
 THICKNESS, LOSS = "film.minimum_film_thickness", "film.power_loss"
 CLEARANCE = {"clearance": {"between": ["0.03 mm", "0.09 mm"]}}
 ENDED = ("done", "failed", "cancelled")

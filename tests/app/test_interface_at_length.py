@@ -14,7 +14,7 @@ from app.settings import Settings
 INTERFACE = schemathesis.openapi.from_dict(create_app(Settings()).openapi()).exclude(path_regex="/events$")
 
 
-@schemathesis.serializer("model/step")
+@schemathesis.serializer("model/step", "application/zip")
 def as_bytes(context, value):
     return value if isinstance(value, bytes) else str(value).encode("utf-8", "replace")
 

@@ -3,7 +3,7 @@
 import pytest
 from patience import until
 from serving import API, problem
-from study_helpers import CLEARANCE, FILM, LOSS, OUT, TWICE, begun, new_design
+from study_helpers import CLEARANCE, FILM, LOSS, OUT, TWICE, begun, ended, new_design
 
 from app.studies import repository
 
@@ -61,3 +61,10 @@ def test_a_study_that_waits_is_cancelled_before_it_has_rows(served, http):
         http.delete(f"{API}/studies/{study['id']}")
     until(lambda: not any(own_calculations(served, study) for study in studies))
     assert chunks(served, last) == kept
+
+
+def test_a_study_whose_job_is_cancelled_is_cancelled(http):
+    study = begun(http, new_design(http, TWICE), **SAMPLE)
+    assert http.delete(study["job"]).status_code == 200
+    now = ended(http, study)
+    assert (now["state"], now["problem"]["type"]) == ("cancelled", "/problems/cancelled")

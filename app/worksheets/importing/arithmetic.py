@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from app.worksheets.importing.errors import Untranslatable
 from app.worksheets.importing.names import key_of
-from app.worksheets.importing.said import PRODUCT, SUM, Said, binary, called, negative, number, reduced
-from app.worksheets.importing.said import power as raised
+from app.worksheets.importing.terms import PRODUCT, SUM, Term, binary, called, negative, number, reduced
+from app.worksheets.importing.terms import power as raised
 from app.worksheets.importing.trees import Node
 from app.worksheets.importing.writer import Writer
 
@@ -16,35 +16,35 @@ from app.worksheets.importing.writer import Writer
 class Arithmetic(Writer):
     """Writes operators."""
 
-    def times(self, left: Node, right: Node) -> Said:
+    def times(self, left: Node, right: Node) -> Term:
         """A product of two trees."""
-        return self.product(self.said(left), self.said(right))
+        return self.product(self.term(left), self.term(right))
 
-    def over(self, left: Node, right: Node) -> Said:
+    def over(self, left: Node, right: Node) -> Term:
         """A quotient of two trees."""
-        return self.quotient(self.said(left), self.said(right))
+        return self.quotient(self.term(left), self.term(right))
 
-    def plus(self, left: Node, right: Node) -> Said:
+    def plus(self, left: Node, right: Node) -> Term:
         """A sum."""
         return binary(self.value(left), "+", self.value(right), SUM)
 
-    def minus(self, left: Node, right: Node) -> Said:
+    def minus(self, left: Node, right: Node) -> Term:
         """A difference."""
         return binary(self.value(left), "-", self.value(right), SUM)
 
-    def negative(self, part: Node) -> Said:
+    def negative(self, part: Node) -> Term:
         """The negative of a tree."""
         return negative(self.value(part))
 
-    def percent(self, part: Node) -> Said:
+    def percent(self, part: Node) -> Term:
         """A hundredth of a tree."""
         return binary(self.value(part), "/", number(100), PRODUCT)
 
-    def vectorized(self, part: Node) -> Said:
+    def vectorized(self, part: Node) -> Term:
         """A tree whose operators go item by item."""
-        return replace(self, is_vectorised=True).said(part)
+        return replace(self, is_vectorised=True).term(part)
 
-    def product(self, left: Said, right: Said) -> Said:
+    def product(self, left: Term, right: Term) -> Term:
         """A product, which of two vectors is their scalar product."""
         made = binary(left, "*", right, PRODUCT)
         if left.is_vector and right.is_vector and not self.is_vectorised:
@@ -55,13 +55,13 @@ class Arithmetic(Writer):
             return reduced("sum", made)
         return made
 
-    def quotient(self, left: Said, right: Said) -> Said:
+    def quotient(self, left: Term, right: Term) -> Term:
         """A quotient."""
         if right.is_vector and not self.is_vectorised:
             raise Untranslatable("division by a vector", "vectorise it, or write it item by item")
         return binary(left, "/", right, PRODUCT)
 
-    def power(self, base: Node, exponent: Node) -> Said:
+    def power(self, base: Node, exponent: Node) -> Term:
         """A power; of a vector its square alone, which is a scalar product."""
         over = self.value(exponent)
         if base.tag == "id" and key_of(base) == "e" and "e" not in self.scope:
@@ -75,7 +75,7 @@ class Arithmetic(Writer):
             over = _fraction(exponent) or number(over.number)
         return raised(under, over)
 
-    def root(self, degree: list[Node], part: Said) -> Said:
+    def root(self, degree: list[Node], part: Term) -> Term:
         """A root of any degree."""
         if part.is_vector and not self.is_vectorised:
             raise Untranslatable("root of a vector", "vectorise it, or write it item by item")
@@ -84,13 +84,13 @@ class Arithmetic(Writer):
         by = self.value(degree[0])
         return raised(part, binary(number(1), "/", by, PRODUCT))
 
-    def size(self, part: Said) -> Said:
+    def size(self, part: Term) -> Term:
         """An absolute value, or the length of a vector."""
         if part.is_vector and not self.is_vectorised:
             return called("sqrt", reduced("sum", raised(part, number(2))))
         return called("abs", part)
 
-    def factorial(self, part: Said) -> Said:
+    def factorial(self, part: Term) -> Term:
         """A factorial, as a number."""
         if part.number is None or part.number != int(part.number) or not 0 <= part.number <= 18:
             raise Untranslatable("factorial", "write its value")
@@ -101,7 +101,7 @@ def _is_plain(text: str) -> bool:
     return text.lstrip("-").replace(".", "", 1).isdigit()
 
 
-def _fraction(node: Node) -> Said | None:
+def _fraction(node: Node) -> Term | None:
     """A quotient of two plain numbers, which an exponent may be."""
     while node.tag == "parens" and node.parts:
         node = node.parts[0]
@@ -110,4 +110,4 @@ def _fraction(node: Node) -> Said | None:
     over, under = node.parts[1], node.parts[2]
     if over.tag != "real" or under.tag != "real" or not _is_plain(over.text + under.text):
         return None
-    return Said(f"{over.text} / {under.text}", PRODUCT, number=float(over.text) / float(under.text))
+    return Term(f"{over.text} / {under.text}", PRODUCT, number=float(over.text) / float(under.text))

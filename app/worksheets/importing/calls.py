@@ -8,8 +8,8 @@ from dataclasses import replace
 from app.worksheets.importing import functions
 from app.worksheets.importing.errors import Unnamed, Untranslatable
 from app.worksheets.importing.names import key_of
-from app.worksheets.importing.said import ATOM, LOOSE, PRODUCT, SUM, Said, binary, called, number, reduced
 from app.worksheets.importing.scope import Choice, Failed, Function, Range, Scope, Value, Written
+from app.worksheets.importing.terms import ATOM, LOOSE, PRODUCT, SUM, Term, binary, called, number, reduced
 from app.worksheets.importing.trees import Node
 from app.worksheets.importing.writer import MOST_INLINED, Writer
 
@@ -17,7 +17,7 @@ from app.worksheets.importing.writer import MOST_INLINED, Writer
 class Calls(Writer):
     """Writes calls."""
 
-    def call(self, operator: Node, arguments: list[Node]) -> Said:
+    def call(self, operator: Node, arguments: list[Node]) -> Term:
         """A call of a function by its name."""
         key = key_of(operator)
         meant = self.scope.get(key)
@@ -39,7 +39,7 @@ class Calls(Writer):
         parts = [self.argument(part) for part in arguments]
         return self._builtin(key, parts)
 
-    def _builtin(self, key: str, parts: list[Said]) -> Said:
+    def _builtin(self, key: str, parts: list[Term]) -> Term:
         if key in ("min", "max"):
             return self._extreme(key, parts)
         if key in functions.COUNTS and len(parts) == 1:
@@ -66,27 +66,27 @@ class Calls(Writer):
             return reduced("sum", parts[0])
         raise Unnamed(key)
 
-    def _extreme(self, key: str, parts: list[Said]) -> Said:
+    def _extreme(self, key: str, parts: list[Term]) -> Term:
         if any(part.is_vector for part in parts) and not (self.is_vectorised and len(parts) > 1):
             parts = [reduced(key, part) if part.is_vector else part for part in parts]
             return parts[0] if len(parts) == 1 else called(key, *parts)
         return parts[0] if len(parts) == 1 and parts[0].axis is None else called(key, *parts)
 
-    def _count(self, key: str, part: Said) -> Said:
+    def _count(self, key: str, part: Term) -> Term:
         if part.axis is None or part.is_row:
             raise Untranslatable("size of a matrix", "write the number")
         count = part.axis.length
         return number(count + part.axis.start - 1 if key == "last" else count)
 
-    def _interpolated(self, arguments: list[Node]) -> Said:
+    def _interpolated(self, arguments: list[Node]) -> Term:
         literal = replace(self, keep=None)
-        across, up = (literal.quantity(part) or literal.said(part) for part in arguments[:2])
-        at = self.quantity(arguments[2]) or self.said(arguments[2])
+        across, up = (literal.quantity(part) or literal.term(part) for part in arguments[:2])
+        at = self.quantity(arguments[2]) or self.term(arguments[2])
         if across.axis is None or up.axis is None or at.is_vector:
             raise Untranslatable("interpolation in what are no lists", "write a curve")
         return called(self.sheet.curve(across, up), at)
 
-    def _own(self, function: Function, arguments: list[Node]) -> Said:
+    def _own(self, function: Function, arguments: list[Node]) -> Term:
         if len(arguments) != len(function.parameters):
             raise Untranslatable("call with another number of arguments", "call it as it is defined")
         if self.depth >= MOST_INLINED:
@@ -95,17 +95,17 @@ class Calls(Writer):
         if not any(part.is_vector and not self.is_vectorised for part in parts):
             name = self.sheet.function(function, parts)
             if name is not None:
-                return called(name, *parts) if parts else Said(name)
+                return called(name, *parts) if parts else Term(name)
         return self._written_out(function, parts)
 
-    def _written_out(self, function: Function, parts: list[Said]) -> Said:
+    def _written_out(self, function: Function, parts: list[Term]) -> Term:
         """The body of a function with its arguments in the place of its parameters."""
         inner: Scope = dict(function.scope)
         for key, part in zip(function.parameters, parts, strict=True):
             inner[key] = Written(part)
-        return replace(self, scope=inner, depth=self.depth + 1).said(function.body)
+        return replace(self, scope=inner, depth=self.depth + 1).term(function.body)
 
 
-def _filled(pattern: str, parts: Sequence[Said]) -> Said:
+def _filled(pattern: str, parts: Sequence[Term]) -> Term:
     texts = [part.bound(ATOM) for part in parts]
-    return Said(pattern.format(*texts), LOOSE if pattern.startswith("if") else SUM)
+    return Term(pattern.format(*texts), LOOSE if pattern.startswith("if") else SUM)

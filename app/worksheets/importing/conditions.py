@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from app.worksheets.importing.errors import Untranslatable
 from app.worksheets.importing.names import key_of
-from app.worksheets.importing.said import ATOM, LOOSE, SUM, Said
 from app.worksheets.importing.scope import Choice, Scope, Written
+from app.worksheets.importing.terms import ATOM, LOOSE, SUM, Term
 from app.worksheets.importing.trees import Node
 from app.worksheets.importing.writer import Writer
 
@@ -23,14 +23,14 @@ _JOINED = {
 class Conditions(Writer):
     """Writes conditions and cases."""
 
-    def value(self, node: Node) -> Said:
+    def value(self, node: Node) -> Term:
         """A quantity; a condition counts 1 where it holds and 0 where not."""
-        made = self.said(node)
+        made = self.term(node)
         if not made.is_truth:
             return made
-        return Said(f"if {made.text} then 1 else 0", LOOSE).shaped(made)
+        return Term(f"if {made.text} then 1 else 0", LOOSE).shaped(made)
 
-    def condition(self, node: Node) -> Said:
+    def condition(self, node: Node) -> Term:
         """A tree as a condition; of a number, whether it is not 0."""
         if node.tag == "parens" and node.parts:
             return self.condition(node.parts[0])
@@ -41,18 +41,18 @@ class Conditions(Writer):
         if sign in _JOINED and len(sides) == (1 if sign == "not" else 2):
             parts = [self.condition(side) for side in sides]
             text = _JOINED[sign].format(*(part.bound(ATOM) for part in parts))
-            return Said(text, LOOSE, is_truth=True).shaped(*parts)
-        made = self.said(node)
+            return Term(text, LOOSE, is_truth=True).shaped(*parts)
+        made = self.term(node)
         if made.is_truth:
             return made
-        return Said(f"{made.bound(SUM)} != 0", LOOSE, is_truth=True).shaped(made)
+        return Term(f"{made.bound(SUM)} != 0", LOOSE, is_truth=True).shaped(made)
 
-    def _compared(self, sign: str, left: Node, right: Node) -> Said:
+    def _compared(self, sign: str, left: Node, right: Node) -> Term:
         if word := self._tested(left, right) or self._tested(right, left):
-            return Said(f"not ({word})" if sign == "!=" else word, LOOSE, is_truth=True)
-        one, other = self.said(left), self.value(right)
+            return Term(f"not ({word})" if sign == "!=" else word, LOOSE, is_truth=True)
+        one, other = self.term(left), self.value(right)
         start = one.text if one.is_truth else one.bound(SUM)  # a chain goes on: 1 < x <= 2
-        return Said(f"{start} {sign} {other.bound(SUM)}", LOOSE, is_truth=True).shaped(one, other)
+        return Term(f"{start} {sign} {other.bound(SUM)}", LOOSE, is_truth=True).shaped(one, other)
 
     def _tested(self, choice: Node, text: Node) -> str:
         meant = self.scope.get(key_of(choice)) if choice.tag == "id" else None
@@ -60,13 +60,13 @@ class Conditions(Writer):
             return ""
         return f"{meant.name} is {meant.words[text.text]}"
 
-    def either(self, test: Said, one: Node, other: Node) -> Said:
+    def either(self, test: Term, one: Node, other: Node) -> Term:
         """One of two values, by a condition."""
         then, otherwise = self.value(one), self.value(other)
         text = f"if {test.text} then {then.bound(SUM)} else {otherwise.text}"
-        return Said(text, LOOSE).shaped(test, then, otherwise)
+        return Term(text, LOOSE).shaped(test, then, otherwise)
 
-    def program(self, parts: list[Node]) -> Said:
+    def program(self, parts: list[Node]) -> Term:
         """Definitions of local names, and then a value: each name is replaced by its expression."""
         parts = [part for part in parts if part.tag != "placeholder"]
         inner: Scope = dict(self.scope)
@@ -81,11 +81,11 @@ class Conditions(Writer):
                 return at.value(part.parts[0])
             if place == len(parts) - 1:
                 return at.value(part)
-            at.said(part)  # names a construct that is refused
+            at.term(part)  # names a construct that is refused
             raise Untranslatable("program of several values", "write one formula")
         raise Untranslatable("program without a value", "write one formula")
 
-    def chain(self, parts: list[Node]) -> Said:
+    def chain(self, parts: list[Node]) -> Term:
         """Conditions one after another; the last is `else`, or there is no value."""
         branches: list[tuple[Node, Node]] = []
         waiting = list(parts)
@@ -104,10 +104,10 @@ class Conditions(Writer):
         remedy = "say in Mathcad, or in the line, what holds otherwise"
         raise Untranslatable("condition without otherwise", remedy)
 
-    def _cases(self, branches: list[tuple[Node, Node]], last: Node) -> Said:
+    def _cases(self, branches: list[tuple[Node, Node]], last: Node) -> Term:
         made = self.value(last)
         for test, then in reversed(branches):
             held, value = self.condition(test), self.value(then)
             text = f"if {held.text} then {value.bound(SUM)} else {made.text}"
-            made = Said(text, LOOSE).shaped(held, value, made)
+            made = Term(text, LOOSE).shaped(held, value, made)
         return made

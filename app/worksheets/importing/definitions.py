@@ -11,9 +11,9 @@ from app.worksheets.importing.names import key_of, legal, look
 from app.worksheets.importing.outcome import Outcome, one_line
 from app.worksheets.importing.quantities import scaled, unit_named
 from app.worksheets.importing.regions import Original
-from app.worksheets.importing.said import Said
 from app.worksheets.importing.scope import Failed, Function, Scope, Value, Written
 from app.worksheets.importing.statements import without_result
+from app.worksheets.importing.terms import Term
 from app.worksheets.importing.trees import Node
 
 
@@ -73,7 +73,7 @@ class Definitions(ListDefinitions):
             if function.names or outcome.state != "unverified":
                 continue
             try:
-                plain = [Said("1", number=1.0) for _ in function.parameters]
+                plain = [Term("1", number=1.0) for _ in function.parameters]
                 if self.function(function, plain) is not None:
                     outcome.notes.append("nothing calls it: its parameters are taken as pure numbers")
                     continue
@@ -111,8 +111,8 @@ class Definitions(ListDefinitions):
         inner = without_result(value)
         literal = scaled(inner)
         is_given = literal is not None and self._is_input(outcome.original, key)
-        said = self.expression(inner)
-        self.declare(outcome, key, said, self.asked(value, literal), is_given=is_given)
+        term = self.expression(inner)
+        self.declare(outcome, key, term, self.asked(value, literal), is_given=is_given)
 
     def _is_input(self, region: Original, key: str) -> bool:
         return region.tag == "input" if self.has_tags else key not in self.fixed and not region.tag
@@ -132,7 +132,7 @@ class Definitions(ListDefinitions):
         """Name what a body has that no call can make good: a matrix, a loop, a name without meaning."""
         inner: Scope = dict(function.scope)
         for key in function.parameters:
-            inner[key] = Written(Said("1", axis=None))
+            inner[key] = Written(Term("1", axis=None))
         before = self.now
         trial = _Trial(self)
         try:
@@ -153,8 +153,8 @@ class Definitions(ListDefinitions):
             if inner.attributes.get("labels") not in ("CONSTANT", "UNIT"):
                 outcome.name = value.name
                 return
-        said = at.quantity(inner) or at.value(inner)
-        self.declare(outcome, f"result_{outcome.original.number}", said, self.asked(math))
+        term = at.quantity(inner) or at.value(inner)
+        self.declare(outcome, f"result_{outcome.original.number}", term, self.asked(math))
         del self.scope[f"result_{outcome.original.number}"]
 
 
@@ -165,11 +165,11 @@ class _Trial:
         self.origin, self.is_labelled = sheet.origin, sheet.is_labelled
         self.axis = sheet.axis
 
-    def function(self, function: Function, arguments: Sequence[Said]) -> str | None:
+    def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
         """A name that nothing has."""
         return "call"
 
-    def curve(self, across: Said, up: Said) -> str:
+    def curve(self, across: Term, up: Term) -> str:
         """A name that nothing has."""
         return "curve"
 

@@ -17,8 +17,8 @@ from app.worksheets.importing.errors import Unnamed, Untranslatable
 from app.worksheets.importing.lists import Lists
 from app.worksheets.importing.names import key_of, look
 from app.worksheets.importing.quantities import CONSTANTS, unit_named
-from app.worksheets.importing.said import POWER, Said, number
 from app.worksheets.importing.scope import Choice, Failed, Meant, Range, Value, Written
+from app.worksheets.importing.terms import POWER, Term, number
 from app.worksheets.importing.trees import Node
 
 REFUSED = {
@@ -46,7 +46,7 @@ REFUSED = {
 class Expressions(Arithmetic, Lists, Calls, Conditions):
     """Writes expressions at one place of a sheet."""
 
-    def said(self, node: Node) -> Said:
+    def term(self, node: Node) -> Term:
         """The expression of a tree.
 
         Raises
@@ -61,12 +61,12 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         if write := _WRITERS.get(node.tag):
             return write(self, node)
         if node.tag in ("parens", "eval", "apply") and node.parts:
-            return self.applied(node) if node.tag == "apply" else self.said(node.parts[0])
+            return self.applied(node) if node.tag == "apply" else self.term(node.parts[0])
         if node.tag.endswith("Control"):
             raise Untranslatable("control with a script", "give its value as an input")
         raise Untranslatable(f"construct {node.tag[:30]}", "write the formula by hand")
 
-    def _real(self, node: Node) -> Said:
+    def _real(self, node: Node) -> Term:
         try:
             value = float(node.text)
         except ValueError:
@@ -78,7 +78,7 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         plain = text if text.replace(".", "", 1).isdigit() and len(text) < 25 else made.text
         return replace(made, text=plain)
 
-    def named(self, node: Node) -> Said:
+    def named(self, node: Node) -> Term:
         """What a name stands for."""
         key, label = key_of(node), node.attributes.get("labels", "")
         if label == "UNIT":
@@ -96,13 +96,13 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
             return self._unit(key)
         raise Unnamed(key)
 
-    def _unit(self, key: str) -> Said:
+    def _unit(self, key: str) -> Term:
         made = unit_named(key)
         if made is None:
             raise Untranslatable(f"unit {look(key)[:30]}", "write the quantity in another unit")
-        return Said(f"{number(made.number).text} {made.unit}", POWER)
+        return Term(f"{number(made.number).text} {made.unit}", POWER)
 
-    def applied(self, node: Node) -> Said:
+    def applied(self, node: Node) -> Term:
         """An operator or a function, applied to what it takes."""
         operator, parts = node.parts[0], list(node.parts[1:])
         sign = operator.tag
@@ -126,10 +126,10 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         return list(parts[0].parts) if len(parts) == 1 and parts[0].tag == "sequence" else parts
 
 
-def _meant(key: str, meant: Meant) -> Said:
+def _meant(key: str, meant: Meant) -> Term:
     match meant:
         case Value() | Range():
-            return meant.said()
+            return meant.term()
         case Written(expression):
             return expression
         case Failed(region):
@@ -139,23 +139,23 @@ def _meant(key: str, meant: Meant) -> Said:
     raise Untranslatable("function as a value", "call it with its arguments")
 
 
-def _constant(key: str) -> Said:
+def _constant(key: str) -> Term:
     if key not in CONSTANTS:
         raise Unnamed(key)
     value, unit = CONSTANTS[key]
-    return number(value) if unit == "1" else Said(f"{value!r} {unit}", POWER)
+    return number(value) if unit == "1" else Term(f"{value!r} {unit}", POWER)
 
 
-def _range(at: Expressions, node: Node) -> Said:
+def _range(at: Expressions, node: Node) -> Term:
     raise Untranslatable("range within a formula", "define the range by itself, above")
 
 
-def _empty(at: Expressions, node: Node) -> Said:
+def _empty(at: Expressions, node: Node) -> Term:
     raise Untranslatable("empty place", "fill it in Mathcad, or write the line")
 
 
-_WELL_KNOWN: Mapping[str, Said] = {"π": Said("pi", number=math.pi)}
-_WRITERS: Mapping[str, Callable[[Expressions, Node], Said]] = {
+_WELL_KNOWN: Mapping[str, Term] = {"π": Term("pi", number=math.pi)}
+_WRITERS: Mapping[str, Callable[[Expressions, Node], Term]] = {
     "real": Expressions._real,
     "id": Expressions.named,
     "matrix": Expressions.matrix,
@@ -164,16 +164,16 @@ _WRITERS: Mapping[str, Callable[[Expressions, Node], Said]] = {
     "range": _range,
     "placeholder": _empty,
 }
-_UNARY: Mapping[str, Callable[[Expressions, Node], Said]] = {
+_UNARY: Mapping[str, Callable[[Expressions, Node], Term]] = {
     "neg": Expressions.negative,
     "percent": Expressions.percent,
     "vectorize": Expressions.vectorized,
     "absval": lambda at, part: at.size(at.value(part)),
     "determinant": lambda at, part: at.size(at.value(part)),
-    "transpose": lambda at, part: at.transposed(at.said(part)),
+    "transpose": lambda at, part: at.transposed(at.term(part)),
     "factorial": lambda at, part: at.factorial(at.value(part)),
 }
-_BINARY: Mapping[str, Callable[[Expressions, Node, Node], Said]] = {
+_BINARY: Mapping[str, Callable[[Expressions, Node, Node], Term]] = {
     "scale": Expressions.times,
     "mult": Expressions.times,
     "div": Expressions.over,

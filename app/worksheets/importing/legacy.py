@@ -55,7 +55,7 @@ def _original(region: Node) -> Original:
     kind = _KINDS.get(body.tag, "other")
     math = _math(body) if kind == "math" else None
     cached = next(math.all("result"), None) if math else None
-    said = (" ".join(part.whole_text.split()) for part in body.all("p")) if kind == "text" else ()
+    paragraphs = (" ".join(part.whole_text.split()) for part in body.all("p")) if kind == "text" else ()
     named = region.attributes.get("tag", "").lower()
     tag: Tag = "input" if named == "input" else "output" if named == "output" else ""
     return Original(
@@ -65,7 +65,7 @@ def _original(region: Node) -> Original:
         left=coordinate(region.attributes.get("left")),
         math=math,
         cached=cached,
-        text="\n".join(said).strip(),
+        text="\n".join(paragraphs).strip(),
         tag=tag,
     )
 

@@ -9,9 +9,9 @@ from app.worksheets.importing.errors import Unnamed, Untranslatable
 from app.worksheets.importing.expressions import Expressions
 from app.worksheets.importing.names import Names, key_of
 from app.worksheets.importing.outcome import Outcome
-from app.worksheets.importing.said import LOOSE, Said, listed, number
 from app.worksheets.importing.scope import Choice, Failed, Range, Value
 from app.worksheets.importing.statements import RESERVED, Statements, items_in, without_result
+from app.worksheets.importing.terms import LOOSE, Term, listed, number
 from app.worksheets.importing.trees import Node
 from app.worksheets.importing.writer import MOST_ITEMS
 from templates.core.units.expressions import Sort
@@ -25,8 +25,8 @@ class ListDefinitions(Statements):
         key = key_of(target)
         numbers = self._numbers(node)
         axis = replace(self.axis(len(numbers)), start=int(numbers[0]), numbers=numbers)
-        said = Said(f"[{', '.join(number(n).text for n in numbers)}]", axis=axis)
-        value = self.declare(outcome, key, said, ["1"])
+        term = Term(f"[{', '.join(number(n).text for n in numbers)}]", axis=axis)
+        value = self.declare(outcome, key, term, ["1"])
         self.scope[key] = Range(value.name, axis)
 
     def _numbers(self, node: Node) -> tuple[float, ...]:
@@ -35,7 +35,7 @@ class ListDefinitions(Statements):
         first, last = node.parts
         ends = list(first.parts) if first.tag == "sequence" else [first]
         at = Expressions(self, self.scope)
-        known = [at.said(end).number for end in (*ends, last)]
+        known = [at.term(end).number for end in (*ends, last)]
         numbers = [n for n in known if n is not None]
         if len(numbers) != len(known):
             raise Untranslatable("range with calculated ends", "give its values as a list")
@@ -63,13 +63,13 @@ class ListDefinitions(Statements):
             raise Untranslatable("list with gaps", "write the list with all its items")
         if any(key_of(node) == key for node in value.all("id")):
             raise Untranslatable("recurrence", "write its closed form")
-        said = self.expression(without_result(value))
-        if said.is_vector:
+        term = self.expression(without_result(value))
+        if term.is_vector:
             raise Untranslatable("list of lists", "write each as a list of its own")
-        if said.axis is None:
-            said = listed((said,) * along.axis.length, along.axis)
+        if term.axis is None:
+            term = listed((term,) * along.axis.length, along.axis)
         axis = replace(along.axis, numbers=())
-        self.declare(outcome, key, replace(said, axis=axis, is_vector=True), self.asked(value))
+        self.declare(outcome, key, replace(term, axis=axis, is_vector=True), self.asked(value))
 
     def _one_item(self, outcome: Outcome, target: Node, value: Node) -> None:
         """Another value for one item of a list that is there, which makes another list."""
@@ -77,13 +77,13 @@ class ListDefinitions(Statements):
         whole = self.scope.get(key)
         if isinstance(whole, Failed):
             raise Unnamed(key, whole.region)
-        at = Expressions(self, self.scope).said(target.parts[2]).number
+        at = Expressions(self, self.scope).term(target.parts[2]).number
         if not isinstance(whole, Value) or whole.axis is None or at is None or whole.axis.length > 100:
             raise Untranslatable("single items defined one by one", "write the list with all its items")
         place = int(at) - whole.axis.start
         if not 0 <= place < whole.axis.length:
             raise Untranslatable("list that grows", "write the list with all its items")
-        items = [Said(f"{whole.name}[{n}]") for n in range(1, whole.axis.length + 1)]
+        items = [Term(f"{whole.name}[{n}]") for n in range(1, whole.axis.length + 1)]
         items[place] = self.expression(without_result(value))
         self.declare(outcome, key, listed(tuple(items), whole.axis), self.asked(value))
         outcome.name = ""
@@ -97,17 +97,17 @@ class ListDefinitions(Statements):
         if inner.tag == "ComboBoxControl":
             self.choose(outcome, targets, inner)
             return
-        said = self.expression(inner)
-        if said.axis is None or said.axis.length != len(targets):
+        term = self.expression(inner)
+        if term.axis is None or term.axis.length != len(targets):
             raise Untranslatable("names for the items of what is no list of as many", "define each by itself")
-        if not said.text.isidentifier() and not said.text.startswith("["):
-            said = self.declare(outcome, "items", said, self.asked(value)).said()
+        if not term.text.isidentifier() and not term.text.startswith("["):
+            term = self.declare(outcome, "items", term, self.asked(value)).term()
         for place, part in enumerate(targets, 1):
-            text = said.text if said.text.isidentifier() else f"({said.text})"
+            text = term.text if term.text.isidentifier() else f"({term.text})"
             item = (
-                Said(f"{text}[{place}]")
-                if said.text.isidentifier()
-                else Said(items_in(said)[place - 1], LOOSE)
+                Term(f"{text}[{place}]")
+                if term.text.isidentifier()
+                else Term(items_in(term)[place - 1], LOOSE)
             )
             self.declare(outcome, key_of(part), item, self.asked(value))
         outcome.name = ""
@@ -133,7 +133,7 @@ class ListDefinitions(Statements):
         outcome.lines.append(
             f'choice {name} = {words[chosen]} "{self.words_for(name)}" ({" | ".join(words)})'
         )
-        self.judge.sorts[name] = Sort(words=tuple(words))
+        self.declared.sorts[name] = Sort(words=tuple(words))
         if is_text:
             self.scope[key] = Choice(name, dict(zip((c.text for c in cells), words, strict=True)))
             return
@@ -144,7 +144,7 @@ class ListDefinitions(Statements):
                 f"if {name} is {word} then {value.text} else "
                 for word, value in zip(words[:-1], values[:-1], strict=True)
             )
-            self.declare(outcome, key_of(target), Said(text + values[-1].text, LOOSE), [])
+            self.declare(outcome, key_of(target), Term(text + values[-1].text, LOOSE), [])
         outcome.name = ""
 
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from app.worksheets.importing.errors import Untranslatable
 from app.worksheets.importing.names import key_of
-from app.worksheets.importing.said import PRODUCT, Said, binary, listed, number, reduced
 from app.worksheets.importing.scope import Scope, Written
+from app.worksheets.importing.terms import PRODUCT, Term, binary, listed, number, reduced
 from app.worksheets.importing.trees import Node
 from app.worksheets.importing.writer import MOST_ITEMS, Writer
 
@@ -15,34 +15,34 @@ from app.worksheets.importing.writer import MOST_ITEMS, Writer
 class Lists(Writer):
     """Writes lists."""
 
-    def matrix(self, node: Node) -> Said:
+    def matrix(self, node: Node) -> Term:
         """A vector as a list; other matrices are refused."""
         parts = [part for part in node.parts if part.tag != "display"]
         rows, columns = node.attributes.get("rows"), node.attributes.get("cols")
         if "1" not in (rows, columns) or not parts:
             raise Untranslatable("matrix", "write its rows or columns as lists")
         if len(parts) == 1:
-            return self.said(parts[0])
+            return self.term(parts[0])
         if len(parts) > MOST_ITEMS:
             raise Untranslatable(f"list of more than {MOST_ITEMS} items", "give it as an input over an axis")
-        items = tuple(self.quantity(part) or self.said(part) for part in parts)
+        items = tuple(self.quantity(part) or self.term(part) for part in parts)
         if any(item.axis for item in items):
             raise Untranslatable("list of lists", "write each as a list of its own")
         made = listed(items, self.sheet.axis(len(items)))
         made = replace(made, is_row=columns != "1")
         return made if self.keep is None else self.keep(made)
 
-    def transposed(self, part: Said) -> Said:
+    def transposed(self, part: Term) -> Term:
         """A vector as a row, or a row as a vector."""
         if not part.is_vector:
             raise Untranslatable("matrix", "write its items as lists")
         return replace(part, is_row=not part.is_row)
 
-    def item(self, whole: Node, index: Node) -> Said:
+    def item(self, whole: Node, index: Node) -> Term:
         """An item of a list, or its items along a range."""
         if index.tag == "sequence":
             raise Untranslatable("item of a matrix", "write its rows or columns as lists")
-        made, at = self.said(whole), self.said(index)
+        made, at = self.term(whole), self.term(index)
         if made.axis is None:
             raise Untranslatable("item of what is no list", "define the list above")
         if at.axis is not None:
@@ -54,9 +54,9 @@ class Lists(Writer):
             raise Untranslatable("item that the list does not have", "write an index within the list")
         if not made.text.replace("_", "").isalnum() and not made.text.startswith("["):
             raise Untranslatable("item of an expression", "give the list a name of its own")
-        return Said(f"{made.text}[{place}]")
+        return Term(f"{made.text}[{place}]")
 
-    def _along(self, made: Said, at: Said) -> Said:
+    def _along(self, made: Term, at: Term) -> Term:
         """The items of a list along a range that names each of them."""
         assert made.axis is not None
         assert at.axis is not None
@@ -67,7 +67,7 @@ class Lists(Writer):
             raise Untranslatable("part of a list", "give the part as a list of its own")
         return replace(made, is_vector=False, is_row=False, axis=replace(at.axis, start=made.axis.start))
 
-    def summed(self, parts: list[Node]) -> Said:
+    def summed(self, parts: list[Node]) -> Term:
         """A sum over an index, or of a list."""
         function = next((part for part in parts if part.tag == "lambda"), None)
         bounds = {part.tag: part.parts[0] for part in parts if part.parts and part.tag.endswith("Bound")}
@@ -81,19 +81,19 @@ class Lists(Writer):
             return reduced("sum", made)
         if "lowerBound" not in bounds or "upperBound" not in bounds:
             raise Untranslatable("sum over a range variable", "give its bounds, or sum the list")
-        numbers = self._counted(self.said(bounds["lowerBound"]), self.said(bounds["upperBound"]))
+        numbers = self._counted(self.term(bounds["lowerBound"]), self.term(bounds["upperBound"]))
         axis = replace(self.sheet.axis(len(numbers)), numbers=numbers)
         literal = f"[{', '.join(number(n).text for n in numbers)}]"
-        inner: Scope = {**self.scope, key_of(variable): Written(Said("index", axis=axis))}
+        inner: Scope = {**self.scope, key_of(variable): Written(Term("index", axis=axis))}
         made = self.within(inner).value(body)
         if "index" in made.text.replace("(", " ").replace(")", " ").split():
-            inner[key_of(variable)] = Written(Said(literal, axis=axis))
+            inner[key_of(variable)] = Written(Term(literal, axis=axis))
             made = replace(self, scope=inner, is_counting=True).value(body)
         if made.axis is None:
             return binary(number(len(numbers)), "*", made, PRODUCT)
         return reduced("sum", made)
 
-    def _counted(self, first: Said, last: Said) -> tuple[float, ...]:
+    def _counted(self, first: Term, last: Term) -> tuple[float, ...]:
         if first.number is None or last.number is None:
             raise Untranslatable("sum over a calculated range", "write its bounds as numbers")
         count = int(last.number - first.number) + 1

@@ -25,15 +25,15 @@ _TEX = frozenset(
 
 def key_of(node: Node) -> str:
     """A name as Mathcad tells it from others: its letters, with its subscript in braces."""
-    said = []
+    letters = []
     for piece in node.pieces:
         if isinstance(piece, str):
-            said.append(piece)
+            letters.append(piece)
         elif piece.tag == "Subscript":
-            said.append(f"_{{{piece.whole_text}}}")
+            letters.append(f"_{{{piece.whole_text}}}")
         else:
-            said.append(key_of(piece))
-    return "".join(said).strip()
+            letters.append(key_of(piece))
+    return "".join(letters).strip()
 
 
 def look(key: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from app.worksheets.importing.said import Axis, Said
+from app.worksheets.importing.terms import Axis, Term
 from app.worksheets.importing.trees import Node
 
 
@@ -19,9 +19,9 @@ class Value:
     number: float | None = None
     region: str = ""
 
-    def said(self) -> Said:
+    def term(self) -> Term:
         """The name as an expression."""
-        return Said(
+        return Term(
             self.name, axis=self.axis, is_vector=self.is_vector, is_row=self.is_row, number=self.number
         )
 
@@ -33,9 +33,9 @@ class Range:
     name: str
     axis: Axis
 
-    def said(self) -> Said:
+    def term(self) -> Term:
         """The name as an expression."""
-        return Said(self.name, axis=self.axis)
+        return Term(self.name, axis=self.axis)
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Choice:
 class Written:
     """An expression without a line of its own: a parameter, or a local name of a program."""
 
-    expression: Said
+    expression: Term
 
 
 @dataclass(eq=False)

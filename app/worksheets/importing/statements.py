@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from app.worksheets.importing.declarations import Declarations, sort_of, unit_for
 from app.worksheets.importing.errors import Untranslatable
 from app.worksheets.importing.expressions import Expressions
-from app.worksheets.importing.judge import Judge, sort_of, unit_for
 from app.worksheets.importing.names import Names, key_of, look, symbol
 from app.worksheets.importing.outcome import Outcome
 from app.worksheets.importing.quantities import Scaled, is_infinite, result_of, scaled
 from app.worksheets.importing.regions import OriginalSheet
-from app.worksheets.importing.said import Axis, Said, number
 from app.worksheets.importing.scope import Function, Scope, Value, Written
+from app.worksheets.importing.terms import Axis, Term, number
 from app.worksheets.importing.trees import Node
 from templates.core.language.template import Template
 from templates.core.units.expressions import Sort, constant
@@ -34,7 +34,7 @@ class Statements:
         self.sheet = sheet
         self.origin, self.is_labelled = sheet.origin, sheet.is_labelled
         self.scope: Scope = {}
-        self.judge = Judge()
+        self.declared = Declarations()
         self.names = Names(RESERVED)
         self.outcomes: dict[int, Outcome] = {}
         self._words = set[str]()
@@ -48,9 +48,9 @@ class Statements:
         """The axis of the vectors of a length."""
         return Axis(f"items_{length}", length, self.origin)
 
-    def function(self, function: Function, arguments: Sequence[Said]) -> str | None:
+    def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
         """The name of the statement of a function for arguments of these units; written at its first call."""
-        sorts = [self.judge.sort(part.text, self.judge.bound) for part in arguments]
+        sorts = [self.declared.sort(part.text, self.declared.bound) for part in arguments]
         units = tuple(
             "1" if part.is_truth else _parameter_unit(sort)
             for part, sort in zip(arguments, sorts, strict=True)
@@ -59,37 +59,36 @@ class Statements:
             return function.names[units] or None
         keys = function.parameters
         inner: Scope = dict(function.scope)
-        own, parameters = Names(RESERVED | self.judge.sorts.keys() | self.judge.functions.keys()), list[str]()
-        for key in keys:
-            parameters.append(own.take(key))
-            inner[key] = Written(Said(parameters[-1]))
+        own = Names(RESERVED | self.declared.sorts.keys() | self.declared.functions.keys())
+        parameters = [own.take(key) for key in keys]
+        inner.update((key, Written(Term(name))) for key, name in zip(keys, parameters, strict=True))
         function.names[units] = ""  # a function that calls itself is written out, and refused as too deep
         bound = {name: sort_of(unit) for name, unit in zip(parameters, units, strict=True)}
-        before, self.judge.bound = self.judge.bound, bound
+        before, self.declared.bound = self.declared.bound, bound
         caller, self.now = self.now, self.owners[function.region]
         try:
             body = Expressions(self, inner).value(function.body)
             if body.axis is not None or not parameters:
                 return None
-            sort = self.judge.sort(body.text, bound)
+            sort = self.declared.sort(body.text, bound)
             unit = unit_for(sort, self.asked(function.body))
         finally:
-            self.judge.bound, self.now = before, caller
+            self.declared.bound, self.now = before, caller
         name = self.names.take(function.key)
         function.names[units] = name
-        self.judge.functions[name] = len(parameters), sort_of(unit)
+        self.declared.functions[name] = len(parameters), sort_of(unit)
         takes = ", ".join(f"{own} [{unit}]" for own, unit in zip(parameters, units, strict=True))
         self.owners[function.region].lines.append(f"{name}({takes}) [{unit}] = {body.text}")
         return name
 
-    def curve(self, across: Said, up: Said) -> str:
+    def curve(self, across: Term, up: Term) -> str:
         """The name of a curve through the points of two lists that are written out."""
         assert self.now is not None
         points = list(zip(items_in(across), items_in(up), strict=False))
         if len(points) < 2 or across.axis is None or up.axis is None or across.axis.length != up.axis.length:
             raise Untranslatable("interpolation in calculated lists", "write the points as a curve")
-        x_unit = unit_for(self.judge.sort(items_in(across)[0], self.judge.bound), [])
-        y_unit = unit_for(self.judge.sort(items_in(up)[0], self.judge.bound), [])
+        x_unit = unit_for(self.declared.sort(items_in(across)[0], self.declared.bound), [])
+        y_unit = unit_for(self.declared.sort(items_in(up)[0], self.declared.bound), [])
         name = self.names.take("interpolation")
         rows = [f"  {_in(x, x_unit)} -> {_in(y, y_unit)}" for x, y in points]
         heights = [row.rpartition(" ")[2] for row in rows]
@@ -99,10 +98,10 @@ class Statements:
         self.now.lines.append("\n".join([head, *rows]))
         if not is_flat:
             self.now.notes.append("outside its points the curve has no value; Mathcad goes on along its ends")
-        self.judge.functions[name] = 1, sort_of(y_unit)
+        self.declared.functions[name] = 1, sort_of(y_unit)
         return name
 
-    def expression(self, node: Node) -> Said:
+    def expression(self, node: Node) -> Term:
         """The expression of a tree; lists within it get lines of their own."""
         at = Expressions(self, self.scope)
         if node.tag in ("matrix", "parens", "transpose"):
@@ -110,43 +109,43 @@ class Statements:
         at.keep = self._keep
         return at.quantity(node) or at.value(node)
 
-    def _keep(self, said: Said) -> Said:
+    def _keep(self, term: Term) -> Term:
         """A list within a formula gets a line of its own: only lists over one axis meet."""
         assert self.now is not None
-        sort = self.judge.sort(said.text, None)
+        sort = self.declared.sort(term.text, None)
         unit, name = unit_for(sort, []), self.names.take("items")
-        assert said.axis is not None
-        self.now.lines.append(f'{name} [{unit}] over {said.axis.name} = {said.text} "{self.words_for(name)}"')
-        self.judge.sorts[name] = sort_of(unit, said.axis.name)
-        return replace(said, text=name)
+        assert term.axis is not None
+        self.now.lines.append(f'{name} [{unit}] over {term.axis.name} = {term.text} "{self.words_for(name)}"')
+        self.declared.sorts[name] = sort_of(unit, term.axis.name)
+        return replace(term, text=name)
 
     def declare(
         self,
         outcome: Outcome,
         key: str,
-        said: Said,
+        term: Term,
         wanted: Sequence[str],
         *,
         is_given: bool = False,
         words: str = "",
     ) -> Value:
         """Write the line of a value, and let the name mean it from here on."""
-        sort = self.judge.sort(said.text, None)
+        sort = self.declared.sort(term.text, None)
         unit = unit_for(sort, wanted)
         name = self.names.take(key)
         if key in self.scope:
             outcome.notes.append(f"{look(key)} is defined again here: from here on it is {name}")
-        axis = said.axis
+        axis = term.axis
         over = f" over {axis.name}" if axis else ""
         kind = "given " if is_given else ""
         clause = self._symbol(key, name)
-        line = f'{kind}{name} [{unit}]{over} = {said.text} "{self.words_for(words or name)}"{clause}'
+        line = f'{kind}{name} [{unit}]{over} = {term.text} "{self.words_for(words or name)}"{clause}'
         outcome.lines.append(line)
         outcome.name = name
-        self.judge.sorts[name] = sort_of(unit, axis.name if axis else "")
-        known = None if is_given else said.number
+        self.declared.sorts[name] = sort_of(unit, axis.name if axis else "")
+        known = None if is_given else term.number
         value = Value(
-            name, axis, said.is_vector or axis is not None, said.is_row, known, outcome.original.number
+            name, axis, term.is_vector or axis is not None, term.is_row, known, outcome.original.number
         )
         self.scope[key] = value
         return value
@@ -221,15 +220,15 @@ def _parameter_unit(sort: Sort) -> str:
     return "1" if sort.kind.base == registry.Unit("") else unit
 
 
-def items_in(said: Said) -> list[str]:
+def items_in(term: Term) -> list[str]:
     """The items of a list that is written out; none of another."""
-    if not said.text.startswith("["):
+    if not term.text.startswith("["):
         return []
     items, depth, start = [], 0, 1
-    for place, sign in enumerate(said.text):
+    for place, sign in enumerate(term.text):
         depth += (sign in "[(") - (sign in "])")
-        if (sign == "," and depth == 1) or place == len(said.text) - 1:
-            items.append(said.text[start:place].strip())
+        if (sign == "," and depth == 1) or place == len(term.text) - 1:
+            items.append(term.text[start:place].strip())
             start = place + 1
     return items
 

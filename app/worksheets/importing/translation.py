@@ -70,9 +70,9 @@ def _solving(outcome: Outcome, work: Definitions) -> None:
     unknowns = [key_of(node) for node in _sought(region.math)]
     if len(unknowns) == 1:
         equation = next((c for c in work.in_block(region) if c.original.role == "constraint"), None)
-        said = work.equation(equation.original) if equation else "left == right"
+        condition = work.equation(equation.original) if equation else "left == right"
         name = look(unknowns[0])
-        remedy = f"give it bounds, as in: solve {name} [1] from 0 to 1 so that {said}"
+        remedy = f"give it bounds, as in: solve {name} [1] from 0 to 1 so that {condition}"
         outcome.refuse("solve block, whose unknown has a guess and no bounds", remedy)
     else:
         outcome.refuse(

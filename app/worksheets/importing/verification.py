@@ -38,7 +38,7 @@ def verified(title: str, outcomes: Sequence[Outcome]) -> str:
     sheet = _readable(title, outcomes)
     template = _calculated(sheet) if sheet else None
     for outcome in outcomes:
-        _judge(outcome, template)
+        _compare(outcome, template)
     return text_of(title, outcomes)
 
 
@@ -123,7 +123,7 @@ def _calculated(sheet: Sheet) -> Template | None:
         return None
 
 
-def _judge(outcome: Outcome, template: Template | None) -> None:
+def _compare(outcome: Outcome, template: Template | None) -> None:
     if outcome.state != "unverified" or not outcome.name:
         return
     values = tuple(_value(template, outcome.name))

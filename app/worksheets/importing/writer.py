@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
 from app.worksheets.importing.quantities import scaled
-from app.worksheets.importing.said import POWER, Axis, Said, number
 from app.worksheets.importing.scope import Function, Scope
+from app.worksheets.importing.terms import POWER, Axis, Term, number
 from app.worksheets.importing.trees import Node
 
 MOST_INLINED = 12
@@ -22,10 +22,10 @@ class Sheets(Protocol):
     origin: int
     is_labelled: bool
 
-    def function(self, function: Function, arguments: Sequence[Said]) -> str | None:
+    def function(self, function: Function, arguments: Sequence[Term]) -> str | None:
         """The name of a function's statement for these arguments; None where it must be written out."""
 
-    def curve(self, across: Said, up: Said) -> str:
+    def curve(self, across: Term, up: Term) -> str:
         """The name of a curve through points."""
 
     def axis(self, length: int) -> Axis:
@@ -45,13 +45,13 @@ class Writer:
     is_vectorised: bool = False
     is_counting: bool = False
     depth: int = 0
-    keep: Callable[[Said], Said] | None = None
+    keep: Callable[[Term], Term] | None = None
 
     def within(self, scope: Scope) -> Self:
         """The same with other meanings of names."""
         return replace(self, scope=scope)
 
-    def said(self, node: Node) -> Said:
+    def term(self, node: Node) -> Term:
         """The expression of a tree.
 
         Raises
@@ -63,27 +63,27 @@ class Writer:
         """
         raise NotImplementedError
 
-    def value(self, node: Node) -> Said:
+    def value(self, node: Node) -> Term:
         """A quantity; a condition counts 1 where it holds and 0 where not."""
         raise NotImplementedError
 
-    def condition(self, node: Node) -> Said:
+    def condition(self, node: Node) -> Term:
         """A tree as a condition; of a number, whether it is not 0."""
         raise NotImplementedError
 
-    def either(self, test: Said, one: Node, other: Node) -> Said:
+    def either(self, test: Term, one: Node, other: Node) -> Term:
         """One of two values, by a condition."""
         raise NotImplementedError
 
-    def quantity(self, node: Node) -> Said | None:
+    def quantity(self, node: Node) -> Term | None:
         """A tree of numbers and units alone as one quantity."""
         made = scaled(node)
         if made is None or not made.powers:
             return None
         unit = made.unit
         sign = number(made.number)
-        return Said(sign.text if unit == "1" else f"{sign.text} {unit}", min(sign.tight, POWER))
+        return Term(sign.text if unit == "1" else f"{sign.text} {unit}", min(sign.tight, POWER))
 
-    def argument(self, node: Node) -> Said:
+    def argument(self, node: Node) -> Term:
         """A quantity as it is typed, or any value."""
         return self.quantity(node) or self.value(node)

@@ -27,7 +27,7 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Said:
+class Term:
     """An expression of a worksheet.
 
     A list is either a vector of Mathcad, for which a product is a scalar product, or values taken one by one
@@ -52,7 +52,7 @@ class Said:
         """The text, in parentheses where it binds more loosely than its place needs."""
         return self.text if self.tight >= least else f"({self.text})"
 
-    def shaped(self, *others: Said) -> Said:
+    def shaped(self, *others: Term) -> Term:
         """The same text with the shape that it gets from what it is made of."""
         lists = [(part, part.axis) for part in others if part.axis is not None]
         if not lists:
@@ -65,43 +65,43 @@ class Said:
         return replace(self, axis=axis, is_vector=is_vector, is_row=is_row)
 
 
-def binary(left: Said, sign: str, right: Said, tight: int) -> Said:
+def binary(left: Term, sign: str, right: Term, tight: int) -> Term:
     """An operator between two expressions; sums and products go on from the left."""
     text = f"{left.bound(tight)} {sign} {right.bound(tight + 1)}"
-    return Said(text, tight, number=_folded(left.number, sign, right.number)).shaped(left, right)
+    return Term(text, tight, number=_folded(left.number, sign, right.number)).shaped(left, right)
 
 
-def power(base: Said, exponent: Said) -> Said:
+def power(base: Term, exponent: Term) -> Term:
     """A power; its exponent may be a signed number without parentheses."""
     text = f"{base.bound(ATOM)}**{exponent.bound(ATOM)}"
-    return Said(text, POWER, number=_folded(base.number, "**", exponent.number)).shaped(base, exponent)
+    return Term(text, POWER, number=_folded(base.number, "**", exponent.number)).shaped(base, exponent)
 
 
-def negative(part: Said) -> Said:
+def negative(part: Term) -> Term:
     """The negative of an expression."""
     number = None if part.number is None else -part.number
-    return Said(f"-{part.bound(POWER)}", SIGNED, number=number).shaped(part)
+    return Term(f"-{part.bound(POWER)}", SIGNED, number=number).shaped(part)
 
 
-def called(name: str, *parts: Said) -> Said:
+def called(name: str, *parts: Term) -> Term:
     """A function of expressions, item by item where they are lists."""
-    return Said(f"{name}({', '.join(part.text for part in parts)})").shaped(*parts)
+    return Term(f"{name}({', '.join(part.text for part in parts)})").shaped(*parts)
 
 
-def reduced(name: str, part: Said) -> Said:
+def reduced(name: str, part: Term) -> Term:
     """A function that makes one value of a list."""
-    return Said(f"{name}({part.text})")
+    return Term(f"{name}({part.text})")
 
 
-def number(value: float) -> Said:
+def number(value: float) -> Term:
     """A plain number."""
     text = repr(float(value)).removesuffix(".0")
-    return Said(text, SIGNED if value < 0 else ATOM, number=float(value))
+    return Term(text, SIGNED if value < 0 else ATOM, number=float(value))
 
 
-def listed(items: tuple[Said, ...], axis: Axis) -> Said:
+def listed(items: tuple[Term, ...], axis: Axis) -> Term:
     """A list of single values, as a vector."""
-    return Said(f"[{', '.join(item.text for item in items)}]", ATOM, axis, is_vector=True)
+    return Term(f"[{', '.join(item.text for item in items)}]", ATOM, axis, is_vector=True)
 
 
 def _folded(left: float | None, sign: str, right: float | None) -> float | None:

@@ -33,7 +33,7 @@ def _parser() -> lark.Lark:
 
 
 @dataclass
-class Judge:
+class Declarations:
     """The names that have lines already, as the scope of expressions."""
 
     sorts: dict[str, Sort] = field(default_factory=dict)
