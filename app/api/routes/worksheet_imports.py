@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import PurePath
 from typing import Annotated
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 
 from app.api.dependencies import TheImports, TheOnce, TheStore, TheThreads, TheWorksheets
 from app.api.reading import SHEET_TYPES, StrictRoute, require_sheet
@@ -28,7 +28,13 @@ NewId = Annotated[
 FileName = Annotated[str, Query(max_length=200, pattern=NAME, description="how the file is called")]
 
 
-@router.post("/import", status_code=202, responses={**LATER, **refusals(409, 429)}, openapi_extra=BODY)
+@router.post(
+    "/import",
+    status_code=202,
+    responses={**LATER, **refusals(409, 429)},
+    openapi_extra=BODY,
+    dependencies=[Depends(require_sheet)],
+)
 async def import_worksheet(
     request: Request,
     imports: TheImports,
@@ -42,7 +48,6 @@ async def import_worksheet(
     The job answers with the worksheet once it has ended. Every region of the sheet is accounted for: see
     `GET /worksheets/{id}/import`.
     """
-    require_sheet(request)
     body = await request.body()
     name = PurePath(file.replace("\\", "/")).name
     return accepted(await threads.run(imports.begin, body, id, name, once))
