@@ -89,8 +89,8 @@ ROUTERS = (
     design_files,
     sheets_by_type,
     variant_sheets,
-    variants,
     reports,
+    variants,
     design_events,
     study_tables,
     studies,
@@ -98,7 +98,10 @@ ROUTERS = (
     analyses,
     jobs,
 )
-"""They are tried one after another; that of `evaluate`, which is called most, is the first."""
+"""They are tried one after another; that of `evaluate`, which is called most, is the first.
+
+Reports come before variants: `…/variants/report.pdf` is no variant.
+"""
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:

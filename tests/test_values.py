@@ -30,6 +30,23 @@ GROWING = {
     "Table",
     "_Run",
     "Analysis",
+    "Said",
+    "Names",
+    "_Tally",
+    "Declarations",
+    "Outcome",
+    "Budget",
+    "_Reader",
+    "Node",
+    "Resolved",
+    "StudySolids",
+    "Function",
+    "Writer",
+    "Arithmetic",
+    "Calls",
+    "Conditions",
+    "Expressions",
+    "Lists",
 }
 """Records that one function fills step by step before it returns them."""
 

@@ -181,4 +181,4 @@ def every_route(app):
     for outer in app.routes:
         for route in getattr(getattr(outer, "original_router", None), "routes", [outer]):
             for method in sorted(getattr(route, "methods", None) or ()):
-                yield method, route.path
+                yield method, getattr(route, "path_format", route.path)

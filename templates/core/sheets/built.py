@@ -17,7 +17,7 @@ RULE = "line"
 """A rule stands in the class under its line, `line 14`: a name that no user can write."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class Built:
     """What the statements of a worksheet make; `faults` are all that is wrong with them.
 
