@@ -7,7 +7,7 @@ nesting, and nothing is guessed from a missing or wrong content type.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
+from collections.abc import AsyncIterator, Awaitable, Callable, Container, Coroutine
 from json import JSONDecodeError
 from typing import Any
 
@@ -181,12 +181,16 @@ def check_type(request: Request, allowed: set[str], error: type[HttpError] = Not
     HttpError
         The error given, if there is a body, and its type is another or is not named.
     """
-    given = request.headers.get("content-type", "")
     length = request.headers.get("content-length")
     if length in (None, "0") and "transfer-encoding" not in request.headers:
         return  # an empty body is judged by what the route needs
+    _require_type(request, allowed, error, " or ".join(sorted(allowed)))
+
+
+def _require_type(request: Request, allowed: Container[str], error: type[HttpError], right: str) -> None:
+    given = request.headers.get("content-type", "")
     if given.partition(";")[0].strip().lower() not in allowed:
-        raise error(f"content type {given[:80]!r} is not taken here; send {' or '.join(sorted(allowed))}")
+        raise error(f"content type {given[:80]!r} is not taken here; send {right}")
 
 
 def require_step(request: Request) -> None:
@@ -197,11 +201,7 @@ def require_step(request: Request) -> None:
     NotStep
         If the content type is another, or missing.
     """
-    given = request.headers.get("content-type", "")
-    if given.partition(";")[0].strip().lower() not in STEP_TYPES:
-        raise NotStep(
-            f"content type {given[:80]!r} is not taken here; send the STEP file itself as model/step"
-        )
+    _require_type(request, STEP_TYPES, NotStep, "the STEP file itself as model/step")
 
 
 def require_sheet(request: Request) -> None:
@@ -212,11 +212,7 @@ def require_sheet(request: Request) -> None:
     NotSheet
         If the content type is another, or missing.
     """
-    given = request.headers.get("content-type", "")
-    if given.partition(";")[0].strip().lower() not in SHEET_TYPES:
-        raise NotSheet(
-            f"content type {given[:80]!r} is not taken here; send the file itself as application/octet-stream"
-        )
+    _require_type(request, SHEET_TYPES, NotSheet, "the file itself as application/octet-stream")
 
 
 async def _check_intricacy(request: StrictRequest) -> None:

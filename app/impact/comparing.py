@@ -87,7 +87,7 @@ def _verdicts(before: Outcome, after: Outcome, variant: str | None) -> Iterator[
 
 def _margin(before: Outcome, after: Outcome, variant: str | None) -> MarginLost | None:
     """The criterion that loses the largest part of its margin; of those that had none, the first."""
-    found: list[tuple[float, MarginLost]] = []
+    losses: list[tuple[float, MarginLost]] = []
     for name, old in before.judged.items():
         new = after.judged.get(name)
         if new is None or old.margin is None or new.margin is None or old.unit != new.unit:
@@ -105,8 +105,8 @@ def _margin(before: Outcome, after: Outcome, variant: str | None) -> MarginLost 
                 "relative": relative,
             }
         )
-        found.append((-1.0 if relative is None else relative, margin))
-    return max(found, key=lambda one: one[0])[1] if found else None
+        losses.append((-1.0 if relative is None else relative, margin))
+    return max(losses, key=lambda one: one[0])[1] if losses else None
 
 
 def _outputs(before: Outcome, after: Outcome) -> Iterator[tuple[str, float]]:

@@ -177,8 +177,8 @@ def _of_value(name: str, example: _Example) -> _Result:
 def _of_rule(rule: Requirement | None, example: _Example) -> _Result:
     if rule is None:
         return _Result()
-    told = f"{rule.sentence}, but "
-    broken = next((fault.detail for fault in example.faults if fault.detail.startswith(told)), None)
+    refusal = f"{rule.sentence}, but "
+    broken = next((fault.detail for fault in example.faults if fault.detail.startswith(refusal)), None)
     if broken is None and example.faults:
         return _Result(verdict="not_checked", message="the example is refused")
     return _Result(verdict="not_met" if broken else "met", message=broken)

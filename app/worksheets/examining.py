@@ -86,10 +86,10 @@ def as_released(
     if digest_of(cls) != digest:
         return "its text is not that of the release"
     try:
-        found = next(differences(cls, golden or {}), None)
+        difference = next(differences(cls, golden or {}), None)
     except (TemplateError, LookupError, TypeError, ValueError, AttributeError) as error:
         return f"its golden record cannot be read: {type(error).__name__}: {error}"
-    return f"its results differ: {found}" if found else cls
+    return f"its results differ: {difference}" if difference else cls
 
 
 def title_of(text: str) -> str:

@@ -48,7 +48,7 @@ class Published:
     @property
     def broken(self) -> dict[Key, str]:
         """Why released versions are broken."""
-        return {key: found for key, (_, found) in self._read.items() if isinstance(found, str)}
+        return {key: read for key, (_, read) in self._read.items() if isinstance(read, str)}
 
     def start(self) -> None:
         """Read what is left, and look what other servers release, if there may be others on this database."""
@@ -71,8 +71,8 @@ class Published:
                 released = {(state.id, state.number): state for state in states if state.state in RELEASED}
                 new = [key for key, state in released.items() if self._edit(key) != state.edit]
                 rows = [repository.version(session, *key) for key in new]
-            known = {key: kept for key, kept in self._read.items() if key in released.keys() - new}
-            self._read = {**known, **_read_again(rows, self._at_once)}
+            unchanged = {key: read for key, read in self._read.items() if key in released.keys() - new}
+            self._read = {**unchanged, **_read_again(rows, self._at_once)}
             self._states, self._waiting = states, released.keys() - self._read.keys()
             self.catalogues.publish(self._sheets(), self.draft)
 
@@ -97,14 +97,14 @@ class Published:
         return self._read[key][0] if key in self._read else None
 
     def _sheets(self) -> Sheets:
-        sound = {key: found for key, (_, found) in self._read.items() if isinstance(found, ReleasedSheet)}
+        sound = {key: read for key, (_, read) in self._read.items() if isinstance(read, ReleasedSheet)}
         broken = {key: f"its worksheet is broken: {reason}" for key, reason in self.broken.items()}
         broken |= dict.fromkeys(self._waiting, WAITING)
         drafts = (state for state in self._states if state.state not in RELEASED)
         return Sheets(sound, broken, {(one.id, one.number): _remedy(one) for one in drafts})
 
     def _watch(self) -> None:
-        while not self._ending.wait(0 if self._waiting else EVERY):
+        while not self._ending.wait(EVERY):
             if not (self._is_shared or self._waiting):
                 return
             try:
@@ -132,7 +132,7 @@ def _read_again(rows: Sequence[Row], seconds: float) -> dict[Key, tuple[str, Rel
 def _verified(row: Row) -> ReleasedSheet | str:
     """A released version, or why it is broken."""
     source = SheetSource(row.id, row.number, row.text, row.withdrawn)
-    if isinstance(found := as_released(source, row.digest, row.record), str):
-        logger.error("Worksheet %s version %d is broken: %s", row.id, row.number, found)
-        return found
-    return ReleasedSheet(found, "withdrawn" if row.withdrawn else "released", row.author, row.reviewer)
+    if isinstance(released := as_released(source, row.digest, row.record), str):
+        logger.error("Worksheet %s version %d is broken: %s", row.id, row.number, released)
+        return released
+    return ReleasedSheet(released, "withdrawn" if row.withdrawn else "released", row.author, row.reviewer)

@@ -59,14 +59,14 @@ class Worksheets:
         if (before := self._repeated(once)) is not None:
             return before
         require_free(body.id, self.catalogues)
-        found = self.calculated(once.client, examined, body.text)
+        reading = self.calculated(once.client, examined, body.text)
 
         def unit(session: Session) -> Row:
             if location := once.find(session):
                 return repository.newest(session, location["id"])
             if repository.versions(session, body.id):
                 raise IdTaken(body.id, "another worksheet")
-            row = _draft(body.id, 1, body.text, found)
+            row = _draft(body.id, 1, body.text, reading)
             row.author = body.author
             if imported is not None:
                 row.import_sha256, row.imported = imported[0], dict(imported[1])
@@ -94,12 +94,12 @@ class Worksheets:
         author = row.author if body.author is None else body.author
         if (text, author) == (row.text, row.author):
             return row
-        found = self.calculated(once.client, examined, text)
+        reading = self.calculated(once.client, examined, text)
 
         def unit(session: Session) -> Row:
             if location := once.find(session):
                 return repository.newest(session, location["id"])
-            draft = _draft(id, row.number + 1, text, found)
+            draft = _draft(id, row.number + 1, text, reading)
             draft.author = author
             if row.state in RELEASED:
                 if repository.newest(session, id).number != row.number:
@@ -267,16 +267,16 @@ class Worksheets:
             return repository.newest(session, location["id"]) if location else None
 
 
-def _draft(id: str, number: int, text: str, found: Examined) -> Row:
+def _draft(id: str, number: int, text: str, reading: Examined) -> Row:
     return Row(
         id=id,
         number=number,
         text=text,
         state="draft",
-        title=found.title,
-        language=found.language,
-        digest=found.digest,
-        faults=[asdict(fault) for fault in found.faults],
+        title=reading.title,
+        language=reading.language,
+        digest=reading.digest,
+        faults=[asdict(fault) for fault in reading.faults],
         tests=[],
     )
 
