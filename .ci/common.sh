@@ -122,6 +122,29 @@ install_browser() {
         >/dev/null 2>&1 || echo "apt-get cannot install chromium-headless-shell: without chromium the tests of the pages will skip"
 }
 
+# PostgreSQL, for the tests of a team; without it these skip, and say so. Its own service is not started.
+install_postgresql() {
+    ls -d /usr/lib/postgresql/*/bin/initdb >/dev/null 2>&1 && return
+    local as_root=""
+    [ "$(id -u)" -eq 0 ] || as_root="sudo -n"
+    { $as_root mkdir -p /etc/postgresql-common/createcluster.d &&
+        echo "create_main_cluster = false" | $as_root tee /etc/postgresql-common/createcluster.d/none.conf &&
+        $as_root apt-get update -q && $as_root apt-get install -q -y --no-install-recommends postgresql; } \
+        >/dev/null 2>&1 || echo "apt-get cannot install postgresql: without it the tests of a team will skip"
+}
+
+# The suites of storage, jobs and designs on PostgreSQL instead of SQLite.
+on_postgresql() {
+    local files
+    mapfile -t files <.ci/postgresql.txt
+    CRANKWRIGHT_TEST_DATABASE=postgresql "$environment/bin/pytest" -n 2 -rs "${files[@]}"
+}
+
+# All parts of a team together, and their kills: CRANKWRIGHT_TEST_TEAM_KILLS says how many. team OPTIONS…
+team() {
+    CRANKWRIGHT_TEST_BUDGET=0 "$environment/bin/pytest" -m slow -rsP tests/team "$@"
+}
+
 lint() { "$environment/bin/ruff" check && "$environment/bin/ruff" format --check; }
 scripts() { "$environment/bin/oxlint" --deny-warnings app/web/static; }
 types() { "$environment/bin/mypy"; }

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
+from typing import TYPE_CHECKING
 
 from app.api import problems, readiness
 from app.api.answering import Answering
 from app.api.gate.streams import Streams
 from app.api.services import Services
 from app.api.threads import Threads
+from app.approvals.comments import Comments
+from app.approvals.service import Approving
 from app.calculations.assembly import Calculations, assemble_calculations
 from app.calculations.cache import results
 from app.calculations.jobs import CALCULATION, SOLUTION, TOLERANCE
@@ -25,6 +28,8 @@ from app.designs.regeneration import Regeneration
 from app.designs.service import CALCULATE, REGENERATE, REGENERATE_SLOWLY, Designs
 from app.designs.solved import solved
 from app.designs.variants.detail import VariantDetails
+from app.identity.sealing import Sealer
+from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
 from app.observation import metrics
@@ -37,22 +42,25 @@ from app.solids.builds import Builds
 from app.solids.finding import Analysing
 from app.solids.healing import Healing
 from app.solids.models import BUILD, ModelBuild, Models
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
+from app.storage.connecting import opened_database
 from app.storage.database import Database
-from app.storage.engines import sqlite_file
 from app.storage.folder import DataFolder
-from app.storage.integrity import refuse_damage
-from app.storage.migrations import migrate
+from app.storage.opening import Figures, opened_store
+from app.storage.ownership import claim
 from app.studies.assembly import assemble_studies
 from app.studies.running import LANES, Parts
 from app.studies.solid_making import SolidMaking
 from app.tolerances.process import analysed
 from app.workers.base import Limits, Worker
-from app.workers.local import LocalProcesses
+from app.workers.started import started_workers
 from app.worksheets.importing.service import IMPORT, Imports
 from app.worksheets.published import Published
 from app.worksheets.service import Worksheets
 from cad.catalogue import models as find_models
+
+if TYPE_CHECKING:
+    from app.observation.traces import Traces
 
 NETWORK = (
     "app.designs.net",
@@ -64,24 +72,35 @@ NETWORK = (
 """What processes have loaded that calculate rows of designs."""
 SHEETS = ("app.worksheets.checking",)
 """What all calculation processes have loaded to read worksheets."""
+FIGURES = Figures(metrics.bucket_asked, metrics.copy_looked_for)
 
 
-def assemble(settings: Settings, stack: ExitStack) -> Services:
+def assemble(settings: Settings, stack: ExitStack, traces: Traces | None = None) -> Services:
     """Make all parts of the service, and begin to take jobs."""
     folder = DataFolder(settings.data)
     stack.callback(folder.release)
-    database = opened_database(settings, folder, stack)
-    store = ArtifactStore(folder.artifacts)
+    database = opened_database(settings, folder, metrics.committed)
+    stack.callback(database.close)
+    if traces is not None:
+        database.write_through(traces.writer)
+    store = opened_store(settings, folder, FIGURES)
+    if settings.artifacts_url is not None:
+        claim(database, store)
     results.limit(settings.cache_mb)
     retention = Retention(database, store, settings)
     retention.start()
     stack.callback(retention.stop)
-    worker = LocalProcesses()
-    stack.callback(worker.close)
-    catalogues = find_catalogues(settings, worker)
+    workers = started_workers(settings, stack)
+    catalogues = find_catalogues(settings, workers.here)
     stack.callback(catalogues.close)
-    jobs = Jobs(database, worker, settings, problems.describe)
-    published = published_worksheets(settings, database, catalogues, stack)
+    of_jobs = workers.of_jobs if traces is None else traces.worker(workers.of_jobs)
+    jobs = Jobs(database, of_jobs, settings, problems.describe)
+    if traces is not None:
+        jobs.run_within(traces.job)
+    sealer = Sealer(database)
+    sealer.start()
+    stack.callback(sealer.stop)
+    published = published_worksheets(database, catalogues, stack)
     calculations = assemble_calculations(settings, stack, catalogues, database, store, jobs, NETWORK, SHEETS)
     recent = Recent()
     builds = Builds(database, store)
@@ -107,6 +126,7 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         settings=settings,
         catalogues=catalogues,
         database=database,
+        identity=Identity(database, settings),
         store=store,
         jobs=jobs,
         calculations=calculations.pool,
@@ -127,25 +147,30 @@ def assemble(settings: Settings, stack: ExitStack) -> Services:
         models=models,
         analyses=analyses,
         healing=Healing(database, store, models, analyses),
+        approving=Approving(database, store),
+        comments=Comments(database),
         reports=Reports(database, store, models, catalogues),
-        press=Press(worker, Limits(settings.job_deadline, settings.job_memory_mb), settings.workers),
+        press=Press(workers.here, Limits(settings.job_deadline, settings.job_memory_mb), settings.workers),
         streams=Streams(settings.streams, settings.streams_per_client),
         readiness=readiness.Readiness(
             {
-                **data_checks(database, folder, settings),
-                "processes": readiness.Processes(worker),
+                **data_checks(database, store, folder, settings),
+                "processes": readiness.Processes(workers.of_jobs, workers.why_silent),
                 "calculations": readiness.Processes(calculations.pool),
             }
         ),
     )
 
 
-def data_checks(database: Database, folder: DataFolder, settings: Settings) -> dict[str, readiness.Check]:
+def data_checks(
+    database: Database, store: Artifacts, folder: DataFolder, settings: Settings
+) -> dict[str, readiness.Check]:
     """What must hold of the data for the service to be ready."""
-    return {
+    checks: dict[str, readiness.Check] = {
         "database": readiness.Writing(database),
         "space": readiness.Space(folder.path, settings.minimum_free_mb),
     }
+    return checks if settings.artifacts_url is None else {**checks, "files": readiness.Files(store)}
 
 
 def register_answers(jobs: Jobs, *answering: LongAnswers) -> None:
@@ -162,26 +187,12 @@ def find_catalogues(settings: Settings, worker: Worker) -> Catalogues:
     return TeamCatalogues(settings.template_folders, CheckInProcess(worker, limits))
 
 
-def published_worksheets(
-    settings: Settings, database: Database, catalogues: Catalogues, stack: ExitStack
-) -> Published:
+def published_worksheets(database: Database, catalogues: Catalogues, stack: ExitStack) -> Published:
     """The released worksheets among the templates; a SQLite file has one server, which releases them all."""
-    url = settings.database_url
-    is_shared = url is not None and sqlite_file(url) is None
-    published = Published(database, catalogues, is_shared=is_shared)
+    published = Published(database, catalogues, is_shared=database.is_shared)
     published.start()
     stack.callback(published.stop)
     return published
-
-
-def opened_database(settings: Settings, folder: DataFolder, stack: ExitStack) -> Database:
-    """The database, migrated; a damaged one is refused before anything is written to it."""
-    url = settings.database_url or folder.database_url
-    refuse_damage(url)
-    migrate(url)
-    database = Database(url, on_commit=metrics.committed)
-    stack.callback(database.close)
-    return database
 
 
 def register_jobs(

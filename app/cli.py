@@ -7,11 +7,10 @@ from pathlib import Path
 
 import click
 import numpy as np
-from pydantic import ValidationError
-from pydantic_core import ErrorDetails
-from pydantic_settings import SettingsError
 
 from app import server
+from app.approval_commands import approve_command, verify_report_command
+from app.audit_commands import audit_command
 from app.calculations import rendering
 from app.calculations.arguments import argument
 from app.catalogue.catalogues import loaded
@@ -20,14 +19,19 @@ from app.demo import demonstrate
 from app.downloads import download_command
 from app.hosts import is_loopback
 from app.impact_commands import impact_command
+from app.key_commands import asks_for_keys, keys_command
 from app.main import create_app
 from app.maintenance.commands import backup_command, check_command, restore_command
 from app.plain import Json, JsonObject, Raw
+from app.settable import SettableCommands
 from app.settings import Settings
-from app.storage.errors import DatabaseDamaged, DataFolderInUse
+from app.storage.connecting import require_answer
+from app.storage.errors import StorageError
 from app.storage.folder import DataFolder
 from app.storage.integrity import refuse_damage
+from app.storage.ownership import require_own_store
 from app.study_commands import study_command, sweep_command
+from app.workers.remote.commands import scheduler_command, worker_command
 from app.worksheet_commands import worksheet_command
 from cad.model import CadModel
 from templates.core.catalogue.finding import Catalogue
@@ -42,7 +46,7 @@ from templates.core.paper.schema import describe
 GOLDEN = Path("tests/golden")
 
 
-class Commands(click.Group):
+class Commands(SettableCommands):
     """Commands that say what is wrong with the catalogue, not where the program noticed."""
 
     def invoke(self, ctx: click.Context) -> object:
@@ -51,15 +55,6 @@ class Commands(click.Group):
             return super().invoke(ctx)
         except (UnknownTemplate, UnusableFile) as error:
             raise click.ClickException(str(error)) from None
-        except SettingsError as error:
-            message = f"{error}; a list is written as JSON, such as '[\"crank.example\"]'"
-            raise click.ClickException(message) from None
-        except ValidationError as error:
-            raise click.ClickException("\n".join(map(_wrong_setting, error.errors()))) from None
-
-
-def _wrong_setting(error: ErrorDetails) -> str:
-    return f"CRANKWRIGHT_{str(error['loc'][0]).upper()}: {error['msg'].removeprefix('Value error, ')}"
 
 
 @click.group(cls=Commands)
@@ -81,12 +76,15 @@ def serve(host: str | None, port: int | None, data: Path | None, insecure: bool)
     """Serve the REST interface; its documentation is at /docs."""
     given: JsonObject = {"data": data, "host": host, "port": port}
     settings = Settings(**{name: value for name, value in given.items() if value is not None})
-    _check_reach(settings.host, insecure)
     try:
+        require_answer(settings)
+        _check_reach(settings, insecure)
         folder = DataFolder(settings.data)
         refuse_damage(settings.database_url or folder.database_url)
+        if settings.artifacts_url is not None:
+            require_own_store(settings, folder)
         folder.release()
-    except (DataFolderInUse, DatabaseDamaged) as error:
+    except StorageError as error:
         raise click.ClickException(str(error)) from None
     except OSError as error:
         message = f"{settings.data.absolute()} cannot hold the data: {error.strerror}"
@@ -98,18 +96,22 @@ def serve(host: str | None, port: int | None, data: Path | None, insecure: bool)
     server.run(create_app(settings), settings)
 
 
-def _check_reach(host: str, insecure: bool) -> None:
-    """Refuse to listen beyond this machine, unless the operator insists: nothing asks for a key yet.
+def _check_reach(settings: Settings, insecure: bool) -> None:
+    """Refuse to listen beyond this machine where nothing asks for a key, unless the operator insists.
 
     Raises
     ------
     ClickException
-        If the host is not loopback and `insecure` is not set.
+        If the host is not loopback, there is no key, and `insecure` is not set.
     """
-    if is_loopback(host.lower()):
+    host = settings.host
+    if is_loopback(host.lower()) or asks_for_keys(settings):
         return
     danger = "without authentication: whoever reaches this address can read and change every design"
-    remedy = "Listen on 127.0.0.1, and put a reverse proxy with authentication in front"
+    remedy = (
+        "Add a key: crankwright keys add NAME --role admin. Or listen on 127.0.0.1, and put a reverse proxy "
+        "with authentication in front"
+    )
     if not insecure:
         raise click.ClickException(
             f"refusing to listen on {host} {danger}. {remedy}; or add --insecure if all of them may."
@@ -117,6 +119,9 @@ def _check_reach(host: str, insecure: bool) -> None:
     click.secho(f"WARNING: listening on {host} {danger}. {remedy}.", fg="yellow", err=True)
 
 
+main.add_command(approve_command)
+main.add_command(verify_report_command)
+main.add_command(audit_command)
 main.add_command(check_command)
 main.add_command(download_command)
 main.add_command(backup_command)
@@ -126,16 +131,27 @@ main.add_command(study_command)
 main.add_command(sweep_command)
 main.add_command(worksheet_command)
 main.add_command(impact_command)
+main.add_command(keys_command)
+main.add_command(worker_command)
+main.add_command(scheduler_command)
 
 
 @main.command()
 @click.option("--data", type=click.Path(path_type=Path), default=None, help="that of `serve`, if not given")
-def demo(data: Path | None) -> None:
+@click.option("--team", is_flag=True, help="on PostgreSQL, S3, Dask and two servers; nothing stays")
+def demo(data: Path | None, team: bool) -> None:
     """The paper's demonstration: SCALE and D drive a ball bearing from 50 mm to 48 mm.
 
-    Its design stays: `crankwright serve` shows it.
+    Its design stays: `crankwright serve` shows it. With --team nothing stays.
     """
-    demonstrate(data or Settings().data)
+    if not team:
+        demonstrate(data or Settings().data)
+        return
+    if data is not None:
+        raise click.UsageError("--team keeps nothing, so it takes no --data")
+    from app.team.demonstration import demonstrate_team
+
+    demonstrate_team()
 
 
 @main.command()

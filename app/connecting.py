@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,9 +11,11 @@ import click
 import httpx
 
 from app.client import Client, Problem
+from app.client.names import authorization
 from app.demo import service
 from app.settings import Settings
 
+KEY = "CRANKWRIGHT_KEY"
 PATIENCE = 600.0  # for an answer: a busy service plans a study in its turn [s]
 
 url_option = click.option(
@@ -32,16 +35,32 @@ def connected(url: str | None, data: Path | None) -> Iterator[Client]:
     place = url or f"http://127.0.0.1:{Settings().port}"
     try:
         if data is not None:
-            with service(data, err=True) as client:
+            with service(data, err=True, key=key_of_user()) as client:
                 yield client
         else:
-            with Client(place, timeout=PATIENCE) as client:
+            with Client(place, timeout=PATIENCE, key=key_of_user()) as client:
                 yield client
     except Problem as problem:
         raise click.ClickException(reasons(problem)) from None
     except httpx.HTTPError as error:
         where = "the service on the data folder does not answer" if data else f"no service answers at {place}"
         raise click.ClickException(f"{where}: {error}") from None
+
+
+def key_of_user() -> str | None:
+    """The key in CRANKWRIGHT_KEY, for a service that asks for one.
+
+    Raises
+    ------
+    ClickException
+        If it has not the form of a key.
+    """
+    key = os.environ.get(KEY) or None
+    try:
+        authorization(key)
+    except ValueError as error:
+        raise click.ClickException(f"{KEY}: {error}") from None
+    return key
 
 
 def reasons(problem: Problem) -> str:

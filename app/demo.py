@@ -35,12 +35,12 @@ HEADER = f"{'':28}{'before':>14}{'after':>14}"
 def demonstrate(data: Path) -> None:
     """Run the demonstration on a service of its own; its data and STEP file stay in the folder `data`."""
     with service(data) as client:
-        before = _created(client)
-        after = _changed(client, before, "tie inner_diameter to the worksheet", MAPPED)
+        before = created(client)
+        after = changed(client, before, "tie inner_diameter to the worksheet", MAPPED)
         _compare(client, before, after)
-        step = _saved(client, after, data)
-        scaled = _changed(client, after, "SCALE = 1.02", {"parameters": {"scale": "1.02"}})
-        loaded = _changed(client, scaled, "radial load = 30 kN", LOADED)
+        step = saved(client, after, data)
+        scaled = changed(client, after, "SCALE = 1.02", {"parameters": {"scale": "1.02"}})
+        loaded = changed(client, scaled, "radial load = 30 kN", LOADED)
         _report_rebuild(client, after, scaled)
         _report_rebuild(client, scaled, loaded)
         click.echo(f"\nSTEP file: {step.absolute()}")
@@ -63,8 +63,11 @@ LOADED = {"steps": {"film": {"inputs": {"radial_load": "30 kN"}}}, "note": "only
 
 
 @contextmanager
-def service(data: Path, *, err: bool = False) -> Iterator[Client]:
-    """A service in a process of its own on a free port, ended when done; `err` keeps the output free."""
+def service(data: Path, *, err: bool = False, key: str | None = None) -> Iterator[Client]:
+    """A service in a process of its own on a free port, ended when done; `err` keeps the output free.
+
+    The client sends a key if one is given.
+    """
     with socket.socket() as probe:
         probe.bind((LOOPBACK, 0))
         port = probe.getsockname()[1]
@@ -76,7 +79,7 @@ def service(data: Path, *, err: bool = False) -> Iterator[Client]:
     with log.open("wb") as errors:
         process = subprocess.Popen(command, stderr=errors)
     try:
-        with Client(f"http://{LOOPBACK}:{port}", timeout=START) as client:
+        with Client(f"http://{LOOPBACK}:{port}", timeout=START, key=key) as client:
             _await(client, process, log, err=err)
             yield client
     finally:
@@ -124,14 +127,16 @@ def _end_of(log: Path) -> str:
     return "\n  ".join([f"{log.absolute()} ends with", *lines])
 
 
-def _created(client: Client) -> Design:
+def created(client: Client) -> Design:
+    """The design before the relation is tied: 50 mm."""
     document: JsonObject = json.loads(json.dumps(PAPER))
     document["model"]["parameters"] = {"inner_diameter": "50 mm"}
     click.echo("creating the design: ball bearing of 50 mm, SCALE = 1, D = SCALE * 48 mm")
     return _checked(client.create(document, on_progress=_progress))
 
 
-def _changed(client: Client, design: Design, what: str, patch: JsonObject) -> Design:
+def changed(client: Client, design: Design, what: str, patch: JsonObject) -> Design:
+    """The design after a change, which is announced, and its regeneration."""
     click.echo(f"changing: {what}")
     return _checked(client.change(design, patch, on_progress=_progress))
 
@@ -163,13 +168,13 @@ def _compare(client: Client, before: Design, after: Design) -> None:
 def _facts(client: Client, design: Design) -> dict[str, tuple[float, str]]:
     revision = client.revision(design.id, design.revision)
     thickness = revision.steps["film"].outputs["minimum_film_thickness"]
-    dimensions = _dimensions(client, _build(client, design))
+    dimensions = dimensions_of(client, build_of(client, design))
     measured = {name: (size.value, size.unit.removeprefix("1")) for name, size in dimensions.items()}
     assert isinstance(thickness.value, float), "the paper's film has one thickness"
     return {"minimum_film_thickness": (thickness.value, thickness.unit or ""), **measured}
 
 
-def _build(client: Client, design: Design) -> str:
+def build_of(client: Client, design: Design) -> str:
     """The key of the design's build."""
     build = client.revision(design.id, design.revision).models["model"].build
     if build is None:
@@ -177,19 +182,20 @@ def _build(client: Client, design: Design) -> str:
     return build
 
 
-def _dimensions(client: Client, build: str) -> dict[str, Quantity]:
+def dimensions_of(client: Client, build: str) -> dict[str, Quantity]:
     """The dimensions that the service measured on a build."""
     measurements = client.build(build).measurements
     return measurements.dimensions if measurements else {}
 
 
-def _saved(client: Client, design: Design, data: Path) -> Path:
+def saved(client: Client, design: Design, data: Path) -> Path:
+    """The STEP file of a revision, in a folder."""
     return client.download(design.id, "step", revision=design.revision).save(data)
 
 
 def _report_rebuild(client: Client, old: Design, new: Design) -> None:
-    builds = [_build(client, design) for design in (old, new)]
-    diameter = _dimensions(client, builds[1])["inner_diameter"]
+    builds = [build_of(client, design) for design in (old, new)]
+    diameter = dimensions_of(client, builds[1])["inner_diameter"]
     same = "the same solid" if builds[0] == builds[1] else "a new solid"
     measured = f"{diameter.value:.6g} {diameter.unit}"
     click.echo(f"revision {old.revision} → {new.revision}: {same}, inner diameter {measured}")

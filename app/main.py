@@ -8,13 +8,15 @@ from collections.abc import AsyncIterator, Iterator
 from contextlib import ExitStack, asynccontextmanager, contextmanager
 from functools import partial
 from importlib.metadata import version
+from typing import TYPE_CHECKING
 
 from fastapi import FastAPI, Response
 from fastapi_offline import FastAPIOffline
 
 from app.api import docs, problems
 from app.api.description import describe_interface, operation_id
-from app.api.gate import guard, observing
+from app.api.gate import guard, observing, roles
+from app.api.gate.access import Access
 from app.api.gate.heads import HeadLimit
 from app.api.gate.pacing import Pace
 from app.api.gate.stopping import StoppingAnswer
@@ -22,6 +24,8 @@ from app.api.gate.timeouts import BodyTime
 from app.api.reading import BodyLimit, BodyTooLarge, HeadTooLarge, HttpError
 from app.api.routes import health
 from app.api.routes.analyses import router as analyses
+from app.api.routes.approvals import router as approvals
+from app.api.routes.audit import router as audit
 from app.api.routes.calculations import router as calculations
 from app.api.routes.calculations import worksheets
 from app.api.routes.catalogue import router as faults
@@ -39,6 +43,7 @@ from app.api.routes.labels import router as labels
 from app.api.routes.library import router as library
 from app.api.routes.models import router as models
 from app.api.routes.networks import router as networks
+from app.api.routes.principals import router as principals
 from app.api.routes.reports import router as reports
 from app.api.routes.solving import router as solving
 from app.api.routes.spreadsheet_lines import router as spreadsheet_lines
@@ -53,10 +58,15 @@ from app.api.routes.worksheet_imports import router as worksheet_imports
 from app.api.routes.worksheets import router as written_worksheets
 from app.assembly import assemble
 from app.hosts import Hosts
+from app.identity.errors import IdentityError
 from app.jobs.shutdown import on_stop_signal
 from app.schemas.problems import PROBLEM_CONTENT
 from app.settings import Settings
+from app.storage.errors import DatabaseUnavailable
 from app.web import assembly as pages
+
+if TYPE_CHECKING:
+    from app.observation.traces import Traces
 
 logger = logging.getLogger(__name__)
 
@@ -97,6 +107,9 @@ ROUTERS = (
     models,
     analyses,
     jobs,
+    principals,
+    approvals,
+    audit,
 )
 """They are tried one after another; that of `evaluate`, which is called most, is the first.
 
@@ -107,11 +120,14 @@ Reports come before variants: `…/variants/report.pdf` is no variant.
 def create_app(settings: Settings | None = None) -> FastAPI:
     """The service, ready to be served; it opens its data folder when it starts."""
     chosen = settings or Settings()
+    traces = opened_traces(chosen)
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         with ExitStack() as stack:
-            services = assemble(chosen, stack)
+            if traces is not None:
+                stack.callback(traces.close)  # the last: all else has ended its spans
+            services = assemble(chosen, stack, traces)
             app.state.services, app.state.pace = services, Pace()
             stack.enter_context(on_stop_signal(services.jobs.drain))
             stack.enter_context(spared_by_collections())
@@ -136,14 +152,29 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     problems.install(app)
     docs.install(app)
     pages.install(app)
+    roles.install(app)
+    app.add_middleware(Access, refuse=_refused)
     app.add_middleware(BodyLimit, limit=chosen.body_limit, refuse=_too_large)
     app.add_middleware(BodyTime, seconds=chosen.body_seconds, rate=chosen.slowest_rate)
     app.add_middleware(HeadLimit, refuse=_head_too_large)
     app.add_middleware(StoppingAnswer)
     guard.install(app, Hosts(chosen.allowed_hosts, chosen.host), _refused)
+    if traces is not None:
+        from app.api.gate import tracing
+
+        tracing.install(app, traces)
     observing.install(app)  # the outermost: it sees what the others refuse
     app.openapi = partial(describe_interface, app)  # type: ignore[method-assign]
     return app
+
+
+def opened_traces(settings: Settings) -> Traces | None:
+    """What sends traces, if the settings name a collector; the packages belong to the extra `traces`."""
+    if settings.traces_url is None:
+        return None
+    from app.observation.traces import Traces
+
+    return Traces(settings.traces_url)
 
 
 @contextmanager
@@ -164,8 +195,8 @@ def _too_large(reason: str) -> Response:
     return _refused(BodyTooLarge(reason))
 
 
-def _refused(error: HttpError) -> Response:
-    return problems.answer(problems.describe(error))
+def _refused(error: HttpError | IdentityError | DatabaseUnavailable) -> Response:
+    return problems.refusal(error)
 
 
 def _head_too_large(reason: str) -> Response:

@@ -3,10 +3,13 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, SecretStr
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from app.hosts import check_entry
+from app.machines import Count, Lane, check_certificate, check_collector, check_engine, check_lanes
+
+Certificate = Annotated[Path | None, AfterValidator(check_certificate), Field(validate_default=True)]
 
 
 class Settings(BaseSettings):
@@ -16,6 +19,38 @@ class Settings(BaseSettings):
 
     data: Path = Field(Path("crankwright-data"), description="folder of the database and the artifacts")
     database_url: str | None = Field(None, description="SQLAlchemy URL; a SQLite file in `data` if not given")
+    database_pool: int = Field(
+        16, gt=0, description="connections to PostgreSQL that write at the same time; as many read"
+    )
+    artifacts_url: str | None = Field(
+        None,
+        description=(
+            "where files are: `s3://bucket`, `s3://bucket/prefix`, or `file:///folder` for a folder that "
+            "all servers share; a folder in `data` if not given"
+        ),
+    )
+    s3_endpoint: str | None = Field(
+        None, description="address of an S3 server other than Amazon's; keys come from the AWS environment"
+    )
+    artifact_cache_mb: int = Field(2048, gt=0, description="local copies of a bucket's files [MiB]")
+    engine: Annotated[str, AfterValidator(check_engine)] = Field(
+        "local",
+        description="what runs jobs: `local`, or a Dask scheduler such as `tls://scheduler:8786`",
+    )
+    dask_ca: Certificate = Field(None, description="certificate of the authority that signs those of Dask")
+    dask_cert: Certificate = Field(None, description="own certificate in the network of Dask")
+    dask_key: Certificate = Field(None, description="key of that certificate")
+    lanes: Annotated[dict[Lane, Count], AfterValidator(check_lanes)] = Field(
+        {"geometry": 1, "analysis": 1},
+        description="jobs that `crankwright worker` runs at the same time, by kind of work",
+    )
+    lease_seconds: float = Field(
+        30.0, gt=0, description="after so long without a sign of its server a job is queued again [s]"
+    )
+    beat_seconds: float = Field(10.0, gt=0, description="time between two such signs [s]")
+    poll_seconds: float = Field(
+        5.0, gt=0, description="how often a server of a team looks into the database without a hint [s]"
+    )
     minimum_free_mb: int = Field(200, ge=0, description="free disk space below which /readyz says 503 [MiB]")
     host: str = "127.0.0.1"
     port: int = Field(8000, ge=0, le=65535)
@@ -61,8 +96,16 @@ class Settings(BaseSettings):
     keep_keys_days: float = Field(
         7, gt=0, description="how long an Idempotency-Key is remembered [days of operation]"
     )
+    keep_events_days: float = Field(
+        7, gt=0, description="how long an event can be read again by its number [days of operation]"
+    )
     keep_builds_days: float = Field(
         90, ge=1, description="how long a build that no revision uses is kept [days of operation]"
+    )
+    keep_files_hours: float = Field(
+        24,
+        ge=2,
+        description="how long several servers keep a file that no row names [h]",
     )
     drain_seconds: float = Field(10.0, gt=0, description="longest time from SIGTERM to the end [s]")
     connections: int = Field(1000, gt=0, description="connections at the same time; others get 503")
@@ -73,6 +116,20 @@ class Settings(BaseSettings):
         16384, gt=0, description="what a body brings, or a client reads, on average at least [bytes/s]"
     )
     keep_alive_seconds: int = Field(5, gt=0, description="longest rest of a connection between requests [s]")
+    oidc_issuer: str | None = Field(None, description="OpenID provider by which people sign in")
+    oidc_client: str | None = Field(None, description="this service's name at that provider")
+    oidc_secret: SecretStr | None = Field(None, description="and its secret there")
+    session_hours: float = Field(12, gt=0, description="how long a browser stays signed in [h]")
+    principal_rate: float = Field(600, gt=0, description="requests of one principal; others get 429 [1/min]")
+    principal_storage_mb: int = Field(
+        20480, gt=0, description="files that one principal may have stored [MiB]"
+    )
+    principal_seconds: float = Field(
+        36000, gt=0, description="calculation that one principal may use on a day (UTC) [s]"
+    )
+    traces_url: Annotated[str | None, AfterValidator(check_collector)] = Field(
+        None, description="OpenTelemetry collector that traces are sent to: `http://127.0.0.1:4318`"
+    )
     streams: int = Field(200, gt=0, description="streams of events that may be open")
     streams_per_client: int = Field(20, gt=0, description="streams of events that one client may have open")
     log_level: Literal["debug", "info", "warning", "error"] = Field(

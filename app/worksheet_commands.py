@@ -14,7 +14,7 @@ import click
 from app.client import Client
 from app.connecting import connected, data_option, url_option
 from app.schemas.worksheet_imports import ImportedRegion
-from app.schemas.worksheets import Sheet, SheetCheck
+from app.schemas.worksheets import Sheet, SheetCheck, SheetSummary
 from templates.core.errors import plain
 
 OPEN = ("draft", "tested", "reviewed")
@@ -37,7 +37,7 @@ def list_command(url: str | None, data: Path | None) -> None:
     """Every worksheet at its newest version."""
     with connected(url, data) as client:
         for one in client.worksheets():
-            review = f", reviewed by {one.reviewer}, review not verified" if one.reviewer else ""
+            review = f", reviewed by {one.reviewer}{_doubt(one, ', ')}" if one.reviewer else ""
             click.echo(f"{one.id} {one.version}  ({one.state}{review})  {plain(one.title)}")
 
 
@@ -212,8 +212,13 @@ def _export(client: Client, sheet: Sheet, folder: Path) -> None:
 
 
 def _say(sheet: Sheet) -> None:
-    review = f", reviewed by {sheet.reviewer}; review not verified" if sheet.reviewer else ""
+    review = f", reviewed by {sheet.reviewer}{_doubt(sheet, '; ')}" if sheet.reviewer else ""
     click.echo(f"{sheet.id} version {sheet.version}: {sheet.state}{review}; digest {sheet.digest}")
+
+
+def _doubt(sheet: Sheet | SheetSummary, sign: str) -> str:
+    """That nobody proved the name of the reviewer, where that is so."""
+    return "" if sheet.review_verified else f"{sign}review not verified"
 
 
 def _is_sound(check: SheetCheck) -> bool:

@@ -125,7 +125,10 @@ class Bench:
 
     def is_current(self, design: str) -> bool:
         """Whether the design is regenerated."""
-        return bool(self.designs.state(design)["state"] == "current")
+        from app.designs import repository
+
+        with self.database.read() as session:
+            return bool(repository.head(session, design).state == "current")
 
 
 def _folders(builds: type) -> list[tuple[()]]:

@@ -36,7 +36,7 @@ class Loops(CadModel):
     def dimensions(self, seen):
         return {}
 '''
-PATIENCE = 60.0  # for a server to start [s]
+PATIENCE = 240.0  # for a server to start, also on a busy machine [s]
 
 
 @dataclass(frozen=True)

@@ -1,23 +1,31 @@
 """How often the error of an orbit's smallest gap by the step lies within what is stated: on random duties.
 
-    python -m benchmarks.step_bound [duties]      two minutes for 400; prints the shares
+    python -m benchmarks.step_bound [duties]      two minutes for 400, and as many for grooved ones
+
+Prints the shares and keeps them in benchmarks/results/step_bound.json. Grooved duties are those of level
+`mobility_grooved` of `oil_film_cycle` 2, with a groove of any place, extent and width up to half the bearing.
 
 The truth is the orbit with steps sixteen times as fine. `step_error` is what `oil_film_cycle` 1 answers, the
 change at shared nodes; `step_bound` is that of `templates/physics/orbits/step_bound.py`.
 """
 
+import json
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from pathlib import Path
 
 import numpy as np
 
 from templates.core.arrays import Array
 from templates.physics.orbits import journal_orbit
+from templates.physics.orbits.grooved_mobility import Groove, Passing, grooved_orbit
 from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit, periodic_orbit
 from templates.physics.orbits.mobility_law import MapLaw
+from templates.physics.orbits.turning import turning
 
+RESULTS = Path("benchmarks/results/step_bound.json")
 SEED, DUTIES, POINTS, FINER = 91, 400, 72, 16
 USUAL = (0.3, 105.0)
 """Largest load numbers of usual engine bearings [-]."""
@@ -75,6 +83,20 @@ def measured(seed: int, duties: int, finer: float = FINER) -> Shares:
     return compared(orbit, true, np.hypot(*load.S).max(axis=-1))
 
 
+def measured_with_grooves(seed: int, duties: int, finer: float = FINER) -> Shares:
+    """The same of bearings with a groove in a sleeve at rest."""
+    rng = np.random.default_rng(seed)
+    load, ratio = random_duties(rng, duties, POINTS)
+    ratio = np.maximum(ratio, 0.1)
+    rest = turning(load.angle, load.period, np.zeros(load.w.shape))
+    place = rng.uniform(-np.pi, np.pi, duties), rng.uniform(0.2, 2 * np.pi, duties)
+    passing = Passing(load, rest, Groove(rng.uniform(0.05, 0.5, duties), *place))
+    orbit = grooved_orbit(passing, ratio)
+    with finer_steps(finer):
+        true = grooved_orbit(passing, ratio).between
+    return compared(orbit, true, np.hypot(*load.S).max(axis=-1))
+
+
 def compared(orbit: Orbit, true: Array, load: Array) -> Shares:
     """The shares, of the orbits that both have."""
     present = np.isfinite(orbit.least_gap) & np.isfinite(true)
@@ -92,5 +114,15 @@ def compared(orbit: Orbit, true: Array, load: Array) -> Shares:
     )
 
 
+def main() -> None:
+    """Measure, keep, print."""
+    duties = int(sys.argv[1]) if len(sys.argv) > 1 else DUTIES
+    shares = {"mobility": measured(SEED, duties), "mobility_grooved": measured_with_grooves(SEED, duties)}
+    kept = {"duties": duties, **{level: asdict(found) for level, found in shares.items()}}
+    RESULTS.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+    for level, found in shares.items():
+        print(level, found)
+
+
 if __name__ == "__main__":
-    print(measured(SEED, int(sys.argv[1]) if len(sys.argv) > 1 else DUTIES))
+    main()

@@ -11,38 +11,24 @@ from __future__ import annotations
 import ast
 import re
 import sys
+import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
-LAYERS: tuple[frozenset[str], ...] = tuple(
-    frozenset(names.split())
-    for names in (
-        "__main__",
-        "cli",
-        "study_commands impact_commands worksheet_commands",
-        "connecting",
-        "main demo server downloads",
-        "assembly",
-        "web",
-        "api",
-        "client maintenance",
-        "reports retention",
-        "studies tolerances impact worksheets",
-        "designs",
-        "solids",
-        "calculations",
-        "catalogue jobs",
-        "observation",
-        "workers storage schemas",
-        "presentation",
-        "settings",
-        "hosts",
-    )
-)
-"""From the top down: a part imports parts of lower layers only."""
+ROOT = Path(__file__).parents[1]
+APP = ROOT / "app"
 
-APP = Path(__file__).parents[1] / "app"
+
+def layers() -> tuple[frozenset[str], ...]:
+    """The layers of `app` as the import contracts of `pyproject.toml` draw them, from the top down."""
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+    (drawn,) = (one["layers"] for one in contracts if one["name"] == "the layers of app")
+    return tuple(frozenset(name.strip().removeprefix("app.") for name in layer.split("|")) for layer in drawn)
+
+
+LAYERS = layers()
+"""From the top down: a part imports parts of lower layers only."""
 
 
 def part_of(module: str) -> str:

@@ -28,8 +28,9 @@ HEAD = """# Licences
 
 Of everything that is installed with the service, its tests and its documentation, as each distribution states
 it itself. `python -m benchmarks.supply_chain` writes this page from the installed distributions, and the same
-as a CycloneDX bill of materials, `docs/sbom.cdx.json`. The service runs without the distributions marked
-*development*. No licence has been chosen for Crankwright itself yet; that is its owner's choice.
+as a CycloneDX bill of materials, `docs/sbom.cdx.json`. The service runs without the distributions whose last
+column says something: the extra `study`, `team` or `traces` needs them, or its *development*, which is tests
+and documentation. No licence has been chosen for Crankwright itself yet; that is its owner's choice.
 
 | name | version | licence | home | |
 |---|---|---|---|---|
@@ -108,25 +109,36 @@ EXTRAS = {
 }  # of uvicorn[standard]
 
 
-def needed(components: dict[str, Component]) -> set[str]:
-    """Return the names, normalised, of what the service needs to run, without tests and documentation."""
-    wanted, seen = {*_needed_directly(), *EXTRAS}, set[str]()
+OFFERED = ("study", "team", "traces")  # extras that a user may install
+
+
+def needed(components: dict[str, Component], extra: str | None = None) -> set[str]:
+    """Return the names, normalised, of what the service needs to run, or what one of its extras needs."""
+    wanted, seen = {*_needed_directly(extra), *([] if extra else EXTRAS)}, set[str]()
     while more := wanted - seen:
         seen |= more
         wanted = {need for name in more if name in components for need in components[name].needs}
     return seen
 
 
-def _needed_directly() -> Iterator[str]:
+def _needed_directly(extra: str | None = None) -> Iterator[str]:
     """The names, normalised, of the dependencies in pyproject.toml; an old installation may have others."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    return (normalised(re.split(r"[^\w.-]", need, maxsplit=1)[0]) for need in project["dependencies"])
+    needs = project["optional-dependencies"][extra] if extra else project["dependencies"]
+    for need in needs:
+        name, extra_of_it = re.findall(r"^([\w.-]+)(?:\[(\w+)\])?", need)[0]
+        yield normalised(name)
+        if extra_of_it:
+            yield normalised(f"{name}-{extra_of_it}")  # psycopg[binary] brings psycopg-binary
 
 
 def licences(components: dict[str, Component]) -> str:
     """Return the list of licences as a page."""
-    used = needed(components)
-    marks = {key: "" if key in used else "*development*" for key in components}
+    marks = dict.fromkeys(components, "*development*")
+    for extra in OFFERED:
+        for key in needed(components, extra) & {key for key in marks if marks[key] == "*development*"}:
+            marks[key] = f"`{extra}`"
+    marks |= dict.fromkeys(needed(components) & set(marks), "")
     rows = [
         f"| {one.name} | {one.version} | {one.licence} | {one.home} | {marks[key]} |"
         for key, one in sorted(components.items())

@@ -12,11 +12,15 @@ if sys.dont_write_bytecode:  # compiled tests are kept, but not beside their sou
     sys.dont_write_bytecode = False
     sys.pycache_prefix = str(Path.home() / ".cache" / "crankwright-tests")
 
+import forked  # noqa: E402
 import pytest  # noqa: E402
+from components import cluster, object_store, own_postgres, postgres, s3  # noqa: E402, F401 - for all folders
 from hypothesis import settings  # noqa: E402
 from lanes import group_of, name_group, rank, require_distinct  # noqa: E402
 from patience import BUDGET, FACTOR, SLOW_TEST, TEST  # noqa: E402
 from seeds import CHOSEN, SEED  # noqa: E402
+
+from app.workers import isolated  # noqa: E402
 
 # No timed assertions, and the same examples in every run, unless a seed is chosen.
 settings.register_profile("lanes", deadline=None, derandomize=CHOSEN is None, print_blob=True)
@@ -63,3 +67,11 @@ def pytest_collection_modifyitems(config, items):
     if getattr(config.option, "loadgroup", False):
         require_distinct(items)
     items.sort(key=lambda item: rank(group_of(item)))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def forked_forkservers():
+    """Fork servers of servers in this process need no seconds to begin: they are forked themselves."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(isolated, "launch", forked.launch_forkserver)
+        yield

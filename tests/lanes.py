@@ -10,9 +10,10 @@ from collections import Counter
 import pytest
 
 SERVED = "served"  # every test that needs the server of tests/app/conftest.py
+TEAM = "team"  # every test that needs PostgreSQL, an S3 server or Dask, of which one worker has each
 PAGES = "pages"  # every test that needs the server or the browser of tests/web/conftest.py
 
-LONGEST = (PAGES, SERVED, "tests/templates/test_catalogue_properties.py")
+LONGEST = (PAGES, SERVED, TEAM, "tests/templates/test_catalogue_properties.py")
 """Groups that begin first, the longest in front."""
 
 
@@ -21,6 +22,8 @@ def group_of(item):
     file = item.path.relative_to(item.config.rootpath).as_posix()
     if file.startswith("tests/web/"):
         return PAGES
+    if file.startswith("tests/team/"):
+        return TEAM
     if file.startswith("tests/app/") and "served" in item.fixturenames:
         return SERVED
     return file

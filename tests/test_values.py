@@ -36,6 +36,7 @@ GROWING = {
     "Declarations",
     "Outcome",
     "Budget",
+    "_Topic",
     "_Reader",
     "Node",
     "Resolved",

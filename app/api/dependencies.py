@@ -11,11 +11,15 @@ from typing import Annotated
 from fastapi import Depends, Header, Query, Request
 
 from app.api.answering import Answering
+from app.api.gate.access import STILL
 from app.api.gate.clients import TheClient
 from app.api.readiness import Readiness
 from app.api.reading import fingerprint
+from app.api.resuming import Still, always
 from app.api.services import Services
 from app.api.threads import Threads
+from app.approvals.comments import Comments
+from app.approvals.service import Approving
 from app.calculations.steps import Caller, call_as
 from app.catalogue.catalogues import Catalogues
 from app.designs.asking import Asking
@@ -24,6 +28,7 @@ from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.service import Designs
 from app.designs.variants.detail import VariantDetails
+from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
 from app.presentation.units import System
@@ -34,7 +39,7 @@ from app.schemas.tolerances import ToleranceAnalysis
 from app.solids.analyses import Analyses
 from app.solids.healing import Healing
 from app.solids.models import Models
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.studies.service import Studies
@@ -59,7 +64,8 @@ def _part(name: str) -> Callable[[Request], Awaitable[object]]:
 
 TheCatalogues = Annotated[Catalogues, Depends(_part("catalogues"))]
 TheDatabase = Annotated[Database, Depends(_part("database"))]
-TheStore = Annotated[ArtifactStore, Depends(_part("store"))]
+TheIdentity = Annotated[Identity, Depends(_part("identity"))]
+TheStore = Annotated[Artifacts, Depends(_part("store"))]
 TheJobs = Annotated[Jobs, Depends(_part("jobs"))]
 TheThreads = Annotated[Threads, Depends(_part("threads"))]
 TheAnswering = Annotated[Answering, Depends(_part("answering"))]
@@ -77,6 +83,8 @@ TheImpacts = Annotated[Impacts, Depends(_part("impacts"))]
 TheModels = Annotated[Models, Depends(_part("models"))]
 TheAnalyses = Annotated[Analyses, Depends(_part("analyses"))]
 TheHealing = Annotated[Healing, Depends(_part("healing"))]
+TheApproving = Annotated[Approving, Depends(_part("approving"))]
+TheComments = Annotated[Comments, Depends(_part("comments"))]
 TheReports = Annotated[Reports, Depends(_part("reports"))]
 ThePress = Annotated[Press, Depends(_part("press"))]
 TheReadiness = Annotated[Readiness, Depends(_part("readiness"))]
@@ -109,14 +117,14 @@ async def expensive_steps(request: Request, client: TheClient) -> None:
 ExpensiveSteps = Depends(expensive_steps)
 
 
-async def one_stream(request: Request, client: TheClient) -> AsyncIterator[None]:
-    """Hold a place for a stream, from before its first byte to its end."""
+async def one_stream(request: Request, client: TheClient) -> AsyncIterator[Still]:
+    """Hold a place for a stream, from before its first byte to its end; it asks whether that has come."""
     streams = services_of(request).streams
     streams.enter(client)
     try:
-        yield
+        yield request.scope.get(STILL, always)
     finally:
         streams.leave(client)
 
 
-OneStream = Annotated[None, Depends(one_stream)]
+OneStream = Annotated[Still, Depends(one_stream)]

@@ -18,6 +18,7 @@ from starlette.requests import ClientDisconnect
 
 from app.api.gate.allow import allowed_methods
 from app.api.gate.guard import BadHost, CrossSite, HostNotAllowed
+from app.api.gate.roles import public
 from app.api.gate.streams import TooManyStreams
 from app.api.gate.timeouts import BodyTooSlow
 from app.api.reading import (
@@ -31,10 +32,15 @@ from app.api.reading import (
     PreconditionRequired,
     TooIntricate,
 )
+from app.approvals import errors as approvals
 from app.calculations.errors import InvalidBody, TooManyValues
 from app.designs import errors as designs
+from app.identity import errors as identity
+from app.identity.limits import LimitReached
+from app.identity.oidc import ProviderRefused
 from app.jobs import errors as jobs
 from app.observation import logs, metrics
+from app.observation.secrets import without_keys
 from app.plain import Json, JsonObject
 from app.reports.errors import Unprintable
 from app.schemas.problems import MEDIA_TYPE, ProblemKind, refusals
@@ -89,6 +95,21 @@ TABLE: dict[type[Exception], Kind] = {
     templates.TemplateError: Kind("refused", 422, "The calculation refuses", "see `detail`"),
     storage.NotFound: Kind("not-found", 404, "Not found", "GET the list to see what there is"),
     designs.StaleRevision: Kind("stale-revision", 412, "The design has changed", "read it again, then retry"),
+    designs.DesignReleased: Kind(
+        "design-released", 409, "A released revision keeps its design", "archive the design instead"
+    ),
+    approvals.NotReady: Kind(
+        "not-ready-to-sign", 409, "The revision cannot be signed as it is", "see `detail`"
+    ),
+    approvals.OutOfOrder: Kind(
+        "step-out-of-order", 409, "Another step is due", "calculated → checked → released; see `detail`"
+    ),
+    approvals.SamePrincipal: Kind(
+        "same-principal", 409, "Another principal has to act", "let somebody else take this step"
+    ),
+    approvals.OtherDigest: Kind(
+        "other-digest", 412, "There is something else to sign", "read the approvals again, then sign"
+    ),
     worksheets.StaleWorksheet: Kind(
         "stale-worksheet", 412, "The worksheet has changed", "read it again, then retry"
     ),
@@ -137,15 +158,42 @@ TABLE: dict[type[Exception], Kind] = {
     TooManyValues: Kind("too-many-values", 413, "Too many values", "ask for fewer points or outputs"),
     BodyTooSlow: Kind("too-slow", 408, "The request comes too slowly", "send it faster, or in parts"),
     TooManyStreams: Kind("too-many-streams", 429, "Too many streams are open", "close some, then retry"),
+    identity.NotSignedIn: Kind(
+        "not-signed-in", 401, "A key is needed", "send `Authorization: Bearer cw_…`, or sign in at /sign-in"
+    ),
+    identity.RoleNeeded: Kind(
+        "role-needed", 403, "Your roles do not allow this", "ask an administrator for the role in `detail`"
+    ),
+    identity.NotOwn: Kind("not-own", 403, "This belongs to another", "ask its owner or an administrator"),
+    identity.KeyInAddress: Kind(
+        "key-in-address", 400, "A key stands in the address", "revoke it; send keys in Authorization alone"
+    ),
+    LimitReached: Kind(
+        "limit-reached",
+        429,
+        "You have used what you may",
+        "retry after the time in Retry-After; without it, ask an administrator",
+    ),
+    identity.Outlives: Kind("outlives-key", 403, "The key would live too long", "ask for a shorter life"),
+    identity.TooManyKeys: Kind("too-many-keys", 409, "There are too many keys", "go on with those there are"),
+    ProviderRefused: Kind("provider-refused", 403, "The sign-in failed", "begin again, or sign in by a key"),
+    identity.FirstByCommand: Kind(
+        "first-by-command", 409, "There are no keys yet", "the operator makes the first one; see `detail`"
+    ),
+    identity.NameTaken: Kind("name-taken", 409, "The name is taken", "choose another name"),
     jobs.JobNotFound: Kind("no-such-job", 404, "No such job", "GET /api/v1/jobs lists them"),
     jobs.JobFinished: Kind("job-finished", 409, "The job has ended", "nothing is left to cancel"),
     jobs.JobShared: Kind("job-shared", 409, "Others wait for the job", "leave it to them"),
     jobs.QueueFull: Kind("queue-full", 429, "Too much is waiting", "retry after the time in Retry-After"),
+    jobs.JobLost: Kind("lost", 422, "The work was lost", "simplify the model; ask the operator"),
     Unprintable: Kind("unprintable", 422, "The report is too long for paper", "ask for text/html"),
     storage.ArtifactMissing: Kind(
         "no-such-artifact", 404, "No such artifact", "take the hash from a revision"
     ),
     storage.ArtifactDamaged: Kind("artifact-damaged", 503, "The file is damaged", "retry: it is made again"),
+    storage.ArtifactsUnreachable: Kind(
+        "files-unreachable", 503, "The file store does not answer", "retry after the time in Retry-After"
+    ),
     storage.DatabaseDamaged: Kind(
         "database-damaged", 503, "The database is damaged", "the operator restores a backup; see `detail`"
     ),
@@ -283,7 +331,7 @@ _CARRIED: dict[type[Exception], Callable[..., JsonObject]] = {
 router = APIRouter(tags=["problems"])
 
 
-@router.get("/problems/{slug}", responses=refusals(404))
+@router.get("/problems/{slug}", responses=refusals(404), dependencies=[public()])
 def explain_problem(slug: str) -> ProblemKind:
     """What a kind of problem means, and what helps."""
     kinds = {
@@ -298,7 +346,15 @@ def explain_problem(slug: str) -> ProblemKind:
 def answer(about: Mapping[str, Json], headers: Mapping[str, str] | None = None) -> Response:
     """A problem as a response; it carries the id of the request."""
     about = {**about, "request_id": id_} if (id_ := logs.REQUEST_ID.get()) else about
-    return JSONResponse(dict(about), about["status"], headers=dict(headers or {}), media_type=MEDIA_TYPE)
+    return ProblemResponse(dict(about), about["status"], headers=dict(headers or {}), media_type=MEDIA_TYPE)
+
+
+class ProblemResponse(JSONResponse):
+    """A problem quotes what a client sent, but no key."""
+
+    def render(self, content: object) -> bytes:
+        """The problem as JSON."""
+        return without_keys(super().render(content).decode()).encode()
 
 
 def install(app: FastAPI) -> None:
@@ -309,11 +365,20 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(Exception, _handle_unexpected)
 
 
-async def _handle(request: Request, error: Exception) -> Response:
+_PASSING = (jobs.QueueFull, RowsLost, storage.ArtifactsUnreachable, storage.DatabaseUnavailable)
+"""What a later try may find over; each says when."""
+
+
+def refusal(error: Exception) -> Response:
+    """The answer to an error, with the headers that it names."""
     headers = getattr(error, "headers", {})
-    if isinstance(error, (jobs.QueueFull, RowsLost)):
+    if isinstance(error, _PASSING):
         headers = {"Retry-After": str(error.retry_after)}
     return answer(describe(error), headers)
+
+
+async def _handle(request: Request, error: Exception) -> Response:
+    return refusal(error)
 
 
 async def _handle_http(request: Request, error: Exception) -> Response:

@@ -1,4 +1,4 @@
-"""`/readyz`: can the service do its work now? It writes, looks at the free space and at the job processes.
+"""`/readyz`: can the service do its work now? It writes, looks at free space, job processes and a file store.
 
 The answer takes the same time however many designs there are, and comes even if the writer hangs.
 """
@@ -16,8 +16,11 @@ from typing import Protocol
 from sqlalchemy import update
 from sqlalchemy.orm import Session
 
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
+from app.storage.errors import ArtifactsUnreachable
 from app.storage.tables import CounterRow
+from app.workers.started import why_silent_here
 
 KEPT = 1.0  # for how long an answer is given again [s]
 PATIENCE = 2.0  # with the writer [s]
@@ -67,6 +70,27 @@ class Writing:
         return None
 
 
+class Files:
+    """Asks the store of the files for an answer. A question that still hangs is not asked twice."""
+
+    def __init__(self, store: Artifacts, patience: float = PATIENCE) -> None:
+        self._store, self._patience = store, patience
+        self._pending: asyncio.Future[None] | None = None
+
+    async def __call__(self) -> str | None:
+        """Say why no file can be read or stored."""
+        try:
+            if self._pending is None or self._pending.done():
+                self._pending = asyncio.ensure_future(asyncio.to_thread(self._store.probe))
+                self._pending.add_done_callback(_look_at)
+            await asyncio.wait_for(asyncio.shield(self._pending), self._patience)
+        except TimeoutError:
+            return f"the file store takes longer than {self._patience:g} s"
+        except ArtifactsUnreachable as error:
+            return f"the file store cannot be used: {error.reason}"
+        return None
+
+
 def _look_at(writing: asyncio.Future[None]) -> None:
     """Take the error of a write that ends after its test, which nobody else does."""
     if not writing.cancelled():
@@ -106,14 +130,19 @@ class Answering(Protocol):
 class Processes:
     """Asks whether a job would find a process now or soon."""
 
-    def __init__(self, worker: Answering, patience: float = FORK) -> None:
-        self._worker, self._patience = worker, patience
+    def __init__(
+        self,
+        worker: Answering,
+        why_silent: Callable[[], str] = why_silent_here,
+        patience: float = FORK,
+    ) -> None:
+        self._worker, self._why_silent, self._patience = worker, why_silent, patience
 
     async def __call__(self) -> str | None:
         """Say that none answers."""
         end = time.monotonic() + self._patience
         while not self._worker.answers():
             if time.monotonic() >= end:
-                return "no job process answers: they are being started, or hang"
+                return f"no job process answers: {self._why_silent()}"
             await asyncio.sleep(_GLANCE)
         return None

@@ -16,6 +16,7 @@ from fastapi.routing import APIRoute
 from pydantic_core import from_json
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.api import nul
 from app.api.gate.pacing import Pace
 from app.plain import Json
 from app.workers.pieces import PIECE, Pieces
@@ -139,6 +140,7 @@ class StrictRoute(APIRoute):
 
         async def strict(request: Request) -> Response:
             await _refreshed(request)
+            nul.refuse_in_address(request)
             if is_change and "if-match" not in request.headers:
                 raise PreconditionRequired('send If-Match with the ETag of what you read, such as "3"')
             strictly = StrictRequest(request.scope, request.receive)
@@ -146,7 +148,8 @@ class StrictRoute(APIRoute):
                 check_type(request, PATCH_TYPES if is_patch else JSON_TYPES)
                 # here, because FastAPI answers whatever is raised in its reading with 400
                 await self._admit(strictly)
-                await _check_intricacy(strictly)
+                if await _check_intricacy(strictly) and nul.has(await strictly.body()):
+                    nul.refuse_in(await _read(strictly))
             return await self.shortcut(strictly) or await handler(strictly)
 
         return strict
@@ -215,20 +218,35 @@ def require_sheet(request: Request) -> None:
     _require_type(request, SHEET_TYPES, NotSheet, "the file itself as application/octet-stream")
 
 
-async def _check_intricacy(request: StrictRequest) -> None:
-    """Count what makes parsing expensive; of a large body piece by piece, so that others get their turn."""
+async def _read(request: StrictRequest) -> object:
+    """The body as JSON, or nothing if it is none: that is refused elsewhere."""
+    try:
+        return await request.json()
+    except JSONDecodeError:
+        return None
+
+
+async def _check_intricacy(request: StrictRequest) -> bool:
+    """Count what makes parsing expensive; of a large body piece by piece, so that others get their turn.
+
+    Returns whether a text may have U+0000.
+    """
     brackets = quotes = 0
+    may_have_nul, end = False, b""
     for number, piece in enumerate(await request.pieces()):
         if number:
             await request.pace.step()
         part = bytes(piece)
         brackets += part.count(b"[") + part.count(b"{")
         quotes += part.count(b'"')
+        may_have_nul = may_have_nul or nul.may_have(part) or nul.may_have(end + part[:5])
+        end = part[-5:]
     if brackets > MOST_BRACKETS or quotes > MOST_QUOTES:
         message = f"a body may open {MOST_BRACKETS} brackets and have {MOST_QUOTES // 2} texts and names"
         raise TooIntricate(
             f'{message}; send numbers as one list with one unit: {{"value": [1, 2], "unit": "mm"}}'
         )
+    return may_have_nul
 
 
 class BodyLimit:

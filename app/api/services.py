@@ -8,6 +8,8 @@ from app.api.answering import Answering
 from app.api.gate.streams import Streams
 from app.api.readiness import Readiness
 from app.api.threads import Threads
+from app.approvals.comments import Comments
+from app.approvals.service import Approving
 from app.calculations.pool import CalculationPool
 from app.calculations.steps import Steps
 from app.catalogue.catalogues import Catalogues
@@ -17,6 +19,7 @@ from app.designs.labels import Labelling
 from app.designs.previewing import Previews
 from app.designs.service import Designs
 from app.designs.variants.detail import VariantDetails
+from app.identity.service import Identity
 from app.impact.service import Impacts
 from app.jobs.service import Jobs
 from app.reports.paper import Press
@@ -27,7 +30,7 @@ from app.settings import Settings
 from app.solids.analyses import Analyses
 from app.solids.healing import Healing
 from app.solids.models import Models
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.studies.service import Studies
 from app.worksheets.importing.service import Imports
@@ -41,7 +44,8 @@ class Services:
     settings: Settings
     catalogues: Catalogues
     database: Database
-    store: ArtifactStore
+    identity: Identity
+    store: Artifacts
     jobs: Jobs
     calculations: CalculationPool
     steps: Steps
@@ -61,6 +65,8 @@ class Services:
     models: Models
     analyses: Analyses
     healing: Healing
+    approving: Approving
+    comments: Comments
     reports: Reports
     press: Press
     streams: Streams

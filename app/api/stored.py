@@ -2,28 +2,33 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Mapping
 
 from anyio import to_thread
 from fastapi import Response
 from fastapi.responses import FileResponse
+from starlette.datastructures import Headers
 from starlette.types import Message, Receive, Scope, Send
 
 from app.api import problems
+from app.api.attachments import is_at_hand, unchanged
 from app.api.waiting import finished
 from app.jobs.service import Jobs
-from app.schemas.problems import refusals
+from app.schemas.problems import Responses, refusals
 from app.solids.healing import Healing, other_bytes
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
-from app.storage.verified import Opened
+from app.storage.verified import Opened, stamp_of
 
 RETRY_AFTER = 2  # s
 GONE = 410
 
 UNAVAILABLE = refusals(410, 503)
 """What a route that serves stored files says of its answers."""
+UNCHANGED: Responses = {304: {"description": "as it was when the ETag of If-None-Match was sent"}}
+"""What it says besides if its answer has an ETag."""
 
 
 async def lost(
@@ -72,21 +77,27 @@ def rebuilding(sha: str, job: str) -> Response:
 
 
 class StoredFile(FileResponse):
-    """A verified artifact: the open file stays the one that was verified, and is watched while it is sent."""
+    """A verified artifact: the open file stays the one that was verified, and is watched while it is sent.
+
+    A client that has it already gets 304; Range and If-Range are Starlette's.
+    """
 
     def __init__(
         self,
-        store: ArtifactStore,
+        store: Artifacts,
         sha: str,
         media_type: str,
         headers: Mapping[str, str],
         filename: str | None = None,
     ) -> None:
         super().__init__(sha, media_type=media_type, headers=headers, filename=filename)
-        self._store, self._sha = store, sha
+        self._store, self._sha, self._given = store, sha, headers
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Send the file; an answer that has begun breaks off if the bytes change meanwhile."""
+        if is_at_hand(Headers(scope=scope).get("if-none-match"), self._given["ETag"]):
+            await unchanged(self._given)(scope, receive, send)
+            return
         opened = await to_thread.run_sync(self._store.open, self._sha)
         with opened:
             descriptor = opened.file.fileno()
@@ -105,8 +116,10 @@ class StoredFile(FileResponse):
         return watched
 
     def _verified_again(self, opened: Opened) -> Opened:
-        """The file after a change that left its bytes as they were, such as a later time."""
-        with self._store.open(self._sha) as again:
-            if again.stamp.inode != opened.stamp.inode:
-                raise ArtifactDamaged(self._sha, "it changed while it was being sent")
-            return Opened(opened.file, again.stamp)
+        """The file after a change that left its bytes as they were, such as a later time or a lost name."""
+        stamp = stamp_of(opened.file)
+        opened.file.seek(0)
+        if hashlib.file_digest(opened.file, "sha256").hexdigest() != self._sha:
+            self._store.exists(self._sha)  # sets it aside, if it still has the name
+            raise ArtifactDamaged(self._sha, "it changed while it was being sent")
+        return Opened(opened.file, stamp)

@@ -14,7 +14,7 @@ from app.catalogue.catalogues import Catalogues
 from app.jobs.service import Jobs
 from app.observation import metrics
 from app.settings import Settings
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.workers.base import Limits
 from app.workers.pool import WarmProcesses
@@ -45,7 +45,7 @@ def assemble_calculations(
     stack: ExitStack,
     catalogues: Catalogues,
     database: Database,
-    store: ArtifactStore,
+    store: Artifacts,
     jobs: Jobs,
     designs: tuple[str, ...] = (),
     sheets: tuple[str, ...] = (),

@@ -157,22 +157,21 @@ def _levels(
         return (SINGLE,)
     if level in cls.levels:
         return (level,)
-    ladder = _ladder(cls, inputs, numbers)
-    if tolerance is not None:
-        return reachable(cls, ladder)
-    return (cls.default_level if cls.default_level in ladder else ladder[-1],)
+    ladder, start = _ladder(cls, inputs, numbers)
+    return (start,) if tolerance is None else reachable(cls, ladder)
 
 
-def _ladder(cls: type[Template], inputs: Mapping[str, Raw], numbers: int) -> tuple[str, ...]:
-    """The levels that answer the question these inputs ask."""
+def _ladder(cls: type[Template], inputs: Mapping[str, Raw], numbers: int) -> tuple[tuple[str, ...], str]:
+    """The levels that answer the question these inputs ask, and the one that is taken by itself."""
     if cls.ladder is Template.ladder:
-        return cls.levels
+        return cls.levels, cls.default_level
     probe = inputs if numbers <= PROBED else {name: _first(cls, name, raw) for name, raw in inputs.items()}
     try:
         with np.errstate(all="ignore"):
-            return cls.from_quantities(probe).ladder()
+            template = cls.from_quantities(probe)
+            return template.ladder(), template.starting_level()
     except InvalidInputs:
-        return (cls.default_level,)
+        return (cls.default_level,), cls.default_level
 
 
 def _first(cls: type[Template], name: str, raw: Raw) -> Raw:

@@ -19,7 +19,7 @@ from app.catalogue.catalogues import Catalogues
 from app.jobs import repository
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.plain import Json, JsonObject
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild
 from app.workers.pieces import Pieces
@@ -37,7 +37,7 @@ FAILURES = (TemplateError, TooManyValues, InvalidBody, CannotRebuild)
 """What the request itself, or the loss of it, brings about."""
 
 
-def question_of(payload: Mapping[str, Json], store: ArtifactStore) -> Question:
+def question_of(payload: Mapping[str, Json], store: Artifacts) -> Question:
     """The question that the row of a job names; raises ArtifactMissing, ArtifactDamaged."""
     fields = {name: part for name, part in payload.items() if name != AGAIN}
     return Question(**{**fields, "body": Pieces.of(store.read(payload["body"]))})
@@ -56,7 +56,7 @@ class CalculationJobs:
         pool: CalculationPool,
         catalogues: Catalogues,
         database: Database,
-        store: ArtifactStore,
+        store: Artifacts,
         jobs: Jobs,
     ) -> None:
         self.pool, self.catalogues = pool, catalogues

@@ -7,15 +7,22 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
+import templates
 from templates.core.catalogue.finding import declared_in, declared_in_file
 from templates.core.catalogue.loading import load, origin
 from templates.core.language.template import Template
 from templates.core.sheets.classes import from_text
 
+_PROGRAM = str(Path(templates.__file__).parents[1])
+"""The folder in which this machine has the packages of the program."""
+
 
 @dataclass(frozen=True)
 class FileSource:
-    """The file of a template; the content of a team's file goes with it, of a built-in one nothing."""
+    """The file of a template; the content of a team's file goes with it, of a built-in one nothing.
+
+    The path of a built-in one is that within the program, which other machines have elsewhere.
+    """
 
     path: str
     digest: str = ""
@@ -41,7 +48,7 @@ def source_of(cls: type[Template]) -> Source:
         return SheetSource(cls.id, cls.version, cls.sheet.text, cls.withdrawn)
     module, path = inspect.getmodule(cls), inspect.getfile(cls)
     made = origin(module) if module else None
-    return FileSource(path, made[1], made[0]) if made else FileSource(path)
+    return FileSource(path, made[1], made[0]) if made else FileSource(path.removeprefix(f"{_PROGRAM}/"))
 
 
 @lru_cache(maxsize=1024)
@@ -57,7 +64,7 @@ def loaded(source: Source) -> type[Template]:
     """
     if isinstance(source, SheetSource):
         return class_of(source)
-    path = Path(source.path)
+    path = Path(_PROGRAM, source.path)
     if not source.digest:
         return declared_in_file(path)
     return declared_in(load(path, source.content, source.digest), path)

@@ -20,6 +20,7 @@ class ReleasedSheet:
     state: Literal["released", "withdrawn"]
     author: str | None
     reviewer: str | None
+    is_verified: bool = False  # the reviewer had signed in
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,17 @@ from typing import Self, TypedDict, TypeVar
 
 import httpx
 
-from app.client import operations, variant_operations, worksheet_operations
+from app.client import (
+    approval_operations,
+    identity_operations,
+    operations,
+    variant_operations,
+    worksheet_operations,
+)
 from app.client import studies as exchanges
 from app.client.exchange import Exchange, Query, Request
 from app.client.methods import AsyncMethod, Method
-from app.client.names import CLIENT_HEADER, checked_name
+from app.client.names import CLIENT_HEADER, authorization, checked_name
 from app.client.studies import AsyncClientStudy, ClientStudy
 
 _RETRIES = 3  # of the transport, for a connection that is refused
@@ -41,12 +47,14 @@ class _Message(TypedDict):
 class _Connection:
     """Where a client connects to, and under which name."""
 
-    def __init__(self, url: str, *, timeout: float = 60.0, name: str | None = None) -> None:
+    def __init__(
+        self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None
+    ) -> None:
         self.url, self.name = url, checked_name(name)
         self._options: _Options = {
             "base_url": url,
             "timeout": timeout,
-            "headers": {CLIENT_HEADER: self.name},
+            "headers": {CLIENT_HEADER: self.name, **authorization(key)},
             "trust_env": False,
         }
 
@@ -74,15 +82,19 @@ class Client(_Connection):
     name
         Under which name the service counts this client's requests, and takes turns between clients: up to 100
         printable ASCII characters. If not given, `user@host`.
+    key
+        By which the service knows whose requests they are, `cw_…`, where it asks for one.
 
     Raises
     ------
     ValueError
-        If the name is no such text.
+        If the name is no such text, or the key has not the form of one.
     """
 
-    def __init__(self, url: str, *, timeout: float = 60.0, name: str | None = None) -> None:
-        super().__init__(url, timeout=timeout, name=name)
+    def __init__(
+        self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None
+    ) -> None:
+        super().__init__(url, timeout=timeout, name=name, key=key)
         transport = httpx.HTTPTransport(retries=_RETRIES)
         self._http = httpx.Client(transport=transport, **self._options)
 
@@ -173,6 +185,12 @@ class Client(_Connection):
     model = Method(operations.model)
     download = Method(operations.download)
     report = Method(operations.report)
+    approvals = Method(approval_operations.approvals)
+    approve = Method(approval_operations.approve)
+    released = Method(approval_operations.released)
+    comments = Method(approval_operations.comments)
+    comment = Method(approval_operations.comment)
+    resolve_comment = Method(approval_operations.resolve_comment)
     picture = Method(operations.picture)
     variant = Method(variant_operations.variant)
     variants = Method(variant_operations.variants)
@@ -195,13 +213,23 @@ class Client(_Connection):
     verify = Method(operations.verify)
     job = Method(operations.job)
     follow = Method(operations.follow)
+    me = Method(identity_operations.me)
+    principals = Method(identity_operations.principals)
+    add_principal = Method(identity_operations.add_principal)
+    change_principal = Method(identity_operations.change_principal)
+    usage = Method(identity_operations.usage)
+    keys = Method(identity_operations.keys)
+    add_key = Method(identity_operations.add_key)
+    revoke_key = Method(identity_operations.revoke_key)
 
 
 class AsyncClient(_Connection):
     """A connection to a service, whose calls are awaited. It is made as `Client` is."""
 
-    def __init__(self, url: str, *, timeout: float = 60.0, name: str | None = None) -> None:
-        super().__init__(url, timeout=timeout, name=name)
+    def __init__(
+        self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None
+    ) -> None:
+        super().__init__(url, timeout=timeout, name=name, key=key)
         transport = httpx.AsyncHTTPTransport(retries=_RETRIES)
         self._http = httpx.AsyncClient(transport=transport, **self._options)
 
@@ -292,6 +320,12 @@ class AsyncClient(_Connection):
     model = AsyncMethod(operations.model)
     download = AsyncMethod(operations.download)
     report = AsyncMethod(operations.report)
+    approvals = AsyncMethod(approval_operations.approvals)
+    approve = AsyncMethod(approval_operations.approve)
+    released = AsyncMethod(approval_operations.released)
+    comments = AsyncMethod(approval_operations.comments)
+    comment = AsyncMethod(approval_operations.comment)
+    resolve_comment = AsyncMethod(approval_operations.resolve_comment)
     picture = AsyncMethod(operations.picture)
     variant = AsyncMethod(variant_operations.variant)
     variants = AsyncMethod(variant_operations.variants)
@@ -314,3 +348,11 @@ class AsyncClient(_Connection):
     verify = AsyncMethod(operations.verify)
     job = AsyncMethod(operations.job)
     follow = AsyncMethod(operations.follow)
+    me = AsyncMethod(identity_operations.me)
+    principals = AsyncMethod(identity_operations.principals)
+    add_principal = AsyncMethod(identity_operations.add_principal)
+    change_principal = AsyncMethod(identity_operations.change_principal)
+    usage = AsyncMethod(identity_operations.usage)
+    keys = AsyncMethod(identity_operations.keys)
+    add_key = AsyncMethod(identity_operations.add_key)
+    revoke_key = AsyncMethod(identity_operations.revoke_key)

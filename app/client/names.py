@@ -1,4 +1,4 @@
-"""The name under which the service counts a client's requests."""
+"""The name under which the service counts a client's requests, and the key that says whose they are."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import socket
 
 CLIENT_HEADER = "Crankwright-Client"
 _NAME = re.compile("[!-~]([ -~]{0,98}[!-~])?")  # up to 100 printable ASCII characters, no blank at an end
+_KEY = re.compile("cw_[a-z0-9]{10}_[A-Za-z0-9_-]{43}")
 
 
 def user_at_host() -> str:
@@ -34,3 +35,18 @@ def checked_name(name: str | None) -> str:
             "design-office-7"
         )
     return name
+
+
+def authorization(key: str | None) -> dict[str, str]:
+    """The header that carries a key; none without one.
+
+    Raises
+    ------
+    ValueError
+        If the key has not the form of one; it is not quoted.
+    """
+    if key is None:
+        return {}
+    if not _KEY.fullmatch(key):
+        raise ValueError("the key has not the form of one: `cw_`, ten letters or digits, `_`, 43 characters")
+    return {"Authorization": f"Bearer {key}"}

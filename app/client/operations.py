@@ -48,6 +48,7 @@ from app.client.questions import impact as impact
 from app.client.questions import solve_design as solve_design
 from app.client.questions import tolerance as tolerance
 from app.client.questions import upgrade as upgrade
+from app.presentation.units import System
 from app.schemas.analyses import Analysis, Surface
 from app.schemas.catalogue import FaultList, FaultyFile
 from app.schemas.curves import Curves
@@ -195,9 +196,21 @@ def download(
     return File.of((yield from _awaited(f"/designs/{id}{one}{named}/model.{kind}", on_progress)))
 
 
-def report(id: str, kind: str = "pdf", *, on_progress: Progress | None = None) -> Exchange[bytes]:
-    """The calculation report of the design's newest revision, with all its pictures: pdf or html."""
-    return _file(f"/designs/{id}/report.{kind}", on_progress)
+def report(
+    id: str,
+    kind: str = "pdf",
+    *,
+    revision: int | None = None,
+    units: System = "si",
+    variants: bool = False,
+    on_progress: Progress | None = None,
+) -> Exchange[bytes]:
+    """The calculation report of a revision, the newest if none is named, with all its pictures: pdf or html.
+
+    `variants`: the report of all its variants. The quantities are in `units`, "si" or "us".
+    """
+    one, all = f"/revisions/{revision}" if revision else "", "/variants" if variants else ""
+    return _file(f"/designs/{id}{one}{all}/report.{kind}?units={units}", on_progress)
 
 
 def picture(id: str, version: int, *, on_progress: Progress | None = None) -> Exchange[bytes]:

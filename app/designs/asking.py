@@ -16,7 +16,7 @@ from app.jobs.service import Jobs
 from app.plain import Json, JsonObject
 from app.presentation.units import System
 from app.schemas.answers import Answer
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 
 A = TypeVar("A", bound=Answer)
@@ -48,7 +48,7 @@ class Asking(LongAnswers, Generic[A]):
         answered: Callable[[DesignTask, int, str], A],
         database: Database,
         catalogues: Catalogues,
-        store: ArtifactStore,
+        store: Artifacts,
         jobs: Jobs,
         steps: Steps,
     ) -> None:

@@ -3,6 +3,7 @@
 DesignError
     StaleRevision       the design has changed since the client read it
     NotConverged        a declared iteration did not settle within its limit
+    DesignReleased      a design with a released revision is not deleted
 """
 
 from __future__ import annotations
@@ -24,6 +25,16 @@ class StaleRevision(DesignError):
         super().__init__(
             f"the design is at revision {head}, not at {expected}; read it again, then send your change "
             f'with If-Match: "{head}"'
+        )
+
+
+class DesignReleased(DesignError):
+    """A design with a released revision is not deleted."""
+
+    def __init__(self, id: str, revision: int) -> None:
+        super().__init__(
+            f"revision {revision} of design {id[:80]} was released, so the design is kept; archive it "
+            f'instead: POST /api/v1/designs/{id[:80]}/labels {{"archived": true}}'
         )
 
 

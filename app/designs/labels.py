@@ -12,15 +12,18 @@ from sqlalchemy.orm import Session
 from app.designs import repository
 from app.designs.document import merge
 from app.designs.errors import StaleRevision
+from app.designs.news import note_revision
 from app.designs.repository import Written
 from app.designs.results import ModelState
 from app.designs.service import Designs, Saved, read_document
+from app.identity.audit import record
 from app.plain import JsonObject, Raw
 from app.schemas.bounded import Bounded
 from app.schemas.labels import MOST_TAGS, Labels, Tag, TagUse
 from app.storage.idempotency import Once
 from app.storage.identity import now
 from app.storage.tables import DesignRow, DesignTagRow, RevisionRow
+from app.storage.upserts import upsert
 from templates.core.errors import Fault, InvalidInputs
 
 MOST_LISTED = 500
@@ -71,8 +74,10 @@ class Labelling:
         """
 
         def unit(session: Session) -> Labels:
-            row = repository.design(session, id)
+            row = repository.locked(session, id)
+            before = _labels(session, row)
             _apply(session, row, change)
+            _record(session, id, before, _labels(session, row))
             return _labels(session, row)
 
         return self.database.write(unit)
@@ -92,27 +97,31 @@ class Labelling:
     ) -> Saved | None:
         """A revision with another name and the same results; None where the usual way has to do it."""
 
-        def unit(session: Session) -> Saved | None:
-            if once.key and once.find(session):
-                return None
-            head = repository.head(session, id)
+        def unit(session: Session) -> Saved:
+            if once.begin(session):
+                raise _UsualWay
+            number = repository.locked(session, id).head
+            head = repository.revision(session, id, number)
             document = merge(head.document, patch)
             if head.state != "current" or document == head.document:
-                return None
-            if expected is not None and expected.strip() not in ("*", f'"{head.number}"'):
-                raise StaleRevision(expected, head.number)
+                raise _UsualWay
+            if expected is not None and expected.strip() not in ("*", f'"{number}"'):
+                raise StaleRevision(expected, number)
             name = read_document(document).name
-            number = repository.append(session, repository.design(session, id), _carried(head, name, note))
-            saved = Saved(id, number, None, created=False)
+            appended = repository.append(session, id, number, _carried(head, name, note))
+            saved = Saved(id, appended, None, created=False)
+            note_revision(session, self.designs.jobs.events, id, appended, head.state)
             once.keep(session, 200, vars(saved))
             return saved
 
-        saved = self.database.write(unit)
-        if saved is not None:
-            for event in ("revision", "current"):
-                topic = f"design:{id}"
-                self.designs.jobs.events.publish(topic, {"event": event, "revision": saved.revision})
-        return saved
+        try:
+            return self.database.write(unit)
+        except _UsualWay:
+            return None
+
+
+class _UsualWay(Exception):
+    """A patch of a name that calculates, or changes nothing, or has been carried out before."""
 
 
 def _carried(head: RevisionRow, name: str, note: str | None) -> Written:
@@ -122,7 +131,8 @@ def _carried(head: RevisionRow, name: str, note: str | None) -> Written:
         for m in (*head.models, *head.variant_models)
     ]
     document: JsonObject = {**head.document, "name": name}
-    return Written(document, head.results, models, head.state, note or f"renamed from {_former(head)}")
+    words = note or f"renamed from {_former(head)}"
+    return Written(document, head.results, models, head.state, words, "design.rename")
 
 
 def _former(head: RevisionRow) -> str:
@@ -135,12 +145,20 @@ def _apply(session: Session, row: DesignRow, change: LabelsIn) -> None:
         of_design = DesignTagRow.design_id == row.id
         session.execute(delete(DesignTagRow).where(of_design, DesignTagRow.key.in_(removed)))
     for tag in change.add_tags:
-        session.merge(DesignTagRow(design_id=row.id, key=key_of(tag), tag=clean(tag)))
+        upsert(session, DesignTagRow(design_id=row.id, key=key_of(tag), tag=clean(tag)))
     session.flush()
     if len(tags_of(session, [row.id])[row.id]) > MOST_TAGS:
         raise InvalidInputs([Fault("add_tags", "too_many", f"a design has at most {MOST_TAGS} tags")])
     if change.archived is not None and change.archived != (row.archived is not None):
         row.archived = now() if change.archived else None
+
+
+def _record(session: Session, id: str, before: Labels, after: Labels) -> None:
+    """Record what changed, if anything did."""
+    if before.tags != after.tags:
+        record(session, "design.tag", f"designs/{id}")
+    if before.archived != after.archived:
+        record(session, "design.archive" if after.archived else "design.unarchive", f"designs/{id}")
 
 
 def _labels(session: Session, row: DesignRow) -> Labels:

@@ -14,7 +14,7 @@ from app.designs.errors import DesignError
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.plain import Json, JsonObject
 from app.schemas.answers import Answer
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.workers.errors import DeadlineExceeded, MemoryExceeded
@@ -30,7 +30,7 @@ class LongAnswers(ABC):
     kind: str
 
     def __init__(
-        self, database: Database, catalogues: Catalogues, store: ArtifactStore, jobs: Jobs, steps: Steps
+        self, database: Database, catalogues: Catalogues, store: Artifacts, jobs: Jobs, steps: Steps
     ) -> None:
         self.database, self.catalogues, self.store = database, catalogues, store
         self.jobs, self.steps = jobs, steps

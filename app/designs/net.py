@@ -70,6 +70,7 @@ class Net:
         criteria: Collection[str] = (),
         measured: Mapping[Reference, float] | None = None,
         pending: bool = False,
+        set_aside: Collection[Reference] = (),
     ) -> Net:
         """A design whose places `varied` differ from row to row.
 
@@ -90,16 +91,19 @@ class Net:
             Measures of solids, and measures through which iterations run, that are known [SI].
         pending
             Whether values that wait for a solid are NaN instead of being refused.
+        set_aside
+            Varied places that a relation sets in the document: the rows replace it.
 
         Raises
         ------
         InvalidInputs
             With everything that is wrong with the design; else naming the places that cannot vary, with the
-            codes `unknown_name`, `not_a_number`, `follows_from`, `needs_solids` or `shape`.
+            codes `unknown_name`, `not_a_number`, `follows_from`, `not_varied`, `no_relation`,
+            `needs_solids` or `shape`.
         """
         written, faults = build_graph(document, catalogues)
         raise_if(faults)
-        raise_if(list(place_faults(written, varied)))
+        raise_if(list(place_faults(written, varied, set_aside)))
         graph, faults = build_graph(with_places(document, written, varied), catalogues)
         raise_if(faults)
         known = dict(measured or {})

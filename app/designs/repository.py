@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
+from app.designs.errors import DesignReleased, StaleRevision
 from app.designs.filtering import DesignFilter, conditions
+from app.designs.releases import EVER_RELEASED, NEWEST_RELEASED
 from app.designs.results import ModelState
+from app.identity.acting import acting
+from app.identity.audit import record
 from app.plain import JsonObject
 from app.storage.errors import NotFound
 from app.storage.identity import new_id, now
-from app.storage.tables import BuildRow, DesignRow, RevisionModelRow, RevisionRow
+from app.storage.tables import BuildRow, DesignRow, RevisionModelRow, RevisionRow, canonical_json
 
 
 @dataclass(frozen=True)
@@ -25,6 +30,7 @@ class Written:
     models: Sequence[ModelState]
     state: str
     note: str | None
+    action: str = "design.change"  # as the audit calls it
 
 
 def design(session: Session, id: str) -> DesignRow:
@@ -37,6 +43,21 @@ def design(session: Session, id: str) -> DesignRow:
     """
     row = session.get(DesignRow, id)
     if row is None or row.deleted:
+        raise NotFound(f"there is no design {id[:80]!r}")
+    return row
+
+
+def locked(session: Session, id: str) -> DesignRow:
+    """A design that is not deleted, as it is now; no other unit changes it before the end of this one.
+
+    Raises
+    ------
+    NotFound
+        If there is none.
+    """
+    of_id = select(DesignRow).where(DesignRow.id == id, DesignRow.deleted.is_(None)).with_for_update()
+    row = session.scalar(of_id.execution_options(populate_existing=True))
+    if row is None:
         raise NotFound(f"there is no design {id[:80]!r}")
     return row
 
@@ -121,29 +142,46 @@ def create(session: Session, name: str, written: Written) -> tuple[str, int]:
     row = DesignRow(id=new_id(session), name=name, created=now(), deleted=None, head=0)
     session.add(row)
     session.flush()
-    return row.id, append(session, row, written)
+    return row.id, append(session, row.id, 0, written)
 
 
-def append(session: Session, row: DesignRow, written: Written) -> int:
-    """A new revision of a design; its number."""
-    row.head += 1
-    row.name = written.document["name"]
+def append(session: Session, id: str, base: int, written: Written) -> int:
+    """A new revision of a design whose newest one is `base`; its number.
+
+    The row of the design decides: of several servers that append to the same revision, one succeeds.
+
+    Raises
+    ------
+    StaleRevision
+        If there is a newer revision by now.
+    NotFound
+        If there is no such design, or it is deleted.
+    """
+    same = DesignRow.id == id, DesignRow.head == base, DesignRow.deleted.is_(None)
+    values = {"head": base + 1, "name": written.document["name"]}
+    if session.scalar(update(DesignRow).where(*same).values(values).returning(DesignRow.head)) is None:
+        raise StaleRevision(f'"{base}"', design(session, id).head)
+    at = now()
     session.add(
         RevisionRow(
-            design_id=row.id,
-            number=row.head,
+            design_id=id,
+            number=base + 1,
             note=written.note,
-            created=now(),
+            created=at,
             document=written.document,
             results=written.results,
             state=written.state,
             problem=None,
+            author=acting().id,
+            supersedes=session.scalar(NEWEST_RELEASED, {"design": id}),
         )
     )
     session.flush()
-    session.add_all(_model_row(row.id, row.head, state) for state in written.models)
+    digest = hashlib.sha256(canonical_json(written.document).encode()).hexdigest()
+    record(session, written.action, f"designs/{id}/revisions/{base + 1}", digest, at)
+    session.add_all(_model_row(id, base + 1, state) for state in written.models)
     session.flush()
-    return row.head
+    return base + 1
 
 
 def _model_row(id: str, number: int, state: ModelState) -> RevisionModelRow:
@@ -174,8 +212,19 @@ def fail(session: Session, id: str, number: int, problem: JsonObject) -> None:
 
 
 def delete(session: Session, id: str) -> None:
-    """Take a design from the lists; its revisions are kept."""
-    design(session, id).deleted = now()
+    """Take a design from the lists; its revisions are kept.
+
+    Raises
+    ------
+    DesignReleased
+        If one of its revisions was released.
+    """
+    row = locked(session, id)
+    released = session.scalar(EVER_RELEASED, {"design": id})
+    if released is not None:
+        raise DesignReleased(id, released)
+    row.deleted = now()
+    record(session, "design.delete", f"designs/{id}", at=row.deleted)
 
 
 def newest_good(session: Session, id: str, model: str, until: int) -> RevisionModelRow | None:

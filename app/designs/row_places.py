@@ -23,20 +23,28 @@ from templates.core.units.units import Value
 
 
 def with_places(document: Document, graph: Graph, varied: Collection[Reference]) -> Document:
-    """The document with a literal at every varied input that it leaves to its default.
+    """The document with a literal at every varied place that it leaves to its default, or to a relation.
 
     Only its shape matters: the rows give its values.
     """
     plain = document.model_copy(deep=True)
     for reference in varied:
-        declared = _declared(graph, reference)
-        if declared is None or graph.cell(reference) or isinstance(declared, Choice):
+        declared, cell = _declared(graph, reference), graph.cell(reference)
+        if isinstance(declared, Choice) or (cell and not cell.relations):
             continue
-        if reference.block in plain.steps:
+        if declared is None:
+            if cell:
+                plain.parameters[reference.block] = {"value": 1.0, "unit": _unit(graph, reference)}
+        elif reference.block in plain.steps:
             plain.steps[reference.block].inputs[reference.member] = _placeholder(declared)
         else:
             plain.models[reference.block].parameters[reference.member] = _placeholder(declared)
     return plain
+
+
+def _unit(graph: Graph, reference: Reference) -> str:
+    """The unit of a parameter that a relation sets."""
+    return f"{graph.kinds[str(reference)].base:~C}" or "1"
 
 
 def _placeholder(declared: Input) -> Raw:
@@ -53,8 +61,16 @@ def _declared(graph: Graph, reference: Reference) -> Input | None:
     return block.cls.inputs.get(reference.member)
 
 
-def place_faults(graph: Graph, varied: Collection[Reference]) -> Iterator[Fault]:
-    """What is wrong with the places that are to vary."""
+def place_faults(
+    graph: Graph, varied: Collection[Reference], set_aside: Collection[Reference] = ()
+) -> Iterator[Fault]:
+    """What is wrong with the places that are to vary, and with those whose relations are set aside."""
+    for reference in set_aside:
+        cell = graph.cell(reference)
+        if reference not in varied:
+            yield Fault(str(reference), "not_varied", f"{reference} does not vary here")
+        elif cell is None or not cell.relations:
+            yield Fault(str(reference), "no_relation", f"no relation sets {reference}: it varies as it is")
     for reference in varied:
         name, cell = str(reference), graph.cell(reference)
         block = graph.blocks.get(reference.block)
@@ -64,7 +80,7 @@ def place_faults(graph: Graph, varied: Collection[Reference]) -> Iterator[Fault]
             yield unknown_name(name, _places(graph), "place")
         elif isinstance(_declared(graph, reference), Choice):
             yield Fault(name, "not_a_number", f"{name} is a word; only quantities vary")
-        elif cell and cell.relations:
+        elif cell and cell.relations and reference not in set_aside:
             yield Fault(name, "follows_from", _followed(cell))
 
 

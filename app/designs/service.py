@@ -17,6 +17,7 @@ from app.designs.calculate import Analysed, Calculation, Measured, Measures, Out
 from app.designs.document import Document, merge
 from app.designs.errors import StaleRevision
 from app.designs.graph import Graph, build_graph, raise_if
+from app.designs.news import note_revision
 from app.designs.recent import Prepared, Recent
 from app.designs.reference import Reference
 from app.designs.repository import Written
@@ -42,7 +43,6 @@ REGENERATE, REGENERATE_SLOWLY = "regenerate", "regenerate_and_analyse"
 CALCULATE = "calculate_and_regenerate"
 """Kinds of jobs: the second is that of designs whose relations use finite elements, the third that of designs
 with steps for which the save did not wait."""
-
 LONGEST_PLACE = 200  # characters of where in a document something is wrong
 
 
@@ -77,7 +77,9 @@ class Designs:
         self.database, self.jobs, self.catalogues = database, jobs, catalogues
         self.recent = recent or Recent()
 
-    def create(self, raw: Mapping[str, Raw], note: str | None, once: Once) -> Saved:
+    def create(
+        self, raw: Mapping[str, Raw], note: str | None, once: Once, action: str = "design.create"
+    ) -> Saved:
         """A new design.
 
         Raises
@@ -87,11 +89,11 @@ class Designs:
         """
         if saved_before := self._repeated(once):
             return saved_before
-        draft = self._draft(raw, note)
+        draft = self._draft(raw, note, action)
 
         def unit(session: Session) -> Saved:
-            if saved_before := _saved_before(session, once):
-                return saved_before
+            if before := once.begin(session):
+                return _saved_before(before)
             certain = _with_builds(session, draft)
             name = certain.written.document["name"]
             design, revision = repository.create(session, name, certain.written)
@@ -111,32 +113,32 @@ class Designs:
         InvalidInputs
             With everything that is wrong; nothing is saved then.
         """
-        if saved_before := self._repeated(once):
-            return saved_before
         with self.database.read() as session:
+            if before := once.find(session):
+                return _saved_before(before)
             base, document = repository.newest_document(session, id)
         _require_match(expected, base)
-        return self._append(id, base, merge(document, patch), note, once)
+        return self._append(id, base, merge(document, patch), note, once, "design.change")
 
     def restore(self, id: str, number: int, note: str | None, expected: str | None, once: Once) -> Saved:
         """A new revision equal to an old one."""
-        if saved_before := self._repeated(once):
-            return saved_before
         with self.database.read() as session:
+            if before := once.find(session):
+                return _saved_before(before)
             base = repository.design(session, id).head
             document = repository.document(session, id, number)
         _require_match(expected, base)
-        return self._append(id, base, document, note or f"as revision {number}", once)
+        return self._append(id, base, document, note or f"as revision {number}", once, "design.restore")
 
     def copy(self, id: str, name: str | None, once: Once) -> Saved:
         """A new design with the newest document of another."""
         with self.database.read() as session:
             number, document = repository.newest_document(session, id)
         named = {**document, "name": name or f"{document['name'][:190]} (copy)"}
-        return self.create(named, f"copy of {id}, revision {number}", once)
+        return self.create(named, f"copy of {id}, revision {number}", once, "design.copy")
 
     def delete(self, id: str) -> None:
-        """Take a design from the lists; its revisions are kept."""
+        """Take a design from the lists; its revisions are kept. Raises DesignReleased."""
         self.database.write(lambda session: repository.delete(session, id))
 
     def auto_map(
@@ -157,12 +159,6 @@ class Designs:
             model["parameters"][target.member] = proposal.relation
         return proposed, self.change(id, {"models": models}, "auto-map", expected or f'"{number}"', once)
 
-    def state(self, id: str) -> JsonObject:
-        """At which revision a design is, and how its regeneration stands."""
-        with self.database.read() as session:
-            row = repository.head(session, id)
-            return {"revision": row.number, "state": row.state, "problem": row.problem}
-
     def prepare(self, raw: Mapping[str, Raw]) -> tuple[Document, Calculation]:
         """A document read and calculated with what is built already; faults are left in the calculation."""
         document = resolved(read_document(raw), self.catalogues)
@@ -174,26 +170,26 @@ class Designs:
         raise_if(faults)
         return graph
 
-    def _append(self, id: str, base: int, raw: Mapping[str, Raw], note: str | None, once: Once) -> Saved:
-        draft = self._draft(raw, note)
+    def _append(
+        self, id: str, base: int, raw: Mapping[str, Raw], note: str | None, once: Once, action: str
+    ) -> Saved:
+        draft = self._draft(raw, note, action)
 
         def unit(session: Session) -> Saved:
-            if saved_before := _saved_before(session, once):
-                return saved_before
-            row = repository.design(session, id)
-            if row.head != base:
-                raise StaleRevision(f'"{base}"', row.head)
+            if before := once.begin(session):
+                return _saved_before(before)
             if repository.document(session, id, base) == draft.written.document:
+                _require_match(f'"{base}"', repository.design(session, id).head)
                 unchanged = Saved(id, base, None, created=False, fresh=False)
                 once.keep(session, 200, vars(unchanged))
                 return unchanged
             certain = _with_builds(session, draft)
-            revision = repository.append(session, row, certain.written)
+            revision = repository.append(session, id, base, certain.written)
             return self._enqueued(session, id, revision, certain, once, created=False)
 
         return self._saved(unit, draft)
 
-    def _draft(self, raw: Mapping[str, Raw], note: str | None) -> _Draft:
+    def _draft(self, raw: Mapping[str, Raw], note: str | None, action: str) -> _Draft:
         """What to write for a document; its results wait for a job if anything in it does."""
         document, calculation = self.prepare(raw)
         raise_if(calculation.faults)
@@ -208,7 +204,7 @@ class Designs:
         )
         if pending and not calculation.deferred:
             self.recent.keep(plain, Prepared(document, calculation))
-        written = Written(plain, stored, variants.models(calculation, outcomes), state, note)
+        written = Written(plain, stored, variants.models(calculation, outcomes), state, note, action)
         return _Draft(written, _kind(calculation.graph, is_deferred), is_deferred, begun_steps())
 
     def _variants(self, document: Document, base: Calculation) -> list[Outcome]:
@@ -238,6 +234,7 @@ class Designs:
             if draft.begun is not None:
                 draft.begun.leave_to(job)
         saved = Saved(design, revision, job, created)
+        note_revision(session, self.jobs.events, design, revision, draft.written.state)
         once.keep(session, 201 if created else 200, vars(saved))
         return saved
 
@@ -245,9 +242,6 @@ class Designs:
         saved = self.database.write(unit)
         if saved.fresh:
             saved = replace(saved, is_deferred=draft.is_deferred)
-            topic, state = f"design:{saved.design}", "regenerating" if saved.job else "current"
-            for event in ("revision", state):
-                self.jobs.events.publish(topic, {"event": event, "revision": saved.revision})
         if saved.job:
             self.jobs.wake(draft.kind)
         return saved
@@ -256,7 +250,8 @@ class Designs:
         if not once.key:
             return None
         with self.database.read() as session:
-            return _saved_before(session, once)
+            before = once.find(session)
+        return _saved_before(before) if before else None
 
 
 def _with_builds(session: Session, draft: _Draft) -> _Draft:
@@ -273,9 +268,8 @@ def _kind(graph: Graph, is_deferred: bool) -> str:
     return CALCULATE if is_deferred else REGENERATE
 
 
-def _saved_before(session: Session, once: Once) -> Saved | None:
-    location = once.find(session)
-    return Saved(**{**location, "fresh": False}) if location else None
+def _saved_before(location: JsonObject) -> Saved:
+    return Saved(**{**location, "fresh": False})
 
 
 def _require_match(expected: str | None, head: int) -> None:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from sqlalchemy.orm import Session
 
-from app.designs import repository, tolerances
+from app.designs import releases, repository, tolerances
 from app.designs.variants.names import natural
+from app.identity.rows import names
 from app.plain import JsonObject
 from app.schemas.designs import Design, DesignSummary, ModelMeasurements, Revision
+from app.schemas.identity import Author
 from app.solids import measures, rows
 from app.solids.models import File
 from app.storage.errors import NotFound
@@ -44,7 +46,9 @@ def _variants(document: JsonObject) -> JsonObject:
     return {"variants": {name: variants[name] for name in sorted(variants, key=natural)}} if variants else {}
 
 
-def listed(row: DesignRow, revision: RevisionRow, tags: list[str]) -> DesignSummary:
+def listed(
+    row: DesignRow, revision: RevisionRow, tags: list[str], released: int | None = None
+) -> DesignSummary:
     """A design in a list."""
     return DesignSummary(
         id=row.id,
@@ -55,6 +59,7 @@ def listed(row: DesignRow, revision: RevisionRow, tags: list[str]) -> DesignSumm
         changed=revision.created,
         tags=tags,
         archived=row.archived is not None,
+        **({"released": released} if released is not None else {}),
     )
 
 
@@ -68,6 +73,7 @@ def revision(session: Session, row: RevisionRow) -> Revision:
             "number": row.number,
             "note": row.note,
             "created": row.created,
+            "author": author(session, row.author),
             "state": row.state,
             "problem": row.problem,
             "name": row.document["name"],
@@ -80,8 +86,20 @@ def revision(session: Session, row: RevisionRow) -> Revision:
             "iterations": results["iterations"],
             **({"warnings": unused} if (unused := tolerances.warnings(row.document)) else {}),
             **{name: results[name] for name in ("criteria", "verdict") if name in results},
+            **_signed(session, row),
         }
     )
+
+
+def _signed(session: Session, row: RevisionRow) -> dict[str, str | int]:
+    """Which released revision one replaces, and how far its approval is; what there is."""
+    said = {"supersedes": row.supersedes, "approval": releases.state_of(session, row)}
+    return {name: value for name, value in said.items() if value is not None}
+
+
+def author(session: Session, id: str | None) -> Author | None:
+    """Who did something, by the name that they have now; None where nobody noted it."""
+    return None if id is None else Author(id=id, name=names(session, [id]).get(id, id))
 
 
 def _step(typed: JsonObject, calculated: JsonObject | None) -> JsonObject:

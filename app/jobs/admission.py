@@ -10,7 +10,6 @@ from sqlalchemy.orm import Session
 from app.jobs import turns
 from app.jobs.errors import QueueFull
 from app.jobs.turns import Lane
-from app.settings import Settings
 
 _USUAL = 5.0  # how long a job takes, before any of its lane has been measured [s]
 _MEASURED = 20  # jobs of a lane, over which the mean is taken
@@ -34,9 +33,9 @@ class Durations:
 
 
 def admit(
-    session: Session, client: str, lane: Lane, threads: int, settings: Settings, durations: Durations
+    session: Session, client: str, lane: Lane, threads: int, share: int, most: int, durations: Durations
 ) -> None:
-    """Let a client queue one more job, or refuse it.
+    """Let a client queue one more job, or refuse it: its share is so many, and at most so many wait in all.
 
     A tenth of the queue is kept for clients of whom nothing waits yet, so whoever fills the rest refuses no
     single job of another.
@@ -47,8 +46,8 @@ def admit(
         The client's share or the queue is full.
     """
     own = turns.count_queued(session, client)
-    total = settings.queue_limit - (_reserve(settings.queue_limit) if own else 0)
-    is_share_full = own >= settings.client_queue_limit
+    total = most - (_reserve(most) if own else 0)
+    is_share_full = own >= share
     if is_share_full or turns.count_queued(session) >= total:
         seconds = _seconds_to_a_place(session, client, lane, threads, durations)
         raise QueueFull(seconds, own if is_share_full else None)

@@ -4,13 +4,16 @@ import logging
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import TypeVar, TypeVarTuple
 
+from sqlalchemy.orm import Session
+
 from app.jobs import repository
-from app.jobs.events import Events
-from app.jobs.job import Job
+from app.jobs.events import Event, Events
+from app.jobs.job import FINAL, Job
 from app.observation import metrics
-from app.storage.database import Database
+from app.storage.database import Database, after_commit
 from app.workers.base import Batch, Limits, Runner
 
 T = TypeVar("T")
@@ -39,7 +42,7 @@ class JobContext:
         cancelled: threading.Event,
     ) -> None:
         self.log: list[str] = []
-        self._job = job
+        self._job, self._topics = job, job.topics
         self._database = database
         self._batch = batch
         self._limits = limits
@@ -86,7 +89,8 @@ class JobContext:
     def progress(self, fraction: float, text: str) -> None:
         """Publish how far the job is (0 to 1) and what it does next; store it now and then."""
         self.log = [*self.log, text][-_LINES:]
-        publish(self._events, self._job, "progress", progress=fraction, text=text)
+        data = {"job": self._job.id, "revision": self._job.revision, "progress": fraction, "text": text}
+        self._events.publish(*map(partial(Event, name="progress", data=data), self._topics))
         if time.monotonic() - self._stored >= _INTERVAL:
             self._database.write(
                 lambda session: repository.note_progress(session, self._job, fraction, self.log)
@@ -105,13 +109,14 @@ class _Quietly:
         return self._batch.run(function, *args, limits=limits or self._limits, cancelled=self._cancelled)
 
 
-def publish(events: Events, job: Job, name: str, **more: object) -> None:
-    """Publish an event of a job to those who watch it, and to those who watch its design."""
-    if name != "progress":
-        metrics.job_event(job.id, job.kind, name)
-    if name in ("done", "failed", "cancelled"):
+def note(session: Session, events: Events, job: Job, name: str, **more: object) -> None:
+    """Note an event of a job in the unit that makes it true, for those who watch the job or its design."""
+    after_commit(session, partial(_record, job, name))
+    data = {"job": job.id, "revision": job.revision, **more}
+    events.note(session, *[Event(topic, name, data) for topic in job.topics])
+
+
+def _record(job: Job, name: str) -> None:
+    metrics.job_event(job.id, job.kind, name)
+    if name in FINAL:
         logger.info("job %s (%s) %s", job.id, job.kind, name, extra={"job": job.id})
-    event = {"event": name, "job": job.id, "revision": job.revision, **more}
-    events.publish(f"job:{job.id}", event)
-    if job.design is not None:
-        events.publish(f"design:{job.design}", event)

@@ -1,28 +1,31 @@
 """The threads that take jobs from the queue, have them run, and record how they ended."""
 
 import logging
+import secrets
 import threading
 import time
 from collections.abc import Callable, Mapping
-from contextlib import closing
+from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import dataclass
 from functools import partial
 
 from sqlalchemy.orm import Session
 
+from app.identity.working import working_for
 from app.jobs import repository
 from app.jobs.admission import Durations
-from app.jobs.context import JobContext, publish
-from app.jobs.errors import JobFailed, JobRests
+from app.jobs.context import JobContext, note
+from app.jobs.errors import JobFailed, JobLost, JobRests
 from app.jobs.events import Events
 from app.jobs.job import Job
 from app.jobs.turns import Lane
 from app.observation import logs
 from app.plain import JsonObject
-from app.storage.database import Database
-from app.storage.errors import DatabaseClosed
-from app.workers.base import BatchWorker, Limits
-from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed, MemoryExceeded
+from app.storage.database import Database, after_commit
+from app.storage.errors import ArtifactsUnreachable, DatabaseClosed, DatabaseUnavailable
+from app.workers.base import ANALYSIS, GEOMETRY, BatchWorker, Limits
+from app.workers.base import Lane as WorkerLane
+from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed, MemoryExceeded, WorkerLost
 
 logger = logging.getLogger(__name__)
 
@@ -32,8 +35,20 @@ Handler = Callable[[Job, JobContext], Completion]
 FailureHook = Callable[[Session, Job, Problem], None]
 
 FAST, SLOW = "fast", "slow"
+WORKER_LANES: Mapping[str, WorkerLane] = {FAST: GEOMETRY, SLOW: ANALYSIS}
+"""Where the worker needs a place before a job is claimed; jobs of other lanes may never ask for one."""
 MAX_CRASHES = 2
+MAX_LOSSES = 5  # of machines, or servers, that ran a job
+_GLANCE = 0.1  # how often a thread looks whether the worker has a place again [s]
 _PAUSE = 1.0  # before the queue is looked at again after the database has failed [s]
+
+
+@dataclass(frozen=True)
+class Running:
+    """A job that this server has claimed, and what is set to stop it."""
+
+    job: Job
+    cancelled: threading.Event
 
 
 @dataclass(frozen=True)
@@ -59,9 +74,14 @@ class Dispatcher:
         events: Events,
         describe: Callable[[Exception], Problem],
         threads: int = 1,
+        lease: float = 30.0,
     ) -> None:
+        self.owner = secrets.token_hex(8)
+        """The name of this server in the rows of the jobs that it runs."""
         self.kinds: dict[str, Kind] = {}
         self.durations = Durations()
+        self.around: Callable[[Job], AbstractContextManager[object]] = nullcontext
+        """Within what a job runs: its span, where there are traces."""
         self._database = database
         self._worker = worker
         self._limits = limits
@@ -70,7 +90,8 @@ class Dispatcher:
         self._counts = {FAST: threads, SLOW: 1}  # threads of each lane
         self._awake = {FAST: threading.Semaphore(0), SLOW: threading.Semaphore(0)}
         self._stopping = threading.Event()
-        self._running: dict[str, threading.Event] = {}  # job id -> set to stop it
+        self._lease = lease
+        self._running: dict[str, Running] = {}  # by job
         self._threads: list[threading.Thread] = []
 
     def start(self, beside: Mapping[str, int]) -> None:
@@ -96,10 +117,24 @@ class Dispatcher:
         for lane in self._awake if kind is None else (self._lane_name(kind),):
             self._awake[lane].release()
 
-    def interrupt(self, id: str) -> None:
-        """Kill the process of a job, if it runs."""
-        if cancelled := self._running.get(id):
-            cancelled.set()
+    def interrupt(self, id: str, attempt: int | None = None) -> None:
+        """Kill the process of a job, if it runs, and is at this attempt."""
+        running = self._running.get(id)
+        if running and attempt in (None, running.job.attempt):
+            running.cancelled.set()
+
+    def running(self) -> list[Job]:
+        """The jobs that this server runs, as they were claimed."""
+        return [running.job for running in list(self._running.values())]
+
+    def give_back_all(self, owner: str | None = None) -> None:
+        """Queue again all jobs that seem to run, or those of an owner, when none of them can be alive."""
+
+        def unit(session: Session) -> None:
+            for job in repository.give_back_all(session, owner):
+                note(session, self._events, job, "queued")
+
+        self._database.write(unit)
 
     def drain(self) -> None:
         """Begin no more jobs; those that run go on."""
@@ -134,22 +169,36 @@ class Dispatcher:
                 self.wake()
 
     def _empty_queue(self, lane: str) -> None:
-        while not self._stopping.is_set() and (job := self._database.write(partial(self._claim, lane=lane))):
+        while self._has_place(lane) and (job := self._database.write(partial(self._claim, lane=lane))):
             mine, start = self._running[job.id], time.monotonic()
             try:
-                with logs.caused(job.id):
+                with logs.caused(job.cause), working_for(self._database, job.principal), self.around(job):
                     self._execute(job)
             finally:
                 self.durations.note(self.lane(job.kind), time.monotonic() - start)
                 if self._running.get(job.id) is mine:  # given back, it may run again in another thread by now
                     del self._running[job.id]
 
+    def _has_place(self, lane: str) -> bool:
+        """Wait until the worker has a place for a job of a lane; False if no more are begun."""
+        while not self._stopping.is_set():
+            if lane not in WORKER_LANES or self._worker.capacity(WORKER_LANES[lane]) > 0:
+                return True
+            self._stopping.wait(_GLANCE)
+        return False
+
     def _claim(self, session: Session, *, lane: str) -> Job | None:
-        """Claim a job and register it still in the writer thread: who sees it running can interrupt it."""
-        job = repository.claim(session, self._lane(lane))
+        """Claim a job and register it still in the writer: who sees it running can interrupt it."""
+        known = self.kinds if self._database.is_shared else None
+        job = repository.claim(session, self._lane(lane), self.owner, self._lease, known)
         if job is not None:
-            self._running[job.id] = threading.Event()
+            after_commit(session, partial(self._register, job))
+            note(session, self._events, job, "running")
         return job
+
+    def _register(self, job: Job) -> None:
+        self.interrupt(job.id)  # if its lease was lost here, and this is the next attempt
+        self._running[job.id] = Running(job, threading.Event())
 
     def _lane_name(self, kind: str) -> str:
         return self.kinds[kind].lane if kind in self.kinds else FAST
@@ -163,13 +212,12 @@ class Dispatcher:
 
     def _execute(self, job: Job) -> None:
         """Run a claimed job to whatever end."""
-        cancelled = self._running[job.id]
+        cancelled = self._running[job.id].cancelled
         if self._stopping.is_set():  # it was claimed while `stop` went through the running jobs
             cancelled.set()
         logger.info("job %s (%s) begins", job.id, job.kind, extra={"job": job.id})
-        batch = self._worker.batch()
+        batch = self._worker.batch(WORKER_LANES.get(self._lane_name(job.kind), GEOMETRY))
         context = JobContext(job, self._database, batch, self._limits, self._events, cancelled)
-        publish(self._events, job, "running")
         try:
             with closing(context):
                 completion = self.kinds[job.kind].handler(job, context)
@@ -178,8 +226,14 @@ class Dispatcher:
             self._give_back(job, job.crashes)  # unless somebody has cancelled it: then it is no longer held
         except JobRests:
             self._rest(job)
+        except (ArtifactsUnreachable, DatabaseUnavailable) as error:
+            logger.warning("Job %s (%s) is queued again: %s", job.id, job.kind, error)
+            self._give_back(job, job.crashes)
+            self._stopping.wait(error.retry_after)
         except JobCrashed as error:
             self._crashed(job, context, error)
+        except WorkerLost as error:
+            self._lost(job, context, error)
         except JobFailed as verdict:
             self._fail(job, context, self._describe(verdict.cause), verdict.completion)
         except (DeadlineExceeded, MemoryExceeded) as error:
@@ -189,14 +243,12 @@ class Dispatcher:
             self._fail(job, context, self._describe(error))
 
     def _complete(self, job: Job, context: JobContext, completion: Completion) -> None:
-        def unit(session: Session) -> bool:
-            if not repository.end(session, job, "done", context.log, progress=1.0):
-                return False
-            repository.set_result(session, job.id, completion(session))
-            return True
+        def unit(session: Session) -> None:
+            if repository.end(session, job, "done", context.log, progress=1.0):
+                repository.set_result(session, job.id, completion(session))
+                note(session, self._events, job, "done")
 
-        if self._database.write(unit):
-            publish(self._events, job, "done")
+        self._database.write(unit)
 
     def _crashed(self, job: Job, context: JobContext, error: JobCrashed) -> None:
         """Try again: another process may have been to blame, such as one that took the machine's memory."""
@@ -210,15 +262,32 @@ class Dispatcher:
         else:
             self._fail(job, context, self._describe(error), crashes=crashes)
 
-    def _give_back(self, job: Job, crashes: int) -> None:
-        if self._database.write(lambda session: repository.give_back(session, job, crashes)):
-            publish(self._events, job, "queued")
+    def _lost(self, job: Job, context: JobContext, error: WorkerLost) -> None:
+        """Try again on another machine: that one has gone says little about the job, unless it goes on so."""
+        losses = job.losses + 1
+        logger.warning("Job %s (%s) was lost, time %d: %s", job.id, job.kind, losses, error)
+        if losses < MAX_LOSSES:
+            self._give_back(job, job.crashes, losses=losses)
+        else:
+            self._fail(job, context, self._describe(JobLost(losses)), losses=losses)
+
+    def _give_back(self, job: Job, crashes: int, **more: int) -> None:
+        def unit(session: Session) -> None:
+            if repository.give_back(session, job, crashes, **more):
+                note(session, self._events, job, "queued")
+
+        self._database.write(unit)
+        self._events.tell([f"queue:{job.kind}"])
 
     def _rest(self, job: Job) -> None:
         lane = self.lane(job.kind)
-        if self._database.write(lambda session: repository.rest(session, job, lane)):
-            publish(self._events, job, "queued")
-            self.wake(job.kind)
+
+        def unit(session: Session) -> None:
+            if repository.rest(session, job, lane):
+                note(session, self._events, job, "queued")
+
+        self._database.write(unit)
+        self.wake(job.kind)
 
     def _fail(
         self,
@@ -228,14 +297,13 @@ class Dispatcher:
         completion: Callable[[Session], None] | None = None,
         **more: object,
     ) -> None:
-        def unit(session: Session) -> bool:
+        def unit(session: Session) -> None:
             if not repository.end(session, job, "failed", context.log, problem=problem, **more):
-                return False
+                return
             if completion is not None:
                 completion(session)
             if kind := self.kinds.get(job.kind):
                 kind.on_failure(session, job, problem)
-            return True
+            note(session, self._events, job, "failed", problem=problem)
 
-        if self._database.write(unit):
-            publish(self._events, job, "failed", problem=problem)
+        self._database.write(unit)

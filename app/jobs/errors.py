@@ -5,6 +5,7 @@ JobError
  ├── JobFinished    the job has ended, so it cannot be cancelled
  ├── JobShared      several clients wait for the job, so a further one cannot cancel it
  ├── QueueFull      too many jobs are waiting
+ ├── JobLost        the servers or workers that ran the job were lost, time after time
  ├── JobRests       raised by a handler: the job goes on later, others come first
  └── JobFailed      raised by a handler: the job ends with this error
 """
@@ -47,11 +48,18 @@ class QueueFull(JobError):
     """Too many jobs are waiting, of the client (`own`) or of all; a try is worthwhile after some time [s]."""
 
     def __init__(self, retry_after: int, own: int | None = None) -> None:
-        whose = (
-            "Too many jobs are" if own is None else f"{own} jobs of yours, as many as a client may have, are"
-        )
-        super().__init__(f"{whose} waiting. Try again in {retry_after} s.")
+        whose = "Too many jobs are" if own is None else f"{own} jobs of yours, as many as may be, are"
+        sooner = "" if own is None else ", or cancel some: GET /api/v1/jobs lists them"
+        super().__init__(f"{whose} waiting. Try again in {retry_after} s{sooner}.")
         self.retry_after = retry_after
+
+
+class JobLost(JobError):
+    """Whatever ran the job was lost, time after time."""
+
+    def __init__(self, losses: int) -> None:
+        super().__init__(f"What ran the job ended without a word {losses} times, so it is not tried again.")
+        self.losses = losses
 
 
 class JobRests(JobError):

@@ -1,43 +1,86 @@
-"""News within the process: published from any thread, read in event loops.
+"""News of designs and jobs: written with the change itself, and heard by those who listen to a topic.
 
-An event is a JSON object with its name under "event". The topics are `job:<id>` and `design:<id>`.
+The rows are the truth. What a subscriber is sent is a hint with its event at hand; see `Subscription`.
 """
 
-import asyncio
+from __future__ import annotations
+
 import threading
-from collections import defaultdict
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager, suppress
+from collections.abc import AsyncIterator, Callable, Iterable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from functools import partial
 
-from app.plain import JsonObject
+from sqlalchemy.orm import Session
 
-Event = JsonObject
+from app.jobs.subscriptions import Subscription
+from app.storage import event_log
+from app.storage.database import Database, after_commit
+from app.storage.event_log import PAGE, TOPIC, Event
 
-_ROOM = 100  # events that may wait for a slow reader before the oldest are dropped
+__all__ = ["Event", "Events", "Subscription"]
+
+
+@dataclass
+class _Topic:
+    """Those who listen to a topic, and the newest number that they were sent."""
+
+    subscribers: set[Subscription] = field(default_factory=set)
+    newest: int | None = None
 
 
 class Events:
-    """Topics and their subscribers. Nothing is kept for those who come later: they read the state first."""
+    """Topics and their subscribers. Who comes later reads the state first, or goes on from a number."""
 
-    def __init__(self) -> None:
+    def __init__(self, database: Database) -> None:
+        self.tell: Callable[[Iterable[str]], object] = list
+        """Hints other servers, where there are any, at what they should look at, such as a topic."""
+        self._database = database
         self._lock = threading.Lock()
-        self._subscribers: defaultdict[str, set[_Subscriber]] = defaultdict(set)
+        self._topics: dict[str, _Topic] = {}
         self._closed = False
 
-    def publish(self, topic: str, event: Event) -> None:
-        """Send an event to all who listen; never blocks."""
+    def note(self, session: Session, *events: Event) -> None:
+        """Write events in the unit of work that makes them true; once it is durable, they are sent."""
+        noted = event_log.note_all(session, *events)
+        after_commit(session, partial(self._share, noted))
+
+    def publish(self, *events: Event) -> None:
+        """Send events to all who listen in this process; never blocks."""
+        for event in events:
+            with self._lock:
+                if (topic := self._topics.get(event.topic)) is None:
+                    continue
+                if event.number is not None:
+                    topic.newest = max(event.number, topic.newest or 0)
+                listeners = tuple(topic.subscribers)
+            for subscriber in listeners:
+                subscriber.send(event)
+
+    def look(self, topics: Iterable[str] | None = None) -> None:
+        """Send what other servers have written of topics that somebody listens to, or of all of them.
+
+        The newest page of rows is enough: subscribers read by themselves what they lack before it.
+        """
         with self._lock:
-            listeners = tuple(self._subscribers.get(topic, ()))
-        for subscriber in listeners:
-            subscriber.send(event)
+            heard = {topic: its.newest for topic, its in self._topics.items()}
+        wanted = heard.keys() if topics is None else heard.keys() & set(topics)
+        if not wanted:
+            return
+        with self._database.read() as session:
+            for topic, newest in event_log.newest(session, wanted).items():
+                sent = heard[topic]
+                start = newest - 1 if sent is None else max(sent, newest - PAGE)
+                if newest > start:
+                    self.publish(*event_log.above(session, topic, start))
 
     @asynccontextmanager
-    async def subscribe(self, topic: str) -> AsyncIterator[AsyncIterator[Event]]:
-        """Listen from now on; the iterator ends when the server closes."""
-        subscriber = _Subscriber()
+    async def subscribe(self, topic: str) -> AsyncIterator[Subscription]:
+        """Listen from now on; the subscription ends when the server closes."""
+        subscriber = Subscription(topic, self._above)
         self._add(topic, subscriber)
         try:
-            yield subscriber.events()
+            yield subscriber
         finally:
             self._remove(topic, subscriber)
 
@@ -45,39 +88,28 @@ class Events:
         """End all subscriptions, present and future."""
         with self._lock:
             self._closed = True
-            everyone = [subscriber for group in self._subscribers.values() for subscriber in group]
+            everyone = [subscriber for topic in self._topics.values() for subscriber in topic.subscribers]
         for subscriber in everyone:
             subscriber.send(None)
 
-    def _add(self, topic: str, subscriber: "_Subscriber") -> None:
+    def _share(self, noted: list[Event]) -> None:
+        """Send events that were written here, and have other servers read them."""
+        self.publish(*noted)
+        self.tell(map(TOPIC, noted))
+
+    def _above(self, topic: str, number: int) -> list[Event]:
+        with self._database.read() as session:
+            return event_log.above(session, topic, number)
+
+    def _add(self, topic: str, subscriber: Subscription) -> None:
         with self._lock:
-            self._subscribers[topic].add(subscriber)
+            self._topics.setdefault(topic, _Topic()).subscribers.add(subscriber)
             if self._closed:
                 subscriber.send(None)
 
-    def _remove(self, topic: str, subscriber: "_Subscriber") -> None:
+    def _remove(self, topic: str, subscriber: Subscription) -> None:
         with self._lock:
-            self._subscribers[topic].discard(subscriber)
-            if not self._subscribers[topic]:
-                del self._subscribers[topic]
-
-
-class _Subscriber:
-    """A queue in the event loop of the reader; None in it is the end."""
-
-    def __init__(self) -> None:
-        self._loop = asyncio.get_running_loop()
-        self._queue: asyncio.Queue[Event | None] = asyncio.Queue(_ROOM)
-
-    def send(self, event: Event | None) -> None:
-        with suppress(RuntimeError):  # the loop has ended, and the reader with it
-            self._loop.call_soon_threadsafe(self._put, event)
-
-    def _put(self, event: Event | None) -> None:
-        if self._queue.full():
-            self._queue.get_nowait()
-        self._queue.put_nowait(event)
-
-    async def events(self) -> AsyncIterator[Event]:
-        while (event := await self._queue.get()) is not None:
-            yield event
+            subscribers = self._topics[topic].subscribers
+            subscribers.discard(subscriber)
+            if not subscribers:
+                del self._topics[topic]

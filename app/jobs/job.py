@@ -10,7 +10,10 @@ FINAL: frozenset[State] = frozenset({"done", "failed", "cancelled"})
 
 @dataclass(frozen=True)
 class Job:
-    """A piece of work as it was when it was read. `attempt` counts claims, `crashes` dead processes."""
+    """A piece of work as it was when it was read.
+
+    `attempt` counts claims, `crashes` dead processes, `losses` dead workers and servers; `owner` runs it.
+    """
 
     id: str
     kind: str
@@ -26,6 +29,18 @@ class Job:
     result: str | None
     created: str
     updated: str
+    principal: str | None = None
+    losses: int = 0
+    owner: str | None = None
+    cause: str = ""  # the id of the request that queued it, and the context of its trace
+    event: int = 0
+    """The number of its newest event."""
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """The topics of its events: its own, and its design's."""
+        own = f"job:{self.id}"
+        return (own,) if self.design is None else (own, f"design:{self.design}")
 
     @property
     def finished(self) -> bool:

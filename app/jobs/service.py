@@ -1,20 +1,28 @@
 """What the rest of the server can do with jobs."""
 
+from __future__ import annotations
+
 import asyncio
 import logging
 from collections.abc import Callable, Mapping
-from typing import cast
+from contextlib import AbstractContextManager
+from typing import TYPE_CHECKING
 
 from sqlalchemy.orm import Session
 
+from app.identity import usage
+from app.identity.acting import BUILT_IN, acting
+from app.identity.audit import record
+from app.identity.errors import NotOwn
+from app.identity.limits import Limits as PrincipalLimits
 from app.jobs import repository, turns
 from app.jobs.admission import admit
-from app.jobs.context import JobContext, publish
+from app.jobs.context import JobContext, note
 from app.jobs.dispatcher import FAST, SLOW, Completion, Dispatcher, FailureHook, Handler, Kind, Problem
 from app.jobs.errors import JobFailed, JobFinished, JobNotFound, JobRests
 from app.jobs.events import Events
 from app.jobs.job import FINAL, Job
-from app.observation import logs
+from app.jobs.leases import Leases
 from app.plain import JsonObject
 from app.schemas.jobs import State
 from app.settings import Settings
@@ -22,6 +30,9 @@ from app.storage.clock import operated
 from app.storage.database import Database
 from app.workers.base import BatchWorker, Limits
 from app.workers.errors import JobCancelled
+
+if TYPE_CHECKING:
+    from app.storage.notices import Notices
 
 __all__ = ["Completion", "Job", "JobContext", "JobFailed", "JobRests", "Jobs"]
 
@@ -45,13 +56,17 @@ class Jobs:
         settings: Settings,
         describe: Callable[[Exception], Problem],
     ) -> None:
-        self.events = Events()
+        self.events = Events(database)
         self.wait_seconds = settings.wait_seconds
         self._database = database
         self.settings = settings
         self._describe = describe
         limits = Limits(settings.job_deadline, settings.job_memory_mb)
-        self._dispatcher = Dispatcher(database, worker, limits, self.events, describe, settings.workers)
+        self._notices: Notices | None = None
+        self._dispatcher = Dispatcher(
+            database, worker, limits, self.events, describe, settings.workers, settings.lease_seconds
+        )
+        self._leases = Leases(database, self._dispatcher, self.events, settings, describe)
 
     def register(
         self,
@@ -72,13 +87,23 @@ class Jobs:
         """
         self._dispatcher.kinds[kind] = Kind(handler, on_failure, lane or (SLOW if is_slow else FAST))
 
+    def run_within(self, around: Callable[[Job], AbstractContextManager[object]]) -> None:
+        """Have each job run within a context of its own."""
+        self._dispatcher.around = around
+
     def start(self, lanes: Mapping[str, int] | None = None) -> None:
         """Queue again what a killed server left running, and begin to work. Register the kinds first.
 
-        `lanes` gives the number of threads of lanes beside the usual two.
+        `lanes` gives the number of threads of lanes beside the usual two. Where several servers share the
+        database, what runs may be another server's: it is queued again once its lease ends.
         """
-        self._database.write(repository.give_back_all)
+        if self._database.is_shared:
+            self._leases.start()
+        else:
+            self._dispatcher.give_back_all()
         self._dispatcher.start(lanes or {})
+        if self._database.is_shared:
+            self._join_others()
 
     def drain(self) -> None:
         """End all subscriptions and begin no more jobs; those that run go on."""
@@ -89,6 +114,10 @@ class Jobs:
         """End all subscriptions and all running jobs; they stay in the queue for the next start."""
         self.events.close()
         self._dispatcher.stop(self.settings.stop_seconds / 2)
+        if self._leases.is_started:
+            self._leases.stop()
+        if self._notices is not None:
+            self._notices.stop()
 
     def census(self, session: Session) -> list[tuple[str, str, int]]:
         """Return kind, state and number of the jobs that have not ended."""
@@ -110,13 +139,18 @@ class Jobs:
         ------
         QueueFull
             Too many jobs are waiting, of this client or of all.
+        LimitReached
+            The acting principal has used its calculation of the day, or its storage.
         """
         lane = self._dispatcher.lane(kind)
         threads = self._dispatcher.threads(kind)
-        admit(session, client, lane, threads, self.settings, self._dispatcher.durations)
+        limits = usage.own_limits(session, self.settings)
+        share = self._share(limits)
+        admit(session, client, lane, threads, share, self.settings.queue_limit, self._dispatcher.durations)
+        if limits is not None:
+            usage.admit(session, limits)
         turn = turns.next_turn(session, client, lane)
         id = repository.add(session, kind, payload, design, revision, client, turn)
-        logs.note_cause(id)
         logger.info("job %s (%s) queued", id, kind, extra={"job": id})
         return id
 
@@ -131,8 +165,13 @@ class Jobs:
         id = self.waiting(session, kind, payload)
         if id is None:
             return self.enqueue(session, kind, payload, client=client)
-        turns.join(session, id, client, self._dispatcher.lane(kind), self.settings.client_queue_limit)
+        share = self._share(usage.own_limits(session, self.settings))
+        turns.join(session, id, client, self._dispatcher.lane(kind), share)
         return id
+
+    def _share(self, limits: PrincipalLimits | None) -> int:
+        """How many jobs of one client may wait."""
+        return self.settings.client_queue_limit if limits is None else limits.queued_jobs
 
     def waiting(self, session: Session, kind: str, payload: JsonObject) -> str | None:
         """Return the id of a job that is to do just this and has not ended."""
@@ -160,6 +199,7 @@ class Jobs:
     def wake(self, kind: str | None = None) -> None:
         """Have the queue looked at, by all threads or by those of a kind's lane."""
         self._dispatcher.wake(kind)
+        self.events.tell([f"queue:{kind or ''}"])
 
     def get(self, id: str) -> Job:
         """Return a job; raises JobNotFound."""
@@ -182,8 +222,8 @@ class Jobs:
 
         Raises
         ------
-        JobShared
-            Several clients wait for the job, and this one does not.
+        JobShared, NotOwn
+            Several clients wait for the job, and this one does not; it is another principal's.
         JobNotFound
             There is no such job.
         JobFinished
@@ -191,20 +231,26 @@ class Jobs:
         """
         problem = self._describe(JobCancelled())
 
-        def unit(session: Session) -> Job | None:
-            job = _existing(session, id)
+        def unit(session: Session) -> bool:
+            job = repository.locked(session, id)
+            if job is None:
+                raise JobNotFound(id)
             if job.finished:
                 raise JobFinished(id, job.state)
-            if client is not None and turns.leave(session, id, client):
-                return None
+            if client is not None and not _administers() and turns.leave(session, id, client):
+                return False
+            if client is not None:
+                _require_own(session, id, client)
             repository.cancel(session, job, problem)
+            record(session, "job.cancel", f"jobs/{id}")
             if kind := self._dispatcher.kinds.get(job.kind):
                 kind.on_failure(session, job, problem)
-            return job
+            note(session, self.events, job, "cancelled")
+            return True
 
-        if job := self._database.write(unit):
+        if self._database.write(unit):
             self._dispatcher.interrupt(id)
-            publish(self.events, job, "cancelled")
+            self.events.tell([f"cancel:{id}"])
         return self.get(id)
 
     async def wait(self, id: str, seconds: float) -> State:
@@ -213,14 +259,35 @@ class Jobs:
             job = await asyncio.to_thread(self.get, id)
             if job.finished or seconds <= 0:
                 return job.state
+            events.number = job.event
             try:
                 async with asyncio.timeout(seconds):
                     async for event in events:
-                        if event["event"] in FINAL:
-                            return cast(State, event["event"])
+                        if event.name in FINAL:
+                            return event.name
             except TimeoutError:
                 pass
         return (await asyncio.to_thread(self.get, id)).state
+
+    def _join_others(self) -> None:
+        """Send hints to the other servers of the database, and hear theirs."""
+        from app.storage.notices import Notices  # its driver belongs to the extra `team`
+
+        self._notices = Notices(self._database.url, self.settings.poll_seconds, self._hear)
+        self.events.tell = self._notices.send
+        self._notices.start()
+
+    def _hear(self, hints: list[str] | None) -> None:
+        """Do what other servers hint at; without hints, look at everything."""
+        if hints is None:
+            self._dispatcher.wake()
+        for hint in hints or ():
+            subject, _, name = hint.partition(":")
+            if subject == "queue":
+                self._dispatcher.wake(name or None)
+            elif subject == "cancel":
+                self._dispatcher.interrupt(name)
+        self.events.look(hints)
 
 
 def _existing(session: Session, id: str) -> Job:
@@ -228,3 +295,22 @@ def _existing(session: Session, id: str) -> Job:
     if job is None:
         raise JobNotFound(id)
     return job
+
+
+def _administers() -> bool:
+    """Whether an administrator acts, who ends jobs whoever waits for them."""
+    who = acting()
+    return who.id not in BUILT_IN and who.may("admin")
+
+
+def _require_own(session: Session, id: str, client: str) -> None:
+    """Leave the job of a principal to that and to administrators.
+
+    Raises
+    ------
+    NotOwn
+        If the acting principal is neither.
+    """
+    own = acting().id in BUILT_IN or turns.client_of(session, id) == client
+    if not own and not _administers():
+        raise NotOwn("the job is another principal's: only that, or an administrator, cancels it")

@@ -47,8 +47,10 @@ def _present_turn(session: Session, lane: Lane) -> int:
     """The turn that a lane is at: the lowest that waits, else the highest that runs."""
     waiting = select(JobRow.turn).where(JobRow.state == "queued", lane.holds()).order_by(JobRow.turn)
     running = select(JobRow.turn).where(JobRow.state == "running", lane.holds()).order_by(JobRow.turn.desc())
-    turns = (session.scalar(query.limit(1)) for query in (waiting, running))
-    return next((turn for turn in turns if turn is not None), 0)
+    for query in (waiting, running):
+        if (turn := session.scalar(query.limit(1))) is not None:
+            return turn
+    return 0
 
 
 def count_queued(session: Session, client: str | None = None, lane: Lane | None = None) -> int:
@@ -73,7 +75,7 @@ def join(session: Session, id: str, client: str, lane: Lane, share: int) -> None
     If the client's own turn comes first and its share of the queue allows it, the job takes that turn and
     counts as this client's: else two clients together could have more turns than each has alone.
     """
-    row = session.get_one(JobRow, id)
+    row = _locked(session, id)
     if client != row.client and client not in row.others and len(row.others) < MOST_OTHERS:
         row.others = [*row.others, client]
     turn = next_turn(session, client, lane)
@@ -91,7 +93,7 @@ def leave(session: Session, id: str, client: str) -> bool:
     JobShared
         Several clients wait for it, and this is none of them.
     """
-    row = session.get_one(JobRow, id)
+    row = _locked(session, id)
     if not row.others:
         return False
     everyone = [row.client, *row.others]
@@ -100,6 +102,16 @@ def leave(session: Session, id: str, client: str) -> bool:
     row.client, *row.others = [other for other in everyone if other != client]
     session.flush()
     return True
+
+
+def client_of(session: Session, id: str) -> str:
+    """The client whose turn a job takes."""
+    return session.get_one(JobRow, id).client
+
+
+def _locked(session: Session, id: str) -> JobRow:
+    """A job as it is now; no other unit changes it before the end of this one."""
+    return session.get_one(JobRow, id, with_for_update=True, populate_existing=True)
 
 
 def oldest_queued(session: Session) -> int | None:

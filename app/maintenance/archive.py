@@ -9,8 +9,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-FORMAT = 1
+FORMAT, FORMAT_OF_DUMP = 1, 2
 MANIFEST, DATABASE, END = "manifest.json", "crankwright.sqlite", "end.json"
+DUMP = "crankwright.dump"
+DATABASES = {FORMAT: DATABASE, FORMAT_OF_DUMP: DUMP}
+"""The entry of the database, by format: a SQLite file, or what `pg_dump -Fc` writes."""
 ARTIFACT = re.compile(r"artifacts/([0-9a-f]{2})/(\1[0-9a-f]{62})")
 
 

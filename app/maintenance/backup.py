@@ -13,18 +13,20 @@ import os
 import sqlite3
 import tarfile
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
+from typing import NotRequired, TypedDict
 
-from app.maintenance.archive import DATABASE, END, FORMAT, MANIFEST, artifact_entry, is_compressed
-from app.maintenance.check import Say, fault_of, is_still_named
+from app.maintenance.archive import DATABASES, END, FORMAT, MANIFEST, artifact_entry, is_compressed
+from app.maintenance.check import Say, is_still_named
 from app.maintenance.errors import CannotRun
+from app.maintenance.files import fault_of
 from app.maintenance.folder import database_file, reading, refuse_other_schema
 from app.maintenance.rows import Named, named_files
-from app.plain import Json, JsonObject
+from app.plain import Json
 from app.storage.identity import now
 from app.storage.integrity import faults
 
@@ -52,16 +54,21 @@ def back_up(data: Path, url: str | None, target: Path, say: Say) -> Contents:
         The archive cannot be written.
     """
     source = database_file(data, url)
+    refuse_target(target)
+    with temporary(target, "database") as snapshot, temporary(target, "archive") as archive:
+        schema = _snapshot(source, snapshot)
+        say(f"database: {snapshot.stat().st_size / 2**20:.1f} MiB, schema {schema}")
+        contents = _write(archive, snapshot, schema, source, data, is_compressed(target), say)
+        publish(archive, target)
+    return contents
+
+
+def refuse_target(target: Path) -> None:
+    """Raise CannotRun if a backup cannot be written there."""
     if target.exists():
         raise CannotRun(f"{target} exists: a backup never replaces another; choose a new name.")
     if not target.absolute().parent.is_dir():
         raise CannotRun(f"There is no folder {target.absolute().parent} for the backup.")
-    with _temporary(target, "database") as snapshot, _temporary(target, "archive") as archive:
-        schema = _snapshot(source, snapshot)
-        say(f"database: {snapshot.stat().st_size / 2**20:.1f} MiB, schema {schema}")
-        contents = _write(archive, snapshot, schema, source, data, is_compressed(target), say)
-        _publish(archive, target)
-    return contents
 
 
 def _snapshot(source: Path, snapshot: Path) -> str:
@@ -81,15 +88,52 @@ def _snapshot(source: Path, snapshot: Path) -> str:
 def _write(
     archive: Path, snapshot: Path, schema: str, source: Path, data: Path, compressed: bool, say: Say
 ) -> Contents:
-    contents = Contents()
     with reading(snapshot) as connection:
         rows = {row.sha: row for row in named_files(connection)}
+    about = manifest(FORMAT, snapshot, schema, len(rows))
+
+    def add(tar: tarfile.TarFile, row: Named, contents: Contents) -> None:
+        _add_artifact(tar, row, source, data, contents)
+
+    return write_archive(archive, compressed, about, snapshot, rows, add, say)
+
+
+class DatabaseFile(TypedDict):
+    """The database in a backup: its hash and its size [bytes]."""
+
+    sha256: str
+    size: int
+
+
+class Manifest(TypedDict):
+    """What a backup says of itself."""
+
+    format: int
+    program: str
+    created: str
+    schema: str
+    database: DatabaseFile
+    artifacts: int
+    files: NotRequired[bool]  # whether the archive holds the files of the rows; not said by older backups
+
+
+def write_archive(
+    archive: Path,
+    compressed: bool,
+    about: Manifest,
+    database: Path,
+    rows: Mapping[str, Named],
+    add: Callable[[tarfile.TarFile, Named, Contents], None],
+    say: Say,
+) -> Contents:
+    """Write manifest, database and the files of the rows, each by `add`, into an archive, and sync it."""
+    contents = Contents()
     with archive.open("wb") as file:
         with tarfile.open(fileobj=file, mode="w:gz" if compressed else "w") as tar:
-            _add(tar, MANIFEST, _json(_manifest(snapshot, schema, len(rows))))
-            tar.add(snapshot, DATABASE, filter=_plain)
+            _add(tar, MANIFEST, _json(about))
+            tar.add(database, DATABASES[about["format"]], filter=_plain)
             for number, row in enumerate(rows.values(), 1):
-                _add_artifact(tar, row, source, data, contents)
+                add(tar, row, contents)
                 if number % EVERY == 0:
                     say(f"artifacts: {number} of {len(rows)}")
             _add(tar, END, _json({"artifacts": contents.artifacts, "missing": _missing(contents)}))
@@ -106,21 +150,20 @@ def _add_artifact(tar: tarfile.TarFile, row: Named, source: Path, data: Path, co
     except OSError:
         read = b""
     if hashlib.sha256(read).hexdigest() == row.sha:
-        _add(tar, artifact_entry(row.sha), read)
-        contents.artifacts += 1
-        contents.size += len(read)
+        add_file(tar, row.sha, read, contents)
     elif is_still_named(source, row):
         contents.damaged[row.sha] = fault_of(path, row) or "the file was replaced while it was read"
     else:
         contents.deleted.append(row.sha)
 
 
-def _manifest(snapshot: Path, schema: str, artifacts: int) -> JsonObject:
+def manifest(form: int, snapshot: Path, schema: str, artifacts: int) -> Manifest:
+    """What a backup says of itself: its format, when and by what it was made, the hash of the database."""
     with snapshot.open("rb") as file:
         sha = hashlib.file_digest(file, "sha256").hexdigest()
     size = snapshot.stat().st_size
     return {
-        "format": FORMAT,
+        "format": form,
         "program": version("crankwright"),
         "created": now(),
         "schema": schema,
@@ -135,6 +178,13 @@ def _missing(contents: Contents) -> list[str]:
 
 def _json(value: Json) -> bytes:
     return json.dumps(value, indent=1).encode()
+
+
+def add_file(tar: tarfile.TarFile, sha: str, data: bytes, contents: Contents) -> None:
+    """Add the bytes of an artifact."""
+    _add(tar, artifact_entry(sha), data)
+    contents.artifacts += 1
+    contents.size += len(data)
 
 
 def _add(tar: tarfile.TarFile, name: str, data: bytes) -> None:
@@ -152,7 +202,7 @@ def _plain(entry: tarfile.TarInfo) -> tarfile.TarInfo:
 
 
 @contextmanager
-def _temporary(target: Path, what: str) -> Iterator[Path]:
+def temporary(target: Path, what: str) -> Iterator[Path]:
     """A file beside the target that is gone in the end, unless it took the target's name."""
     folder = target.absolute().parent
     descriptor, name = tempfile.mkstemp(dir=folder, prefix=f".{target.name}.", suffix=f".{what}")
@@ -164,7 +214,8 @@ def _temporary(target: Path, what: str) -> Iterator[Path]:
             Path(f"{name}{suffix}").unlink(missing_ok=True)
 
 
-def _publish(archive: Path, target: Path) -> None:
+def publish(archive: Path, target: Path) -> None:
+    """Give a whole archive its name; raises CannotRun."""
     if target.exists():
         raise CannotRun(f"{target} has appeared meanwhile: a backup never replaces another.")
     os.rename(archive, target)

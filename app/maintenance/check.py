@@ -5,17 +5,17 @@ It only reads, so it may run beside the service.
 
 from __future__ import annotations
 
-import hashlib
+import math
 import sqlite3
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.maintenance.errors import CannotRun
+from app.maintenance.files import Files, FolderFiles
 from app.maintenance.folder import database_file, reading, refuse_other_schema
 from app.maintenance.rows import Named, broken_references, broken_worksheets, named_files
-from app.storage.artifacts import QUARANTINE, SHA256
 from app.storage.integrity import faults, is_damage, marker_of
 
 YOUNG = 60.0  # a file of a running service may be this old before the row that names it is committed [s]
@@ -34,7 +34,7 @@ class Findings:
     references: list[str] = field(default_factory=list)
     worksheets: list[str] = field(default_factory=list)
     damaged: dict[Named, str] = field(default_factory=dict)  # by row, what is wrong with its file
-    unnamed: list[Path] = field(default_factory=list)
+    unnamed: dict[str, str] = field(default_factory=dict)  # by hash, where the file lies
     files: int = 0
     size: int = 0  # of the good files [bytes]
     quarantined: int = 0
@@ -44,6 +44,14 @@ class Findings:
         """How many faults there are."""
         return sum(map(len, (self.database, self.references, self.worksheets, self.damaged, self.unnamed)))
 
+    def add_unnamed(
+        self, files: Files, ages: Mapping[str, float], rows: Iterable[Named], *, in_use: bool
+    ) -> None:
+        """Add the files that no row names, without those that a running service may just have put."""
+        named, latest = {row.sha for row in rows}, time.time() - YOUNG if in_use else math.inf
+        lying = sorted(sha for sha, age in ages.items() if sha not in named and age <= latest)
+        self.unnamed |= {sha: files.place(sha) for sha in lying}
+
     def lines(self) -> Iterable[str]:
         """The faults, one a line, then what was counted."""
         yield from (f"database: {text}" for text in self.database)
@@ -52,13 +60,15 @@ class Findings:
         for row, text in self.damaged.items():
             owner = OWNERS.get(row.kind, "build")
             yield f"artifact {row.sha}, {row.kind} of {owner} {row.owner}: {text}"
-        yield from (f"file {path}: no row names it" for path in self.unnamed)
+        yield from (f"file {place}: no row names it" for place in self.unnamed.values())
         yield f"{self.files} good artifacts, {self.size / 2**20:.1f} MiB; {self.quarantined} in quarantine"
         yield f"{self.count} fault{'' if self.count == 1 else 's'}"
 
 
-def check(data: Path, url: str | None, *, in_use: bool) -> Findings:
+def check(data: Path, url: str | None, *, in_use: bool, files: Files | None = None) -> Findings:
     """What is wrong in a data folder; `in_use` if a service runs on it, whose newest files may lack rows.
+
+    The files are those in the folder, if no others are given.
 
     Raises
     ------
@@ -66,10 +76,10 @@ def check(data: Path, url: str | None, *, in_use: bool) -> Findings:
         There is no database, or one of another schema.
     """
     path, findings = database_file(data, url), Findings()
-    artifacts = data / "artifacts"
-    findings.quarantined = sum(1 for _ in artifacts.glob(f"{QUARANTINE}/*"))
+    files = files or FolderFiles(data / "artifacts")
+    findings.quarantined = files.quarantined()
     # Files before rows: a row that comes meanwhile has its file already, and is among the rows.
-    files = [file for file in artifacts.glob("[0-9a-f][0-9a-f]/*") if SHA256.fullmatch(file.name)]
+    ages = files.ages()
     if (marker := marker_of(path)).exists():
         findings.database.append(f"damage showed while a service used it, see {marker.name}")
     try:
@@ -84,42 +94,26 @@ def check(data: Path, url: str | None, *, in_use: bool) -> Findings:
             raise CannotRun(f"The database cannot be read: {error}") from error
         findings.database = findings.database or [str(error)]
         return findings
-    _check_files(artifacts, rows, findings, path)
-    named = {row.sha for row in rows}
-    findings.unnamed += (f for f in files if f.name not in named and not (in_use and _is_young(f)))
+    check_files(files, rows, findings)
+    findings.damaged = {row: text for row, text in findings.damaged.items() if is_still_named(path, row)}
+    findings.add_unnamed(files, ages, rows, in_use=in_use)
     return findings
 
 
-def _check_files(artifacts: Path, rows: Iterable[Named], findings: Findings, database: Path) -> None:
+def check_files(files: Files, rows: Iterable[Named], findings: Findings) -> None:
+    """Verify every file that a row names, once."""
     seen: dict[str, str | None] = {}
     for row in rows:
         if row.sha not in seen:
-            seen[row.sha] = fault_of(artifacts / row.sha[:2] / row.sha, row)
+            seen[row.sha] = files.fault(row)
             findings.files += seen[row.sha] is None
-            findings.size += _size(artifacts, row) if seen[row.sha] is None else 0
-        text = seen[row.sha]
-        if text and is_still_named(database, row):
+            findings.size += _size(files, row) if seen[row.sha] is None else 0
+        if text := seen[row.sha]:
             findings.damaged[row] = text
 
 
-def _size(artifacts: Path, row: Named) -> int:
-    return (artifacts / row.sha[:2] / row.sha).stat().st_size if row.size is None else row.size
-
-
-def fault_of(path: Path, row: Named) -> str | None:
-    """What is wrong with the file of a row, if anything is; its size is in bytes."""
-    try:
-        size = path.stat().st_size
-        if row.size is not None and size != row.size:
-            return f"the file has {size} bytes instead of {row.size}"
-        with path.open("rb") as file:
-            if hashlib.file_digest(file, "sha256").hexdigest() != row.sha:
-                return "the bytes have another hash"
-    except FileNotFoundError:
-        return "the file is missing"
-    except OSError as error:
-        return f"the file cannot be read: {error.strerror}"
-    return None
+def _size(files: Files, row: Named) -> int:
+    return files.size(row.sha) if row.size is None else row.size
 
 
 def is_still_named(database: Path, row: Named) -> bool:
@@ -134,10 +128,3 @@ def named_files_of(connection: sqlite3.Connection, row: Named) -> Iterable[Named
         return (other for other in named_files(connection) if other.kind == row.kind)
     query = "SELECT sha256, size, build_key, kind FROM artifact WHERE build_key = ? AND kind = ?"
     return (Named(*fields) for fields in connection.execute(query, (row.owner, row.kind)))
-
-
-def _is_young(path: Path) -> bool:
-    try:
-        return time.time() - path.stat().st_mtime < YOUNG
-    except FileNotFoundError:  # deleted meanwhile
-        return True

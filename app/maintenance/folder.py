@@ -14,9 +14,9 @@ from app.storage.folder import LOCK
 from app.storage.integrity import is_damage, marker_of
 from app.storage.migrations import known_schemas
 
-PG_DUMP = (
-    "The database is not SQLite. Back it up with `pg_dump -Fc`, restore it with `pg_restore`, and copy the "
-    "folder `artifacts` of the data folder after the dump, never before it."
+NOT_SQLITE = (
+    "The database is not SQLite, and lost files are not repaired beside it: the servers make them again when "
+    "they are asked for."
 )
 
 
@@ -30,7 +30,7 @@ def database_file(data: Path, url: str | None) -> Path:
     """
     path = sqlite_file(url) if url else data / "crankwright.sqlite"
     if path is None:
-        raise CannotRun(PG_DUMP)
+        raise CannotRun(NOT_SQLITE)
     if not path.is_file():
         if marker_of(path).exists():
             raise CannotRun(

@@ -22,9 +22,11 @@ from app.solids import analysis_rows as analyses
 from app.solids.builds import Builds
 from app.solids.finding import Analysing
 from app.solids.shapes import shape_of
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild
+from app.storage.folder import DataFolder
+from app.storage.opening import opened_store
 from app.workers.base import Limits
 from app.workers.errors import WorkerError
 from app.workers.local import LocalProcesses
@@ -66,7 +68,7 @@ class Repair:
     """Makes files again with the machinery of the service, in processes of its own."""
 
     def __init__(
-        self, database: Database, store: ArtifactStore, settings: Settings, worker: LocalProcesses
+        self, database: Database, store: Artifacts, settings: Settings, worker: LocalProcesses
     ) -> None:
         self.database, self.store = database, store
         files = loaded(settings.template_folders)
@@ -124,18 +126,20 @@ class Repair:
         self.analysing.find(shape, question, (SURFACE,), self.runner)
 
 
-def repair(data: Path, url: str, findings: Findings, settings: Settings, say: Say) -> None:
+def repair(folder: DataFolder, url: str, findings: Findings, settings: Settings, say: Say) -> None:
     """Repair what can be repaired, and say what was done; the caller holds the data folder."""
     if findings.damaged:
-        _rebuild(data, url, findings, settings, say)
-    if findings.unnamed:
-        say(_moved_aside(data, findings.unnamed))
+        _rebuild(opened_store(settings, folder), url, findings, settings, say)
+    if findings.unnamed and settings.artifacts_url is None:
+        say(_moved_aside(folder.path, [Path(place) for place in findings.unnamed.values()]))
+    elif findings.unnamed:
+        say(f"{len(findings.unnamed)} files that no row names stay: the service deletes them after a while")
 
 
-def _rebuild(data: Path, url: str, findings: Findings, settings: Settings, say: Say) -> None:
+def _rebuild(store: Artifacts, url: str, findings: Findings, settings: Settings, say: Say) -> None:
     database, worker = Database(url), LocalProcesses()
     try:
-        repairing = Repair(database, ArtifactStore(data / "artifacts"), settings, worker)
+        repairing = Repair(database, store, settings, worker)
         for row in findings.damaged:
             why = repairing.row(row)
             name = f"{row.kind} of {row.owner}"

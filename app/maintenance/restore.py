@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO
 
-from app.maintenance.archive import ARTIFACT, DATABASE, END, FORMAT, MANIFEST
+from app.maintenance.archive import ARTIFACT, DATABASE, DATABASES, END, FORMAT, FORMAT_OF_DUMP, MANIFEST
 from app.maintenance.check import Say
 from app.maintenance.errors import CannotRun
 from app.maintenance.folder import reading, refuse_other_schema
@@ -30,13 +30,20 @@ from app.storage.integrity import faults
 
 LARGEST_NOTE = 64 * 2**20  # of the manifest and the end [bytes]; the end names every missing file
 _CHUNK = 2**20
-_BROKEN = (tarfile.TarError, gzip.BadGzipFile, EOFError, zlib.error, ValueError, KeyError, TypeError)
+BROKEN = (tarfile.TarError, gzip.BadGzipFile, EOFError, zlib.error, ValueError, KeyError, TypeError)
+
+
+OTHER_DATABASE = {
+    FORMAT: "The backup is of SQLite: restore it with CRANKWRIGHT_DATABASE_URL unset.",
+    FORMAT_OF_DUMP: "The backup is of PostgreSQL: name an empty database by CRANKWRIGHT_DATABASE_URL.",
+}
 
 
 @dataclass
 class Restored:
-    """What came out of a backup."""
+    """What came out of a backup of a format."""
 
+    form: int = FORMAT
     manifest: JsonObject = field(default_factory=dict)
     end: JsonObject | None = None
     database: str = ""  # SHA-256
@@ -56,9 +63,9 @@ def restore(archive: Path, data: Path, say: Say) -> Restored:
     _refuse_content(data)
     with _sibling(data) as folder:
         try:
-            restored = _unpacked(archive, folder)
+            restored = unpacked(archive, folder, FORMAT)
             _verify(folder, restored)
-        except _BROKEN as error:
+        except BROKEN as error:
             raise CannotRun(f"{archive} is damaged or no backup of Crankwright: {error}.") from error
         say(f"verified: the database and {len(restored.artifacts)} artifacts")
         _sync_all(folder)
@@ -88,8 +95,9 @@ def _sibling(data: Path) -> Iterator[Path]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _unpacked(archive: Path, folder: Path) -> Restored:
-    restored = Restored()
+def unpacked(archive: Path, folder: Path, form: int) -> Restored:
+    """Take an archive of this format apart into a folder; raises CannotRun, or one of `BROKEN`."""
+    restored = Restored(form)
     with tarfile.open(archive, "r|*") as tar:
         for entry in tar:
             if restored.end is not None:
@@ -106,9 +114,9 @@ def _unpacked(archive: Path, folder: Path) -> Restored:
 def _take(entry: tarfile.TarInfo, file: IO[bytes], folder: Path, restored: Restored) -> None:
     """Put one entry where it belongs; the order of the entries is part of the format."""
     if not restored.manifest:
-        restored.manifest = _manifest(entry, file)
-    elif entry.name == DATABASE and not restored.database:
-        restored.database = _written(file, folder / DATABASE)
+        restored.manifest = _manifest(entry, file, restored.form)
+    elif entry.name == DATABASES[restored.form] and not restored.database:
+        restored.database = _written(file, folder / entry.name)
     elif entry.name == END and restored.database:
         restored.end = _note(entry, file)
     elif (artifact := ARTIFACT.fullmatch(entry.name)) and restored.database:
@@ -126,12 +134,14 @@ def _take_artifact(sha: str, file: IO[bytes], place: Path, restored: Restored) -
     restored.artifacts.add(sha)
 
 
-def _manifest(entry: tarfile.TarInfo, file: IO[bytes]) -> JsonObject:
+def _manifest(entry: tarfile.TarInfo, file: IO[bytes], form: int) -> JsonObject:
     if entry.name != MANIFEST:
         raise CannotRun(f"This is no backup of Crankwright: it begins with {entry.name[:100]!r}.")
     manifest = _note(entry, file)
-    if manifest["format"] != FORMAT:
-        raise CannotRun(f"The backup has format {manifest['format']}; this program reads {FORMAT}: upgrade.")
+    if manifest["format"] != form and manifest["format"] in DATABASES:
+        raise CannotRun(OTHER_DATABASE[manifest["format"]])
+    if manifest["format"] != form:
+        raise CannotRun(f"The backup has format {manifest['format']}; this program reads {form}: upgrade.")
     return manifest
 
 
@@ -156,13 +166,18 @@ def _written(file: IO[bytes], place: Path) -> str:
     return digest.hexdigest()
 
 
-def _verify(folder: Path, restored: Restored) -> None:
-    """Hold the database against its hash and this program, and the artifacts against the rows."""
+def require_whole(restored: Restored) -> None:
+    """Hold the database against its hash, and count the artifacts; raises CannotRun."""
     assert restored.end is not None
     if restored.database != restored.manifest["database"]["sha256"]:
         raise CannotRun("The database in the archive is damaged: its bytes have another hash.")
     if restored.end["artifacts"] != len(restored.artifacts):
         raise CannotRun("The archive is not complete: artifacts are missing.")
+
+
+def _verify(folder: Path, restored: Restored) -> None:
+    """Hold the database against its hash and this program, and the artifacts against the rows."""
+    require_whole(restored)
     path = folder / DATABASE
     if damage := faults(path):
         raise CannotRun(f"The database in the archive is damaged: {'; '.join(damage)}.")
@@ -175,6 +190,7 @@ def _verify(folder: Path, restored: Restored) -> None:
         raise CannotRun(f"The database in the archive cannot be read: {error}.") from error
     if wrong:
         raise CannotRun(f"The database in the archive contradicts itself: {'; '.join(wrong[:5])}.")
+    assert restored.end is not None
     if lacking := named - restored.artifacts - set(restored.end["missing"]):
         raise CannotRun(f"The archive lacks {len(lacking)} artifacts, such as {min(lacking)}.")
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Protocol
 
 
 @dataclass(frozen=True)
@@ -18,10 +19,18 @@ class Named:
     kind: str  # step, png, …; or surface, body, answer, rows, import
 
 
-def named_files(connection: sqlite3.Connection) -> Iterator[Named]:
+class Rows(Protocol):
+    """The rows of a database, of whatever kind."""
+
+    def execute(self, query: str, /) -> Iterable[tuple[str, ...]]:
+        """The rows of a query without parameters, mostly texts."""
+        ...
+
+
+def named_files(connection: Rows) -> Iterator[Named]:
     """Every file that a row names; the same file as often as it is named."""
     for sha, size, key, kind in connection.execute("SELECT sha256, size, build_key, kind FROM artifact"):
-        yield Named(sha, size, key, kind)
+        yield Named(sha, int(size), key, kind)
     if _has_table(connection, "analysis"):
         surfaces = "SELECT key, found FROM analysis WHERE output = 'surface'"
         for key, output in connection.execute(surfaces):
@@ -105,6 +114,9 @@ def broken_references(connection: sqlite3.Connection) -> Iterator[str]:
             yield sentence.format(name)
 
 
-def _has_table(connection: sqlite3.Connection, name: str) -> bool:
+def _has_table(connection: Rows, name: str) -> bool:
+    """Whether a database has a table; an old one of SQLite may lack some."""
+    if not isinstance(connection, sqlite3.Connection):
+        return True
     query = "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?"
     return connection.execute(query, (name,)).fetchone() is not None

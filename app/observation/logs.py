@@ -14,7 +14,6 @@ import queue
 import re
 import secrets
 import sys
-from collections import OrderedDict
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -22,27 +21,29 @@ from datetime import UTC, datetime
 from logging.handlers import QueueListener
 from typing import Literal, TextIO
 
+from app.observation.secrets import holds_key, without_keys
+
 Format = Literal["json", "text"]
 Level = Literal["debug", "info", "warning", "error"]
 
 REQUEST_ID: ContextVar[str] = ContextVar("request_id", default="")
+TRACE: ContextVar[str] = ContextVar("trace", default="")
+"""The context of the present trace as W3C's `traceparent`, empty without traces; see `traces`."""
 FIELDS = ("request_id", "client", "method", "route", "path", "status", "ms", "job")
 
 _ROOM = 10_000  # lines that may wait to be written
-_CAUSES = 10_000  # jobs of which it is remembered who caused them
 _HARMLESS = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 # Control characters, line and paragraph separators, and what turns the direction of writing.
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 
 _process, _numbers = secrets.token_hex(5), itertools.count(1)
-_causes: OrderedDict[str, str] = OrderedDict()
 
 
 def request_id(headers: Iterable[tuple[bytes, bytes]]) -> str:
     """Return the id that a client has given its request, if it is harmless; else a new one."""
     for name, value in headers:
-        if name == b"x-request-id" and _HARMLESS.fullmatch(value):
-            return value.decode()
+        if name == b"x-request-id" and _HARMLESS.fullmatch(value) and not holds_key(text := value.decode()):
+            return text
     return new_id()
 
 
@@ -57,22 +58,16 @@ def without_secret(client: str) -> str:
     return f"session:{hashlib.sha256(name.encode()).hexdigest()[:12]}" if kind == "session" else client
 
 
-def note_cause(job: str) -> None:
-    """Remember that the present request has queued a job."""
-    if cause := REQUEST_ID.get():
-        _causes[job] = cause
-        while len(_causes) > _CAUSES:
-            _causes.popitem(last=False)
-
-
 @contextmanager
-def caused(job: str) -> Iterator[None]:
-    """Within it, lines carry the id of the request that has queued the job, if it is still known."""
-    token = REQUEST_ID.set(_causes.pop(job, ""))
+def caused(cause: str) -> Iterator[None]:
+    """Within it, lines carry the id of the request that has queued a job; the job's row holds its cause."""
+    request, _, trace = cause.partition(" ")
+    tokens = REQUEST_ID.set(request), TRACE.set(trace)
     try:
         yield
     finally:
-        REQUEST_ID.reset(token)
+        REQUEST_ID.reset(tokens[0])
+        TRACE.reset(tokens[1])
 
 
 def escaped(text: str) -> str:
@@ -88,7 +83,7 @@ class TextFormatter(logging.Formatter):
         request = f" [{id}]" if (id := getattr(record, "request_id", "")) else ""
         line = f"{_time(record)} {record.levelname} {record.name}{request} {escaped(record.getMessage())}"
         trace = "".join(f"\n  | {escaped(part)}" for part in _traceback(self, record).splitlines())
-        return line + trace
+        return without_keys(line + trace)
 
 
 class JsonFormatter(logging.Formatter):
@@ -105,7 +100,7 @@ class JsonFormatter(logging.Formatter):
         about |= {name: value for name in FIELDS if (value := getattr(record, name, None)) not in (None, "")}
         if trace := _traceback(self, record):
             about["exception"] = trace
-        return json.dumps(about, default=str)  # escapes whatever is not ASCII
+        return without_keys(json.dumps(about, default=str))  # which escapes whatever is not ASCII
 
 
 class QueueHandler(logging.Handler):

@@ -55,6 +55,11 @@ POOL = {
     for figure in ("running", "waiting", "size")
 }
 
+BUCKET = _histogram(
+    "crankwright_bucket_request_seconds", "Time of a request to the bucket [s]", ["operation", "outcome"]
+)
+COPIES = _counter("crankwright_local_copies_total", "Reads of a bucket's files on this machine", ["found"])
+
 _started: dict[str, float] = {}  # job -> when this run began
 _watched: dict[str, Callable[[], Mapping[str, float]]] = {}
 
@@ -65,6 +70,16 @@ def committed(units: int, seconds: float, failed: bool) -> None:
     GROUP.observe(units)
     if failed:
         FAILURES.labels("commit").inc()
+
+
+def bucket_asked(operation: str, outcome: str, seconds: float) -> None:
+    """Count a request to the bucket of the files."""
+    BUCKET.labels(operation, outcome).observe(seconds)
+
+
+def copy_looked_for(is_there: bool) -> None:
+    """Count a read of a bucket's file, which finds a good copy on this machine or not."""
+    COPIES.labels("yes" if is_there else "no").inc()
 
 
 def job_event(job: str, kind: str, name: str) -> None:

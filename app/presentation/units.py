@@ -12,7 +12,7 @@ from templates.core.units.units import unit
 System = Literal["si", "us"]
 US = {
     "m": "ft", "mm": "inch", "um": "thou", "mm**2": "inch**2", "mm**3": "inch**3",
-    "N": "lbf", "kN": "lbf", "N*m": "lbf*ft", "N/m": "lbf/inch", "N*s/m": "lbf*s/inch",
+    "N": "lbf", "kN": "lbf", "N*m": "lbf*ft", "N/m": "lbf/inch", "N/um": "lbf/inch", "N*s/m": "lbf*s/inch",
     "Pa": "psi", "kPa": "psi", "MPa": "psi", "GPa": "psi", "bar": "psi",
     "kg": "lb", "kg*m": "lb*inch", "kg*mm": "lb*inch", "kg*m**2": "lb*ft**2", "kg*mm**2": "lb*inch**2",
     "kg/m**3": "lb/ft**3", "m/s": "ft/s", "m/s**2": "ft/s**2", "degC": "degF", "W": "hp", "kW": "hp",

@@ -213,6 +213,27 @@ class Variants:
 
 
 @dataclass(frozen=True)
+class Signature:
+    """A step of the approval; without a name nobody has taken it."""
+
+    role: str
+    name: str = ""
+    at: str = ""
+    digest: str = ""
+    reason: str = ""  # of a withdrawal
+
+
+@dataclass(frozen=True)
+class Signatures:
+    """Who calculated, checked and released the revision."""
+
+    words: str  # how far its approval is
+    is_released: bool
+    items: list[Signature]
+    block: str  # the same for programs, as JSON
+
+
+@dataclass(frozen=True)
 class Report:
     """A revision, whole."""
 
@@ -228,8 +249,10 @@ class Report:
     units: str
     verdict: Judged
     summary: list[str]
+    signatures: Signatures
     parameters: list[Line]
     steps: list[Step]
     models: list[Model]
     rounds: list[Round] = field(default_factory=list)
     variants: Variants | None = None
+    author: str = ""  # who saved the revision; empty where nobody is asked for a key

@@ -10,7 +10,7 @@ from app.plain import Json
 from app.presentation import numbers
 from app.reports.charts import Chart, Series, svg
 from app.reports.content import Plot
-from app.reports.pictures import Picture, pictures
+from app.reports.pictures import Declaring, Picture, pictures
 from app.schemas.designs import PreviewedStep
 from app.schemas.evaluations import Output, UsedInput
 from templates.core.language.levels import accuracy
@@ -29,10 +29,15 @@ def plots_of(step: PreviewedStep, cls: type[Template] | None) -> list[Plot]:
     if cls is None or not step.outputs:
         return []
     declared = SimpleNamespace(inputs=inputs_schema(cls), outputs=outputs_schema(cls))
+    return [*drawn(declared, step), *(plot for plot in _accuracy(cls) if plot.svg)]
+
+
+def drawn(declared: Declaring, step: PreviewedStep) -> list[Plot]:
+    """The pictures of a step's values."""
     used = {name: value for name, value in step.inputs.items() if isinstance(value, UsedInput)}
     values: Values = {**used, **step.outputs}
-    drawn = [_plot(picture, values) for picture in pictures(declared, step) if picture.kind in KINDS]
-    return [plot for plot in (*drawn[:MOST], *_accuracy(cls)) if plot.svg]
+    plots = [_plot(picture, values) for picture in pictures(declared, step) if picture.kind in KINDS]
+    return [plot for plot in plots[:MOST] if plot.svg]
 
 
 def _plot(picture: Picture, values: Values) -> Plot:

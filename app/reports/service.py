@@ -14,6 +14,7 @@ from importlib.metadata import version
 from pydantic_core import to_json
 from sqlalchemy.orm import Session
 
+from app.approvals.content import shown, steps_taken
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository, stamps, views
 from app.designs.variants.views import variants
@@ -22,6 +23,7 @@ from app.presentation.units import System
 from app.reports.cells import Cell, cell, clean, typed
 from app.reports.content import Line, Model, Report, Round, Step
 from app.reports.models import model_of
+from app.reports.signatures import author_of, of_variants, signatures_of
 from app.reports.steps import step_of
 from app.reports.typesetting import DRAWING, PICTURE, SKETCH
 from app.reports.variants import variants_of
@@ -30,7 +32,7 @@ from app.schemas import designs as schemas
 from app.schemas.answers import Quantity
 from app.solids import rows
 from app.solids.models import Models
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from cad.stamp import stamped
@@ -42,9 +44,7 @@ NO_PICTURE = "no picture and drawing could be made of it"
 class Reports:
     """Gathers reports of revisions."""
 
-    def __init__(
-        self, database: Database, store: ArtifactStore, models: Models, catalogues: Catalogues
-    ) -> None:
+    def __init__(self, database: Database, store: Artifacts, models: Models, catalogues: Catalogues) -> None:
         self.database, self.store, self.models, self.catalogues = database, store, models, catalogues
 
     def number(self, id: str, number: int | None) -> int:
@@ -96,20 +96,25 @@ class Reports:
             out = variants(session, id, number, self.catalogues).in_units(system)
         if not out.variants:
             raise NotFound(f"design {id}: revision {number} has no variants")
-        shown = variants_of(out, pending=pending)
-        verdict = replace(report.verdict, criteria=[], governing=shown.governing)
-        return replace(report, verdict=verdict, variants=shown)
+        table = variants_of(out, pending=pending)
+        verdict = replace(report.verdict, criteria=[], governing=table.governing)
+        signatures = of_variants(report.signatures)
+        return replace(report, verdict=verdict, variants=table, signatures=signatures)
 
     def gather(self, id: str, number: int, system: System, *, pending: bool) -> Report:
         """All that the report says; `pending` if a job still draws its pictures."""
         worked = self.worksheet(id, number, system)
         with self.database.read() as session:
             row = repository.revision(session, id, number)
+            view = views.revision(session, row)
             models = [
                 self._model(session, id, number, name, model, system, pending)
-                for name, model in views.revision(session, row).models.items()
+                for name, model in view.models.items()
             ]
-            document, head = row.document, repository.newest_number(session, id)
+            document, signed = row.document, [shown(one) for one in steps_taken(session, row)]
+            is_released = any(one.step == "released" for one in signed)
+            # The report of a released revision is the same for ever, whatever follows it.
+            head = number if is_released else repository.newest_number(session, id)
         steps = [
             step_of(name, step, document["steps"][name], self.catalogues)
             for name, step in worked.steps.items()
@@ -127,11 +132,13 @@ class Reports:
             program=f"Crankwright {version('crankwright')}",
             units=system,
             verdict=judged(worked),
+            signatures=signatures_of(id, number, system, signed),
             summary=[*_summary(steps, models), *(f"note on {w.name}: {w.detail}" for w in worked.warnings)],
             parameters=[Line(n, "", Cell(text=typed(value))) for n, value in worked.parameters.items()],
             steps=steps,
             models=models,
             rounds=[_round(one) for one in worked.iterations],
+            author=author_of(view.author, signed),
         )
 
     def pictures(self, report: Report) -> dict[str, dict[str, bytes]]:

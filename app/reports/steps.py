@@ -67,7 +67,8 @@ def review_of(sheet: ReleasedSheet | None) -> str:
     if sheet is None:
         return ""
     author = f"written by {sheet.author}" if sheet.author else "its author is not named"
-    return f"Worksheet, {author}, reviewed by {sheet.reviewer}; review not verified."
+    doubt = "" if sheet.is_verified else "; review not verified"
+    return f"Worksheet, {author}, reviewed by {sheet.reviewer}{doubt}."
 
 
 def class_of(catalogue: Catalogue[T], id: str, version: int) -> type[T] | None:

@@ -1,1 +1,1 @@
-"""What is deleted once nobody has wanted it for long: ended jobs, idempotency keys, builds, their files."""
+"""What is deleted once nobody wants it: ended jobs, idempotency keys, events, builds, their files."""

@@ -2,30 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterable
 
 from app.retention.rows import referenced_files
-from app.storage.artifacts import ArtifactStore, Stored
+from app.storage.alone import alone
+from app.storage.artifacts import Artifacts, Stored
 from app.storage.database import Database
+
+GRACE = 24 * 3600.0  # s
 
 
 class Sweep:
-    """Deletes files that two sweeps in succession saw without a reference.
+    """Deletes files that nothing has referred to for a while.
 
-    A file is stored before its row is written. The time between two sweeps is the grace for that, and for a
-    backup that copies the rows first. `put` touches a file that is there already, so to the sweep a file that
-    is wanted again is another one, whatever the wall clock says.
+    A file is stored before its row is written, and a backup copies rows before files: both take less than
+    that while. `put` makes a file that is there already as young as a new one.
+
+    The only server of a database compares two sweeps in succession, whatever the wall clock says. Of several,
+    one sweeps at a time, and no one sees all sweeps: they go by the age of the file. `grace` [s] is long
+    against the differences of their clocks; S3 refuses requests of a clock that is 15 min wrong.
     """
 
-    def __init__(self, database: Database, store: ArtifactStore) -> None:
-        self._database, self._store = database, store
+    def __init__(self, database: Database, store: Artifacts, grace: float = GRACE) -> None:
+        self._database, self._store, self._grace = database, store, grace
         self._seen: set[Stored] = set()  # by the last sweep, without a reference
 
     def run(self, is_stopping: Callable[[], bool] = lambda: False) -> int:
-        """Sweep once; return how many files were deleted."""
+        """Sweep once, unless another server does; return how many files were deleted."""
+        with alone(self._database, "sweep of files") as is_alone:
+            return self._swept(is_stopping) if is_alone else 0
+
+    def _swept(self, is_stopping: Callable[[], bool]) -> int:
         files = set(self._store.list())  # before the rows: a file that is put meanwhile is not looked at
         with self._database.read() as session:
             referenced = referenced_files(session)
-        unused = {file for file in files if file.sha not in referenced}
+        unused = {file for file in files if file.sha not in referenced or self._is_spare(file)}
+        return sum(self._store.delete_unchanged(file) for file in self._old(unused) if not is_stopping())
+
+    def _is_spare(self, file: Stored) -> bool:
+        """Whether a discarded file that a row names is in its place again, if need be by this look at it."""
+        return file.is_discarded and self._store.exists(file.sha)
+
+    def _old(self, unused: set[Stored]) -> Iterable[Stored]:
+        if self._database.is_shared:
+            latest = time.time() - self._grace
+            return [file for file in unused if file.modified < latest]
         twice, self._seen = unused & self._seen, unused
-        return sum(self._store.delete_unchanged(file) for file in twice if not is_stopping())
+        return twice

@@ -15,6 +15,7 @@ from app.storage.tables import (
     AnalysisRow,
     ArtifactRow,
     BuildRow,
+    EventRow,
     IdempotencyRow,
     JobRow,
     RevisionModelRow,
@@ -43,6 +44,16 @@ def delete_jobs(session: Session, kept: float, most: int) -> int:
     old = select(JobRow.id).where(JobRow.operated < operated(session) - kept, JobRow.state.not_in(UNFINISHED))
     some = old.order_by(JobRow.operated).limit(most)
     return _count(session.execute(delete(JobRow).where(JobRow.id.in_(some))))
+
+
+def delete_events(session: Session, kept: float, most: int) -> int:
+    """Delete some of the events that are older than this [s], of a topic the first ones; return how many."""
+    row = EventRow
+    old = select(row.topic, row.number).where(row.operated < operated(session) - kept)
+    some = session.execute(old.order_by(row.operated, row.topic, row.number).limit(most)).all()
+    for topic, number in some:
+        session.execute(delete(row).where(row.topic == topic, row.number == number))
+    return len(some)
 
 
 def unwanted_builds(session: Session, kept: float, after: str, most: int) -> list[str]:

@@ -12,14 +12,15 @@ from sqlalchemy.orm import Session
 from app.retention import rows
 from app.retention.files import Sweep
 from app.settings import Settings
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.clock import DAY, operated
 from app.storage.database import Database
 
 logger = logging.getLogger(__name__)
 
 PAUSE = 900.0  # between two rounds [s]
-GRACE = 3600  # between two sweeps of the files [s of operation]
+HOUR = 3600.0  # s
+GRACE = HOUR  # between two sweeps of the files [s of operation]
 SOME_ROWS = 200  # that one unit deletes: others' writes wait a few milliseconds for it
 SOME_BUILDS = 10  # likewise; each has its artifacts and analyses
 
@@ -27,12 +28,13 @@ SOME_BUILDS = 10  # likewise; each has its artifacts and analyses
 class Retention:
     """Deletes old rows and files as the settings say, at the start and then every quarter of an hour."""
 
-    def __init__(self, database: Database, store: ArtifactStore, settings: Settings) -> None:
+    def __init__(self, database: Database, store: Artifacts, settings: Settings) -> None:
         self._database = database
-        self._sweep = Sweep(database, store)
+        self._sweep = Sweep(database, store, settings.keep_files_hours * HOUR)
         self._swept: int | None = None  # when [s of operation]
         # The record of a request names its job, which must not be missed when the request is repeated.
         self._keys = settings.keep_keys_days * DAY
+        self._events = settings.keep_events_days * DAY
         self._jobs = max(settings.keep_jobs_days, settings.keep_keys_days) * DAY
         self._builds = settings.keep_builds_days * DAY
         self._stopping = threading.Event()
@@ -51,6 +53,7 @@ class Retention:
         """One round; return how many of each were deleted."""
         counts = {
             "keys": self._repeat(partial(rows.delete_keys, kept=self._keys, most=SOME_ROWS)),
+            "events": self._repeat(partial(rows.delete_events, kept=self._events, most=SOME_ROWS)),
             "jobs": self._repeat(partial(rows.delete_jobs, kept=self._jobs, most=SOME_ROWS)),
             "builds": self._delete_builds(),
             "files": self._sweep_files(),

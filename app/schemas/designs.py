@@ -9,8 +9,10 @@ from pydantic.json_schema import SkipJsonSchema
 
 from app.schemas.analyses import AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Answer, Page, Quantity, Shown, Version, Warning
+from app.schemas.approvals import ApprovalState
 from app.schemas.criteria import Criterion, Verdict
 from app.schemas.evaluations import CalculatedBy, Error, Level, Output, UsedInput, WorkedFormula
+from app.schemas.identity import Author
 from app.schemas.problems import Problem
 from app.schemas.solids import Measurements
 from app.schemas.values import Given
@@ -80,6 +82,7 @@ class DesignSummary(Answer):
     changed: str
     tags: list[str] = Field([], description="in alphabetical order")
     archived: bool = Field(False, description="whether lists leave it out unless they name `archived`")
+    released: int | None = Field(None, description="the newest released revision; absent where there is none")
 
 
 class DesignList(Page[DesignSummary]):
@@ -188,6 +191,11 @@ class Revision(Answer):
         description="as judged when it was calculated, worst first; absent in revisions of older programs",
     )
     verdict: Verdict | None = Field(None, description="over all criteria; absent where there are none")
+    author: Author | None = Field(
+        None, description="who saved it; `local` without keys, null in revisions of older programs"
+    )
+    supersedes: int | None = Field(None, description="the released revision that it replaces, where it does")
+    approval: ApprovalState | None = Field(None, description="the last step taken; absent before the first")
 
 
 class RevisionList(Page[Revision]):

@@ -46,12 +46,16 @@ PROBLEM_CONTENT: JsonDict = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schem
 
 MEANINGS = {
     400: "the host or the path cannot be read",
-    403: "a page of another site sent the request, or authors review their own worksheet",
+    401: "no valid key or session came, where the service asks for one",
+    403: (
+        "the role is missing, the object is another's, authors review their own worksheet, or a page of "
+        "another site sent the request"
+    ),
     404: "there is nothing of this name, number or version",
     408: "the body came too slowly",
-    409: "the state of the job, the design or the worksheet does not allow it",
+    409: "the state of the job, the design, its approval or the worksheet does not allow it",
     410: "the file is lost and cannot be made again under its hash; the problem says why",
-    412: "the design or the worksheet has changed since the state that If-Match names",
+    412: "the design, its approval or the worksheet has changed since the state that If-Match names",
     413: "the body or the answer is too large",
     415: "the content type is not one that the path takes",
     422: "an input is wrong; `errors` names each one",

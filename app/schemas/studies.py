@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field
 
@@ -15,11 +15,27 @@ Method = Literal["grid", "table", "sample", "sensitivity", "optimise"]
 StudyState = Literal["queued", "running", "done", "failed", "cancelled"]
 
 
+SetAside = Annotated[
+    dict[str, str], Field(description="relations that do not hold in this study, by the place they set")
+]
+
+
 class Estimate(Answer):
     """What a study will take, as known before it begins."""
 
     seconds: float = Field(description="of one calculation process; an order of magnitude")
     solids: int = Field(0, description="that have to be built")
+
+
+class StudyEstimate(Answer):
+    """What a study would do, if it began now."""
+
+    rows: int = Field(description="planned; of a search the most that it may ask for")
+    criteria: list[str] = Field(description="that a row must meet")
+    levels: dict[str, str] = Field(description="at which rows are explored, by step")
+    confirm: dict[str, str] = Field({}, description="at which the best rows are calculated again, by step")
+    set_aside: SetAside = {}
+    estimate: Estimate
 
 
 class Refused(Answer):
@@ -136,6 +152,8 @@ class Study(Units):
     outputs: list[str]
     criteria: list[str]
     levels: dict[str, str] = Field(description="at which rows are explored, by step")
+    set_aside: SetAside = {}
+    objectives: dict[str, Literal["minimise", "maximise"]] = Field({}, description="by output")
     estimate: Estimate
     result: StudyResult | None = None
     problem: Problem | None = None

@@ -109,7 +109,7 @@ class SheetSummary(Answer):
     title: str
     author: str | None
     reviewer: str | None
-    review_verified: bool = Field(description="false: a typed name, which nobody proved")
+    review_verified: bool = Field(description="true: the reviewer had signed in; false: a typed name")
     faults: int = Field(description="how many")
     updated: str
 
@@ -131,7 +131,7 @@ class Sheet(Answer):
     language: int = Field(description="the version of the language")
     author: str | None
     reviewer: str | None
-    review_verified: bool = Field(description="false: a typed name, which nobody proved")
+    review_verified: bool = Field(description="true: the reviewer had signed in; false: a typed name")
     faults: list[SheetFault]
     tests: list[SheetTest] = Field(description="as they ran last")
     withdrawn: str | None = Field(description="why")

@@ -26,8 +26,19 @@ def is_fresh(session: Session, keys: Collection[str]) -> bool:
 
 
 def renew(session: Session, keys: Collection[str]) -> bool:
-    """Renew the age of builds in a unit of work; return whether all of them are there."""
+    """Renew the age of builds in a unit of work; return whether all of them are there.
+
+    A build that was wanted within the last hour stays as it is, so units that share one do not wait for each
+    other: none of them locks its row.
+    """
     if not keys:
         return True
-    wanted = update(BuildRow).where(BuildRow.key.in_(set(keys))).values(operated=operated(session))
-    return len(session.scalars(wanted.returning(BuildRow.key)).all()) == len(set(keys))
+    wanted, present = set(keys), operated(session)
+    query = select(BuildRow.key, BuildRow.operated).where(BuildRow.key.in_(wanted))
+    seen = session.execute(query).all()
+    old = {key for key, age in seen if age < present - FRESH}
+    if not old:
+        return len(seen) == len(wanted)
+    renewal = update(BuildRow).where(BuildRow.key.in_(old)).values(operated=present)
+    renewed = session.scalars(renewal.returning(BuildRow.key)).all()  # what is not deleted meanwhile
+    return len(seen) - len(old) + len(renewed) == len(wanted)

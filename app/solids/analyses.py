@@ -19,7 +19,7 @@ from app.solids.finding import Analysing, is_stored, shaft_of
 from app.solids.models import FAILURES, File
 from app.solids.questions import Question, under_load
 from app.solids.shapes import shape_of
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild, NotFound
 from cad.analysis.kinds import SURFACE
@@ -34,7 +34,7 @@ ANALYSIS = "analysis"
 class Analyses:
     """Questions about models, and their answers."""
 
-    def __init__(self, database: Database, store: ArtifactStore, jobs: Jobs) -> None:
+    def __init__(self, database: Database, store: Artifacts, jobs: Jobs) -> None:
         self.database, self.store, self.jobs = database, store, jobs
 
     def request(

@@ -7,11 +7,13 @@ from collections.abc import Collection, Mapping
 from sqlalchemy import Text, select, type_coerce
 from sqlalchemy.orm import Session
 
+from app.identity import usage
 from app.plain import JsonObject
 from app.solids.questions import Question, in_order
 from app.storage.errors import NotFound
 from app.storage.identity import now
 from app.storage.tables import AnalysisRow
+from app.storage.upserts import upsert
 from cad.analysis.kinds import STRESSES, SURFACE
 
 Outputs = dict[str, JsonObject]
@@ -89,5 +91,6 @@ def add(session: Session, build: str, question: Question, outputs: Mapping[str, 
         row = AnalysisRow(
             key=key, output=name, build_key=build, asked=question.kept(), found=output, created=now()
         )
-        session.merge(row)
-    session.flush()
+        if "size" in output and session.get(AnalysisRow, (key, name)) is None:
+            usage.note_bytes(session, int(output["size"]))
+        upsert(session, row)

@@ -16,7 +16,7 @@ from app.calculations.sources import Source, loaded, source_of
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.shapes import made_otherwise, shape_of
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild
 from app.storage.tables import ArtifactRow
@@ -43,7 +43,7 @@ STEP = "step"
 class Builds:
     """Makes builds in a worker process and records them with their STEP files."""
 
-    def __init__(self, database: Database, store: ArtifactStore) -> None:
+    def __init__(self, database: Database, store: Artifacts) -> None:
         self.database, self.store = database, store
 
     def make(self, shape: CadModel, context: Runner) -> None:
@@ -95,7 +95,13 @@ class Builds:
         A drawing of an older program, which has no room for a stamp, is drawn again.
 
         A derived file depends on libraries that the build's key does not name. If its bytes come out
-        otherwise than before, it is another artifact, and the row names that one.
+        otherwise than before, it is another artifact, and the row names that one; but not where a signed
+        revision uses the build.
+
+        Raises
+        ------
+        CannotRebuild
+            If the bytes come out otherwise than those that were signed.
         """
         row, step = self._row(key, kind), self._row(key, STEP)
         if row and self.store.exists(row.sha256) and not self._is_outdated(row):
@@ -104,6 +110,9 @@ class Builds:
         file = context.run(derive, self.store.read(step.sha256), kind)
         sha = self.store.put(file)
         if row and row.sha256 != sha:
+            with self.database.read() as session:
+                if rows.is_signed(session, key):
+                    raise _signed_otherwise(row)
             logger.warning(
                 "%s of build %s: artifact %s is out of use, now it is %s", kind, key, row.sha256, sha
             )
@@ -135,6 +144,14 @@ def _changed(shape: CadModel, row: ArtifactRow) -> CannotRebuild:
         f"{row.sha256} from a backup"
     )
     return CannotRebuild("model_changed", detail)
+
+
+def _signed_otherwise(row: ArtifactRow) -> CannotRebuild:
+    detail = (
+        f"file {row.kind} of build {row.build_key} is lost, and is made of other bytes now: libraries have "
+        f"changed since. A signed revision has artifact {row.sha256}: restore it from a backup"
+    )
+    return CannotRebuild("signed_otherwise", detail)
 
 
 def build_in_worker(source: Source, texts: Mapping[str, str]) -> Build:

@@ -8,7 +8,7 @@ from app.plain import JsonObject
 from app.solids import analysis_rows as repository
 from app.solids import rows
 from app.solids.questions import Question
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.workers.base import Limits, Runner
 from cad.analysis.kinds import SURFACE
@@ -25,7 +25,7 @@ FILE = "file"
 class Analysing:
     """Analyses built solids in a worker process and records the outputs."""
 
-    def __init__(self, database: Database, store: ArtifactStore, limits: Limits) -> None:
+    def __init__(self, database: Database, store: Artifacts, limits: Limits) -> None:
         self.database, self.store, self.limits = database, store, limits
 
     def find(self, shape: CadModel, question: Question, outputs: tuple[str, ...], context: Runner) -> None:
@@ -64,7 +64,7 @@ class Analysing:
         return {"sha256": self.store.put(output[FILE]), "size": len(output[FILE]), **rest}
 
 
-def is_stored(outputs: repository.Outputs, output: str, store: ArtifactStore) -> bool:
+def is_stored(outputs: repository.Outputs, output: str, store: Artifacts) -> bool:
     """Whether an output is stored, and its file, if it is one, is good."""
     return output in outputs and (output != SURFACE or store.exists(outputs[output]["sha256"]))
 

@@ -13,7 +13,7 @@ from app.solids import rows
 from app.solids.analyses import Analyses
 from app.solids.models import Models
 from app.solids.shapes import made_otherwise, shape_of
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactMissing, CannotRebuild
 from cad.regenerate import build_key
@@ -24,7 +24,7 @@ REMEMBERED = 1000  # artifacts that could not be rebuilt; asked for again, they 
 class Healing:
     """Rebuilds artifacts from their rows."""
 
-    def __init__(self, database: Database, store: ArtifactStore, models: Models, analyses: Analyses) -> None:
+    def __init__(self, database: Database, store: Artifacts, models: Models, analyses: Analyses) -> None:
         self.database, self.store, self.models, self.analyses = database, store, models, analyses
         self._refused: OrderedDict[str, JsonObject] = OrderedDict()
         self._lock = threading.Lock()

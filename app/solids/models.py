@@ -15,7 +15,7 @@ from app.schemas.solids import Build, BuildUse, Verification
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
 from app.solids.builds import Builds
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild, NotFound
 from app.workers.errors import DeadlineExceeded, JobCrashed, MemoryExceeded
@@ -44,7 +44,7 @@ class File:
 class Models:
     """Builds outside of any design, and files of builds inside and outside."""
 
-    def __init__(self, database: Database, store: ArtifactStore, jobs: Jobs, catalogues: Catalogues) -> None:
+    def __init__(self, database: Database, store: Artifacts, jobs: Jobs, catalogues: Catalogues) -> None:
         self.database, self.store, self.jobs, self.catalogues = database, store, jobs, catalogues
 
     @property

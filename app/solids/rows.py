@@ -7,10 +7,13 @@ from collections.abc import Collection, Mapping
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.identity import usage
+from app.identity.acting import ACTING, BUILT_IN
 from app.plain import Json, JsonObject
 from app.storage.clock import operated
 from app.storage.identity import now
-from app.storage.tables import ArtifactRow, BuildRow, DesignRow, RevisionModelRow
+from app.storage.tables import ApprovalRow, ArtifactRow, BuildRow, DesignRow, RevisionModelRow
+from app.storage.upserts import upsert
 
 
 def build(session: Session, key: str) -> BuildRow | None:
@@ -67,13 +70,14 @@ def add_build(
         operated=operated(session),
         made_by=made_by,
     )
-    session.merge(row)
-    session.flush()
+    upsert(session, row)
 
 
 def add_artifact(session: Session, key: str, kind: str, sha256: str, size: int) -> None:
     """Record an artifact of a build."""
-    session.merge(ArtifactRow(build_key=key, kind=kind, sha256=sha256, size=size, created=now()))
+    if ACTING.get().id not in BUILT_IN and session.get(ArtifactRow, (key, kind)) is None:
+        usage.note_bytes(session, size)
+    upsert(session, ArtifactRow(build_key=key, kind=kind, sha256=sha256, size=size, created=now()))
 
 
 def users_of(session: Session, key: str) -> list[Mapping[str, Json]]:
@@ -88,6 +92,20 @@ def users_of(session: Session, key: str) -> list[Mapping[str, Json]]:
         .order_by(RevisionModelRow.design_id, RevisionModelRow.number, RevisionModelRow.name)
     )
     return [_use(*row) for row in session.execute(query).all()]
+
+
+def is_signed(session: Session, key: str) -> bool:
+    """Whether a revision that was handed over for checking, or signed further, uses a build."""
+    signed = (
+        select(ApprovalRow.step)
+        .join(
+            RevisionModelRow,
+            (RevisionModelRow.design_id == ApprovalRow.design_id)
+            & (RevisionModelRow.number == ApprovalRow.revision),
+        )
+        .where(RevisionModelRow.build_key == key)
+    )
+    return session.scalar(signed.limit(1)) is not None
 
 
 def _use(design: str, number: int, model: str, head: int) -> Mapping[str, Json]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import errno
 import hashlib
+import math
 import os
 import re
 import stat
 import tempfile
-import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
@@ -17,33 +18,57 @@ from io import BufferedReader
 from pathlib import Path
 from typing import Protocol
 
-from app.storage.errors import ArtifactDamaged, ArtifactMissing
+from app.storage.errors import ArtifactDamaged, ArtifactMissing, ArtifactsUnreachable
+from app.storage.file_locks import OwnLock, SharedLock
 from app.storage.verified import Opened, Stamp, Verified, stamp_of
 
 QUARANTINE = "quarantine"
 SHA256 = re.compile(r"[0-9a-f]{64}")
+OWNER = "database"  # under which a store that is shared holds the identity of its database
+LOCK = "crankwright.lock"  # of a folder that several servers share
+ABANDONED = 3600.0  # age of a temporary file that no running server writes any more [s]
 _TEMPORARY = ".tmp-"
 _FAILING_DISK = {errno.EIO, errno.EBADMSG, getattr(errno, "EUCLEAN", errno.EIO)}
 
 
 @dataclass(frozen=True)
 class Stored:
-    """A file in the store: its name, its size [bytes] and when it was last put [s since 1970]."""
+    """A file in the store: its name, its size [bytes] and when it was last put [s since 1970].
+
+    A discarded one lies in a bucket's `discarded/`, whence it comes back if it is asked for.
+    """
 
     sha: str
     size: int
     modified: float
+    is_discarded: bool = False
 
 
 class Artifacts(Protocol):
-    """What every store of artifacts can do."""
+    """What every store of artifacts can do.
+
+    A store that cannot be reached raises ArtifactsUnreachable; it never takes its own silence for a missing
+    file.
+    """
 
     def put(self, *parts: bytes | memoryview) -> str:
-        """Store bytes, whole or in parts; they are durable when it returns."""
+        """Store bytes, whole or in parts, and return their SHA-256; they are durable when it returns.
+
+        Bytes that are stored already become as young as new ones, so that no sweep deletes them before their
+        row is written.
+        """
         ...
 
     def fetch(self, sha: str) -> Path:
         """Return where the verified bytes lie; raises ArtifactMissing, ArtifactDamaged."""
+        ...
+
+    def read(self, sha: str) -> bytes:
+        """Return the verified bytes; raises as `fetch` does."""
+        ...
+
+    def open(self, sha: str) -> Opened:
+        """Open the verified bytes for reading; they stay although the file is deleted; raises as `fetch`."""
         ...
 
     def exists(self, sha: str) -> bool:
@@ -54,40 +79,61 @@ class Artifacts(Protocol):
         """Remove the bytes, if they are there."""
         ...
 
+    def delete_unchanged(self, seen: Stored) -> bool:
+        """Delete a file unless it was put again since it was listed; return whether it is deleted."""
+        ...
+
     def list(self) -> Iterator[Stored]:
         """Every file in the store, verified or not."""
         ...
 
+    def claim(self, owner: str) -> str:
+        """Have the store belong to an owner, if it has none; return whose it is."""
+        ...
+
+    def probe(self) -> None:
+        """Return if the store answers; raises ArtifactsUnreachable."""
+        ...
+
 
 class ArtifactStore:
-    """Artifacts in a local folder, spread over 256 folders by the first two digits of their names.
+    """Artifacts in a folder, spread over 256 folders by the first two digits of their names.
 
-    One process writes at a time (see `DataFolder`), so temporary files present at the start are left-overs.
+    Without `is_shared` one process writes at a time (see `DataFolder`), so temporary files present at the
+    start are left-overs. In a folder that several servers share only old ones are.
     A file whose bytes no longer have its hash goes into the folder `quarantine` and is never served.
+    Files that need not be durable, because they are copies, are not synced.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *, is_shared: bool = False, is_durable: bool = True) -> None:
         self.folder = folder
+        self._is_durable = is_durable
         self._verified = Verified()
-        self._changing = threading.Lock()  # nobody deletes, replaces or sets aside a file that is put
         folder.mkdir(parents=True, exist_ok=True)
-        for stale in folder.glob(f"*/{_TEMPORARY}*"):
-            stale.unlink()
+        # Nobody deletes or sets aside a file while it is put.
+        self._changing = SharedLock(folder / LOCK) if is_shared else OwnLock()
+        oldest = time.time() - ABANDONED if is_shared else math.inf
+        with self._changing.putting():  # also shows that the folder can be written
+            for stale in folder.glob(f"*/{_TEMPORARY}*"):
+                with suppress(FileNotFoundError):  # another server has just renamed or deleted it
+                    if stale.stat().st_mtime < oldest:
+                        stale.unlink()
 
     def put(self, *parts: bytes | memoryview) -> str:
         """Store bytes, whole or in parts, durably and return their SHA-256; the same bytes are stored once.
 
         A file that is there keeps its bytes, if they are good, and is as young as if it were new.
         """
-        sha = _hashed(parts)
+        sha = hashed(parts)
         target = self._location(sha)
         if not (self.exists(sha) and self._renewed(target)):
-            with self._changing:
+            with self._changing.putting():
                 target.parent.mkdir(exist_ok=True)
-                _write_whole(target, parts, self._clear)
+                _write_whole(target, parts, self._clear, is_durable=self._is_durable)
         # Even for a file that exists: the writer that renamed it may not have synced its folder yet.
-        _sync_folder(target.parent)
-        _sync_folder(self.folder)
+        if self._is_durable:
+            _sync_folder(target.parent)
+            _sync_folder(self.folder)
         return sha
 
     def fetch(self, sha: str) -> Path:
@@ -137,14 +183,14 @@ class ArtifactStore:
 
     def delete(self, sha: str) -> None:
         """Remove an artifact, if it is there."""
-        with self._changing:
+        with self._changing.removing():
             self._location(sha).unlink(missing_ok=True)
         self._verified.forget(sha)
 
     def delete_unchanged(self, seen: Stored) -> bool:
         """Delete a file unless it was put again since it was listed; return whether it is deleted."""
         location = self._location(seen.sha)
-        with self._changing, suppress(FileNotFoundError):
+        with self._changing.removing(), suppress(FileNotFoundError):
             if location.stat().st_mtime == seen.modified:
                 location.unlink()
                 self._verified.forget(seen.sha)
@@ -158,6 +204,27 @@ class ArtifactStore:
                 with suppress(FileNotFoundError):  # deleted meanwhile
                     seen = path.lstat()
                     yield Stored(path.name, seen.st_size, seen.st_mtime)
+
+    def claim(self, owner: str) -> str:
+        """Have the folder belong to an owner, if it has none; return whose it is."""
+        descriptor, temporary = tempfile.mkstemp(dir=self.folder, prefix=_TEMPORARY)
+        try:
+            with os.fdopen(descriptor, "w") as file:
+                file.write(owner)
+                file.flush()
+                os.fsync(descriptor)
+            with suppress(FileExistsError):  # of two who link at once, one is first
+                os.link(temporary, self.folder / OWNER)
+        finally:
+            os.unlink(temporary)
+        return (self.folder / OWNER).read_text(errors="replace").strip()
+
+    def probe(self) -> None:
+        """Return if the folder is there; raises ArtifactsUnreachable."""
+        try:
+            self.folder.stat()
+        except OSError as error:
+            raise ArtifactsUnreachable(f"its folder cannot be read ({error.strerror})") from error
 
     def _verify(self, sha: str, file: BufferedReader) -> Stamp:
         stamp = stamp_of(file)
@@ -199,7 +266,7 @@ class ArtifactStore:
         """Move the damaged file away, unless good bytes have taken its place meanwhile."""
         self._verified.forget(sha)
         location, aside = self._location(sha), self.folder / QUARANTINE / f"{sha}.damaged-{_moment()}"
-        with self._changing, suppress(FileNotFoundError):
+        with self._changing.removing(), suppress(FileNotFoundError):
             seen = location.stat()
             if seen.st_ino == stamp.inode:
                 aside.parent.mkdir(exist_ok=True)
@@ -208,30 +275,43 @@ class ArtifactStore:
 
     def _renewed(self, path: Path) -> bool:
         """Make a file as young as a new one, for `delete_unchanged`; return whether it was still there."""
-        with self._changing, suppress(FileNotFoundError):
+        with self._changing.putting(), suppress(FileNotFoundError):
             os.utime(path)
             return True
         return False
 
     def _location(self, sha: str) -> Path:
-        # A name comes from a URL: anything but a hash could lead out of the folder.
-        if not SHA256.fullmatch(sha):
-            raise ArtifactMissing(sha)
+        require_name(sha)
         return self.folder / sha[:2] / sha
 
 
-def _moment() -> str:
-    return datetime.now(UTC).strftime("%Y%m%dT%H%M%S.%f")
+def require_name(sha: str) -> None:
+    """Return if this is a hash: names come from URLs, and any other could lead out of the store.
+
+    Raises
+    ------
+    ArtifactMissing
+        It is none.
+    """
+    if not SHA256.fullmatch(sha):
+        raise ArtifactMissing(sha)
 
 
-def _hashed(parts: Iterable[bytes | memoryview]) -> str:
+def hashed(parts: Iterable[bytes | memoryview]) -> str:
+    """The SHA-256 of bytes in parts."""
     total = hashlib.sha256()
     for part in parts:
         total.update(part)
     return total.hexdigest()
 
 
-def _write_whole(target: Path, parts: Iterable[bytes | memoryview], clear: Callable[[Path], None]) -> None:
+def _moment() -> str:
+    return datetime.now(UTC).strftime("%Y%m%dT%H%M%S.%f")
+
+
+def _write_whole(
+    target: Path, parts: Iterable[bytes | memoryview], clear: Callable[[Path], None], *, is_durable: bool
+) -> None:
     """Write beside the target, sync, then rename, so that the target never shows half its bytes.
 
     To sync takes long: only then is the place cleared of what cannot be replaced.
@@ -241,7 +321,8 @@ def _write_whole(target: Path, parts: Iterable[bytes | memoryview], clear: Calla
         with os.fdopen(descriptor, "wb") as file:
             file.writelines(parts)
             file.flush()
-            os.fsync(file.fileno())
+            if is_durable:
+                os.fsync(file.fileno())
         clear(target)
         os.replace(temporary, target)
     except BaseException:

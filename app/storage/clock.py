@@ -1,25 +1,62 @@
 """The clock of operation: for how many seconds the service has been running in its life.
 
-Ages of stored things are differences of it. It is a counter in the database that the writer raises by the
-monotonic clock of the process, so a wall clock that jumps back or forward ages nothing, nor does time without
-the service. A killed server loses the time since its last write.
+Ages of stored things are differences of it. It is a counter in the database, so a wall clock that jumps back
+or forward ages nothing, nor does time without the service.
+
+A SQLite file has one server, whose writer raises the counter by the monotonic clock of the process; a killed
+server loses the time since its last write. PostgreSQL has several. There the counter stands for the moment
+that `TICKED` names by the clock of the database, and the time since then, at most `LONGEST`, is added when it
+is read. Every server moves both forward every few seconds, under the lock of a row: so each second counts
+once, however many servers there are, and none while there is no server; a jump of the database's clock counts
+as `LONGEST` at most.
 """
 
 from __future__ import annotations
 
+import logging
+import threading
 import time
 
-from sqlalchemy import Connection, select, update
+from sqlalchemy import BigInteger, Connection, Double, cast, select, update
+from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.orm import Session
+from sqlalchemy.sql import func
+from sqlalchemy.sql.compiler import SQLCompiler
+from sqlalchemy.sql.functions import GenericFunction
 
 from app.storage.tables import CounterRow
+from app.storage.units import Writer
 
-NAME = "operation"
+logger = logging.getLogger(__name__)
+
+NAME, TICKED = "operation", "ticked"
 DAY = 86_400  # s
+TICK = 5.0  # between two times that a server moves the counter forward [s]
+LONGEST = 15  # that a time without any such move counts [s]
+
+
+class present(GenericFunction[float]):  # noqa: N801 - it is written as a function
+    """The present time by the clock of the database [s since 1970]: clocks of servers differ.
+
+    It goes on within a transaction.
+    """
+
+    type = Double()
+    inherit_cache = True
+
+
+@compiles(present, "postgresql")
+def _on_postgresql(element: present, compiler: SQLCompiler, **options: object) -> str:
+    return "extract(epoch from clock_timestamp())::float8"
+
+
+@compiles(present, "sqlite")
+def _on_sqlite(element: present, compiler: SQLCompiler, **options: object) -> str:
+    return "((julianday('now') - 2440587.5) * 86400.0)"
 
 
 class OperationClock:
-    """Raises the counter by the whole seconds that have passed; belongs to the writer thread."""
+    """Raises the counter by the whole seconds that have passed; belongs to the writer thread of SQLite."""
 
     def __init__(self) -> None:
         self._counted = time.monotonic()  # up to this moment the counter holds all
@@ -42,7 +79,57 @@ class OperationClock:
         """Note that the raise is durable; if its transaction is lost, the next one makes up for it."""
         self._counted += seconds
 
+    def close(self) -> None:
+        """Nothing: the writer stores what is left when it is closed."""
+
+
+class SharedClock:
+    """Moves the counter of a shared database forward now and then, in a thread of its own."""
+
+    elapsed = 0
+    """Whole seconds that `operated` leaves out: none."""
+
+    def __init__(self, writer: Writer) -> None:
+        self._writer = writer
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._work, name="operation-clock", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Move it a last time, and end the thread. A second call does nothing."""
+        self._stopping.set()
+        self._thread.join()
+
+    def _work(self) -> None:
+        is_last = False
+        while not is_last:
+            is_last = self._stopping.wait(TICK)
+            try:
+                self._writer.write(tick)
+            except Exception as error:
+                logger.warning("The clock of operation could not be moved; trying again: %s", error)
+
+
+def tick(session: Session) -> None:
+    """Move the counter of a shared database to the present, in a unit of work."""
+    query = select(CounterRow.value, func.floor(present())).where(CounterRow.name == TICKED)
+    then, now = session.execute(query.with_for_update()).one()
+    seconds = min(max(int(now) - then, 0), LONGEST)
+    for name, value in ((TICKED, int(now)), (NAME, CounterRow.value + seconds)):
+        session.execute(update(CounterRow).where(CounterRow.name == name).values(value=value))
+
 
 def operated(session: Session) -> int:
-    """The time of operation [s]: exact to a second in a unit of work, else that of the last write."""
-    return session.scalar(select(CounterRow.value).where(CounterRow.name == NAME)) or 0
+    """The time of operation [s]: exact to a second in a unit of work, else that of the last write.
+
+    On PostgreSQL it is exact everywhere.
+    """
+    counter = select(CounterRow.value).where(CounterRow.name == NAME)
+    if session.get_bind().dialect.name == "sqlite":
+        return session.scalar(counter) or 0
+    return session.scalar(_OPERATED) or 0
+
+
+_THEN = select(CounterRow.value).where(CounterRow.name == TICKED).scalar_subquery()
+_SINCE = func.least(func.greatest(func.floor(present()) - _THEN, 0), LONGEST)
+_OPERATED = select(cast(CounterRow.value + _SINCE, BigInteger)).where(CounterRow.name == NAME)

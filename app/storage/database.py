@@ -1,53 +1,57 @@
-"""The database of the process: many readers, one writer thread that commits waiting units of work in groups.
+"""The database of the process: reads in snapshots, and writes by units of work.
 
-SQLite takes one writer at a time and syncs the disk at every commit. One thread that runs all waiting units
-in one transaction pays one sync for all of them, and nobody ever meets a locked database.
+How units are written depends on the kind of database: `app.storage.group_writer` (SQLite) and
+`app.storage.pooled_writer` (PostgreSQL).
 """
 
 import asyncio
-import contextvars
-import queue
-import threading
-import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
-from typing import Any, TypeVar
 
-from sqlalchemy import Connection
 from sqlalchemy.orm import Session
 
-from app.storage.clock import OperationClock
+from app.storage.clock import OperationClock, SharedClock
 from app.storage.damage import Watch
-from app.storage.engines import reading_engine, writing_engine
-from app.storage.errors import CommitFailed, DatabaseClosed, DatabaseDamaged
+from app.storage.engines import is_sqlite, reading_engine, writing_engine
+from app.storage.group_writer import GroupWriter
+from app.storage.units import T, Unit, Writer, after_commit, repeatable
 
-T = TypeVar("T")
-Unit = Callable[[Session], T]
+__all__ = ["Database", "Unit", "after_commit", "repeatable"]
 
-GROUP = 256  # units in one transaction: bounds how long the first of them waits for the last
+POOL = 16  # connections to PostgreSQL for writing, and as many for reading
 
 
 class Database:
     """Reads in snapshots, writes by units of work; once damage has shown, it only reads.
 
-    `on_commit` is called with each group's number of units, its time [s], and whether it failed. A unit
-    runs in the context (`contextvars`) of its caller.
+    `on_commit` is called with each transaction's number of units, its time [s], and whether it failed. A unit
+    runs in the context (`contextvars`) of its caller. On PostgreSQL it may run several times, so it changes
+    nothing but what its session writes; whatever is to follow it goes through `after_commit`.
 
     Rows stay readable after their session has ended; what was not loaded by then cannot be loaded later.
     """
 
-    def __init__(self, url: str, on_commit: Callable[[int, float, bool], object] | None = None) -> None:
-        self._on_commit = on_commit or (lambda units, seconds, failed: None)
+    def __init__(
+        self, url: str, on_commit: Callable[[int, float, bool], object] | None = None, pool: int = POOL
+    ) -> None:
+        said = on_commit or (lambda units, seconds, failed: None)
+        self.url = url
+        self.is_shared = not is_sqlite(url)
+        """Whether several servers may use this database at the same time."""
         self.watch = Watch(url)
-        self._reader = reading_engine(url)
-        self._writer = writing_engine(url)
-        self.clock = OperationClock()
-        self._waiting: queue.SimpleQueue[_Pending | None] = queue.SimpleQueue()
-        self._closing = threading.Lock()
-        self._closed = False
-        self._thread = threading.Thread(target=self._serve, name="database-writer", daemon=True)
-        self._thread.start()
+        self._reader = reading_engine(url, pool)
+        engine = writing_engine(url, pool)
+        self.clock: OperationClock | SharedClock
+        self._writer: Writer
+        if self.is_shared:
+            from app.storage.pooled_writer import PooledWriter
+
+            self._writer = PooledWriter(engine, pool, said)
+            self.clock = SharedClock(self._writer)
+        else:
+            self.clock = OperationClock()
+            self._writer = GroupWriter(engine, self.clock, self.watch, said)
 
     @contextmanager
     def read(self) -> Iterator[Session]:
@@ -57,6 +61,8 @@ class Database:
         ------
         DatabaseDamaged
             What was to be read cannot be read.
+        DatabaseUnavailable
+            The database server cannot be reached.
         """
         self.watch.require_file()
         try:
@@ -64,15 +70,21 @@ class Database:
                 yield session
         except BaseException as error:
             self.watch.raise_if_damage(error)
+            if self.is_shared:
+                _raise_if_unavailable(error)
             raise
 
     def write(self, unit: Unit[T]) -> T:
-        """Run a unit of work in the writer thread and return its result once that is durable.
+        """Run a unit of work and return its result once that is durable.
 
         Raises
         ------
         CommitFailed
-            The unit ran, but its group could not be committed; nothing of it is stored.
+            The unit ran, but could not be committed; nothing of it is stored.
+        CommitUnknown
+            The connection was lost during the commit: it may be stored or not.
+        DatabaseUnavailable
+            The database server cannot be reached; nothing is stored.
         DatabaseClosed
             The database has been closed.
         DatabaseDamaged
@@ -80,13 +92,19 @@ class Database:
         Exception
             Whatever the unit raises; its changes, and no others, are undone.
         """
-        if threading.current_thread() is self._thread:
-            raise RuntimeError("A unit of work may not wait for another: use its session.")
-        return self.submit(unit).result()
+        return self._writer.write(unit)
 
     async def awrite(self, unit: Unit[T]) -> T:
         """Like `write`, for a caller in an event loop."""
         return await asyncio.wrap_future(self.submit(unit))
+
+    def submit(self, unit: Unit[T]) -> "Future[T]":
+        """Have a unit of work written; its future raises as `write` does."""
+        return self._writer.submit(unit)
+
+    def write_through(self, around: Callable[[Writer], Writer]) -> None:
+        """Have all further units of work pass through what is put around the writer."""
+        self._writer = around(self._writer)
 
     def close(self) -> None:
         """Commit what waits, then close all connections. A second call does nothing.
@@ -94,102 +112,15 @@ class Database:
         Once damage has shown, the connections stay open until the process ends: SQLite copies its log into
         the file when the last one is closed, and a damaged log would overwrite pages that are whole.
         """
-        with self._closing:
-            if not self._closed:
-                self._waiting.put(None)
-            self._closed = True
-        self._thread.join()
+        self.clock.close()
+        self._writer.close()
         if self.watch.damage is None:
             self._reader.dispose()
-            self._writer.dispose()
-
-    def submit(self, unit: Unit[T]) -> "Future[T]":
-        """Queue a unit of work; its future raises as `write` does."""
-        if self.watch.damage is not None:  # whether the file is still there shows when the group begins
-            self.watch.refuse()
-        pending = _Pending(unit)
-        with self._closing:  # nothing may enter the queue behind its end
-            if self._closed:
-                raise DatabaseClosed("The database is closed.")
-            self._waiting.put(pending)
-        return pending.future
-
-    def _serve(self) -> None:
-        more = True
-        while more:
-            group, more = self._next_group()
-            wanted = [pending for pending in group if pending.future.set_running_or_notify_cancel()]
-            if wanted:
-                self._commit(wanted)
-        if self.clock.elapsed:
-            self._commit([])
-
-    def _next_group(self) -> "tuple[list[_Pending], bool]":
-        """Wait for a unit, then take those that came meanwhile; also return whether more may come."""
-        group: list[_Pending] = []
-        while not group or (len(group) < GROUP and not self._waiting.empty()):
-            pending = self._waiting.get()
-            if pending is None:
-                return group, False
-            group.append(pending)
-        return group, True
-
-    def _commit(self, group: "list[_Pending]") -> None:
-        start = time.perf_counter()
-        try:
-            with self._writer.begin() as connection:
-                self.watch.refuse()  # damage may have shown while the group was waiting
-                seconds = self.clock.advance(connection)
-                for pending in group:
-                    pending.run(connection)
-                    if pending.error is not None:
-                        self.watch.raise_if_damage(pending.error)
-            self.watch.refuse()  # a file that was deleted meanwhile has taken the commit along
-        except Exception as error:
-            self._on_commit(len(group), time.perf_counter() - start, True)
-            cause = self.watch.translated(error)
-            for pending in group:
-                pending.refuse(cause)
-        else:
-            self._on_commit(len(group), time.perf_counter() - start, False)
-            self.clock.commit(seconds)
-            for pending in group:
-                pending.settle()
+            self._writer.engine.dispose()
 
 
-class _Pending:
-    """A unit of work on its way through the writer thread."""
+def _raise_if_unavailable(error: BaseException) -> None:
+    from app.storage.losses import translated
 
-    # `Any`: one queue holds units of every type; `submit` returns the future under the type of its unit.
-    def __init__(self, unit: Unit[Any]) -> None:
-        self.future: Future[Any] = Future()
-        self._unit = unit
-        self._context = contextvars.copy_context()
-        self._result: Any = None
-        self.error: BaseException | None = None
-
-    def run(self, connection: Connection) -> None:
-        """Run the unit in a savepoint of its own; what it raises is kept for its caller."""
-        session = Session(connection, join_transaction_mode="create_savepoint", expire_on_commit=False)
-        try:
-            with session:
-                self._result = self._context.run(self._unit, session)
-                session.commit()  # releases the savepoint; raises if the unit has hidden a failed statement
-        except BaseException as error:  # even SystemExit belongs to the caller, not to the writer thread
-            self.error = error
-
-    def settle(self) -> None:
-        """Hand the outcome to the caller: the group is durable."""
-        if self.error is None:
-            self.future.set_result(self._result)
-        else:
-            self.future.set_exception(self.error)
-
-    def refuse(self, cause: Exception) -> None:
-        """Tell the caller that the group is lost."""
-        if isinstance(cause, DatabaseDamaged):
-            self.future.set_exception(cause)
-            return
-        lost = CommitFailed("The changes could not be committed; nothing was stored.")
-        lost.__cause__ = cause
-        self.future.set_exception(self.error or lost)
+    if isinstance(error, Exception) and (meant := translated(error)) is not error:
+        raise meant from error

@@ -6,39 +6,77 @@ from pathlib import Path
 from sqlalchemy import Connection, Engine, create_engine, event, make_url
 from sqlalchemy.exc import OperationalError
 
+from app.storage.errors import NotForTeams
+
 _SHARED = ("busy_timeout = 10000", "foreign_keys = on")
 _WRITER = (*_SHARED, "journal_mode = wal", "synchronous = full")
 _READER = (*_SHARED, "query_only = on")
+_CONNECTING = {"connect_timeout": 5, "keepalives_idle": 10, "keepalives_interval": 5, "keepalives_count": 3}
+"""How soon PostgreSQL must take a connection, and is asked whether it is still there [s]."""
+_PATIENCE = 10.0  # for a free connection to PostgreSQL [s]
 # Batch migrations drop and rename tables, which enforced foreign keys would take for deletions.
 _MIGRATOR = ("busy_timeout = 10000", "journal_mode = wal")
 
 
-def writing_engine(url: str) -> Engine:
-    """Engine of the writer thread: transactions take the write lock first and are synced at commit."""
-    return _sqlite_engine(url, _WRITER, "BEGIN IMMEDIATE") if _is_sqlite(url) else create_engine(url)
+def writing_engine(url: str, pool: int = 1) -> Engine:
+    """Engine of the writer.
+
+    On SQLite transactions take the write lock first and are synced at commit. PostgreSQL has so many
+    connections, in whose transactions every statement sees what others have committed before it.
+    """
+    if is_sqlite(url):
+        return _sqlite_engine(url, _WRITER, "BEGIN IMMEDIATE")
+    return _postgres_engine(url, pool, isolation_level="READ COMMITTED")
 
 
 def migrating_engine(url: str) -> Engine:
     """Engine on which the schema may be changed."""
-    return _sqlite_engine(url, _MIGRATOR, "BEGIN IMMEDIATE") if _is_sqlite(url) else create_engine(url)
+    if is_sqlite(url):
+        return _sqlite_engine(url, _MIGRATOR, "BEGIN IMMEDIATE")
+    return _postgres_engine(url, 1, isolation_level="READ COMMITTED")
 
 
-def reading_engine(url: str) -> Engine:
-    """Engine whose transactions are snapshots and cannot write."""
-    if _is_sqlite(url):
+def reading_engine(url: str, pool: int = 1) -> Engine:
+    """Engine whose transactions are snapshots and cannot write; PostgreSQL has so many connections."""
+    if is_sqlite(url):
         return _sqlite_engine(url, _READER, "BEGIN")
-    options = {"postgresql_readonly": True, "isolation_level": "REPEATABLE READ"}
-    return create_engine(url, execution_options=options)
+    engine = _postgres_engine(url, pool, isolation_level="REPEATABLE READ", pool_pre_ping=True)
+    return engine.execution_options(postgresql_readonly=True)
 
 
 def sqlite_file(url: str) -> Path | None:
     """The file of a SQLite database; None for any other database."""
     chosen = make_url(url)
-    return Path(chosen.database) if _is_sqlite(url) and chosen.database else None
+    return Path(chosen.database) if is_sqlite(url) and chosen.database else None
 
 
-def _is_sqlite(url: str) -> bool:
+def is_sqlite(url: str) -> bool:
+    """Whether a database is a file of SQLite."""
     return make_url(url).get_backend_name() == "sqlite"
+
+
+def _postgres_engine(url: str, pool: int, **options: str | bool) -> Engine:
+    """An engine of PostgreSQL that says soon when it cannot be reached.
+
+    Raises
+    ------
+    NotForTeams
+        The driver is not installed.
+    """
+    chosen = make_url(url)
+    if chosen.drivername in ("postgresql", "postgres"):
+        chosen = chosen.set(drivername="postgresql+psycopg")
+    given = {name: value for name, value in _CONNECTING.items() if name not in chosen.query}
+    try:
+        return create_engine(
+            chosen, pool_size=pool, max_overflow=0, pool_timeout=_PATIENCE, connect_args=given, **options
+        )
+    except ModuleNotFoundError as error:
+        if error.name != "psycopg":
+            raise
+        raise NotForTeams(
+            "The driver of PostgreSQL is not installed: pip install 'crankwright[team]'"
+        ) from None
 
 
 def _sqlite_engine(url: str, pragmas: tuple[str, ...], begin: str) -> Engine:

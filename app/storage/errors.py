@@ -4,10 +4,15 @@ StorageError
  ├── DataFolderInUse     another process holds the data folder
  ├── DatabaseNewer       the database was written by a newer program
  ├── DatabaseClosed      a unit of work came after `close`
- ├── CommitFailed        a unit of work ran, but its group could not be made durable
+ ├── CommitFailed        a unit of work ran, but it could not be made durable
+ │    └── CommitUnknown  … and nobody knows whether it is
+ ├── DatabaseUnavailable the database server cannot be reached, or does no work at present
+ ├── NotForTeams         the settings do not let several servers share the data
  ├── DatabaseDamaged     pages or rows of the database cannot be read as they were written
  ├── ArtifactMissing     no artifact has this hash
- └── ArtifactDamaged     the bytes of an artifact no longer have its hash
+ ├── ArtifactDamaged     the bytes of an artifact no longer have its hash
+ ├── ArtifactsUnreachable  the store of the artifacts does not answer now
+ └── StoreRefused        the settings name a store that cannot be used
 """
 
 from collections.abc import Sequence
@@ -51,7 +56,34 @@ class DatabaseClosed(StorageError):
 
 
 class CommitFailed(StorageError):
-    """The group of a unit of work could not be committed: nothing of it is stored. Raised from the cause."""
+    """A unit of work could not be committed: nothing of it is stored. Raised from the cause."""
+
+
+class CommitUnknown(CommitFailed):
+    """The connection was lost during the commit, and the unit has no Idempotency-Key that would decide."""
+
+    def __str__(self) -> str:
+        return (
+            "The connection to the database was lost while the change was being stored: it may be stored, or "
+            "not. Read what you changed again; with an Idempotency-Key you may send the request again."
+        )
+
+
+class DatabaseUnavailable(StorageError):
+    """The database server cannot be reached, or does no work at present; nothing was stored."""
+
+    retry_after = 5  # s
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(reason)
+        self.reason = reason
+
+    def __str__(self) -> str:
+        return f"The database is not available: {self.reason}. Nothing was stored; try again."
+
+
+class NotForTeams(StorageError):
+    """The settings do not let several servers share the data."""
 
 
 class DatabaseDamaged(StorageError):
@@ -103,6 +135,26 @@ class ArtifactDamaged(StorageError):
 
     def __str__(self) -> str:
         return f"Artifact {self.sha} is damaged: {self.reason}. The file has been set aside."
+
+
+class ArtifactsUnreachable(StorageError):
+    """The store of the artifacts does not answer: nobody knows now whether a file is there.
+
+    A try is worthwhile after `retry_after` [s].
+    """
+
+    retry_after = 2
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(reason)
+        self.reason = reason
+
+    def __str__(self) -> str:
+        return f"The file store cannot be used now: {self.reason}. Try again in {self.retry_after} s."
+
+
+class StoreRefused(StorageError):
+    """The settings name a store of artifacts that cannot be used; the text says what to change."""
 
 
 class CannotRebuild(Exception):

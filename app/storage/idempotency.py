@@ -1,7 +1,8 @@
 """Requests that may be sent again: one Idempotency-Key, one change.
 
 The key is kept in the transaction of the change itself, so that after a crash a repeated request finds
-either the change or nothing.
+either the change or nothing. It is inserted before anything else: of two requests that several servers carry
+out at the same time, the second waits there for the first.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from app.storage.clock import operated
 from app.storage.errors import KeyReused
 from app.storage.identity import now
 from app.storage.tables import IdempotencyRow
+from app.storage.units import repeatable
+from app.storage.upserts import insert_new, upsert
 
 BEFORE_CLIENTS = ""  # the client of keys that version 0.1 kept, which asked for none
 
@@ -39,27 +42,49 @@ class Once:
         if not self.key:
             return None
         row = self._row(session, self.client) or self._row(session, BEFORE_CLIENTS)
-        if row is None:
+        return None if row is None else self._answer(row)
+
+    def begin(self, session: Session) -> JsonObject | None:
+        """What this request led to before; if nothing, reserve its key for this unit, which calls `keep`.
+
+        It comes first in a unit of work: while another server carries out the same request, this waits.
+
+        Raises
+        ------
+        KeyReused
+            If the key came with another body.
+        """
+        if not self.key:
             return None
-        if row.fingerprint != self.fingerprint:
-            raise KeyReused(row.key)
-        return row.location
+        repeatable(session)
+        if self.client != BEFORE_CLIENTS and (old := self._row(session, BEFORE_CLIENTS)):
+            return self._answer(self._row(session, self.client) or old)
+        mine = self._new(operated(session), status=0, location={})
+        if insert_new(session, mine):
+            return None
+        return self.find(session)
 
     def keep(self, session: Session, status: int, location: JsonObject) -> None:
         """Remember what this request led to."""
         if self.key:
-            session.add(
-                IdempotencyRow(
-                    key=self.key,
-                    scope=self.scope,
-                    client=self.client,
-                    fingerprint=self.fingerprint,
-                    status=status,
-                    location=location,
-                    created=now(),
-                    operated=operated(session),
-                )
-            )
+            upsert(session, self._new(operated(session), status, location))
+
+    def _new(self, operated: int, status: int, location: JsonObject) -> IdempotencyRow:
+        return IdempotencyRow(
+            key=self.key,
+            scope=self.scope,
+            client=self.client,
+            fingerprint=self.fingerprint,
+            status=status,
+            location=location,
+            created=now(),
+            operated=operated,
+        )
+
+    def _answer(self, row: IdempotencyRow) -> JsonObject:
+        if row.fingerprint != self.fingerprint:
+            raise KeyReused(row.key)
+        return row.location
 
     def _row(self, session: Session, client: str) -> IdempotencyRow | None:
         return session.get(IdempotencyRow, (self.key, self.scope, client))

@@ -5,12 +5,15 @@ import json
 from sqlalchemy import (
     BigInteger,
     Dialect,
+    Double,
     ForeignKey,
     ForeignKeyConstraint,
     Index,
     MetaData,
     Text,
     TypeDecorator,
+    UniqueConstraint,
+    text,
 )
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship
 
@@ -62,11 +65,11 @@ class Base(DeclarativeBase):
 
 
 class CounterRow(Base):
-    """A number that only grows, whatever the wall clock does; see `app.storage.identity`."""
+    """A number that only grows, whatever the wall clock does; see `app.storage.identity`, `ownership`."""
 
     __tablename__ = "counter"
 
-    name: Mapped[str] = mapped_column(primary_key=True)  # identity, operation
+    name: Mapped[str] = mapped_column(primary_key=True)  # identity, operation, database
     value: Mapped[int] = mapped_column(BigInteger)
 
 
@@ -81,6 +84,7 @@ class DesignRow(Base):
     deleted: Mapped[str | None]
     head: Mapped[int]  # the number of the newest revision
     archived: Mapped[str | None] = mapped_column(default=None)  # since when lists leave it out
+    event: Mapped[int] = mapped_column(BigInteger, default=0)  # the number of its newest event
 
     revisions: Mapped[list["RevisionRow"]] = relationship(order_by="RevisionRow.number")
 
@@ -108,6 +112,8 @@ class RevisionRow(Base):
     results: Mapped[JsonObject | None]  # the evaluated steps
     state: Mapped[str]  # current, regenerating, failed
     problem: Mapped[JsonObject | None]
+    author: Mapped[str | None] = mapped_column(default=None)  # the principal who saved it; null before 0.2
+    supersedes: Mapped[int | None] = mapped_column(default=None)  # the released revision that it replaces
 
     models: Mapped[list["RevisionModelRow"]] = relationship(
         primaryjoin="and_(RevisionRow.design_id == RevisionModelRow.design_id,"
@@ -194,6 +200,7 @@ class JobRow(Base):
         Index(None, "client", "state"),
         Index(None, "design_id", "revision"),
         Index(None, "operated"),
+        Index(None, "owner"),
     )
 
     id: Mapped[str] = mapped_column(primary_key=True)
@@ -214,6 +221,12 @@ class JobRow(Base):
     others: Mapped[list[str]] = mapped_column(Json, default=list)  # clients that wait for it as well
     turn: Mapped[int] = mapped_column(BigInteger, default=0)
     operated: Mapped[int] = mapped_column(BigInteger, default=0)  # queued, then ended [s of operation]
+    principal: Mapped[str | None] = mapped_column(default=None)  # who asked for it
+    event: Mapped[int] = mapped_column(BigInteger, default=0)  # the number of its newest event
+    losses: Mapped[int] = mapped_column(default=0)  # how often its worker was lost
+    owner: Mapped[str | None] = mapped_column(default=None)  # the server process that runs it
+    lease_until: Mapped[float | None] = mapped_column(Double, default=None)  # by the database's clock [s]
+    cause: Mapped[str | None] = mapped_column(default=None)  # the id of its request, and the trace's context
 
 
 class StudyRow(Base):
@@ -274,8 +287,10 @@ class WorksheetVersionRow(Base):
     faults: Mapped[list[JsonObject]]
     tests: Mapped[list[JsonObject]]  # as they ran last
     record: Mapped[JsonObject | None]  # golden: what the released version calculated
-    author: Mapped[str | None]
+    author: Mapped[str | None]  # a name
     reviewer: Mapped[str | None]
+    author_principal: Mapped[str | None] = mapped_column(default=None)
+    reviewer_principal: Mapped[str | None] = mapped_column(default=None)
     withdrawn: Mapped[str | None]  # why
     import_sha256: Mapped[str | None]  # the artifact with the file that it was imported from
     imported: Mapped[JsonObject | None]  # what the import says of its regions
@@ -298,3 +313,140 @@ class IdempotencyRow(Base):
     location: Mapped[JsonObject]  # what to render again
     created: Mapped[str]
     operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when it was kept [s of operation]
+
+
+class PrincipalRow(Base):
+    """A person or a service that may use the interface."""
+
+    __tablename__ = "principal"
+    __table_args__ = (UniqueConstraint("name"), UniqueConstraint("subject"))
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    kind: Mapped[str]  # person, service
+    name: Mapped[str]
+    subject: Mapped[str | None]  # what the OpenID provider calls this person
+    roles: Mapped[list[str]]  # viewer, author, checker, admin
+    limits: Mapped[JsonObject | None]  # where they differ from those of the settings
+    disabled: Mapped[str | None]  # since when
+    created: Mapped[str]
+
+
+class ApiKeyRow(Base):
+    """A key of a principal. The key itself is not stored."""
+
+    __tablename__ = "api_key"
+
+    prefix: Mapped[str] = mapped_column(primary_key=True)
+    hash: Mapped[str]  # SHA-256 of the whole key
+    principal_id: Mapped[str] = mapped_column(ForeignKey("principal.id"), index=True)
+    name: Mapped[str]
+    scopes: Mapped[list[str]]  # roles that the key may use; empty: all of its principal
+    expires: Mapped[str | None]
+    revoked: Mapped[str | None]  # since when
+    made_by: Mapped[str | None]  # prefix of the key by which its principal made it; it ends with that
+    created: Mapped[str]
+
+
+class SessionRow(Base):
+    """A browser in which a principal has signed in. The cookie itself is not stored."""
+
+    __tablename__ = "session"
+
+    hash: Mapped[str] = mapped_column(primary_key=True)  # SHA-256 of the cookie's value
+    principal_id: Mapped[str] = mapped_column(ForeignKey("principal.id"), index=True)
+    key: Mapped[str | None]  # prefix of the key by which they signed in; its end is that of the session
+    csrf: Mapped[str]
+    expires: Mapped[str] = mapped_column(index=True)
+    created: Mapped[str]
+
+
+class ApprovalRow(Base):
+    """A step of the approval of a revision. A principal takes at most one of them; anyone may withdraw."""
+
+    __tablename__ = "approval"
+    __table_args__ = (
+        ForeignKeyConstraint(["design_id", "revision"], ["revision.design_id", "revision.number"]),
+        Index(
+            "uq_approval_design_id_revision_principal_id",
+            "design_id",
+            "revision",
+            "principal_id",
+            unique=True,
+            sqlite_where=text("step <> 'withdrawn'"),
+            postgresql_where=text("step <> 'withdrawn'"),
+        ),
+    )
+
+    design_id: Mapped[str] = mapped_column(primary_key=True)
+    revision: Mapped[int] = mapped_column(primary_key=True)
+    step: Mapped[str] = mapped_column(primary_key=True)  # calculated, checked, released, withdrawn
+    principal_id: Mapped[str]
+    name: Mapped[str]  # of the principal at that time
+    digest: Mapped[str] = mapped_column(index=True)  # SHA-256 of the content
+    content: Mapped[JsonObject]  # what was signed: document, results and files by their hashes, name, time
+    at: Mapped[str]
+
+
+class CommentRow(Base):
+    """A comment on a revision."""
+
+    __tablename__ = "comment"
+    __table_args__ = (
+        ForeignKeyConstraint(["design_id", "revision"], ["revision.design_id", "revision.number"]),
+        Index(None, "design_id", "revision"),
+    )
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    design_id: Mapped[str]
+    revision: Mapped[int]
+    principal_id: Mapped[str]
+    name: Mapped[str]  # of the principal at that time
+    subject: Mapped[str | None]  # a reference into the document, such as film.bearing_width
+    text: Mapped[str]
+    resolved: Mapped[str | None]  # since when
+    resolved_by: Mapped[str | None]
+    created: Mapped[str]
+
+
+class AuditRow(Base):
+    """Who did what. Rows are only added; a sealer numbers and chains them."""
+
+    __tablename__ = "audit"
+    __table_args__ = (UniqueConstraint("seq"),)
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    at: Mapped[str]
+    principal: Mapped[str]
+    name: Mapped[str]  # of the principal at that time
+    action: Mapped[str]  # design.create, key.revoke, …
+    object: Mapped[str] = mapped_column(index=True)  # designs/<id>/revisions/<n>, keys/<prefix>, …
+    digest: Mapped[str | None]  # of what was written or signed
+    seq: Mapped[int | None] = mapped_column(BigInteger)
+    previous: Mapped[str | None]  # the hash of the row before
+    hash: Mapped[str | None]
+
+
+class EventRow(Base):
+    """An event of a design or a job, numbered within its topic without a gap."""
+
+    __tablename__ = "event"
+
+    topic: Mapped[str] = mapped_column(primary_key=True)  # design:<id>, job:<id>
+    number: Mapped[int] = mapped_column(BigInteger, primary_key=True)
+    name: Mapped[str]
+    data: Mapped[JsonObject]
+    created: Mapped[str]
+    operated: Mapped[int] = mapped_column(BigInteger, index=True)  # when [s of operation]
+
+
+class UsageRow(Base):
+    """What a principal used on a day (UTC)."""
+
+    __tablename__ = "usage"
+
+    principal_id: Mapped[str] = mapped_column(primary_key=True)
+    day: Mapped[str] = mapped_column(primary_key=True)  # 2026-11-22
+    requests: Mapped[int] = mapped_column(BigInteger, default=0)
+    jobs: Mapped[int] = mapped_column(BigInteger, default=0)
+    seconds: Mapped[float] = mapped_column(Double, default=0.0)  # of calculation
+    bytes: Mapped[int] = mapped_column(BigInteger, default=0)  # of files, stored for the first time

@@ -8,6 +8,7 @@ import time
 from collections import OrderedDict
 from dataclasses import dataclass
 from io import BufferedReader
+from typing import Generic, TypeVar
 
 REMEMBERED = 20_000  # files; some 200 bytes each
 _RACY = 1_000_000_000  # a change within this time of the last one may show the same times [ns]
@@ -49,32 +50,47 @@ def stamp_of(file: BufferedReader) -> Stamp:
     return Stamp(seen.st_ino, seen.st_size, seen.st_mtime_ns, seen.st_ctime_ns)
 
 
-class Verified:
-    """The newest verified stamps by name, of a bounded number of files."""
+T = TypeVar("T")
+
+
+class Newest(Generic[T]):
+    """What was noted last by name, for a bounded number of names."""
 
     def __init__(self, most: int = REMEMBERED) -> None:
         self._most = most
-        self._stamps: OrderedDict[str, Stamp] = OrderedDict()
+        self._noted: OrderedDict[str, T] = OrderedDict()
         self._lock = threading.Lock()
 
-    def has(self, sha: str, stamp: Stamp) -> bool:
-        """Whether the file has been hashed while it had this stamp."""
+    def knows(self, sha: str) -> bool:
+        """Whether anything is noted of this name."""
         with self._lock:
-            if self._stamps.get(sha) != stamp:
+            return sha in self._noted
+
+    def has(self, sha: str, noted: T) -> bool:
+        """Whether this is noted of a name."""
+        with self._lock:
+            if self._noted.get(sha) != noted:
                 return False
-            self._stamps.move_to_end(sha)
+            self._noted.move_to_end(sha)
             return True
 
-    def add(self, sha: str, stamp: Stamp) -> None:
-        """Remember a verified file, unless it is so young that a further change could keep its times."""
-        if abs(time.time_ns() - stamp.changed) < _RACY:
-            return
+    def add(self, sha: str, noted: T) -> None:
+        """Note this of a name, in place of anything else."""
         with self._lock:
-            self._stamps[sha] = stamp
-            while len(self._stamps) > self._most:
-                self._stamps.popitem(last=False)
+            self._noted[sha] = noted
+            while len(self._noted) > self._most:
+                self._noted.popitem(last=False)
 
     def forget(self, sha: str) -> None:
-        """Hash the file at the next reading, whatever its stamp."""
+        """Note nothing of a name any more."""
         with self._lock:
-            self._stamps.pop(sha, None)
+            self._noted.pop(sha, None)
+
+
+class Verified(Newest[Stamp]):
+    """The newest verified stamps by name."""
+
+    def add(self, sha: str, noted: Stamp) -> None:
+        """Remember a verified file, unless it is so young that a further change could keep its times."""
+        if abs(time.time_ns() - noted.changed) >= _RACY:
+            super().add(sha, noted)

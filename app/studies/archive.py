@@ -6,7 +6,6 @@ import io
 import json
 import zipfile
 from collections.abc import Iterable, Mapping
-from pathlib import Path
 from typing import IO
 
 import numpy as np
@@ -55,14 +54,16 @@ def _write_member(archive: zipfile.ZipFile, name: str, array: AnyArray) -> None:
 class Archive:
     """An archive that is read array by array: what nobody asks for is not read."""
 
-    def __init__(self, source: Path | bytes) -> None:
-        self._file = zipfile.ZipFile(io.BytesIO(source) if isinstance(source, bytes) else source)
+    def __init__(self, source: IO[bytes] | bytes) -> None:
+        self._source = io.BytesIO(source) if isinstance(source, bytes) else source
+        self._file = zipfile.ZipFile(self._source)
 
     def __enter__(self) -> Archive:
         return self
 
     def __exit__(self, *exception: object) -> None:
         self._file.close()
+        self._source.close()
 
     @property
     def names(self) -> list[str]:

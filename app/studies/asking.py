@@ -65,9 +65,10 @@ def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:
         yield Fault("vary", "contradiction", "the rows of a table say what varies; leave `vary` out")
     if body.method == "sample" and body.points is None:
         yield Fault("points", "missing", "say how many rows to sample, such as 1024")
-    if body.method == "optimise" and not (body.minimise or body.maximise):
+    has_goal = bool(body.minimise or body.maximise)
+    if body.method == "optimise" and not has_goal:
         yield Fault("minimise", "missing", "name an output to minimise or maximise")
-    if not (body.outputs or body.minimise or body.maximise):
+    elif not (body.outputs or has_goal):
         yield Fault("outputs", "missing", "name what each row keeps, such as film.minimum_film_thickness")
     for name in sorted({*body.minimise} & {*body.maximise}):
         yield Fault("maximise", "contradiction", f"{name} is minimised as well")

@@ -8,12 +8,14 @@ import numpy as np
 
 from app.calculations.steps import calling
 from app.designs import repository as designs
+from app.designs.schemas import LONGEST_NOTE
 from app.designs.service import Designs
 from app.plain import JsonObject
 from app.schemas.studies import StudyResult
 from app.storage.idempotency import Once
 from app.studies.running import Parts, Run
 from app.studies.schemas import StudyIn
+from app.studies.setting_aside import words
 from app.studies.stored import PLACE
 from templates.core.units.units import unit
 
@@ -35,6 +37,8 @@ class Building:
             document = designs.document(session, run.row.design_id, run.row.revision)
         once = Once(f"study-{run.row.id}", "study build", run.row.id, run.row.client)
         note = f"rows of study {run.row.id} of design {run.row.design_id}, revision {run.row.revision}"
+        if run.plan.set_aside:
+            note = f"{note}; its variants replace the relation of {words(run.plan.set_aside)}"[:LONGEST_NOTE]
         with calling(self._parts.steps, run.job, run.context, f"study:{run.row.id}", "jobs"):
             saved = self._designs.create({**document, **_variants(run, document, rows)}, note, once)
         return result.model_copy(update={"design": saved.design})

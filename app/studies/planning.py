@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Self
 
 import numpy as np
@@ -17,6 +17,7 @@ from app.studies.chunks import Levels, called, placed
 from app.studies.estimating import estimated
 from app.studies.given import Rows, given_rows
 from app.studies.schemas import MOST_BUILT, MOST_ROWS
+from app.studies.setting_aside import relations_at
 from app.studies.signs import criterion_of
 from app.studies.solids_needed import counted
 from app.studies.task import Prepared, Task, prepared
@@ -52,6 +53,7 @@ class Plan:
     measured: dict[str, float]  # measures of solids that are known [SI]
     solids: int = 0  # that rows need, at most
     solid_seconds: float = 0.0  # that each of them takes [s]; plans of older studies have neither
+    set_aside: dict[str, str] = field(default_factory=dict)  # relations that the rows replace, by place
 
     def share(self, rows: int, solids: int) -> float:
         """How far the study is with so many rows and solids, 0 to 1, by the seconds that each takes."""
@@ -122,6 +124,7 @@ def planned(task: Task, rows: Rows | None, solid_seconds: float) -> tuple[Plan, 
         measured=dict(task.measured),
         solids=needed.solids,
         solid_seconds=solid_seconds if needed.solids else 0.0,
+        set_aside=relations_at(Document.model_validate_json(task.design.document), body.set_aside),
     )
     return plan, given
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 
+from app.identity.usage import note_bytes
 from app.jobs.turns import UNFINISHED
 from app.plain import JsonObject
 from app.storage.errors import NotFound
@@ -93,20 +94,24 @@ def done(session: Session, id: str, until: int | None = None) -> Progress:
 
 def begin(session: Session, id: str) -> bool:
     """Mark a study as running; whether it still is to run."""
-    row = session.get(StudyRow, id)
+    row = _locked(session, id)
     if row is None or row.state not in UNFINISHED:
         return False
     row.state, row.updated = "running", now()
     return True
 
 
-def keep_chunk(session: Session, chunk: StudyChunkRow) -> bool:
-    """Record a chunk of a study that still runs; whether it did. A second record changes nothing."""
-    row = session.get(StudyRow, chunk.study_id)
+def keep_chunk(session: Session, chunk: StudyChunkRow, size: int) -> bool:
+    """Record a chunk of a study that still runs, of so many bytes; whether it did.
+
+    A second record changes nothing.
+    """
+    row = _locked(session, chunk.study_id)
     if row is None or row.state != "running":
         return False
     if session.get(StudyChunkRow, (chunk.study_id, chunk.number)) is None:
         session.add(chunk)
+        note_bytes(session, size)
         row.updated = now()
         session.flush()
     return True
@@ -114,12 +119,18 @@ def keep_chunk(session: Session, chunk: StudyChunkRow) -> bool:
 
 def end(session: Session, id: str, state: str, result: JsonObject | None, problem: JsonObject | None) -> None:
     """Give a study its final state; one that has ended already keeps its own."""
-    row = session.get(StudyRow, id)
+    row = _locked(session, id)
     if row is not None and row.state in UNFINISHED:
         row.state, row.result, row.problem, row.updated = state, result, problem, now()
 
 
 def remove(session: Session, id: str) -> None:
     """Delete a study and its chunks; their files stay in the store, where nothing refers to them."""
+    _locked(session, id)
     session.execute(delete(StudyChunkRow).where(StudyChunkRow.study_id == id))
     session.execute(delete(StudyRow).where(StudyRow.id == id))
+
+
+def _locked(session: Session, id: str) -> StudyRow | None:
+    """A study as it is now; no other unit changes it before the end of this one."""
+    return session.get(StudyRow, id, with_for_update=True, populate_existing=True)

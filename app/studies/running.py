@@ -25,7 +25,7 @@ from app.designs.document import Document
 from app.jobs.service import Completion, Job, JobContext, JobFailed, JobRests, Jobs
 from app.plain import JsonObject
 from app.schemas.studies import StudyResult
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, CannotRebuild
 from app.storage.tables import StudyChunkRow, StudyRow
@@ -70,7 +70,7 @@ class Parts:
     """What of the service a run uses."""
 
     database: Database
-    store: ArtifactStore
+    store: Artifacts
     catalogues: Catalogues
     pool: CalculationPool
     jobs: Jobs
@@ -206,7 +206,8 @@ class Run:
             refused=chunk.refused,
             sha256=self.parts.store.put(*chunk.content),
         )
-        if not self.parts.database.write(lambda session: repository.keep_chunk(session, row)):
+        size = len(chunk.content)
+        if not self.parts.database.write(lambda session: repository.keep_chunk(session, row, size)):
             raise JobCancelled
         self._report()
 
@@ -237,7 +238,7 @@ class Run:
         if self.row.table_sha256 is None:
             return None
         try:
-            with Archive(self.parts.store.fetch(self.row.table_sha256)) as archive:
+            with Archive(self.parts.store.open(self.row.table_sha256).file) as archive:
                 return archive["rows"].astype(np.float64)
         except (ArtifactMissing, ArtifactDamaged) as error:
             detail = "the rows of the table were lost; start the study again"

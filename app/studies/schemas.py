@@ -76,7 +76,11 @@ class StudyIn(Bounded):
     method: Method
     seed: int = Field(1, ge=0, le=MOST_SEED, description="the same seed, the same rows")
     vary: Annotated[dict[Place, Vary], Field(max_length=MOST_VARIED), at_most(MOST_VARIED)] = Field(
-        {}, description="parameters, `step.input` and `model.parameter` that are no relations"
+        {},
+        description="parameters, `step.input` and `model.parameter`; `set_aside` names those with a relation",
+    )
+    set_aside: Annotated[list[Place], Field(max_length=MOST_VARIED)] = Field(
+        [], description="varied places that a relation sets: the relation does not hold in this study"
     )
     steps: int | dict[Place, int] | None = Field(None, description="of `grid`: for each interval, or by name")
     rows: dict[Place, Given] | list[dict[Place, Given]] | None = Field(

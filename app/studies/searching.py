@@ -15,7 +15,7 @@ import numpy as np
 from app.studies.archive import AnyArray, Archive, packed
 from app.studies.chunks import Chunk, Levels, called, columns_of, reasons_of, results_of
 from app.studies.judged import JUDGED, SIDES, judged_of
-from app.studies.methods.answers import Answer, Columns, Held, Objective, Problem
+from app.studies.methods.answers import AllRefused, Answer, Columns, Held, Objective, Problem
 from app.studies.methods.confirming import Round
 from app.studies.methods.front import pareto_front
 from app.studies.methods.optimise import optimise
@@ -110,12 +110,15 @@ def _outcome(ready: Prepared, problem: Problem, search: Search, book: _Book) -> 
     first = Promised(EXPLORE, optimum.rounds[0], optimum.explored, optimum.seconds)
     notes = tuple(f"{v.criterion} is not met by {v.relative:.2%} of its limit" for v in optimum.violations)
     others = (_alone(problem, book, level, seed) for level in range(CONFIRM + 1, len(search.levels)))
-    return Outcome(optimum.state, (optimum.best.at,), (first, *others), notes)
+    return Outcome(optimum.state, (optimum.best.at,), (first, *filter(None, others)), notes)
 
 
-def _alone(problem: Problem, book: _Book, level: int, seed: int) -> Promised:
-    """What one level finds by itself, confirmed once."""
-    found = optimise(problem, book.answer(level), book.answer(CONFIRM), seed=seed, rounds=1)
+def _alone(problem: Problem, book: _Book, level: int, seed: int) -> Promised | None:
+    """What one level finds by itself, confirmed once; None of a level that lacks a result."""
+    try:
+        found = optimise(problem, book.answer(level), book.answer(CONFIRM), seed=seed, rounds=1)
+    except AllRefused:
+        return None
     return Promised(level, found.rounds[0], found.explored, found.seconds)
 
 

@@ -10,14 +10,18 @@ from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository as designs
+from app.designs.document import Document
+from app.designs.schemas import LONGEST_NOTE
 from app.designs.service import Designs, Saved
+from app.identity.audit import record
+from app.identity.usage import note_bytes
 from app.jobs.errors import JobFinished, JobNotFound
 from app.jobs.service import Jobs
 from app.plain import JsonObject
 from app.schemas.jobs import State
 from app.solids.analyses import ANALYSIS
 from app.solids.models import BUILD
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.storage.idempotency import Once
@@ -29,6 +33,7 @@ from app.studies.measured import measured_in
 from app.studies.planning import Plan
 from app.studies.running import STUDY
 from app.studies.schemas import StudyIn
+from app.studies.setting_aside import relations_at, words
 from app.studies.stored import PLACE, Stored
 from app.studies.task import Task
 from templates.core.arrays import Array
@@ -58,7 +63,7 @@ class Studies:
     def __init__(
         self,
         database: Database,
-        store: ArtifactStore,
+        store: Artifacts,
         jobs: Jobs,
         catalogues: Catalogues,
         designs: Designs,
@@ -73,7 +78,8 @@ class Studies:
         if not once.key:
             return None
         with self.database.read() as session:
-            return _begun_before(session, once)
+            before = once.find(session)
+        return _study(before) if before else None
 
     def draft(self, body: StudyIn) -> Draft:
         """A study of a revision, as a process can plan it.
@@ -105,7 +111,8 @@ class Studies:
         QueueFull
             Too many jobs are waiting.
         """
-        table = None if given is None else self.store.put(*packed({"rows": given}))
+        content = () if given is None else packed({"rows": given})
+        table = self.store.put(*content) if content else None
         seed = int(draft.body.get("seed", 1))
         new = repository.New(
             draft.design, draft.revision, draft.body["method"], draft.body, plan.plain(), seed,
@@ -113,10 +120,12 @@ class Studies:
         )  # fmt: skip
 
         def unit_of_work(session: Session) -> str:
-            if before := _begun_before(session, once):
-                return before
+            if before := once.begin(session):
+                return _study(before)
             row = repository.add(session, new)
             row.job = self.jobs.enqueue(session, STUDY, {"study": row.id}, client=once.client)
+            note_bytes(session, sum(map(len, content)))
+            record(session, "study.begin", f"studies/{row.id}")
             once.keep(session, 202, {"study": row.id})
             return row.id
 
@@ -125,7 +134,7 @@ class Studies:
         return id
 
     def choose(self, id: str, row: int, note: str | None, expected: str | None, once: Once) -> Saved:
-        """A new revision of the design with the values of a row.
+        """A new revision of the design with the values of a row; its note names the relations they replace.
 
         Raises
         ------
@@ -137,9 +146,12 @@ class Studies:
         with self.database.read() as session:
             study = repository.get(session, id)
             document = designs.document(session, study.design_id, study.revision)
+            newest = designs.document(session, study.design_id, designs.design(session, study.design_id).head)
         patch = patch_of(document, Plan.of(study.plan).units, self.values(study, row))
-        words = note or f"row {row} of study {id}, revision {study.revision}"
-        return self.designs.change(study.design_id, patch, words, expected, once)
+        said = note or f"row {row} of study {id}, revision {study.revision}"
+        if replaced := relations_at(Document.model_validate(newest), Plan.of(study.plan).places):
+            said = f"{said}; replaces the relation of {words(replaced)}"[:LONGEST_NOTE]
+        return self.designs.change(study.design_id, patch, said, expected, once)
 
     def values(self, study: StudyRow, number: int) -> dict[str, float]:
         """The values [SI] of the places in a row that was calculated; raises InvalidInputs."""
@@ -169,27 +181,36 @@ class Studies:
         except (ArtifactMissing, ArtifactDamaged) as error:
             raise self._lost(id) from error
 
-    def end(self, id: str) -> StudyRow | None:
+    def end(self, id: str, client: str | None = None) -> StudyRow | None:
         """Cancel a study that waits or runs, and return it; remove one that has ended, and return None.
+
+        A client cancels its own alone, unless an administrator acts; ended ones belong to the team.
 
         Raises
         ------
         NotFound
             There is no such study.
+        NotOwn
+            It waits or runs, for another principal.
         """
         with self.database.read() as session:
             row = repository.get(session, id)
         if row.state in ENDED:
-            self.database.write(lambda session: repository.remove(session, id))
+            self.database.write(lambda session: _remove(session, id))
             return None
         try:
-            self.jobs.cancel(row.job or "")
+            self.jobs.cancel(row.job or "", client)
         except (JobFinished, JobNotFound):  # it has just ended, or its job was deleted
             problem = {"type": "/problems/cancelled", "title": "The work was cancelled", "status": 409,
                        "detail": "The study was cancelled."}  # fmt: skip
             self.database.write(lambda session: repository.end(session, id, "cancelled", None, problem))
         with self.database.read() as session:
             return repository.get(session, id)
+
+
+def _remove(session: Session, id: str) -> None:
+    repository.remove(session, id)
+    record(session, "study.delete", f"studies/{id}")
 
 
 def patch_of(document: JsonObject, units: Mapping[str, str], values: Mapping[str, float]) -> JsonObject:
@@ -206,6 +227,5 @@ def patch_of(document: JsonObject, units: Mapping[str, str], values: Mapping[str
     return patch
 
 
-def _begun_before(session: Session, once: Once) -> str | None:
-    location = once.find(session)
-    return str(location["study"]) if location else None
+def _study(location: JsonObject) -> str:
+    return str(location["study"])

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.tables import StudyChunkRow
 from app.studies.archive import AnyArray, Archive
 from templates.core.arrays import Array, Integers, Mask
@@ -32,7 +32,7 @@ class Part:
 class Stored:
     """The rows of a study in the order of its chunks; a column is read when it is asked for."""
 
-    def __init__(self, store: ArtifactStore, chunks: Sequence[StudyChunkRow]) -> None:
+    def __init__(self, store: Artifacts, chunks: Sequence[StudyChunkRow]) -> None:
         self._store = store
         starts = np.cumsum([0, *(chunk.rows for chunk in chunks)]).tolist()
         self.parts = [
@@ -42,12 +42,12 @@ class Stored:
 
     def archive(self, part: Part) -> Archive:
         """The arrays of a chunk; raises ArtifactMissing, ArtifactDamaged."""
-        return Archive(self._store.fetch(part.sha))
+        return Archive(self._store.open(part.sha).file)
 
     def verify(self) -> None:
         """Look at every chunk; raises ArtifactMissing, ArtifactDamaged."""
         for part in self.parts:
-            self._store.fetch(part.sha)
+            self._store.open(part.sha).file.close()
 
     def values(self, name: str) -> Array:
         """A column of numbers [SI], NaN where a chunk has none."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from pydantic_core import from_json
 
 from app.catalogue.catalogues import Catalogues
+from app.designs.document import Document
 from app.designs.graph import raise_if
 from app.designs.net import Net
 from app.designs.reference import Reference
@@ -18,6 +19,7 @@ from app.storage.tables import canonical_json
 from app.studies.asking import Asked, asked_of
 from app.studies.row_solids import RowSolids, iterated, measures_of_rows
 from app.studies.schemas import StudyIn
+from templates.core.errors import Fault, InvalidInputs
 
 
 @dataclass(frozen=True)
@@ -93,7 +95,8 @@ def _prepared(task: Task) -> Prepared:
     varied = [Reference.parse(name) for name in task.varied]
     known = {Reference.parse(name): value for name, value in task.measured}
     body = read_body(task.body)
-    net = Net.of(document, catalogues, varied, measured=known, pending=True)
+    aside = [Reference.parse(name) for name in body.set_aside]
+    net = _net(document, catalogues, varied, known, aside)
     asked = asked_of(body, task.varied, net)
     measures = measures_of_rows(net, body, asked.wanted, known)
     raise_if(list(iterated(document, measures)))
@@ -101,5 +104,27 @@ def _prepared(task: Task) -> Prepared:
     blocks, moving = net.graph.blocks, net.design.moving
     constant = {reference: v for reference, v in known.items() if blocks[reference.block].solid not in moving}
     if measures or constant != known:
-        net = Net.of(document, catalogues, [*varied, *measures], measured=constant, pending=True)
+        net = _net(document, catalogues, [*varied, *measures], constant, aside)
     return Prepared(net, asked, RowSolids(net, tuple(measures)), nominal)
+
+
+def _net(
+    document: Document,
+    catalogues: Catalogues,
+    varied: Sequence[Reference],
+    measured: Mapping[Reference, float],
+    aside: Sequence[Reference],
+) -> Net:
+    """The design with rows; where a relation is refused, the remedy of a study is told besides."""
+    try:
+        return Net.of(document, catalogues, varied, measured=measured, pending=True, set_aside=aside)
+    except InvalidInputs as error:
+        raise InvalidInputs(_with_remedy(fault) for fault in error.faults) from None
+
+
+def _with_remedy(fault: Fault) -> Fault:
+    if fault.code != "follows_from":
+        return fault
+    return replace(
+        fault, detail=f"{fault.detail}; or name it in `set_aside`, so that the rows replace the relation"
+    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -9,7 +10,7 @@ import numpy as np
 from sqlalchemy.orm import Session
 
 from app.presentation.units import System
-from app.schemas.studies import Estimate, Refused, Study, StudyResult, StudyRow, StudyRows
+from app.schemas.studies import Estimate, Refused, Study, StudyEstimate, StudyResult, StudyRow, StudyRows
 from app.storage.tables import JobRow
 from app.storage.tables import StudyRow as Row
 from app.studies import repository
@@ -47,7 +48,9 @@ def study(session: Session, row: Row) -> Study:
         "outputs": plan.outputs,
         "criteria": plan.criteria,
         "units": plan.units,
-        "levels": {step: level for step, level in plan.levels.items() if level is not None},
+        "levels": _named(plan.levels),
+        "set_aside": plan.set_aside,
+        "objectives": {name: way for way in ("minimise", "maximise") for name in row.body.get(way, ())},
         "estimate": Estimate(seconds=plan.seconds, solids=plan.solids),
         "created": row.created,
         "changed": row.updated,
@@ -59,6 +62,23 @@ def study(session: Session, row: Row) -> Study:
     if row.job is not None:
         shown["job"] = f"/api/v1/jobs/{row.job}"
     return Study.model_validate(shown)
+
+
+def estimate(plan: Plan) -> StudyEstimate:
+    """What a study would do that is not begun."""
+    return StudyEstimate(
+        rows=plan.rows,
+        criteria=plan.required,
+        levels=_named(plan.levels),
+        confirm=_named(plan.confirm or {}),
+        set_aside=plan.set_aside,
+        estimate=Estimate(seconds=plan.seconds, solids=plan.solids),
+    )
+
+
+def _named(levels: Mapping[str, str | None]) -> dict[str, str]:
+    """The levels of the steps that have any."""
+    return {step: level for step, level in levels.items() if level is not None}
 
 
 def _share(session: Session, row: Row, plan: Plan, rows: int) -> float:

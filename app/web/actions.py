@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import JsonValue
 
+from app.api.gate.access import FORM_TOKEN
 from app.api.reading import FORM_TYPES, NotForm, check_type
 from app.presentation.typed import value_of
 from app.schemas.designs import Design, Proposals
@@ -24,6 +25,7 @@ from app.web.gallery import GALLERY
 from app.web.new_step import NewStep, address, beside, new_step, step_page, versioned
 from app.web.rendering import go
 from app.web.routes import Id, Number
+from app.web.session import check_form_token
 
 AT_ONCE = {"Prefer": "wait=1"}  # the page shows how the rest goes on
 _NUMBER = re.compile(r"[0-9]{1,6}")
@@ -33,8 +35,10 @@ NOTHING: Mapping[str, str] = {}
 
 
 async def forms_only(request: Request) -> None:
-    """Let bodies through only if they are forms."""
+    """Let bodies through only if they are forms, in a session those of its own pages."""
     check_type(request, FORM_TYPES, NotForm)
+    if request.scope.get(FORM_TOKEN):
+        check_form_token(request, await fields(request))
 
 
 router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])

@@ -14,11 +14,15 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.web import (
     actions,
+    approval_page,
+    audit_page,
     impact_page,
     import_page,
     organising,
     problems,
+    provider_page,
     routes,
+    sign_in,
     study_routes,
     tables,
     upgrade_page,
@@ -76,6 +80,8 @@ def install(app: FastAPI) -> None:
     app.include_router(routes.router)
     app.include_router(organising.router)
     app.include_router(actions.router)
+    app.include_router(approval_page.router)
+    app.include_router(audit_page.router)
     app.include_router(variant_forms.router)
     app.include_router(tables.router)
     app.include_router(study_routes.router)
@@ -84,6 +90,9 @@ def install(app: FastAPI) -> None:
     app.include_router(import_page.forms)
     app.include_router(worksheet_routes.router)
     app.include_router(worksheet_routes.forms)
+    app.include_router(sign_in.router)
+    app.include_router(sign_in.forms)
+    app.include_router(provider_page.router)
     for pages in (impact_page, upgrade_page):
         app.include_router(pages.router)
         app.include_router(pages.forms)

@@ -25,6 +25,7 @@ from app.schemas.templates import Template, TemplateList, TemplateSummary
 from app.schemas.variants import VariantsOut
 from app.web import sheet
 from app.web.api import Api, Scalar
+from app.web.approvals import ON_DESIGN, approval_of, comments_of
 from app.web.blocks import (
     ModelBlock,
     Refusal,
@@ -35,6 +36,7 @@ from app.web.blocks import (
     with_changes,
     with_fields,
 )
+from app.web.chosen_variant import chosen_variant
 from app.web.declaring import analysis_lines, errors_of, iteration_lines, measures
 from app.web.differences import differences
 from app.web.flow import drawing
@@ -116,6 +118,9 @@ async def design_page(
         picture=drawing(network),
         upgrades=await upgrades_of(api, {step.name: step.template for step in steps}),
         variants=variants,
+        approval=await approval_of(api, id, design.revision),
+        comments=await comments_of(api, id, None, ON_DESIGN),
+        chosen=await chosen_variant(request, api, design, steps),
         names=names_json(network, values_of(revision, preview, measured)),
     )
 
@@ -150,7 +155,17 @@ async def _form(request: Request, api: Api, design: Design, refusal: Refusal) ->
     return Form(revision, preview, parameters, with_keys(steps, revision, design), parts, models)
 
 
-async def revision_page(request: Request, api: Api, id: str, number: int, other: int | None) -> Response:
+async def revision_page(
+    request: Request,
+    api: Api,
+    id: str,
+    number: int,
+    other: int | None,
+    *,
+    cursor: str = "",
+    notice: str | None = None,
+    status: int = 200,
+) -> Response:
     """One revision as it is kept, with what differs from another: the one before, if none is named."""
     design, revision = await asyncio.gather(
         api.get(f"/designs/{id}", Design), _revision(request, api, id, number)
@@ -161,6 +176,10 @@ async def revision_page(request: Request, api: Api, id: str, number: int, other:
     return show(
         request,
         "revision.html",
+        status=status,
+        notice=notice,
+        approval=await approval_of(api, id, number),
+        comments=await comments_of(api, id, number, 50, cursor),
         design=design,
         revision=revision,
         steps=steps_of(revision, templates),

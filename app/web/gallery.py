@@ -33,7 +33,7 @@ GALLERY = {
     ),
     "shell": Example(
         title="A plain bearing at several levels",
-        text="The same duty by oil film 2: friction, flow, stiffness, measured errors, and the pressure "
+        text="The same duty by oil film 3: friction, flow, stiffness, measured errors, and the pressure "
         "painted on the shell.",
         document={
             "name": "plain main bearing",
@@ -41,7 +41,7 @@ GALLERY = {
             "steps": {
                 "film": {
                     "template": "oil_film",
-                    "version": 2,
+                    "version": 3,
                     "inputs": {
                         **FILM,
                         "bearing_width": "= ratio * film.bearing_diameter",

@@ -6,12 +6,11 @@ import re
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.api.reading import FORM_TYPES, NotForm, check_type
 from app.schemas.jobs import Job
 from app.schemas.worksheet_imports import ImportedRegion, SheetImport
 from app.schemas.worksheets import Sheet
 from app.web.api import Api, Refused, TheApi
-from app.web.multipart import MEDIA_TYPE, read_parts
+from app.web.multipart import forms_with_files, parts_of
 from app.web.rendering import go, show
 from app.web.routes import Id, Text
 
@@ -21,13 +20,8 @@ BINARY = {"Content-Type": "application/octet-stream"}
 _JOB = re.compile(r"[A-Za-z0-9-]{1,64}")
 
 
-async def files_only(request: Request) -> None:
-    """Let bodies through only if they are forms, with files or without."""
-    check_type(request, FORM_TYPES | {MEDIA_TYPE}, NotForm)
-
-
 router = APIRouter(include_in_schema=False)
-forms = APIRouter(include_in_schema=False, dependencies=[Depends(files_only)])
+forms = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_files)])
 
 
 @router.get("/worksheets/import")
@@ -48,7 +42,7 @@ async def import_form(request: Request, api: TheApi, job: Text = "", id: Text = 
 @forms.post("/worksheets/import")
 async def import_file(request: Request, api: TheApi) -> Response:
     """Send the chosen file; where it is refused at once, the form again with the reason."""
-    parts = read_parts(await request.body(), request.headers.get("content-type", ""))
+    parts = await parts_of(request)
     id = parts["id"].text.strip() if "id" in parts else ""
     chosen = parts.get("file")
     if chosen is None or not chosen.content:

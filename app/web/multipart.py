@@ -8,6 +8,13 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from fastapi import Request
+
+from app.api.gate.access import FORM_TOKEN
+from app.api.reading import FORM_TYPES, NotForm, check_type
+from app.web.forms import fields
+from app.web.session import FIELD, check_form_token
+
 MEDIA_TYPE = "multipart/form-data"
 MOST_PARTS = 50
 _BOUNDARY = re.compile(r'boundary=(?:"([^"\r\n]{1,70})"|([^\s";,]{1,70}))')
@@ -26,6 +33,20 @@ class Part:
     def text(self) -> str:
         """The content of a field."""
         return self.content.decode(errors="replace")
+
+
+async def forms_with_files(request: Request) -> None:
+    """Let bodies through only if they are forms, with files or not; in a session those of its own pages."""
+    check_type(request, FORM_TYPES | {MEDIA_TYPE}, NotForm)
+    if request.scope.get(FORM_TOKEN):
+        parts = await parts_of(request)
+        texts = {FIELD: parts[FIELD].text} if FIELD in parts else await fields(request)
+        check_form_token(request, texts)
+
+
+async def parts_of(request: Request) -> dict[str, Part]:
+    """The parts of a form that was sent with a file; of one without files none."""
+    return read_parts(await request.body(), request.headers.get("content-type", ""))
 
 
 def read_parts(body: bytes, content_type: str) -> dict[str, Part]:

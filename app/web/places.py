@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from math import inf
 
 from app.presentation import numbers
 from app.presentation.typed import text_of
-from app.schemas.designs import Design
+from app.schemas.designs import Design, Preview, RevisionWorksheet
 from app.schemas.networks import DesignNetwork, NetworkName
 
 
@@ -19,6 +20,8 @@ class PlaceOption:
     words: str
     unit: str
     value: str = ""
+    relation: str = ""  # that sets it
+    instead: tuple[str, ...] = ()  # on which that depends, and which hold values of their own
 
 
 def varied(design: Design, network: DesignNetwork) -> list[PlaceOption]:
@@ -29,6 +32,49 @@ def varied(design: Design, network: DesignNetwork) -> list[PlaceOption]:
         for name in network.names
         if name.role in ("parameter", "input") and _is_single(typed.get(name.name, ""))
     ]
+
+
+def set_aside(
+    design: Design, network: DesignNetwork, own: list[PlaceOption], values: Mapping[str, object]
+) -> list[PlaceOption]:
+    """Parameters and inputs that a relation sets, which a study may set aside; `own` are the others."""
+    typed, single = dict(_typed(design)), {place.name for place in own}
+    return [
+        PlaceOption(
+            name.name, name.words, name.unit, value, typed[name.name], _instead(network, name.name, single)
+        )
+        for name in network.names
+        if name.role in ("parameter", "input")
+        and typed.get(name.name, "").startswith("=")
+        and _is_single(value := text_of(values.get(name.name)))
+    ]
+
+
+def _instead(network: DesignNetwork, target: str, single: set[str]) -> tuple[str, ...]:
+    """The values on which a relation depends, also through other relations."""
+    seen, left = dict[str, None](), [target]
+    while left:
+        name = left.pop(0)
+        sources = [one.source for one in network.relations if one.target == name and one.source not in seen]
+        seen |= dict.fromkeys(sources)
+        left += sources
+    return tuple(name for name in seen if name in single)
+
+
+def present(revision: RevisionWorksheet, preview: Preview) -> dict[str, object]:
+    """The values of parameters, of inputs of steps and of parameters of models, as calculated."""
+    values: dict[str, object] = {name: _plain(value) for name, value in (preview.parameters or {}).items()}
+    for block, step in revision.steps.items():
+        values |= {f"{block}.{name}": _plain(value) for name, value in step.inputs.items()}
+    for block, model in revision.models.items():
+        values |= {f"{block}.{name}": _plain(value) for name, value in model.parameters.items()}
+    return values
+
+
+def _plain(value: object) -> object:
+    """A quantity as it is typed: with its number and unit only."""
+    number, unit = getattr(value, "value", value), getattr(value, "unit", None)
+    return {"value": number, "unit": unit} if unit else number
 
 
 def related(design: Design) -> list[str]:
@@ -47,15 +93,19 @@ def outputs(network: DesignNetwork) -> list[NetworkName]:
 
 def suggested(place: PlaceOption) -> tuple[str, str]:
     """Bounds for a place: half and twice its value; nothing where that says little."""
-    number, _, symbol = place.value.partition(" ")
-    try:
-        present = float(number)
-    except ValueError:
-        return "", ""
-    if present <= 0 or "deg" in symbol:
-        return "", ""
-    low, high = (f"{numbers.plain(present * factor)} {symbol}".strip() for factor in (0.5, 2.0))
+    low, high = (times(place.value, factor) for factor in (0.5, 2.0))
     return low, high
+
+
+def times(text: str, factor: float) -> str:
+    """A quantity above zero as typed, multiplied; nothing of another text, and of a temperature."""
+    number, _, symbol = text.partition(" ")
+    try:
+        value = float(number)
+    except ValueError:
+        return ""
+    is_scalable = 0 < value < inf and "deg" not in symbol
+    return f"{numbers.plain(value * factor)} {symbol}".strip() if is_scalable else ""
 
 
 def _typed(design: Design) -> Iterator[tuple[str, str]]:

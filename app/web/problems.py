@@ -4,23 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
 from typing import cast
+from urllib.parse import urlencode
 
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
+from starlette.datastructures import URL
 from starlette.exceptions import HTTPException
 
+from app.identity.errors import NotSignedIn, RoleNeeded
 from app.schemas.problems import MEDIA_TYPE
 from app.web.api import BASE, Refused
-from app.web.rendering import show
+from app.web.rendering import go, show
 
+_LONGEST = 2000  # characters of an address
 Handler = Callable[[Request, Exception], Awaitable[Response]]
 
 
 def install(app: FastAPI) -> None:
     """Answer what goes wrong under a page with a page; call it after `problems.install`."""
     app.add_exception_handler(Refused, _refused)
-    for cls in (HTTPException, RequestValidationError):
+    for cls in (HTTPException, RequestValidationError, RoleNeeded, NotSignedIn):
         app.add_exception_handler(cls, _page_or(cast(Handler, app.exception_handlers[cls])))
 
 
@@ -32,6 +36,10 @@ def _page_or(others: Handler) -> Handler:
             return await others(request, error)
         if isinstance(error, HTTPException):
             return _page(request, error.status_code, error.detail)
+        if isinstance(error, RoleNeeded):
+            return _page(request, 403, str(error), "Your roles do not allow this")
+        if isinstance(error, NotSignedIn):
+            return go(f"/sign-in?{urlencode({'back': _place(request)})}")
         return _page(request, 404, "there is no such page")
 
     return handle
@@ -39,6 +47,14 @@ def _page_or(others: Handler) -> Handler:
 
 def _is_page(request: Request) -> bool:
     return not request.url.path.startswith(BASE) and "text/html" in request.headers.get("accept", "")
+
+
+def _place(request: Request) -> str:
+    """Where to go on after signing in: the page that was asked for, or that whose form was sent."""
+    place = request.url
+    if request.method not in ("GET", "HEAD"):
+        place = URL(request.headers.get("referer", "/")[:_LONGEST])
+    return f"{place.path}?{place.query}" if place.query else place.path
 
 
 async def _refused(request: Request, error: Exception) -> Response:

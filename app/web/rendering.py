@@ -10,11 +10,12 @@ from fastapi import Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from app.api.gate.guard import PAGE_POLICY
+from app.identity.acting import acting
 from app.presentation.environment import environment
 from app.presentation.units import System
 from app.reports.pictures import axis_of
 from app.web import plotly
-from app.web.session import keep_session
+from app.web.session import keep_session, who_signed_in, with_form_token
 
 HEADERS = {
     "Content-Security-Policy": PAGE_POLICY,
@@ -42,9 +43,15 @@ def show(request: Request, name: str, status: int = 200, **context: object) -> R
     units = units_of(request)
     page = jinja.get_template(name)
     html = page.render(
-        units=units, scheme=_scheme(request), path=request.url.path, query=_beside_units(request), **context
+        units=units,
+        scheme=_scheme(request),
+        path=request.url.path,
+        query=_beside_units(request),
+        signed_in=who_signed_in(request),
+        is_admin=acting().may("admin"),
+        **context,
     )
-    response = HTMLResponse(html, status, headers=HEADERS)
+    response = HTMLResponse(with_form_token(html, request), status, headers=HEADERS)
     if "units" in request.query_params:
         response.set_cookie("units", units, max_age=YEAR, samesite="lax", httponly=True)
     keep_session(request, response)

@@ -167,9 +167,11 @@ async def revision(
     request: Request,
     api: TheApi,
     other: Annotated[int | None, Query(alias="with", ge=1, le=10**9)] = None,
+    comments: Text = "",
 ) -> Response:
-    """A revision, and what differs from another."""
-    return await _or_stored(request, api, id, number, revision_page(request, api, id, number, other))
+    """A revision, and what differs from another; `comments` is where a page of comments begins."""
+    page = revision_page(request, api, id, number, other, cursor=comments)
+    return await _or_stored(request, api, id, number, page)
 
 
 @router.get("/designs/{id}/compare")

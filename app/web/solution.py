@@ -103,6 +103,11 @@ class Reply:
         return self.response is not None and self.response.status_code == ACCEPTED
 
     @property
+    def is_out_of_reach(self) -> bool:
+        """Whether no value between the bounds gives the target."""
+        return self.refusal is not None and (self.refusal.problem.type or "").endswith("/unreachable")
+
+    @property
     def answer(self) -> httpx.Response | None:
         """The answer, once it is there."""
         return None if self.goes_on else self.response

@@ -16,12 +16,25 @@ from app.schemas.designs import Design
 from app.schemas.networks import DesignNetwork
 from app.schemas.solve import DesignRoot, DesignSolution
 from app.web.api import Api, read
-from app.web.places import PlaceOption, outputs, related, suggested, varied
+from app.web.places import PlaceOption, outputs, related, suggested, times, varied
 from app.web.rendering import go, show, units_of
 from app.web.solution import Drawing, Reply, ShownRoot, asked
 
 FIELDS = ("unknown", "low", "high", "output", "value", "tolerance", "other", "other_value")
 OPTIONAL = ("tolerance", "other", "other_value")
+
+
+WIDER = 5.0
+"""How much farther a question looks to both sides, if its answer is out of reach."""
+
+
+@dataclass(frozen=True)
+class Wider:
+    """Bounds farther apart, and the address of the question between them."""
+
+    low: str
+    high: str
+    query: str
 
 
 @dataclass(frozen=True)
@@ -52,6 +65,12 @@ class Asked:
         if typed["other"]:
             body["with"] = {typed["other"]: value_of(typed["other_value"])}
         return body | ({"tolerance": _number(typed["tolerance"])} if typed["tolerance"] else {})
+
+    def wider(self) -> Wider | None:
+        """The same question between bounds farther apart, if they can be multiplied."""
+        low, high = times(self.typed["low"], 1 / WIDER), times(self.typed["high"], WIDER)
+        query = urlencode({**self.typed, "low": low, "high": high})
+        return Wider(low, high, query) if low and high else None
 
     def saved_beside(self) -> tuple[str, str] | None:
         """The field of the design's form that takes the other value, and what it takes."""
@@ -84,6 +103,7 @@ async def solve_page(request: Request, api: Api, id: str) -> Response:
         drawing=_drawing(solution) if solution else None,
         roots=_saved(design, solution) if solution else [],
         refusal=reply.refusal,
+        wider=question.wider() if reply.is_out_of_reach else None,
         job=job if reply.goes_on else "",
     )
 

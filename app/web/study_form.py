@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from fastapi import Request, Response
 from pydantic import JsonValue
 
-from app.presentation.typed import value_of
-from app.schemas.designs import Design, RevisionWorksheet
+from app.designs.variants.names import BASE
+from app.presentation.typed import text_of, value_of
+from app.schemas.criteria import Criterion
+from app.schemas.designs import Design, Preview, RevisionWorksheet
 from app.schemas.networks import DesignNetwork, NetworkName
+from app.schemas.studies import StudyEstimate
+from app.schemas.variants import VariantsOut
 from app.web.api import Api, Refused
-from app.web.places import outputs, related, suggested, varied
+from app.web.places import outputs, present, set_aside, suggested, varied
 from app.web.rendering import show
 
 LINES = 4
@@ -23,7 +27,7 @@ METHODS = {
     "sensitivity": "how much each input moves each output",
     "optimise": "the best row that meets the criteria",
 }
-STEPS, POINTS = "21", "1024"
+POINTS = "1024"
 ON = "on"
 
 
@@ -39,6 +43,16 @@ class Typed:
         """What a field holds."""
         return self.fields.get(name, default)
 
+    def wrong(self, *names: str) -> list[str]:
+        """What is wrong with these members of a study, or with parts of them."""
+        heads = tuple(f"{name}." for name in names if name)
+        return [detail for name, detail in self.faults.items() if name in names or name.startswith(heads)]
+
+    def wrong_in(self, line: int) -> list[str]:
+        """What is wrong with the place that a line varies."""
+        place = self.text(f"place.{line}")
+        return self.wrong(place, f"vary.{place}") if place else self.wrong("vary") if line == 0 else []
+
     def is_on(self, name: str) -> bool:
         """Whether a box is ticked."""
         return self.fields.get(name) == ON
@@ -51,13 +65,15 @@ class Typed:
     def body(self, design: str) -> dict[str, JsonValue]:
         """The study as the interface takes it; fields that are empty are left out."""
         method = self.text("method", "grid")
-        body: dict[str, JsonValue] = {"design": design, "method": method, "vary": self._vary()}
+        vary = self._vary()
+        body: dict[str, JsonValue] = {"design": design, "method": method, "vary": vary}
+        if aside := [name for name in vary if name in self.ticked("related")]:
+            body["set_aside"] = list[JsonValue](aside)
         body |= {group: list[JsonValue](names) for group in ("outputs",) if (names := self.ticked(group))}
         if self.is_on("choose_criteria"):
             body["hold"] = list[JsonValue](self.ticked("hold"))
-        body |= {
-            stage: {"tolerance": value} for stage in ("explore", "confirm") if (value := self._share(stage))
-        }
+        stages = ("explore", "confirm") if method == "optimise" else ("explore",)
+        body |= {stage: {"tolerance": value} for stage in stages if (value := self._share(stage))}
         return body | self._of_method(method)
 
     def _vary(self) -> dict[str, JsonValue]:
@@ -93,6 +109,16 @@ class Typed:
                 return wanted | ({"build": build} if (build := self.text("build")) else {})
         return {}
 
+    def with_bounds(self, bounds: Mapping[str, tuple[str, str]]) -> Typed:
+        """With half and twice the present value where a place was chosen, and nothing else typed."""
+        filled = dict(self.fields)
+        for line in range(LINES):
+            ends = (f"low.{line}", f"high.{line}")
+            if not any(self.text(name).strip() for name in (*ends, f"values.{line}")):
+                place = bounds.get(self.text(f"place.{line}"), ("", ""))
+                filled |= {end: text for end, text in zip(ends, place, strict=True) if text}
+        return replace(self, fields=filled)
+
     def _goals(self, goal: str) -> list[JsonValue]:
         return [
             name for n in range(2) if self.text(f"goal.{n}") == goal and (name := self.text(f"objective.{n}"))
@@ -112,33 +138,60 @@ def _whole(text: str) -> JsonValue:
     return int(text) if text.isascii() and text.strip().isdecimal() and len(text) < 12 else text
 
 
-async def study_form(request: Request, api: Api, id: str, typed: Typed, status: int = 200) -> Response:
-    """The form, with what was typed."""
+async def study_form(
+    request: Request,
+    api: Api,
+    id: str,
+    typed: Typed,
+    status: int = 200,
+    estimate: StudyEstimate | None = None,
+) -> Response:
+    """The form, with what was typed, and with what it would take, if that was asked for."""
     design = await api.get(f"/designs/{id}", Design)
+    governing = await _governing(api, design)
     network = await api.get(f"/designs/{id}/network", DesignNetwork)
     revision = await api.get(f"/designs/{id}/revisions/{design.revision}/worksheet", RevisionWorksheet)
+    preview = await api.post(f"/designs/{id}/preview", Preview, {})
     places, named = varied(design, network), outputs(network)
-    criteria = {one.name: one.verdict != "not_checked" for one in revision.criteria or ()}
+    aside = set_aside(design, network, places, present(revision, preview))
+    bounds = {place.name: suggested(place) for place in (*places, *aside)}
     return show(
         request,
         "new_study.html",
         status=status,
         design=design,
+        governing=governing,
+        differs={place: text_of(value) for place, value in design.variants.get(governing, {}).items()},
         places=places,
-        related=related(design),
-        bounds={place.name: suggested(place) for place in places},
+        aside=aside,
+        bounds=bounds,
         outputs=named,
         judged=_judged(revision, named),
-        criteria=criteria,
+        criteria=[(one.name, one.require, has_limit(one)) for one in revision.criteria or ()],
         methods=METHODS,
         lines=range(LINES),
-        typed=typed,
+        typed=typed.with_bounds(bounds),
+        estimate=estimate,
     )
 
 
+async def _governing(api: Api, design: Design) -> str:
+    """The variant that governs a design, which the study does not calculate; empty for the design itself."""
+    if not design.variants:
+        return ""
+    worst = (await api.get(f"/designs/{design.id}/variants", VariantsOut)).governing
+    return worst.variant if worst and worst.variant != BASE else ""
+
+
+def has_limit(criterion: Criterion) -> bool:
+    """Whether a criterion is checked against a number: one that was given, or one that its rule holds."""
+    return criterion.verdict != "not_checked" and criterion.limit is not None
+
+
 def _judged(revision: RevisionWorksheet, named: list[NetworkName]) -> set[str]:
-    """The outputs that criteria name, which a study keeps if nothing else is chosen."""
-    words = {word for c in revision.criteria or () for word in _words(c.name, c.require)}
+    """The outputs that criteria with limits name, which a study keeps if nothing else is chosen."""
+    limited = filter(has_limit, revision.criteria or ())
+    words = {word for one in limited for word in _words(one.name, one.require)}
     return {name.name for name in named if name.name in words}
 
 

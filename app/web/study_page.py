@@ -26,6 +26,7 @@ async def study_page(request: Request, api: Api, id: str, notice: str | None = N
     query: dict[str, Scalar] = {"limit": SHOWN, "units": units}
     query |= {name: text for name, text in (("cursor", cursor), ("sort", sort), ("where", where)) if text}
     rows = await api.get(f"/studies/{id}/rows", StudyRows, **query)
+    criteria = await _criteria(api, study, units)
     return show(
         request,
         "study.html",
@@ -35,7 +36,8 @@ async def study_page(request: Request, api: Api, id: str, notice: str | None = N
         names=[*study.varied, *study.outputs],
         unfinished=study.state in UNFINISHED,
         indices=_indices(study),
-        limits=await _limits(api, study, units),
+        limits=_limits(study, criteria),
+        judged={one.name: _sides(one)[0] for one in criteria},
         notice=notice,
         sort=sort,
         where=where,
@@ -43,26 +45,36 @@ async def study_page(request: Request, api: Api, id: str, notice: str | None = N
     )
 
 
-async def _limits(api: Api, study: Study, units: str) -> dict[str, list[float]]:
-    """Limits of the study's criteria by output; a limit that itself follows from a row is no line."""
+async def _criteria(api: Api, study: Study, units: str) -> list[Criterion]:
+    """The criteria of a study as its revision states them; none where that is not kept."""
     if not study.criteria:
-        return {}
+        return []
     path = f"/designs/{study.design}/revisions/{study.revision}/worksheet"
     sheet = await api.find(path, RevisionWorksheet, units=units)
+    return [one for one in (sheet.criteria if sheet else None) or () if one.name in study.criteria]
+
+
+def _limits(study: Study, criteria: list[Criterion]) -> dict[str, list[float]]:
+    """Limits of criteria by output; a limit that itself follows from a row is no line."""
     limits: dict[str, list[float]] = {}
-    for one in (sheet.criteria if sheet else None) or ():
-        if one.name in study.criteria and (line := _limit_of(study, one)):
+    for one in criteria:
+        if line := _limit_of(study, one):
             limits.setdefault(line[0], []).append(line[1])
     return limits
 
 
+def _sides(one: Criterion) -> tuple[str, str]:
+    """What a criterion judges, an output with its step in front, and the text of its limit."""
+    left, _, right = (side.strip() for side in one.require.replace(">=", "<=").partition("<="))
+    step, is_of_step, _ = one.name.rpartition(".")
+    return f"{step}.{left}" if is_of_step and left.isidentifier() else left, right
+
+
 def _limit_of(study: Study, one: Criterion) -> tuple[str, float] | None:
     """The output that a criterion holds against a number written in it, and this number."""
-    left, _, right = one.require.replace(">=", "<=").partition("<=")
-    step, is_of_step, _ = one.name.rpartition(".")
-    name = f"{step}.{left.strip()}" if is_of_step else left.strip()
+    name, right = _sides(one)
     limit = one.limit.value if one.limit else None
-    if name not in study.outputs or not right.strip()[:1].isdigit() or not isinstance(limit, float | int):
+    if name not in study.outputs or not right[:1].isdigit() or not isinstance(limit, float | int):
         return None
     is_same_unit = one.limit is not None and one.limit.unit == study.units[name]
     return (name, float(limit)) if is_same_unit else None

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.schemas.studies import Study
+from app.schemas.studies import Study, StudyEstimate
 from app.web.actions import AT_ONCE, forms_only, tag_of
 from app.web.api import Api, Refused, TheApi, read
 from app.web.forms import fields
-from app.web.rendering import go
+from app.web.rendering import go, show
 from app.web.routes import Id
 from app.web.solve_page import solve_page
 from app.web.study_form import Typed, again, study_form
@@ -32,6 +32,7 @@ async def new_study(id: Id, request: Request, api: TheApi) -> Response:
     return await study_form(request, api, id, Typed(dict(request.query_params)))
 
 
+@router.get("/designs/{id}/studies/estimate")
 @router.get("/designs/{id}/studies")
 async def after_a_new_study(id: Id) -> Response:
     """The form of a new study: one that was refused is shown at the address to which it was sent."""
@@ -62,6 +63,22 @@ async def start(id: Id, request: Request, api: TheApi) -> Response:
             raise
         return await study_form(request, api, id, again(typed, refused), ILL_NAMED)
     return go(f"/studies/{read(response, Study).id}")
+
+
+@forms.post("/designs/{id}/studies/estimate")
+async def estimate(id: Id, request: Request, api: TheApi, part: bool = False) -> Response:
+    """What a new study would take: the form again with it; with `part` alone, for the script of the form."""
+    typed = await fields(request)
+    told, faulty, status = None, Typed(typed), 200
+    try:
+        told = await api.post("/studies/estimate", StudyEstimate, Typed(typed).body(id))
+    except Refused as refused:
+        if refused.status != ILL_NAMED:
+            raise
+        faulty, status = again(typed, refused), ILL_NAMED
+    if part:
+        return show(request, "study_estimate.html", estimate=told, typed=faulty)
+    return await study_form(request, api, id, faulty, status, told)
 
 
 @forms.post("/studies/{id}/choose")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 
+from app.api.gate.roles import needs
 from app.api.reading import StrictRoute
 from app.schemas.tables import PastedTable, ReadTable
 from app.web.pasting import paste, refused
@@ -13,7 +14,7 @@ from templates.core.errors import InvalidInputs
 router = APIRouter(include_in_schema=False, route_class=StrictRoute)
 
 
-@router.post("/tables")
+@router.post("/tables", dependencies=[needs("viewer")])
 async def read_pasted_table(pasted: PastedTable) -> ReadTable:
     """The columns of a pasted table, and the texts of the fields that take them.
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 from app.designs.variant_sheets.csv_files import write_csv
 from app.designs.variant_sheets.grid import LAST_ROW, MOST_COLUMNS, Grid, address, column_of
+from app.designs.variant_sheets.headings import place_named
 from app.designs.variant_sheets.reading import RELATION, RESULTS
 from app.schemas.problems import Fault
 
@@ -59,10 +60,13 @@ def with_units(grid: Grid, units: Mapping[str, str]) -> Grid:
     """The grid with the declared unit of each place whose column says none."""
     if len(grid.rows) < FIRST_VARIANT:
         return grid
-    below = [
-        grid.cell(1, at) or ("" if at == 0 else units.get(grid.cell(0, at), "")) for at in range(grid.width)
-    ]
+    below = [grid.cell(1, at) or ("" if at == 0 else _declared(grid, at, units)) for at in range(grid.width)]
     return replace(grid, rows=(grid.rows[0], tuple(below), *grid.rows[FIRST_VARIANT:]))
+
+
+def _declared(grid: Grid, at: int, units: Mapping[str, str]) -> str:
+    """The declared unit of the place that a column names."""
+    return units.get(place_named(grid.cell(0, at), units), "")
 
 
 def csv_of(grid: Grid) -> CsvFile:

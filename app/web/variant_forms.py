@@ -9,20 +9,20 @@ from __future__ import annotations
 from fastapi import APIRouter, Depends, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.api.reading import FORM_TYPES, NotForm, check_type
 from app.designs.variant_sheets.grid import Grid
 from app.designs.variant_sheets.service import Kind, read_sheet
 from app.presentation.spreadsheets import XLSX
+from app.schemas.designs import Design
 from app.schemas.networks import DesignNetwork
 from app.schemas.problems import Fault
 from app.web.api import Api, Refused, TheApi
 from app.web.design_page import design_page
 from app.web.forms import fields
-from app.web.multipart import MEDIA_TYPE, read_parts
+from app.web.multipart import forms_with_files, parts_of
 from app.web.rendering import go
 from app.web.routes import Id
 from app.web.variant_cells import CsvFile, csv_of, grid_of_form, with_units
-from app.web.variants import EMPTY, RefusedTable
+from app.web.variants import EMPTY, RefusedTable, places_of
 from templates.core.errors import InvalidInputs
 
 STALE, WRONG = 412, 422
@@ -34,20 +34,16 @@ AT_ONCE = {"Prefer": "wait=1"}
 CHANGED = "Somebody else saved this design meanwhile: {}. Look at your table once more, then save it."
 
 
-async def forms_only(request: Request) -> None:
-    """Let bodies through only if they are forms, with files or without."""
-    check_type(request, FORM_TYPES | {MEDIA_TYPE}, NotForm)
-
-
-router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_only)])
+router = APIRouter(include_in_schema=False, dependencies=[Depends(forms_with_files)])
 
 
 @router.post("/designs/{id}/variants")
 async def save_cells(id: Id, request: Request, api: TheApi) -> Response:
     """Save the table as edited in place."""
     typed = await fields(request)
+    design = await api.get(f"/designs/{id}", Design)
     network = await api.get(f"/designs/{id}/network", DesignNetwork)
-    units = {name.name: name.unit for name in network.names if name.unit != "1"}
+    units = {name: "" if unit == "1" else unit for name, unit in places_of(design, network).items()}
     grid = with_units(grid_of_form(typed), units)
     file = csv_of(grid)
     return await _saved(request, api, id, _Upload(file.content, "csv", typed.get("revision", "")), grid, file)
@@ -64,7 +60,7 @@ async def save_pasted(id: Id, request: Request, api: TheApi) -> Response:
 @router.post("/designs/{id}/variants/file")
 async def save_file(id: Id, request: Request, api: TheApi) -> Response:
     """Save a file of a spreadsheet."""
-    parts = read_parts(await request.body(), request.headers.get("content-type", ""))
+    parts = await parts_of(request)
     content = parts["file"].content if "file" in parts else b""
     revision = parts["revision"].text if "revision" in parts else ""
     return await _saved(

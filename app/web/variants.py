@@ -15,7 +15,10 @@ from app.schemas.designs import Design
 from app.schemas.networks import DesignNetwork
 from app.schemas.variants import VariantResult, VariantsOut
 from app.web.variant_cells import CONTROL, FIRST_VARIANT
+from templates.core.errors import FaultyText
 from templates.core.judging.comparison import WORST_FIRST
+from templates.core.units.quantity import read_any
+from templates.core.units.relation import is_relation
 
 EMPTY = Grid((("variant",), ("unit",)))
 
@@ -143,10 +146,25 @@ def variants_table(
         count=len(out.variants),
         governing=_governing(out),
         governing_name=governing.variant if governing else "",
-        places={name.name: name.unit for name in network.names if name.role in ("parameter", "input")},
+        places=places_of(design, network),
         loose=[f"{name}: {detail}" for name, detail in faults.items() if name not in placed],
         is_refused=refused is not None,
     )
+
+
+def places_of(design: Design, network: DesignNetwork) -> dict[str, str]:
+    """What a variant may override, with the unit in which the design's own value is typed, or declared."""
+    names = [name for name in network.names if name.role in ("parameter", "input")]
+    return {name.name: _typed_unit(_own(design, name.name)) or name.unit for name in names}
+
+
+def _typed_unit(text: str) -> str:
+    """The unit of a quantity as typed; empty where it has none, or is a relation."""
+    try:
+        own = "" if is_relation(text) or not text else read_any(text).unit
+    except FaultyText:
+        return ""
+    return "" if own == "1" else own
 
 
 def _grid(out: VariantsOut) -> Grid:

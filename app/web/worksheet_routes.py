@@ -8,6 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import JsonValue
 
+from app.api.gate.roles import needs
 from app.schemas.worksheets import Sheet
 from app.web.actions import forms_only
 from app.web.api import Api, Refused, TheApi
@@ -116,7 +117,7 @@ async def test(id: Id, request: Request, api: TheApi) -> Response:
     return await _act(id, "test", {}, request, api)
 
 
-@forms.post("/worksheets/{id}/review")
+@forms.post("/worksheets/{id}/review", dependencies=[needs("checker")])
 async def review(id: Id, request: Request, api: TheApi) -> Response:
     """Somebody read the text with this digest."""
     typed = await fields(request)
@@ -127,13 +128,13 @@ async def review(id: Id, request: Request, api: TheApi) -> Response:
     return await _act(id, "review", named, request, api)
 
 
-@forms.post("/worksheets/{id}/release")
+@forms.post("/worksheets/{id}/release", dependencies=[needs("checker")])
 async def release(id: Id, request: Request, api: TheApi) -> Response:
     """Release it for designs, for good."""
     return await _act(id, "release", {}, request, api)
 
 
-@forms.post("/worksheets/{id}/withdraw")
+@forms.post("/worksheets/{id}/withdraw", dependencies=[needs("checker")])
 async def withdraw(id: Id, request: Request, api: TheApi) -> Response:
     """Say why a released version shall not be used any longer."""
     typed = await fields(request)

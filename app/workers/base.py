@@ -1,14 +1,21 @@
 """What every worker can do."""
 
+import sys
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol, TypeVar, TypeVarTuple
+from typing import Final, Protocol, TypeVar, TypeVarTuple
 
+from app.machines import Lane as Lane
 from templates.core.progress import Reporter
 
 T = TypeVar("T")
 Ts = TypeVarTuple("Ts")
+
+GEOMETRY: Final = "geometry"
+ANALYSIS: Final = "analysis"
+UNLIMITED = sys.maxsize
+"""The capacity of a worker that leaves it to its callers how much they run at the same time."""
 
 
 @dataclass(frozen=True)
@@ -66,8 +73,12 @@ class Worker(Batch, Protocol):
 class BatchWorker(Worker, Protocol):
     """A worker of which a piece of work can have a process for all its functions."""
 
-    def batch(self) -> Batch:
-        """Run several functions in one process, as long as each comes to its end.
+    def capacity(self, lane: Lane) -> int:
+        """How many more functions of a lane would begin at once; 0 if they would wait. Never blocks."""
+        ...
+
+    def batch(self, lane: Lane = GEOMETRY) -> Batch:
+        """Run several functions of a lane in one process, as long as each comes to its end.
 
         What crashes, takes too long, wants too much memory, is cancelled or raises ends the process with it,
         and the next function has a new one. Close the batch in the end.

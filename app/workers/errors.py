@@ -5,6 +5,7 @@ WorkerError
  ├── DeadlineExceeded   it took too long
  ├── MemoryExceeded     it wanted too much memory
  ├── JobCancelled       it was asked to stop
+ ├── WorkerLost         the machine that ran it, or the way to it, has gone
  └── RemoteError        it raised or returned what cannot be sent between processes
 
 All of them can be pickled.
@@ -60,6 +61,17 @@ class JobCancelled(WorkerError):
 
     def __str__(self) -> str:
         return "The work was cancelled."
+
+
+class WorkerLost(WorkerError):
+    """The machine that ran the function, or the scheduler, has gone: nobody knows how it would have ended."""
+
+    def __init__(self, what: str) -> None:
+        super().__init__(what)
+        self.what = what
+
+    def __str__(self) -> str:
+        return f"The work was lost: {self.what}."
 
 
 class RemoteError(WorkerError):

@@ -36,7 +36,7 @@ def main(channel: int, lifeline: int, modules: Iterable[str]) -> NoReturn:
         os._exit(1)
     signal.signal(signal.SIGTTOU, signal.SIG_IGN)  # in the background of a terminal, a message may stop it
     share_fairly()
-    loaded = [_preload(module) for module in modules]
+    loaded = [load(module) for module in modules]
     rehearsals = [module.rehearse for module in loaded if module and hasattr(module, "rehearse")]
     gc.freeze()  # collections in the children shall not copy what is shared
     with socket.socket(fileno=channel) as server:
@@ -44,7 +44,7 @@ def main(channel: int, lifeline: int, modules: Iterable[str]) -> NoReturn:
     os._exit(0)  # to take down an interpreter with so many modules takes half a second
 
 
-def _preload(name: str) -> ModuleType | None:
+def load(name: str) -> ModuleType | None:
     """Import a module, or all modules of a package; the kernel is only loaded.
 
     Once used, it has threads of its own, and a fork that lacks them would wait for them for ever. So a module
@@ -56,7 +56,7 @@ def _preload(name: str) -> ModuleType | None:
         logging.getLogger(__name__).warning("%s is not preloaded: %s", name, error)
         return None
     for submodule in pkgutil.iter_modules(getattr(module, "__path__", ()), f"{name}."):
-        _preload(submodule.name)
+        load(submodule.name)
     return module
 
 

@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable
 from typing import Self, TypeVar, TypeVarTuple
 
-from app.workers.base import Limits
+from app.workers.base import GEOMETRY, UNLIMITED, Lane, Limits
 from app.workers.errors import JobCancelled
 from templates.core.progress import Reporter, reporting
 
@@ -29,9 +29,13 @@ class Inline:
         with reporting(on_progress):
             return function(*args)
 
-    def batch(self) -> Self:
+    def batch(self, lane: Lane = GEOMETRY) -> Self:
         """All run in the thread that asks; see `BatchWorker.batch`."""
         return self
+
+    def capacity(self, lane: Lane) -> int:
+        """As many as there are threads that ask."""
+        return UNLIMITED
 
     def answers(self) -> bool:
         """Its thread is that of the caller."""

@@ -18,7 +18,7 @@ from pathlib import Path
 from app.workers.base import Limits
 from app.workers.errors import DeadlineExceeded, JobCancelled, JobCrashed
 from app.workers.lifeline import Lifeline
-from app.workers.messages import Progress, Raised, Request, Returned, pack, receive, send
+from app.workers.messages import Outcome, Progress, Raised, Request, Returned, pack, receive, send
 from templates.core.progress import Reporter
 
 _BOOT = (
@@ -50,8 +50,14 @@ class JobProcess:
 
     def finish(
         self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event | None
-    ) -> object:
-        """Wait for the end of the job and return its result; see `Worker.run` for what it raises."""
+    ) -> Outcome:
+        """Wait for the end of the job; what it raises itself is an outcome.
+
+        Raises
+        ------
+        DeadlineExceeded, JobCancelled, JobCrashed
+            The process was ended, or ended by itself.
+        """
         cancelled = cancelled or threading.Event()
         try:
             self._await_birth(cancelled)
@@ -91,7 +97,7 @@ class JobProcess:
         except EOFError:
             raise JobCrashed(None) from None
 
-    def _converse(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event) -> object:
+    def _converse(self, limits: Limits, on_progress: Reporter | None, cancelled: threading.Event) -> Outcome:
         end = time.monotonic() + limits.deadline
         while True:
             self._await_message(end, limits, cancelled)
@@ -99,12 +105,9 @@ class JobProcess:
                 case Progress(fraction, text):
                     if on_progress is not None:
                         on_progress(fraction, text)
-                case Returned(value, reusable):
-                    self.reusable = reusable
-                    return value
-                case Raised(error, reusable):
-                    self.reusable = reusable
-                    raise error
+                case Returned() | Raised() as outcome:
+                    self.reusable = outcome.reusable
+                    return outcome
 
     def _await_message(self, end: float, limits: Limits, cancelled: threading.Event) -> None:
         waiting = True
@@ -127,6 +130,24 @@ class JobProcess:
             return int(self._status.recv())
         except EOFError:
             return None
+
+
+def launch(
+    preload: Sequence[str], channel: int, lifeline: int, environment: Mapping[str, str]
+) -> "subprocess.Popen[bytes]":
+    """Start the process of a fork server, which takes what it is asked from the channel.
+
+    What the operator has set in the server's own environment prevails over `environment`.
+    """
+    return subprocess.Popen(
+        [sys.executable, "-c", _BOOT, json.dumps(sys.path), str(channel), str(lifeline), *preload],
+        pass_fds=[channel, lifeline],
+        stdin=subprocess.DEVNULL,
+        env={**environment, **os.environ},
+        # Ctrl-C in a terminal is for the server, which ends its jobs itself. In a session of its own,
+        # the niceness of the processes would count for nothing: see app/workers/scheduling.py.
+        process_group=0,
+    )
 
 
 class ForkServer:
@@ -189,17 +210,8 @@ class ForkServer:
     def _start(self) -> None:
         self._lifeline = Lifeline()
         self._channel, theirs = socket.socketpair()
-        ends = [theirs.fileno(), self._lifeline.reader]
         with theirs:
-            self._process = subprocess.Popen(
-                [sys.executable, "-c", _BOOT, json.dumps(sys.path), *map(str, ends), *self._preload],
-                pass_fds=ends,
-                stdin=subprocess.DEVNULL,
-                env={**self._environment, **os.environ},
-                # Ctrl-C in a terminal is for the server, which ends its jobs itself. In a session of its own,
-                # the niceness of the processes would count for nothing: see app/workers/scheduling.py.
-                process_group=0,
-            )
+            self._process = launch(self._preload, theirs.fileno(), self._lifeline.reader, self._environment)
         self._lifeline.close_reader()
 
     def _end(self) -> None:

@@ -11,10 +11,10 @@ import sys
 import traceback
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from functools import cache
+from functools import cache, partial
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import NoReturn
+from typing import NoReturn, cast
 
 from app.workers.base import Limits
 from app.workers.errors import MemoryExceeded, RemoteError, WorkerError
@@ -73,29 +73,35 @@ def _answer(packed: Packed, connection: Connection) -> tuple[Packed, bool]:
     try:
         request = packed.unpacked()
         assert isinstance(request, Request), "the server sends nothing else"
+        task = _task(request)
         _limit(request.limits)
         reusable = request.reusable
-        return _run(request, connection)
+        return _run(task, request, connection)
     except BaseException as error:  # whatever it is belongs to the caller
         reusable = reusable and isinstance(error, Exception) and not isinstance(error, WorkerError)
-        return pack(Raised(_portable(error), reusable)), reusable
+        return pack(Raised(pack(_portable(error)), reusable)), reusable
 
 
-def _run(request: Request, connection: Connection) -> tuple[Packed, bool]:
+def _task(request: Request) -> Callable[[], object]:
+    function, args = cast(tuple[Callable[..., object], tuple[object, ...]], request.task.unpacked())
+    return partial(function, *args)
+
+
+def _run(task: Callable[[], object], request: Request, connection: Connection) -> tuple[Packed, bool]:
     try:
         with reporting(lambda fraction, text: send(connection, pack(Progress(fraction, text)))):
-            result = request.function(*request.args)
+            result = task()
         reusable = request.reusable and not _has_grown(request.limits)
-        return _packed_result(Returned(result, reusable)), reusable
+        return pack(Returned(_packed_result(result), reusable)), reusable
     except MemoryError:
         raise MemoryExceeded(request.limits.memory_mb) from None
 
 
-def _packed_result(message: Returned) -> Packed:
+def _packed_result(result: object) -> Packed:
     try:
-        return pack(message)
+        return pack(result)
     except (pickle.PicklingError, TypeError, AttributeError) as error:
-        kind = type(message.value).__qualname__
+        kind = type(result).__qualname__
         raise RemoteError(kind, f"the result cannot be pickled: {error}") from None
 
 

@@ -5,10 +5,10 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import TypeVar, TypeVarTuple, cast
 
-from app.workers.base import Limits
-from app.workers.errors import DeadlineExceeded, JobCancelled
+from app.workers.base import GEOMETRY, UNLIMITED, Lane, Limits
+from app.workers.errors import DeadlineExceeded, JobCancelled, WorkerError
 from app.workers.isolated import ForkServer, JobProcess
-from app.workers.messages import Request
+from app.workers.messages import Outcome, Request, Returned
 from app.workers.threads import ONE_THREAD
 from templates.core.progress import Reporter
 
@@ -19,7 +19,7 @@ logger = logging.getLogger(__name__)
 
 # What jobs import: the kernel, every model, and the modules of the job functions. The finite elements are
 # imported by those that need them (0.3 s): NGSolve starts threads at once, which a fork would not have.
-GEOMETRY = ("cad.regenerate", "cad.models", "app.solids.builds", "app.solids.finding")
+KERNEL = ("cad.regenerate", "cad.models", "app.solids.builds", "app.solids.finding")
 
 
 class LocalProcesses:
@@ -28,7 +28,7 @@ class LocalProcesses:
     One process is kept waiting for the next job, because a fork of such a large process is not free.
     """
 
-    def __init__(self, preload: Sequence[str] = GEOMETRY) -> None:
+    def __init__(self, preload: Sequence[str] = KERNEL) -> None:
         self._forkserver = ForkServer(preload, ONE_THREAD)
         self._lock = threading.Lock()
         self._spare = self._forkserver.fork()
@@ -42,12 +42,21 @@ class LocalProcesses:
         cancelled: threading.Event | None = None,
     ) -> T:
         """Run the function in a process of its own; see `Worker.run`."""
-        process = self.started(Request(function, args, limits))
-        return cast(T, process.finish(limits, on_progress, cancelled))
+        return cast(T, self.outcome(Request.of(function, args, limits), on_progress, cancelled).result())
 
-    def batch(self) -> "Batch":
+    def outcome(
+        self, request: Request, on_progress: Reporter | None, cancelled: threading.Event | None
+    ) -> Outcome:
+        """Run a packed function in a process of its own; see `JobProcess.finish`."""
+        return self.started(request).finish(request.limits, on_progress, cancelled)
+
+    def batch(self, lane: Lane = GEOMETRY) -> "Batch":
         """Run several functions in one process; see `BatchWorker.batch`."""
         return Batch(self.started)
+
+    def capacity(self, lane: Lane) -> int:
+        """The queue has as many threads as this machine shall run jobs."""
+        return UNLIMITED
 
     def answers(self) -> bool:
         """Whether the forkserver is alive, and has forked the process that waits for the next job."""
@@ -103,17 +112,27 @@ class Batch:
         cancelled: threading.Event | None = None,
     ) -> T:
         """Run the function in the process of this batch, or in a new one; see `Worker.run`."""
-        request = Request(function, args, limits, reusable=True)
+        request = Request.of(function, args, limits, reusable=True)
+        return cast(T, self.outcome(request, on_progress, cancelled).result())
+
+    def outcome(
+        self, request: Request, on_progress: Reporter | None, cancelled: threading.Event | None
+    ) -> Outcome:
+        """Run a packed, reusable function as `run` does; see `JobProcess.finish`."""
         if (process := self._taken()) is not None:
             try:
                 process.start(request)
-                return cast(T, self._finished(process, limits, on_progress, cancelled))
+                outcome = self._finished(process, request.limits, on_progress, cancelled)
             except (JobCancelled, DeadlineExceeded):
                 raise
-            except Exception as error:  # its predecessors may be to blame, or it died while it waited
+            except (OSError, WorkerError) as error:  # it died, maybe while it waited
                 logger.info("once more in a new process: %s", error)
+            else:
+                if isinstance(outcome, Returned):
+                    return outcome
+                logger.info("once more in a new process: its predecessors may be to blame")
         self._count = 0
-        return cast(T, self._finished(self._started(request), limits, on_progress, cancelled))
+        return self._finished(self._started(request), request.limits, on_progress, cancelled)
 
     def close(self) -> None:
         """End the process, if one waits."""
@@ -130,16 +149,12 @@ class Batch:
         limits: Limits,
         on_progress: Reporter | None,
         cancelled: threading.Event | None,
-    ) -> object:
-        """What a process answers; it is kept if it may run another function."""
-        try:
-            result = process.finish(limits, on_progress, cancelled)
-        except BaseException:
-            process.kill()  # also where it is fit for another function by its own account
-            raise
+    ) -> Outcome:
+        """What a process answers; it is kept if it returned something and may run another function."""
+        outcome = process.finish(limits, on_progress, cancelled)
         self._count += 1
-        if process.reusable and self._count < MOST_IN_BATCH:
+        if isinstance(outcome, Returned) and process.reusable and self._count < MOST_IN_BATCH:
             self._process = process
         else:
             process.kill()
-        return result
+        return outcome

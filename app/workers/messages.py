@@ -1,4 +1,8 @@
-"""What the server and a job process say to each other."""
+"""What the server and a job process say to each other.
+
+What a function takes and returns is packed by itself within a message. So whoever only passes messages on, as
+a worker on another machine does, imports nothing that a function imports.
+"""
 
 import pickle
 from collections.abc import Callable
@@ -6,21 +10,50 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pickle import PickleBuffer
 from struct import Struct
+from typing import NoReturn, Self, SupportsIndex
 
 from app.workers.base import Limits
+from app.workers.pieces import PIECE
 
 _COUNT = Struct("!I")
 """How the number of pieces is written that follow a message."""
 
 
 @dataclass(frozen=True)
+class Packed:
+    """A pickled message, and beside it the large bytes that it holds, piece by piece."""
+
+    message: bytes
+    pieces: tuple[PickleBuffer | bytes, ...] = ()
+
+    def unpacked(self) -> object:
+        """The message."""
+        return pickle.loads(self.message, buffers=self.pieces)
+
+    def __reduce_ex__(self, protocol: SupportsIndex) -> tuple[object, ...]:
+        """Within another message, what is large goes beside it and is not copied."""
+        message = PickleBuffer(self.message) if len(self.message) > PIECE else self.message
+        return Packed, (message, tuple(map(PickleBuffer, self.pieces)))
+
+
+@dataclass(frozen=True)
 class Request:
     """To the process: what to run, within what limits, and whether another request may follow."""
 
-    function: Callable[..., object]
-    args: tuple[object, ...]
+    task: Packed
     limits: Limits
     reusable: bool = False
+
+    @classmethod
+    def of(
+        cls,
+        function: Callable[..., object],
+        args: tuple[object, ...],
+        limits: Limits,
+        reusable: bool = False,
+    ) -> Self:
+        """The request to call a function; raises what pickle raises."""
+        return cls(pack((function, args)), limits, reusable)
 
 
 @dataclass(frozen=True)
@@ -35,28 +68,29 @@ class Progress:
 class Returned:
     """From the process: the result, and whether it waits for another request."""
 
-    value: object
+    value: Packed
     reusable: bool = False
+
+    def result(self) -> object:
+        """What the function returned."""
+        return self.value.unpacked()
 
 
 @dataclass(frozen=True)
 class Raised:
     """From the process: the exception, and whether it waits for another request."""
 
-    error: BaseException
+    error: Packed
     reusable: bool = False
 
+    def result(self) -> NoReturn:
+        """Raise what the function raised."""
+        error = self.error.unpacked()
+        assert isinstance(error, BaseException), "a process packs nothing else here"
+        raise error
 
-@dataclass(frozen=True)
-class Packed:
-    """A pickled message, and beside it the large bytes that it holds, piece by piece."""
 
-    message: bytes
-    pieces: tuple[PickleBuffer | bytes, ...] = ()
-
-    def unpacked(self) -> object:
-        """The message."""
-        return pickle.loads(self.message, buffers=self.pieces)
+Outcome = Returned | Raised
 
 
 def pack(message: object) -> Packed:

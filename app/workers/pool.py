@@ -52,11 +52,12 @@ class WarmProcesses:
         cancelled: threading.Event | None = None,
     ) -> T:
         """Run the function in a process that has nothing else to do; see `Worker.run`."""
-        process = self._started(Request(function, args, limits, reusable=True))
+        process = self._started(Request.of(function, args, limits, reusable=True))
         try:
-            return cast(T, process.finish(limits, on_progress, cancelled))
+            outcome = process.finish(limits, on_progress, cancelled)
         finally:
             self._put_back(process)
+        return cast(T, outcome.result())
 
     def answers(self) -> bool:
         """Whether the forkserver is alive; if it has died, it is started again."""
@@ -94,9 +95,6 @@ class WarmProcesses:
             with self._lock:
                 process = self._forked()
             process.start(request)
-        except Exception:  # what cannot be pickled was not sent
-            self._put_back(process)
-            raise
         return process
 
     def _put_back(self, process: JobProcess) -> None:

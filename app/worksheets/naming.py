@@ -6,6 +6,7 @@ import re
 import unicodedata
 
 from app.catalogue.catalogues import Catalogues
+from app.identity.acting import BUILT_IN, acting
 from app.worksheets.errors import IdTaken
 from templates.core.errors import Fault, InvalidInputs
 
@@ -31,6 +32,12 @@ def require_free(id: str, catalogues: Catalogues) -> None:
     for catalogue in (files.templates, files.models):
         if id in catalogue.ids or any(id == name for name, _ in catalogue.quarantined):
             raise IdTaken(id, f"a {catalogue.kind} of a file")
+
+
+def signed(typed: str | None) -> tuple[str | None, str | None]:
+    """Who does something to a worksheet: name and id of a principal who has signed in, else a typed name."""
+    who = acting()
+    return (typed, None) if who.id in BUILT_IN else (who.name, who.id)
 
 
 def is_same_person(one: str, other: str) -> bool:

@@ -6,6 +6,7 @@ import logging
 import threading
 import time
 from collections.abc import Sequence
+from typing import Literal
 
 from app.calculations.sources import SheetSource, class_of
 from app.catalogue.catalogues import Catalogues
@@ -135,4 +136,5 @@ def _verified(row: Row) -> ReleasedSheet | str:
     if isinstance(released := as_released(source, row.digest, row.record), str):
         logger.error("Worksheet %s version %d is broken: %s", row.id, row.number, released)
         return released
-    return ReleasedSheet(released, "withdrawn" if row.withdrawn else "released", row.author, row.reviewer)
+    state: Literal["released", "withdrawn"] = "withdrawn" if row.withdrawn else "released"
+    return ReleasedSheet(released, state, row.author, row.reviewer, row.reviewer_principal is not None)

@@ -8,6 +8,7 @@ from sqlalchemy import and_, delete, func, select, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
+from app.identity.usage import note_bytes
 from app.storage.errors import NotFound
 from app.storage.identity import new_id, now
 from app.storage.tables import WorksheetVersionRow as Row
@@ -88,6 +89,7 @@ def add(session: Session, row: Row) -> None:
         session.flush()
     except IntegrityError:
         raise StaleWorksheet(row.id) from None
+    note_bytes(session, _size(row.text))
 
 
 def save(session: Session, row: Row, **changes: object) -> Row:
@@ -103,7 +105,13 @@ def save(session: Session, row: Row, **changes: object) -> Row:
     changed = update(Row).where(same).values(values).execution_options(synchronize_session=False)
     if not session.execute(changed.returning(Row.id)).all():
         raise StaleWorksheet(row.id)
+    if isinstance(text := changes.get("text"), str):
+        note_bytes(session, max(0, _size(text) - _size(row.text)))
     return version(session, row.id, row.number)
+
+
+def _size(text: str) -> int:
+    return len(text.encode())
 
 
 def discard(session: Session, row: Row) -> None:

@@ -15,6 +15,7 @@ from sqlalchemy.orm import Session
 
 from app.calculations.pool import CalculationPool
 from app.catalogue.catalogues import Catalogues
+from app.identity.audit import record
 from app.storage.database import Database
 from app.storage.idempotency import Once
 from app.storage.identity import now
@@ -24,7 +25,7 @@ from app.worksheets import repository
 from app.worksheets.errors import IdTaken, OtherText, OutOfOrder, OwnReview, StaleWorksheet, TestsFailed
 from app.worksheets.examining import Examined, Tried, examined, tried
 from app.worksheets.importing.record import ImportRecord, require_resolved
-from app.worksheets.naming import is_same_person, require_free
+from app.worksheets.naming import is_same_person, require_free, signed
 from app.worksheets.published import Published
 from app.worksheets.repository import RELEASED
 from app.worksheets.schemas import ReviewIn, SheetIn, SheetPatch, WithdrawIn
@@ -62,18 +63,19 @@ class Worksheets:
         reading = self.calculated(once.client, examined, body.text)
 
         def unit(session: Session) -> Row:
-            if location := once.find(session):
+            if location := once.begin(session):
                 return repository.newest(session, location["id"])
             if repository.versions(session, body.id):
                 raise IdTaken(body.id, "another worksheet")
             row = _draft(body.id, 1, body.text, reading)
-            row.author = body.author
+            row.author, row.author_principal = signed(body.author)
             if imported is not None:
                 row.import_sha256, row.imported = imported[0], dict(imported[1])
             try:
                 repository.add(session, row)
             except StaleWorksheet:
                 raise IdTaken(body.id, "another worksheet") from None
+            _record(session, "worksheet.create", row)
             once.keep(session, 201, {"id": body.id})
             return row
 
@@ -87,20 +89,22 @@ class Worksheets:
         StaleWorksheet
             If `expected` (an If-Match) is not the newest version as it is now.
         """
-        if (before := self._repeated(once)) is not None:
-            return before
-        row = self.newest(id, expected)
+        with self.database.read() as session:
+            row = repository.newest(session, id)
+            if once.find(session):
+                return row
+        _require_match(expected, row)
         text = row.text if body.text is None else body.text
-        author = row.author if body.author is None else body.author
-        if (text, author) == (row.text, row.author):
+        author, principal = signed(row.author if body.author is None else body.author)
+        if (text, author) == (row.text, row.author) or (principal and text == row.text):
             return row
         reading = self.calculated(once.client, examined, text)
 
         def unit(session: Session) -> Row:
-            if location := once.find(session):
+            if location := once.begin(session):
                 return repository.newest(session, location["id"])
             draft = _draft(id, row.number + 1, text, reading)
-            draft.author = author
+            draft.author, draft.author_principal = author, principal
             if row.state in RELEASED:
                 if repository.newest(session, id).number != row.number:
                     raise StaleWorksheet(id)
@@ -108,6 +112,7 @@ class Worksheets:
                 repository.add(session, draft)
             else:
                 draft = repository.save(session, row, **_edited(draft))
+            _record(session, "worksheet.change", draft)
             once.keep(session, 200, {"id": id})
             return draft
 
@@ -126,7 +131,7 @@ class Worksheets:
         row = self.newest(id, expected)
         _require(row, "draft", "tested")
         result = self._tried(client, row)
-        return self._saved(row, state="tested", tests=list(map(asdict, result.tests)))
+        return self._saved(row, "test", state="tested", tests=list(map(asdict, result.tests)))
 
     def review(self, id: str, body: ReviewIn, expected: str | None) -> Row:
         """Note who reviewed the text.
@@ -141,12 +146,15 @@ class Worksheets:
             If the reviewer is the author.
         """
         row = self.newest(id, expected)
-        if row.author is not None and is_same_person(body.reviewer, row.author):
-            raise OwnReview(body.reviewer)
+        name, principal = signed(body.reviewer)
+        reviewer = name or body.reviewer
+        is_own = principal is not None and principal == row.author_principal
+        if is_own or (row.author is not None and is_same_person(reviewer, row.author)):
+            raise OwnReview(reviewer)
         _require(row, "tested", "reviewed")
         if body.digest != row.digest:
             raise OtherText(body.digest, row.digest)
-        return self._saved(row, state="reviewed", reviewer=body.reviewer)
+        return self._saved(row, "review", state="reviewed", reviewer=reviewer, reviewer_principal=principal)
 
     def release(self, id: str, expected: str | None, client: str) -> Row:
         """Make the reviewed version a template that never changes; its golden record is kept.
@@ -165,8 +173,9 @@ class Worksheets:
         require_free(id, self.catalogues)
         require_resolved(row)
         result = self._tried(client, row)
+        tests = list(map(asdict, result.tests))
         return self._saved(
-            row, state="released", tests=list(map(asdict, result.tests)), record=result.record, released=now()
+            row, "release", state="released", tests=tests, record=result.record, released=now()
         )
 
     def withdraw(self, id: str, body: WithdrawIn, expected: str | None) -> Row:
@@ -184,7 +193,7 @@ class Worksheets:
         row = self.version(id, number)
         _require_match(expected, row)
         _require(row, "released")
-        return self._saved(row, state="withdrawn", withdrawn=body.reason)
+        return self._saved(row, "withdraw", state="withdrawn", withdrawn=body.reason)
 
     def delete(self, id: str, expected: str | None) -> None:
         """Delete the newest version, which was never released.
@@ -197,7 +206,7 @@ class Worksheets:
         row = self.newest(id, expected)
         if row.state in RELEASED:
             raise OutOfOrder(f"{id} version {row.number} is {row.state}, so it stays; withdraw it instead")
-        self.database.write(lambda session: repository.discard(session, row))
+        self.database.write(lambda session: _discard(session, row))
         self.published.look()
 
     def newest(self, id: str, expected: str | None = None) -> Row:
@@ -251,8 +260,13 @@ class Worksheets:
             raise TestsFailed(result.reasons)
         return result
 
-    def _saved(self, row: Row, **changes: object) -> Row:
-        return self._written(lambda session: repository.save(session, row, **changes))
+    def _saved(self, row: Row, verb: str, **changes: object) -> Row:
+        def unit(session: Session) -> Row:
+            saved = repository.save(session, row, **changes)
+            _record(session, f"worksheet.{verb}", saved)
+            return saved
+
+        return self._written(unit)
 
     def _written(self, unit: Callable[[Session], Row]) -> Row:
         row = self.database.write(unit)
@@ -265,6 +279,15 @@ class Worksheets:
         with self.database.read() as session:
             location = once.find(session)
             return repository.newest(session, location["id"]) if location else None
+
+
+def _discard(session: Session, row: Row) -> None:
+    repository.discard(session, row)
+    _record(session, "worksheet.delete", row)
+
+
+def _record(session: Session, action: str, row: Row) -> None:
+    record(session, action, f"worksheets/{row.id}/versions/{row.number}", row.digest)
 
 
 def _draft(id: str, number: int, text: str, reading: Examined) -> Row:
@@ -283,8 +306,14 @@ def _draft(id: str, number: int, text: str, reading: Examined) -> Row:
 
 def _edited(draft: Row) -> dict[str, object]:
     """What an edit changes in the row of a version; who reviewed the old text did not review this one."""
-    names = ("text", "title", "language", "digest", "faults", "author")
-    return {"state": "draft", "reviewer": None, "tests": [], **{name: getattr(draft, name) for name in names}}
+    names = ("text", "title", "language", "digest", "faults", "author", "author_principal")
+    unsigned: dict[str, object] = {
+        "state": "draft",
+        "reviewer": None,
+        "reviewer_principal": None,
+        "tests": [],
+    }
+    return {**unsigned, **{name: getattr(draft, name) for name in names}}
 
 
 def _require(row: Row, *allowed: str) -> None:

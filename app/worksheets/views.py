@@ -28,7 +28,7 @@ def sheet(row: Row, versions: Sequence[Row], broken: Broken) -> Sheet:
             "language": row.language,
             "author": row.author,
             "reviewer": row.reviewer,
-            "review_verified": False,
+            "review_verified": row.reviewer_principal is not None,
             "faults": row.faults,
             "tests": row.tests,
             "withdrawn": row.withdrawn,
@@ -51,7 +51,7 @@ def summary(row: Row, broken: Broken) -> SheetSummary:
         title=row.title,
         author=row.author,
         reviewer=row.reviewer,
-        review_verified=False,
+        review_verified=row.reviewer_principal is not None,
         faults=len(row.faults),
         updated=row.updated,
     )

@@ -4,8 +4,10 @@ import os
 
 import httpx
 import pytest
+from components import ON_POSTGRESQL, database_of
 from patience import patient
 from serving import created, folder_of_models, paper, patched, serving
+from signed_in import service_with_roles
 
 from app.client import Client
 from app.settings import Settings
@@ -15,6 +17,8 @@ from app.storage.migrations import migrate
 
 @pytest.fixture
 def url(tmp_path):
+    if ON_POSTGRESQL:
+        return database_of(tmp_path)
     url = f"sqlite:///{tmp_path}/test.sqlite"
     migrate(url)
     return url
@@ -42,6 +46,13 @@ def served(tmp_path_factory):
         # Answers may take 5 s; on a busy machine the calculation processes take as long to be there.
         server.app.state.services.calculations.submit("tests", os.getpid).future.result(60)
         yield server
+
+
+@pytest.fixture(scope="session")
+def team(tmp_path_factory):
+    """A service that asks for keys, and keys of every role."""
+    with service_with_roles(tmp_path_factory.mktemp("team")) as team:
+        yield team
 
 
 @pytest.fixture(scope="session")

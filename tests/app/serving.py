@@ -14,6 +14,7 @@ from textwrap import dedent
 
 import httpx
 import uvicorn
+from components import ON_POSTGRESQL, shared
 from forked import Forked
 from patience import GLANCE, patient, until
 
@@ -181,6 +182,7 @@ class Served:
 @contextmanager
 def serving(settings: Settings):
     """The real app under uvicorn in a thread, until the end."""
+    settings = on_the_database_of_tests(settings)
     app = create_app(settings)
     server = uvicorn.Server(configuration(app, settings, port=0))
     thread = threading.Thread(target=server.run, name="uvicorn")
@@ -199,11 +201,21 @@ def serving(settings: Settings):
         assert not thread.is_alive(), "the server did not stop"
 
 
+def on_the_database_of_tests(settings: Settings) -> Settings:
+    """The settings, with a database on PostgreSQL if tests run on that, and these name none."""
+    if not ON_POSTGRESQL or settings.database_url is not None:
+        return settings
+    prefix = "CRANKWRIGHT_"
+    given = {name.removeprefix(prefix).lower(): value for name, value in shared(settings.data).items()}
+    return Settings(**{**settings.model_dump(exclude_unset=True), **given})
+
+
 class ServerProcess:
     """`crankwright serve` in a process, and a session, of its own."""
 
     def __init__(self, data: Path, **environment: str) -> None:
-        self.data, self.environment = data, environment
+        self.data = data
+        self.environment = {**shared(data), **environment} if ON_POSTGRESQL else environment
         self.process = None
         self.port = free_port()
         self.log = data.with_name(f"{data.name}.log")

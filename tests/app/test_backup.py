@@ -187,10 +187,12 @@ class TestCheck:
 
     def test_postgresql(self, data, monkeypatch):
         monkeypatch.setenv("CRANKWRIGHT_DATABASE_URL", "postgresql+psycopg://nowhere/none")
-        for command in (["check"], ["backup", data / "b.tar"]):
+        unreadable = "PostgreSQL cannot be read"
+        unset = "CRANKWRIGHT_ARTIFACTS_URL is not set"
+        for command, said in ((["check"], unreadable), (["backup", data / "b.tar"], unset)):
             result = run(*command, "--data", data)
             assert result.exit_code == 2
-            assert "pg_dump" in result.output
+            assert said in result.output
 
 
 class TestRestore:

@@ -8,71 +8,21 @@ no process is left of any server.
 import hashlib
 import random
 import signal
-import threading
 import time
 
 import httpx
 import pytest
 from patience import until
 from seeds import seeded
-from serving import API, PATIENCE, ServerProcess, alive, folder_of_models, moody, pages, settled
+from serving import API, ServerProcess, alive, folder_of_models, moody, settled
+from sqlalchemy import select
+from writers import DESIGNS, Writer, each_accepted_change_is_one_revision, peace
 
-from cad.stamp import is_copy
+from app.identity import chain
+from app.storage.database import Database
+from app.storage.tables import AuditRow, RevisionRow
 
-DESIGNS = f"{API}/designs"
 WRITERS = 4
-
-
-class Writer(threading.Thread):
-    """A client with one design, which it changes again and again, each time until the change is accepted."""
-
-    def __init__(self, url: str, number: int) -> None:
-        super().__init__(name=f"writer-{number}", daemon=True)
-        self.url, self.number = url, number
-        self.random = random.Random(number)
-        self.enough = threading.Event()
-        self.accepted: list[str] = []  # the notes of accepted revisions
-        self.unanswered = 0
-        self.design = None
-        self.failure: BaseException | None = None
-
-    def run(self) -> None:
-        try:
-            with httpx.Client(base_url=self.url, timeout=PATIENCE / 6, trust_env=False) as self.http:
-                document = moody(f"{10 + self.number} mm", parameters={"counter": "0"}, note="change 0")
-                self.design = self.send("POST", DESIGNS, document, "0", {})["id"]
-                while not self.enough.wait(self.random.uniform(0, 0.1)):
-                    self.change(len(self.accepted))
-        except BaseException as failure:
-            self.failure = failure
-
-    def change(self, change: int) -> None:
-        """A light change, one that builds, or one that cannot be built."""
-        patch = {"parameters": {"counter": str(change)}, "note": f"change {change}"}
-        kind = self.random.random()
-        parameters = {"mood": "raises" if kind < 0.05 else "good"}
-        if kind < 0.25:
-            parameters["size"] = f"{10 + self.number + change / 1000} mm"
-        patch["model"] = {"parameters": parameters}
-        place = f"{DESIGNS}/{self.design}"
-        answer = self.send("PATCH", place, patch, str(change), {"If-Match": f'"{change}"'})
-        assert answer["revision"] == change + 1
-
-    def send(self, method, path, body, key, headers) -> dict:
-        """Send until there is an answer; the key makes that harmless."""
-        headers = {**headers, "Idempotency-Key": f"{self.name}-{key}", "Prefer": "respond-async"}
-        end = time.monotonic() + 3 * PATIENCE
-        while time.monotonic() < end:
-            try:
-                answer = self.http.request(method, path, json=body, headers=headers)
-            except httpx.TransportError:
-                self.unanswered += 1
-                time.sleep(0.02)
-                continue
-            assert answer.status_code in (200, 201, 202), answer.text
-            self.accepted.append(body["note"])
-            return answer.json()
-        raise TimeoutError(f"{method} {path}")
 
 
 def battle(data, kills: int, seed: int, changes: int) -> None:
@@ -85,7 +35,7 @@ def battle(data, kills: int, seed: int, changes: int) -> None:
     }
     server = ServerProcess(data, **environment)
     family: set[int] = set()
-    writers = [Writer(server.url, number) for number in range(WRITERS)]
+    writers = [Writer([server.url], number) for number in range(WRITERS)]
     try:
         server.start().ready()
         for writer in writers:
@@ -110,45 +60,9 @@ def battle(data, kills: int, seed: int, changes: int) -> None:
             writer.enough.set()
         last = server.kill()
     nothing_lives(last)
+    every_revision_has_its_row_in_the_audit(data)
     assert sum(len(writer.accepted) for writer in writers) >= changes, "too few to mean anything"
     assert all(writer.unanswered for writer in writers), "no kill met a change"
-
-
-def peace(writers: list[Writer]) -> None:
-    """Let all writers finish what they are at."""
-    for writer in writers:
-        writer.enough.set()
-    for writer in writers:
-        writer.join(4 * PATIENCE)
-    assert [writer.failure for writer in writers] == [None] * WRITERS
-    assert not any(writer.is_alive() for writer in writers)
-
-
-def each_accepted_change_is_one_revision(http, writer: Writer) -> None:
-    design = settled(http, writer.design, seconds=120)
-    revisions = list(pages(http, f"{DESIGNS}/{writer.design}/revisions", 100, len(writer.accepted) + 1))
-    assert [one["note"] for one in reversed(revisions)] == writer.accepted
-    assert [one["number"] for one in reversed(revisions)] == list(range(1, len(revisions) + 1))
-    assert design["revision"] == len(writer.accepted)
-    for one in revisions:
-        each_revision_is_whole(http, one)
-
-
-def each_revision_is_whole(http, one: dict) -> None:
-    place = f"{DESIGNS}/{one['design']}/revisions/{one['number']}"
-    if one["state"] == "regenerating":
-        one = until(lambda: http.get(place).json(), lambda one: one["state"] != "regenerating")
-    assert one["parameters"]["counter"] == str(one["number"] - 1)
-    mood = one["models"]["model"]["parameters"]["mood"]["value"]
-    if mood == "raises":
-        assert one["state"] == "failed"
-        assert one["problem"]["type"] == "/problems/geometry"
-        return
-    assert one["state"] == "current", one["problem"]
-    sha = one["models"]["model"]["artifacts"]["step"]
-    stored = http.get(f"{API}/artifacts/{sha}").content
-    assert hashlib.sha256(stored).hexdigest() == sha
-    assert is_copy(http.get(f"{place}/model.step").content, stored)
 
 
 def nothing_is_half_done(http, data) -> None:
@@ -159,6 +73,19 @@ def nothing_is_half_done(http, data) -> None:
     whole = [file for file in files if len(file.name) == 64]
     assert whole
     assert all(hashlib.sha256(file.read_bytes()).hexdigest() == file.name for file in whole)
+
+
+def every_revision_has_its_row_in_the_audit(data) -> None:
+    """No change without its row, no row without its change, and the chain is sound."""
+    database = Database(f"sqlite:///{data / 'crankwright.sqlite'}")
+    try:
+        with database.read() as session:
+            saved = session.execute(select(RevisionRow.design_id, RevisionRow.number)).all()
+            noted = session.scalars(select(AuditRow.object).where(AuditRow.object.contains("/revisions/")))
+            assert sorted(noted) == sorted(f"designs/{id}/revisions/{number}" for id, number in saved)
+            assert chain.verify(session).fault == ""
+    finally:
+        database.close()
 
 
 def nothing_lives(family: set[int]) -> None:

@@ -38,7 +38,7 @@ def names(database):
 def commits(database):
     """How many transactions the writer has committed."""
     seen = []
-    event.listen(database._writer, "commit", seen.append)
+    event.listen(database._writer.engine, "commit", seen.append)
     return seen
 
 
@@ -52,7 +52,7 @@ def together(database):
             pool.submit(database.write, lambda session: (busy.set(), gate.wait(10)))
             assert busy.wait(10)
             futures = [pool.submit(database.write, unit) for unit in units]
-            until(lambda: database._waiting.qsize() >= len(units))
+            until(lambda: database._writer._waiting.qsize() >= len(units))
             gate.set()
         return futures
 
@@ -123,7 +123,7 @@ def test_a_unit_that_hides_a_failed_statement_stores_nothing(database):
 
 
 def test_a_failed_commit_fails_the_whole_group(database, together):
-    @event.listens_for(database._writer, "commit")
+    @event.listens_for(database._writer.engine, "commit")
     def full(connection):
         if connection.scalar(select(func.count()).select_from(DesignRow)):
             raise sqlite3.OperationalError("database or disk is full")

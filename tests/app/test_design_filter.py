@@ -3,6 +3,7 @@
 from uuid import uuid4
 
 import pytest
+from components import ON_POSTGRESQL
 from serving import API, created, paper, patched, problem
 from sqlalchemy import event, text
 
@@ -80,12 +81,12 @@ def test_the_newest_revision_counts(shelf):
         "failed",
         None,
     )
-    shelf.write(lambda session: repository.append(session, repository.design(session, id), written))
+    shelf.write(lambda session: repository.append(session, id, 1, written))
     assert selected(shelf, name="empty") == []
     assert selected(shelf, template="engine") == ["full", "100 % Größe"]
     shelf.write(
         lambda session: repository.append(
-            session, repository.design(session, id), Written(document("bare"), None, [], "current", None)
+            session, id, 2, Written(document("bare"), None, [], "current", None)
         )
     )
     assert selected(shelf, template="crankshaft") == selected(shelf, name="full") == []
@@ -101,6 +102,7 @@ def test_a_template_is_not_a_word_that_a_user_typed(database):
     assert len(selected(database, template="engine")) == 1
 
 
+@pytest.mark.skipif(ON_POSTGRESQL, reason="it reads the query plan of SQLite")
 def test_the_database_filters(database):
     """Rows that do not fit never leave it: one statement returns the page and one row more."""
     for number in range(40):
@@ -117,6 +119,7 @@ def test_the_database_filters(database):
     assert not any("ORDER BY" in step for step in plan)
 
 
+@pytest.mark.skipif(ON_POSTGRESQL, reason="PostgreSQL checks its pages itself; the watch is SQLite's")
 def test_a_damaged_document_is_reported_as_damage(database):
     save(database, "good")
     database.write(lambda session: session.execute(text("UPDATE revision SET document = '{'")))
@@ -164,7 +167,7 @@ def test_a_design_is_listed_under_what_it_uses_now(http):
         ({"template": "oil_film/latest"}, "template", "oil_film or oil_film/2"),
         ({"template": "oil film"}, "template", "oil_film or oil_film/2"),
         ({"template": "oil_film/0"}, "template", "oil_film or oil_film/2"),
-        ({"name": "a\x00"}, "name", "pattern"),
+        ({"name": "a\x00"}, "name", "U+0000"),
         ({"name": "a" * 201}, "name", "200"),
     ],
 )

@@ -25,8 +25,8 @@ def add(database):
     def add(*revisions):
         def unit(session):
             id, _ = repository.create(session, "pair", written(*revisions[0]))
-            for models in revisions[1:]:
-                repository.append(session, repository.design(session, id), written(*models))
+            for base, models in enumerate(revisions[1:], 1):
+                repository.append(session, id, base, written(*models))
             return id
 
         return database.write(unit)

@@ -192,20 +192,14 @@ def test_the_list_of_unsafe_routes_is_complete():
 # An older browser says neither: then a body is refused that it sends to other sites without asking first.
 
 
-@pytest.mark.parametrize(
-    ("method", "path", "kind"),
-    [
-        (*route, kind)
-        for route in WITH_BODY
-        for kind in FOREIGN_TYPES
-        if not (route[1].endswith("/import") and kind in SHEET_TYPES)  # which a page may not send unasked
-    ],
-)
+@pytest.mark.parametrize(("method", "path"), WITH_BODY)
 @pytest.mark.usefixtures("unchanged")
-def test_no_route_takes_a_body_of_another_type(served, victim, method, path, kind):
+def test_no_route_takes_a_body_of_another_type(served, victim, method, path):
     body = json.dumps({"name": "made by another site"}).encode()
-    headers = [("Content-Type", kind), ("If-Match", "*")]
-    refused(ask(served.url, method, filled(path, victim), headers, body), 415)
+    for kind in FOREIGN_TYPES:
+        if not (path.endswith("/import") and kind in SHEET_TYPES):  # which a page may not send unasked
+            headers = [("Content-Type", kind), ("If-Match", "*")]
+            refused(ask(served.url, method, filled(path, victim), headers, body), 415)
 
 
 @pytest.mark.parametrize(

@@ -36,7 +36,9 @@ def varied(net, count):
 @pytest.mark.parametrize("count", [2, 5])
 def test_property_rows_of_a_template_equal_designs(template, count):
     cls = CATALOGUES.templates.get(*template)
-    step = {"template": template[0], "version": template[1], "inputs": dict(cls.example)}
+    # without a level a design starts higher where an input, such as a groove, asks for it
+    level = {"level": cls.default_level} if cls.levels else {}
+    step = {"template": template[0], "version": template[1], **level, "inputs": dict(cls.example)}
     raw = {"name": cls.id, "steps": {"step": step}}
     net = net_of(raw, *(f"step.{name}" for name in quantities(cls)))
     rows = varied(net, count)

@@ -100,14 +100,18 @@ def test_every_example_runs(http, document, operations, example):
     ran = []
     for name, operation in operations.items():
         method, path = name.split(" ")
+        if path.startswith(f"{API}/principals"):
+            continue  # a service that asks for no key has none; see test_principals_api
         for media, body in operation.get("requestBody", {}).get("content", {}).items():
             for sent in examples(document, body["schema"]):
                 place = filled(path, operation, example)
-                if name == f"POST {API}/studies":
+                if name in (f"POST {API}/studies", f"POST {API}/studies/estimate"):
                     sent = {**sent, "design": example["id"]}
                 if path.startswith(f"{API}/worksheets/{{id}}/"):
                     place, sent = in_time(http, path, sent)
                 headers = {"Content-Type": media, "Prefer": "wait=60", "If-Match": "*"}
+                if path.endswith("/approvals"):
+                    headers["If-Match"] = http.get(place).headers["etag"]
                 payload = {"json": sent} if media.endswith("json") else {"content": sent}
                 answer = http.request(method, place, headers=headers, **payload)
                 assert answer.is_success, (name, sent, answer.text)

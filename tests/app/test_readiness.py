@@ -21,7 +21,7 @@ from app.workers.local import LocalProcesses
 class TestWriting:
     def test_a_write_that_works(self, database):
         commits = []
-        event.listen(database._writer, "commit", commits.append)
+        event.listen(database._writer.engine, "commit", commits.append)
         assert asyncio.run(Writing(database)()) is None
         assert len(commits) == 1
 
@@ -35,14 +35,14 @@ class TestWriting:
 
         try:
             assert all("takes longer" in said for said in asyncio.run(twice()))
-            assert database._waiting.qsize() <= 1, "each test waits in the queue"
+            assert database._writer._waiting.qsize() <= 1, "each test waits in the queue"
         finally:
             gate.set()
         hanging.result(30)
         assert until(lambda: asyncio.run(writing()), lambda said: said is None) is None
 
     def test_a_write_that_fails(self, database):
-        @event.listens_for(database._writer, "commit")
+        @event.listens_for(database._writer.engine, "commit")
         def full(connection):
             raise OSError("disk is full")
 

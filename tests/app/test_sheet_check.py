@@ -116,7 +116,6 @@ def test_pictures_are_text(http):
 HOSTILE = {
     "nothing": "",
     "blanks": " \n\t\n",
-    "nul": "given x\0 [m]",
     "long": "x" * LARGEST,
     "too long": "// " + "x" * LARGEST,
     "too long in bytes": "> " + "ä" * (LARGEST - 100),
@@ -140,6 +139,24 @@ HOSTILE = {
 def test_hostile_texts_get_an_answer(http, name):
     check = checked(http, HOSTILE[name])
     assert check["faults"] or check["lines"] == [] or check["template"] is not None
+
+
+@pytest.mark.parametrize("path", ["", "/check", "/bush"])
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("given x\0 [m]", "character 8"),
+        ("# Bush\n> two\n\0\n", "line 3, column 1"),
+        ('given x [m] "x"\r\ny\0 [m] = x "y"\0', "line 2, column 2"),
+    ],
+)
+def test_a_text_with_nul_is_refused_as_in_every_request_and_its_place_is_named(http, path, text, place):
+    method = "PATCH" if path == "/bush" else "POST"
+    answer = http.request(method, f"{API}/worksheets{path}", json={"text": text}, headers={"If-Match": "*"})
+    assert answer.status_code == 422
+    [fault] = answer.json()["errors"]
+    assert (fault["name"], fault["code"]) == ("text", "nul")
+    assert fault["detail"] == f"no text may have the character U+0000 (NUL); leave it out: {place}"
 
 
 def test_doubling_functions_are_refused(http):

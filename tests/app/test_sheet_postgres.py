@@ -1,17 +1,11 @@
 """Worksheets on PostgreSQL: two servers on one database see each other's releases and never both succeed."""
 
-import os
-import shutil
-import subprocess
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import httpx
 import pytest
 from patience import until
-from serving import API, PATIENCE, free_port, serving
+from serving import API, PATIENCE, serving
 from sheets import BUSH, WIDER, drafted, edited, place, released, reviewed, step
 from test_migrations import differences
 
@@ -19,38 +13,15 @@ from app.settings import Settings
 from app.storage.engines import migrating_engine
 from app.storage.migrations import migrate
 
-pytest.importorskip("psycopg", reason="the driver of PostgreSQL is not installed")
-BIN = next(iter(sorted(Path("/usr/lib/postgresql").glob("*/bin"), reverse=True)), None)
-pytestmark = pytest.mark.skipif(BIN is None, reason="PostgreSQL is not installed")
 INPUTS = {"radial_load": "20 kN", "bearing_diameter": "50 mm"}
 
 
 @pytest.fixture(scope="module")
-def cluster():
-    """The URL of a PostgreSQL of its own; as root it runs as `nobody`, which it insists on."""
-    port, is_root = free_port(), os.geteuid() == 0
-    with TemporaryDirectory(prefix="crankwright-postgres-") as folder:
-        if is_root:
-            shutil.chown(folder, "nobody")
-        run = partial(
-            subprocess.run,
-            check=True,
-            stdout=subprocess.DEVNULL,
-            cwd=folder,
-            user="nobody" if is_root else None,
-        )
-        data, options = f"{folder}/data", f"-p {port} -k {folder} -c listen_addresses=127.0.0.1 -c fsync=off"
-        run([BIN / "initdb", "-D", data, "-U", "tests", "-A", "trust", "-E", "UTF8"])
-        run([BIN / "pg_ctl", "-D", data, "-w", "-l", f"{folder}/log", "-o", options, "start"])
-        yield f"postgresql+psycopg://tests@127.0.0.1:{port}/postgres"
-        run([BIN / "pg_ctl", "-D", data, "-w", "-m", "immediate", "stop"])
-
-
-@pytest.fixture(scope="module")
-def both(cluster, tmp_path_factory):
+def both(postgres, tmp_path_factory):
     """Two servers on one database."""
     folder = tmp_path_factory.mktemp("servers")
-    one, other = (Settings(data=folder / name, database_url=cluster) for name in ("one", "other"))
+    shared = {"database_url": postgres, "artifacts_url": f"file://{folder}/artifacts"}
+    one, other = (Settings(data=folder / name, **shared) for name in ("one", "other"))
     with serving(one) as first, serving(other) as second:
         with asking(first.url) as here, asking(second.url) as there:
             yield here, there
@@ -60,9 +31,9 @@ def asking(url):
     return httpx.Client(base_url=url, timeout=PATIENCE, trust_env=False)
 
 
-def test_the_migrated_schema_is_the_declared_one(cluster):
-    migrate(cluster)
-    engine = migrating_engine(cluster)
+def test_the_migrated_schema_is_the_declared_one(postgres):
+    migrate(postgres)
+    engine = migrating_engine(postgres)
     assert differences(engine) == []
     engine.dispose()
 

@@ -157,4 +157,10 @@ def test_an_evaluation_by_an_address(http):
     assert faults(http.get(path, params={"length": "1 kg"})) == {"length": "wrong_unit"}
     assert faults(http.get(path)) == {"length": "missing"}
     assert faults(http.get(path, params={"length": "1 mm", "x": "1"})) == {"x": "unknown_name"}
+    twice = {
+        "length": "1 mm",
+        "outputs": ["twice_the_length", "twice_the_length"],
+        "tolerance": ["0.1", "0.2"],
+    }
+    assert faults(http.get(path, params=twice)) == {"outputs": "named_twice", "tolerance": "named_twice"}
     assert http.get(f"{API}/templates/double/versions/9/evaluate.csv").status_code == 404

@@ -11,6 +11,7 @@ METRIC_THERE_TOO = {
     "%",
     "deg",
     "rad",
+    "mrad",
     "rad/s",
     "rad/s**2",
     "rpm",

@@ -162,6 +162,7 @@ class TestPut:
     def test_everything_wrong_is_named_at_once_and_nothing_saved(self, http, design):
         wrong = {
             "base": {},
+            "report": {},
             "a": {"bore": "31", "shell.bore": "1 mm"},
             "b": {"bore": "= width"},
             "c": {"clearance": "1 mm", "shell.width": "= bore * bore"},
@@ -170,6 +171,7 @@ class TestPut:
         }
         assert faults(put(http, design, wrong)) == {
             "variants.base": "reserved",
+            "variants.report": "reserved",
             "variants.a.shell.bore": "unknown_name",
             "variants.c.clearance": "unknown_name",
             "variants.a.bore": "missing_unit",

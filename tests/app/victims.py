@@ -149,3 +149,10 @@ def second_fails():
     if len(_calls) > 1:
         raise RuntimeError("this process is used")
     return len(_calls)
+
+
+def wait_for(folder):
+    """Leave the id of the process in a folder, and return once somebody puts a file `go` there."""
+    (folder / str(os.getpid())).touch()
+    while not (folder / "go").exists():
+        time.sleep(0.02)

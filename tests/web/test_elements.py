@@ -53,6 +53,7 @@ def asked(http, kind="torsion", **more):
     return answer.json()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("plotted")
 def test_a_throw_is_analysed_and_painted_in_its_page(watched, http):
     page = watched.page

@@ -9,6 +9,7 @@ from serving import API
 FILM = "film.minimum_film_thickness"
 CLEARANCE, WIDTH = "film.diametral_clearance", "film.bearing_width"
 ENDED = ("done", "failed", "cancelled")
+KEPT = {f"outputs.{FILM}": "on"}
 
 
 @pytest.fixture
@@ -43,6 +44,37 @@ def test_a_refused_form_keeps_what_was_typed_and_names_the_fault(http, bearing):
     assert "kN" in answer.text.partition('role="alert"')[2].partition("</p>")[0]
     again = http.get(f"{bearing}/studies")
     assert again.headers["location"] == f"{bearing}/studies/new"
+
+
+def fieldset(page, legend):
+    """The part of the form below a legend."""
+    return page.partition(f"<legend>{legend}</legend>")[2].partition("</fieldset>")[0]
+
+
+@pytest.mark.parametrize(
+    ("typed", "legend", "words"),
+    [
+        ({"method": "optimise", "high.0": "60 um"}, "What is best", "name an output to minimise or maximise"),
+        ({"method": "grid", "high.0": "60 kN", "steps.0": "7"}, "What is varied", "kN measures a force"),
+        ({"method": "sample", "high.0": "60 um", "points": "0"}, "Rows", "greater than or equal to 1"),
+    ],
+)
+def test_each_fault_stands_beside_its_fields(http, bearing, typed, legend, words):
+    answer = http.post(f"{bearing}/studies", data={"place.0": CLEARANCE, "low.0": "30 um", **typed, **KEPT})
+    assert answer.status_code == 422
+    assert answer.text.count("data-fault>") == 1
+    assert words in fieldset(answer.text, legend).partition("data-fault>")[2]
+
+
+def test_the_levels_of_a_search_show_the_output_that_a_criterion_judges(http, bearing):
+    body = {"design": bearing.rpartition("/")[2], "method": "optimise", "minimise": ["film.power_loss"]}
+    body |= {"vary": {CLEARANCE: {"between": ["30 um", "90 um"]}}, "hold": ["thick_enough"]}
+    study = http.post(f"{API}/studies", json={**body, "confirm": {"tolerance": 0.001}}).json()["id"]
+    until(lambda: http.get(f"{API}/studies/{study}").json()["state"] in ENDED)
+    levels = http.get(f"/studies/{study}").text.partition('aria-label="Levels"')[2].partition("</table>")[0]
+    promise = levels.partition("<tbody>")[2].split("<td>")[2]
+    assert f"{FILM} " in promise
+    assert "of thick_enough" in promise
 
 
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")

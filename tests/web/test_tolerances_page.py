@@ -60,6 +60,33 @@ def test_the_button_shows_yields_limits_and_pictures(watched, toleranced, http):
     assert watched.faults() == []
 
 
+def pressed_before(watched, toleranced, release):
+    """The button is pressed while a script of the page is on its way; then the script is released."""
+    page, held = watched.page, []
+    page.route("**/static/tolerances.js", lambda route: held.append(route))
+    with page.expect_request("**/static/tolerances.js"):
+        watched.open(toleranced, wait_until="commit")
+    page.locator("[data-tolerances] summary").first.click()
+    page.get_by_role("button", name="Analyse tolerances").click()
+    expect(page.locator('form[data-waits="asked"]')).to_have_count(1)
+    release(held[0])
+    return page
+
+
+@pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
+def test_the_button_works_in_place_before_its_script_is_there(watched, toleranced):
+    page = pressed_before(watched, toleranced, lambda route: route.continue_())
+    expect(page.locator("[data-analysed]")).to_have_text("Nothing was saved.", timeout=patient(60_000))
+    assert page.url.endswith(toleranced)
+    expect(page.locator(f'[data-scattered="{FILM}"]')).to_contain_text("2.6573")
+
+
+@pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
+def test_the_button_opens_its_page_where_its_script_never_comes(watched, toleranced):
+    page = pressed_before(watched, toleranced, lambda route: route.abort())
+    page.wait_for_url(f"**{toleranced}/tolerances*", timeout=patient(60_000))
+
+
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
 def test_what_is_not_saved_is_not_analysed(watched, toleranced):
     page = watched.page

@@ -202,6 +202,28 @@ def test_variants_are_renamed_added_and_removed_in_place(watched, http, two):
     assert list(http.get(f"{API}{two}").json()["variants"]) == ["front", "rear"]
 
 
+def test_five_mains_are_typed_as_a_newcomer_writes_them(watched, http, shell):
+    """By a link from the top; a heading in words, names with spaces, loads in the unit of the design."""
+    page = watched.page
+    watched.open(shell)
+    page.get_by_role("link", name="All bearings of an engine").click()
+    expect(page.locator("[name='cell.B1']")).to_be_visible()
+    page.locator("[name='cell.B1']").fill("Radial load")
+    expect(page.locator("[name='cell.B2']")).to_have_attribute("placeholder", "kN")
+    for row, load in enumerate((21, 24, 26, 24, 20), 3):
+        page.locator(f"[name='cell.A{row}']").fill(f"main {row - 2}")
+        page.locator(f"[name='cell.B{row}']").fill(str(load))
+    page.get_by_role("button", name="Save the variants").click()
+    expect(page.locator("[data-governing-variant]")).to_contain_text("main_3", timeout=60_000)
+    variants = settled(http, shell)["variants"]
+    assert variants["main_3"] == {"film.radial_load": "26 kN"}
+    assert list(variants) == MAINS
+    watched.open(f"{shell}/studies/new")
+    expect(page.locator("[data-governing]")).to_contain_text("main_3 governs")
+    expect(page.locator("[data-governing]")).to_contain_text("film.radial_load 26 kN")
+    assert watched.faults() == []
+
+
 def test_a_block_of_a_spreadsheet_is_pasted_into_the_cells(watched, http, two):
     page = watched.page
     watched.open(two)

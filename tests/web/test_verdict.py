@@ -157,6 +157,35 @@ def in_view(page, selector):
     )
 
 
+SCROLLERS = """() => [...document.querySelectorAll(".worksheet > .aside, .worksheet > .aside *")]
+    .filter((box) => /auto|scroll/.test(getComputedStyle(box).overflowY))
+    .filter((box) => box.scrollHeight > box.clientHeight + 1).map((box) => box.outerHTML.slice(0, 80))"""
+HIDDEN = """() => {
+    const top = (box) => { box.focus(); return box.getBoundingClientRect().top; };
+    const end = () => document.querySelector(".part-view").getBoundingClientRect().bottom;
+    const fields = [...document.querySelectorAll(".part-rest :is(a, input)")];
+    return fields.filter((box) => box.offsetParent && top(box) < end()).map((box) => box.outerHTML);
+}"""
+
+
+@pytest.mark.usefixtures("plotted")
+@pytest.mark.parametrize("size", [(1440, 900), (1024, 768)])
+def test_the_part_stays_in_view_and_hides_nothing_that_has_the_focus(watched, two_steps, size):
+    """The picture alone stays; its parameters pass below it, without a scrollbar of their own."""
+    page = watched.page
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    watched.open(two_steps)
+    expect(page.locator(".solid .js-plotly-plot")).to_be_visible(timeout=60_000)
+    assert page.evaluate(SCROLLERS) == []
+    page.evaluate("scrollTo(0, 700)")
+    page.wait_for_function("scrollY === 700")
+    assert in_view(page, ".aside .solid")
+    view = page.locator(".part-view").bounding_box()
+    assert view["y"] + view["height"] < size[1], "the picture leaves room for its parameters"
+    assert page.evaluate(HIDDEN) == []
+    assert watched.faults() == []
+
+
 @pytest.mark.usefixtures("plotted")
 def test_two_steps_are_short_and_verdict_and_part_stay_in_view(watched, two_steps):
     page = watched.page

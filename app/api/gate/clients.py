@@ -1,7 +1,7 @@
 """Who sends a request. Limits hold, and turns are taken, by client.
 
-Until there are principals, a client is the header `Crankwright-Client`, else the session of a page, else the
-address that the request came from.
+Who has signed in is the client as a principal. Where nothing asks for a key, a client is the header
+`Crankwright-Client`, else the session of a page, else the address that the request came from.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from fastapi import Depends, Request
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.identity.acting import client_of
 from templates.core.errors import Fault, InvalidInputs
 
 HEADER, COOKIE = "Crankwright-Client", "crankwright_session"
@@ -22,6 +23,8 @@ _IN_COOKIES = re.compile(rf"(?:^|;)[ ]*{COOKIE}=([A-Za-z0-9_-]{{16,64}})(?:;|$)"
 _MOST_COOKIES = 8192  # characters that are looked at
 _CALLER = "crankwright.caller"
 """Key of an ASGI scope that only this process sets: for which client a page calls the interface."""
+PRINCIPAL = "crankwright.principal"
+"""Key of an ASGI scope: the principal of the request, where keys are asked for."""
 
 
 def is_session(text: str) -> bool:
@@ -44,7 +47,7 @@ def is_inside(scope: Scope) -> bool:
 
 
 async def get_client(request: Request) -> str:
-    """The client of a request, with a prefix that says how it is known: `name:`, `session:` or `address:`.
+    """The client of a request; its prefix says how: `principal:`, `name:`, `session:` or `address:`.
 
     Raises
     ------
@@ -53,6 +56,8 @@ async def get_client(request: Request) -> str:
     """
     if is_inside(request.scope):
         return str(request.scope[_CALLER])
+    if (who := request.scope.get(PRINCIPAL)) is not None:
+        return client_of(who.id)
     if (named := request.headers.get(HEADER)) is not None:
         if not _NAME.fullmatch(named):
             detail = "a client's name has 1 to 100 printable ASCII characters, such as design-office-7"
@@ -68,6 +73,8 @@ def from_whom(scope: Scope) -> str:
     """The client of a request as `get_client` has it; a name that is none counts as none."""
     if is_inside(scope):
         return str(scope[_CALLER])
+    if (who := scope.get(PRINCIPAL)) is not None:
+        return client_of(who.id)
     headers = Headers(scope=scope)
     if _NAME.fullmatch(named := headers.get(HEADER, "")):
         return f"name:{named}"

@@ -52,7 +52,7 @@ class Observed:
             if message["type"] == "http.response.start":
                 status = CLIENT_LEFT if is_gone else message["status"]  # nobody gets this answer
                 message["headers"] = [*message.get("headers", ()), header]
-                metrics.REQUESTS.add(_route(scope), _method(scope), status, time.perf_counter() - start)
+                metrics.REQUESTS.add(route_of(scope), method_of(scope), status, time.perf_counter() - start)
             await send(message)
 
         in_flight[id(scope)] = (id_, scope["method"], scope["path"], start)
@@ -80,7 +80,7 @@ def install(app: FastAPI) -> None:
     app.build_middleware_stack = lambda: Observed(build())  # type: ignore[method-assign]
 
 
-def _route(scope: Scope) -> str:
+def route_of(scope: Scope) -> str:
     """The template of the path, of which there are few; never the path."""
     route = scope.get("route")
     if route is not None:
@@ -88,7 +88,8 @@ def _route(scope: Scope) -> str:
     return "/static" if scope["path"].startswith("/static/") else "unknown"
 
 
-def _method(scope: Scope) -> str:
+def method_of(scope: Scope) -> str:
+    """The method, or `other`: anybody may invent one."""
     return scope["method"] if scope["method"] in _METHODS else "other"
 
 
@@ -98,7 +99,7 @@ def _log(scope: Scope, status: int, seconds: float) -> None:
     about = {
         "client": logs.without_secret(from_whom(scope)),
         "method": scope["method"],
-        "route": _route(scope),
+        "route": route_of(scope),
         "path": path,
         "status": status,
         "ms": round(seconds * 1e3, 2),

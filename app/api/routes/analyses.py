@@ -14,7 +14,7 @@ from app.api.gate.clients import TheClient
 from app.api.reading import StrictRoute
 from app.api.routes.models import FOR_EVER
 from app.api.routes.templates import Number
-from app.api.stored import UNAVAILABLE, StoredFile, lost
+from app.api.stored import UNAVAILABLE, UNCHANGED, StoredFile, lost
 from app.api.waiting import accepted, finished, later, written
 from app.presentation.units import System
 from app.schemas.analyses import Analysis, AnalysisList, Surface
@@ -103,7 +103,7 @@ def list_analyses_of_build(key: str, analyses: TheAnalyses, units: Units = "si")
     "/analyses/{key}/surface",
     response_model=Surface,
     responses={
-        304: {"description": "as it was when the ETag of If-None-Match was sent"},
+        **UNCHANGED,
         **UNAVAILABLE,
         **refusals(404),
     },

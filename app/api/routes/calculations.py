@@ -16,6 +16,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.answering import to_try
 from app.api.dependencies import TheAnswering, TheCatalogues, Units, services_of
+from app.api.gate.roles import needs
 from app.api.reading import StrictRequest, StrictRoute
 from app.api.routes.templates import Id, Number
 from app.api.waiting import LATER
@@ -108,7 +109,12 @@ def _system(request: Request) -> System | None:
 router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=PlainRoute)
 
 
-@router.post("/{id}/versions/{number}/evaluate", response_model=Evaluation, responses=DECLARED)
+@router.post(
+    "/{id}/versions/{number}/evaluate",
+    response_model=Evaluation,
+    responses=DECLARED,
+    dependencies=[needs("viewer")],
+)
 async def evaluate_template(
     id: Id,
     number: Number,
@@ -127,7 +133,12 @@ async def evaluate_template(
     return _json(await run_in_threadpool(lambda: to_json(run_evaluate(cls, body))))
 
 
-@router.post("/{id}/versions/{number}/solve", response_model=Solution, responses=DECLARED)
+@router.post(
+    "/{id}/versions/{number}/solve",
+    response_model=Solution,
+    responses=DECLARED,
+    dependencies=[needs("viewer")],
+)
 async def solve_template(
     id: Id,
     number: Number,
@@ -148,7 +159,12 @@ async def solve_template(
 worksheets = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=LargeRoute)
 
 
-@worksheets.post("/{id}/versions/{number}/worksheet", response_model=Worksheet, responses=DECLARED)
+@worksheets.post(
+    "/{id}/versions/{number}/worksheet",
+    response_model=Worksheet,
+    responses=DECLARED,
+    dependencies=[needs("viewer")],
+)
 async def write_worksheet(
     id: Id,
     number: Number,

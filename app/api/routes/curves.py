@@ -5,6 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from starlette.concurrency import run_in_threadpool
 
+from app.api.gate.roles import needs
 from app.api.reading import NotCsv, StrictRoute
 from app.calculations.curves import read_curves
 from app.schemas.curves import Curves
@@ -18,7 +19,7 @@ BODY = {
 }
 
 
-@router.post("/curves", openapi_extra={"requestBody": BODY})
+@router.post("/curves", openapi_extra={"requestBody": BODY}, dependencies=[needs("viewer")])
 async def read_curve_table(request: Request) -> Curves:
     """Read a table of curves, such as an indicator diagram: `{"curves": {"pressure": {"value", "unit"}}}`.
 

@@ -6,6 +6,7 @@ from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheDecisions, TheThreads, Units
 from app.api.gate.clients import TheClient
+from app.api.gate.roles import needs
 from app.api.reading import StrictRoute
 from app.api.routes.designs import Id, Prefer
 from app.api.waiting import accepted, later, patience, written
@@ -19,7 +20,12 @@ router = APIRouter(
 )
 
 
-@router.post("/{id}/decide", response_model=Decision, responses={**later(Decision), **refusals(404, 429)})
+@router.post(
+    "/{id}/decide",
+    response_model=Decision,
+    responses={**later(Decision), **refusals(404, 429)},
+    dependencies=[needs("viewer")],
+)
 async def decide_criteria(
     id: Id,
     decisions: TheDecisions,

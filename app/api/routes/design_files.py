@@ -19,14 +19,14 @@ from app.api.gate.clients import TheClient
 from app.api.reading import StrictRoute
 from app.api.routes.designs import Id, Number, Prefer
 from app.api.routes.models import send_file
-from app.api.stored import UNAVAILABLE, lost
+from app.api.stored import UNAVAILABLE, UNCHANGED, lost
 from app.api.waiting import LATER, accepted, accepted_kinds, finished
 from app.designs import stamps, views
 from app.jobs.service import Jobs
 from app.schemas.problems import RouteOptions
 from app.solids.healing import Healing
 from app.solids.models import File, Models
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import NotFound
 from app.storage.tables import RevisionModelRow
@@ -39,8 +39,8 @@ FILES: RouteOptions = {
     "response_class": FileResponse,
     "responses": {
         200: {"content": {media: {} for media in MEDIA_TYPES.values()}},
-        304: {"description": "as it was when the ETag of If-None-Match was sent"},
         **LATER,
+        **UNCHANGED,
         **UNAVAILABLE,
     },
 }
@@ -102,7 +102,7 @@ class Wanted:
 async def model_file(
     request: Wanted,
     database: Database,
-    store: ArtifactStore,
+    store: Artifacts,
     models: Models,
     jobs: Jobs,
     client: str,
@@ -147,7 +147,7 @@ async def _made(
     return problems.answer(problem) if problem and not has_older else None
 
 
-def _sent(store: ArtifactStore, file: File, stamp: Stamp, if_none_match: str | None) -> Response:
+def _sent(store: Artifacts, file: File, stamp: Stamp, if_none_match: str | None) -> Response:
     """A file under its name, or 304; with its stamp, if it is of a kind that has one."""
     headers = {
         "Design-Revision": str(stamp.revision),

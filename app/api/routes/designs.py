@@ -24,6 +24,7 @@ from app.api.dependencies import (
     Units,
 )
 from app.api.gate.clients import TheClient
+from app.api.gate.roles import needs
 from app.api.paging import Cursor, Limit, page
 from app.api.reading import StrictRoute
 from app.api.waiting import LONGEST, accepted, finished, later, patience, written
@@ -32,6 +33,7 @@ from app.designs.explained import explained as explanation
 from app.designs.filtering import TEMPLATE, DesignFilter
 from app.designs.labels import key_of, tags_of
 from app.designs.previewing import Change
+from app.designs.releases import released_of
 from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn, RestoreIn
 from app.designs.service import Designs, Saved
 from app.jobs.service import Jobs
@@ -39,6 +41,7 @@ from app.plain import JsonObject
 from app.schemas.designs import (
     Design,
     DesignList,
+    DesignSummary,
     Explanation,
     MappedDesign,
     ModelMeasurements,
@@ -51,6 +54,7 @@ from app.schemas.designs import (
 )
 from app.schemas.labels import MOST_TAGS, Tag
 from app.schemas.problems import refusals
+from app.storage.tables import DesignRow
 from templates.core.errors import Fault, InvalidInputs
 
 PRINTABLE = r"^[^\x00-\x1f\x7f]*$"  # no control characters, as in names of designs
@@ -134,14 +138,14 @@ def list_designs(
     wanted = DesignFilter(name, state, tags, archived, template)
     with database.read() as session:
         rows = repository.designs(session, limit, cursor, wanted)
-        labels = tags_of(session, [row.id for row in rows])
-        return page(
-            DesignList,
-            rows,
-            limit,
-            lambda row: views.listed(row, repository.revision(session, row.id, row.head), labels[row.id]),
-            lambda row: row.id,
-        )
+        ids = [row.id for row in rows]
+        labels, released = tags_of(session, ids), released_of(session, ids)
+
+        def show(row: DesignRow) -> DesignSummary:
+            newest = repository.revision(session, row.id, row.head)
+            return views.listed(row, newest, labels[row.id], released.get(row.id))
+
+        return page(DesignList, rows, limit, show, lambda row: row.id)
 
 
 @router.get("/{id}", response_model=Design, responses=refusals(404))
@@ -174,14 +178,19 @@ async def change_design(
     return await answer_saved(designs, jobs, saved, prefer)
 
 
-@router.delete("/{id}", status_code=204, responses=refusals(404))
+@router.delete("/{id}", status_code=204, responses=refusals(404, 409))
 def delete_design(id: Id, designs: TheDesigns) -> Response:
     """Take a design from the lists; its revisions are kept."""
     designs.delete(id)
     return Response(status_code=204)
 
 
-@router.post("/{id}/preview", response_model=Preview, responses={**later(Preview), **refusals(404, 429)})
+@router.post(
+    "/{id}/preview",
+    response_model=Preview,
+    responses={**later(Preview), **refusals(404, 429)},
+    dependencies=[needs("viewer")],
+)
 async def preview_design(
     id: Id,
     body: Patch,

@@ -25,7 +25,7 @@ from app.schemas.problems import refusals
 from app.schemas.solve import DesignSolution
 from app.schemas.tolerances import ToleranceAnalysis
 from app.schemas.variants import VariantDetail
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.workers.pieces import Pieces
 
@@ -91,7 +91,7 @@ def _calculation(jobs: Jobs, id: str) -> Job:
     return row
 
 
-def stored_answer(store: ArtifactStore, row: Job) -> Pieces:
+def stored_answer(store: Artifacts, row: Job) -> Pieces:
     """The answer from the store; raises ArtifactMissing, ArtifactDamaged."""
     assert row.result is not None
     return Pieces.of(store.read(row.result.rpartition("sha256=")[2]))

@@ -7,6 +7,7 @@ from pydantic import ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import Units
+from app.api.gate.roles import needs
 from app.api.reading import StrictRoute
 from app.calculations.film_pressure import TYPICAL, solve_film_pressure
 from app.schemas.bounded import Bounded
@@ -34,7 +35,7 @@ class FilmPressureIn(Bounded):
     )
 
 
-@router.post("/film-pressure")
+@router.post("/film-pressure", dependencies=[needs("viewer")])
 async def show_film_pressure(body: FilmPressureIn, units: Units = "si") -> FilmPressure:
     """Pressure [place along the shaft][angle from the narrowest gap, in the sense of rotation]."""
     field = await run_in_threadpool(solve_film_pressure, body.inputs)

@@ -8,6 +8,7 @@ from prometheus_client import CONTENT_TYPE_LATEST
 
 from app.api import problems
 from app.api.dependencies import TheDatabase, TheJobs, TheReadiness
+from app.api.gate.roles import needs, public
 from app.api.waiting import written
 from app.observation import metrics
 from app.schemas.health import Health, Ready
@@ -16,13 +17,13 @@ from app.schemas.problems import refusals
 router = APIRouter(tags=["health"])
 
 
-@router.get("/healthz")
+@router.get("/healthz", dependencies=[public()])
 async def show_health() -> Health:
     """The process is alive."""
     return Health(status="ok")
 
 
-@router.get("/readyz", response_model=Ready, responses=refusals(503))
+@router.get("/readyz", response_model=Ready, responses=refusals(503), dependencies=[public()])
 async def show_readiness(readiness: TheReadiness) -> Response:
     """The service can write, has space, and its job processes answer. Checked at most once a second."""
     said = await readiness.failures()
@@ -34,7 +35,7 @@ async def show_readiness(readiness: TheReadiness) -> Response:
     return problems.answer(about, {"Retry-After": "2"})
 
 
-@router.get("/metrics", response_class=PlainTextResponse)
+@router.get("/metrics", response_class=PlainTextResponse, dependencies=[needs()])
 def show_metrics(database: TheDatabase, jobs: TheJobs) -> Response:
     """Figures for Prometheus."""
     with database.read() as session:

@@ -13,10 +13,11 @@ from starlette.concurrency import run_in_threadpool
 from app.api import problems
 from app.api.dependencies import TheCatalogues, TheHealing, TheJobs, TheModels, TheStore
 from app.api.gate.clients import TheClient
+from app.api.gate.roles import needs
 from app.api.paging import Cursor, Limit
 from app.api.reading import StrictRoute, require_step
 from app.api.routes.templates import Number, listed, versions_of
-from app.api.stored import UNAVAILABLE, StoredFile, lost
+from app.api.stored import UNAVAILABLE, UNCHANGED, StoredFile, lost
 from app.api.waiting import LATER, accepted, finished, later, written
 from app.schemas.bounded import Bounded
 from app.schemas.problems import refusals
@@ -26,7 +27,7 @@ from app.schemas.templates import TemplateList, TemplateVersions
 from app.schemas.values import Parameters
 from app.solids.models import File
 from app.solids.questions import what_can_be_asked
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, NotFound
 from cad.export import DRAWINGS, MEDIA_TYPES
 from cad.inspect import MEASURES
@@ -95,7 +96,13 @@ def show_model(id: Id, number: Number, catalogues: TheCatalogues) -> ModelAnswer
 @router.get(
     "/models/{id}/versions/{number}/picture",
     response_class=FileResponse,
-    responses={200: {"content": {"image/png": {}}}, **LATER, **UNAVAILABLE, **refusals(404, 429)},
+    responses={
+        200: {"content": {"image/png": {}}},
+        **LATER,
+        **UNCHANGED,
+        **UNAVAILABLE,
+        **refusals(404, 429),
+    },
 )
 async def show_picture(
     id: Id,
@@ -159,7 +166,12 @@ def show_build(key: str, models: TheModels) -> Build:
 @router.get(
     "/artifacts/{sha256}",
     response_class=FileResponse,
-    responses={200: {"content": {"application/octet-stream": {}}}, **UNAVAILABLE, **refusals(404)},
+    responses={
+        200: {"content": {"application/octet-stream": {}}},
+        **UNCHANGED,
+        **UNAVAILABLE,
+        **refusals(404),
+    },
 )
 async def read_artifact(
     sha256: str,
@@ -181,6 +193,7 @@ STEP_BODY: JsonDict = {"content": {"model/step": {"schema": STEP_FILE}}, "requir
 
 @router.post(
     "/verify",
+    dependencies=[needs("viewer")],
     response_model=Verification,
     openapi_extra={"requestBody": STEP_BODY},
     responses={**UNAVAILABLE, **refusals(404)},
@@ -209,7 +222,7 @@ async def verify_step(
 
 
 def send_file(
-    store: ArtifactStore, file: File | None, headers: dict[str, str] | None = None, name: str | None = None
+    store: Artifacts, file: File | None, headers: dict[str, str] | None = None, name: str | None = None
 ) -> Response:
     """A stored file with its hash as ETag.
 

@@ -6,6 +6,7 @@ from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheSolving, TheThreads, Units
 from app.api.gate.clients import TheClient
+from app.api.gate.roles import needs
 from app.api.reading import StrictRoute
 from app.api.routes.designs import Id, Prefer
 from app.api.threads import Threads
@@ -20,7 +21,12 @@ router = APIRouter(
 )
 
 
-@router.post("/{id}/solve", response_model=DesignSolution, responses={**LATER, **refusals(404, 422, 429)})
+@router.post(
+    "/{id}/solve",
+    response_model=DesignSolution,
+    responses={**LATER, **refusals(404, 422, 429)},
+    dependencies=[needs("viewer")],
+)
 async def solve_design(
     id: Id,
     body: SolveDesignIn,

@@ -69,7 +69,7 @@ async def evaluate_line(
 
 
 def _inputs(request: Request) -> dict[str, Raw]:
-    """The inputs as texts; a name that stands several times is an array."""
+    """The inputs as texts; a name that stands several times is an array, and a reserved one is refused."""
     given: dict[str, list[str]] = {}
     for name, text in request.query_params.multi_items():
         if name not in RESERVED:
@@ -77,4 +77,8 @@ def _inputs(request: Request) -> dict[str, Raw]:
     if len(given) > MOST_INPUTS or any(len(texts) > MOST_POINTS for texts in given.values()):
         detail = f"an address has at most {MOST_INPUTS} inputs of {MOST_POINTS} points each; send a body"
         raise InvalidInputs([Fault("query", "too_many", detail)])
+    twice = [name for name in RESERVED if len(request.query_params.getlist(name)) > 1]
+    if twice:
+        detail = "stands several times; give it once, several outputs separated by commas"
+        raise InvalidInputs(Fault(name, "named_twice", f"{name} {detail}") for name in twice)
     return {name: texts[0] if len(texts) == 1 else texts for name, texts in given.items()}

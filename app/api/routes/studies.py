@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Iterator
+from functools import partial
 from tempfile import TemporaryFile
 from typing import IO, Annotated
 
@@ -26,7 +27,9 @@ from app.api.dependencies import (
 )
 from app.api.gate.clients import TheClient
 from app.api.paging import Cursor, Limit, page
+from app.api.paths import register_id
 from app.api.reading import PreconditionRequired, StrictRoute
+from app.api.resuming import LastEvent, Whole, as_it_stands, listening
 from app.api.routes.designs import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited
 from app.api.waiting import written
 from app.calculations.pool import Calculation, CalculationPool
@@ -34,16 +37,19 @@ from app.plain import Json
 from app.presentation.spreadsheets import XLSX
 from app.schemas.designs import Design
 from app.schemas.problems import Responses, refusals
-from app.schemas.studies import Study, StudyList, StudyRows
+from app.schemas.studies import Study, StudyEstimate, StudyList, StudyRows
+from app.storage import event_log
 from app.storage.idempotency import Once
 from app.storage.tables import StudyRow
 from app.studies import exports, repository, views
-from app.studies.planning import planned
+from app.studies.planning import Plan, planned
 from app.studies.schemas import ChooseIn, StudyIn
-from app.studies.service import ENDED, Studies
+from app.studies.service import ENDED, Draft, Studies
 from app.studies.stored import Stored
 from app.studies.views import Listing, Wanted, Where
+from templates.core.arrays import Array
 
+register_id("study", ["estimate"])
 router = APIRouter(prefix="/api/v1/studies", tags=["studies"], route_class=StrictRoute)
 
 Id = Annotated[str, Path(max_length=64)]
@@ -84,12 +90,28 @@ async def answer_begun(
     id = await run_in_threadpool(studies.begun_before, once)
     if id is None:
         draft = await run_in_threadpool(studies.draft, body)
-        pool = services_of(request).calculations
-        calculation = pool.submit(client, planned, draft.task, draft.rows, draft.solid_seconds)
-        plan, given = await calculated_in_pool(pool, calculation)
+        plan, given = await _planned(request, client, draft)
         id = await run_in_threadpool(studies.begin, draft, plan, given, once)
     shown = await run_in_threadpool(_shown, studies, id)
     return written(shown, 202, {"Location": f"/api/v1/studies/{id}"})
+
+
+@router.post("/estimate", responses=refusals(404, 429))
+async def estimate_study(
+    body: StudyIn, studies: TheStudies, client: TheClient, request: Request
+) -> StudyEstimate:
+    """What a study would do: its rows, its levels, the time and the solids it takes. Nothing begins."""
+    draft = await run_in_threadpool(studies.draft, body)
+    plan, _ = await _planned(request, client, draft)
+    return views.estimate(plan)
+
+
+async def _planned(request: Request, client: str, draft: Draft) -> tuple[Plan, Array | None]:
+    """The plan of a study, and the rows that its user gave; made in the pool."""
+    pool = services_of(request).calculations
+    calculation = pool.submit(client, planned, draft.task, draft.rows, draft.solid_seconds)
+    plan, given = await calculated_in_pool(pool, calculation)
+    return plan, given
 
 
 async def calculated_in_pool(pool: CalculationPool, calculation: Calculation) -> Json:
@@ -114,16 +136,18 @@ def list_studies(
         return page(StudyList, rows, limit, lambda row: views.study(session, row), lambda row: row.id)
 
 
-@router.get("/{id}", responses=refusals(404))
+@router.get("/{id:study}", responses=refusals(404))
 def show_study(id: Id, studies: TheStudies, units: Units = "si") -> Study:
     """A study: its state, how far it is, and what the method found."""
     return _shown(studies, id).in_units(units)
 
 
-@router.delete("/{id}", response_model=Study, responses={204: {"description": "removed"}, **refusals(404)})
-def end_study(id: Id, studies: TheStudies) -> Response:
-    """Cancel a study that waits or runs; remove one that has ended, with its rows."""
-    row = studies.end(id)
+@router.delete(
+    "/{id:study}", response_model=Study, responses={204: {"description": "removed"}, **refusals(403, 404)}
+)
+def end_study(id: Id, studies: TheStudies, client: TheClient) -> Response:
+    """Cancel a study of one's own that waits or runs; remove one that has ended, with its rows."""
+    row = studies.end(id, client)
     return Response(status_code=204) if row is None else written(_shown(studies, id))
 
 
@@ -236,19 +260,13 @@ async def choose_row(
     responses=refusals(404, 429),
 )
 async def watch_study(
-    id: Id, studies: TheStudies, jobs: TheJobs, place: OneStream
+    id: Id, studies: TheStudies, jobs: TheJobs, place: OneStream, last: LastEvent
 ) -> AsyncIterator[ServerSentEvent]:
     """The study as it stands whenever its state changes, and its progress, until it has ended."""
-    job = (await run_in_threadpool(_row, studies, id)).job
-    async with jobs.events.subscribe(f"job:{job}") as events:
-        study = await run_in_threadpool(_shown, studies, id)
-        yield ServerSentEvent(event=study.state, data=study)
-        while study.state not in ENDED and (event := await anext(events, None)):
-            if event["event"] == "progress":
-                yield ServerSentEvent(event="progress", data={**event, "study": id})
-            else:
-                study = await run_in_threadpool(_shown, studies, id)
-                yield ServerSentEvent(event=study.state, data=study)
+    topic = f"job:{(await run_in_threadpool(_row, studies, id)).job}"
+    async with listening(jobs.events, topic) as events:
+        async for event in as_it_stands(events, place, partial(_whole, studies, id, topic), last, study=id):
+            yield event
 
 
 def _row(studies: Studies, id: str) -> StudyRow:
@@ -259,6 +277,13 @@ def _row(studies: Studies, id: str) -> StudyRow:
 def _shown(studies: Studies, id: str) -> Study:
     with studies.database.read() as session:
         return views.study(session, repository.get(session, id))
+
+
+def _whole(studies: Studies, id: str, topic: str) -> Whole:
+    with studies.database.read() as session:
+        study = views.study(session, repository.get(session, id))
+        number = event_log.newest(session, [topic]).get(topic, 0)
+    return Whole(number, study.state, study, study.state in ENDED)
 
 
 def _listing(

@@ -72,7 +72,10 @@ def marks(catalogues: Catalogues) -> Marks:
     return {
         key: {
             "worksheet": SheetMark(
-                state=sheet.state, author=sheet.author, reviewer=sheet.reviewer, review_verified=False
+                state=sheet.state,
+                author=sheet.author,
+                reviewer=sheet.reviewer,
+                review_verified=sheet.is_verified,
             )
         }
         for key, sheet in catalogues.snapshot.sheets.released.items()

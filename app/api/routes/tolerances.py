@@ -6,6 +6,7 @@ from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheThreads, TheTolerances, Units
 from app.api.gate.clients import TheClient
+from app.api.gate.roles import needs
 from app.api.reading import StrictRoute
 from app.api.routes.designs import Id, Prefer
 from app.api.routes.solving import answer_asked
@@ -21,7 +22,10 @@ router = APIRouter(
 
 
 @router.post(
-    "/{id}/tolerance", response_model=ToleranceAnalysis, responses={**LATER, **refusals(404, 422, 429)}
+    "/{id}/tolerance",
+    response_model=ToleranceAnalysis,
+    responses={**LATER, **refusals(404, 422, 429)},
+    dependencies=[needs("viewer")],
 )
 async def analyse_tolerances(
     id: Id,

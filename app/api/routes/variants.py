@@ -50,7 +50,7 @@ from app.jobs.service import Jobs
 from app.schemas.bounded import Bounded, at_most
 from app.schemas.problems import Responses, refusals
 from app.schemas.variants import VariantDetail, VariantsOut
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.tables import RevisionModelRow
 from cad.stamp import stamped
 
@@ -271,12 +271,12 @@ async def read_variants_file(
     return StreamingResponse(_zip(store, names, ready), media_type=MEDIA_TYPE, headers=headers)
 
 
-def _zip(store: ArtifactStore, names: Sequence[str], ready: Sequence[Entry]) -> Iterator[bytes]:
+def _zip(store: Artifacts, names: Sequence[str], ready: Sequence[Entry]) -> Iterator[bytes]:
     pairs = zip(names, ready, strict=True)
     return archived((name, partial(_file, store, entry)) for name, entry in pairs)
 
 
-def _file(store: ArtifactStore, entry: Entry) -> bytes:
+def _file(store: Artifacts, entry: Entry) -> bytes:
     return stamped(store.read(entry.sha256), STEP, entry.stamp)
 
 

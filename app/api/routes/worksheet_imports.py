@@ -10,7 +10,7 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 from app.api.dependencies import TheImports, TheOnce, TheStore, TheThreads, TheWorksheets
 from app.api.reading import SHEET_TYPES, StrictRoute, require_sheet
 from app.api.routes.worksheets import Id
-from app.api.stored import StoredFile
+from app.api.stored import UNCHANGED, StoredFile
 from app.api.waiting import LATER, accepted
 from app.schemas.problems import refusals
 from app.schemas.worksheet_imports import SheetImport
@@ -59,7 +59,7 @@ def read_import(id: Id, worksheets: TheWorksheets) -> SheetImport:
     return imported(worksheets.newest(id))
 
 
-@router.get("/{id}/import/original", response_class=Response, responses=refusals(404))
+@router.get("/{id}/import/original", response_class=Response, responses={**UNCHANGED, **refusals(404, 503)})
 def read_original(id: Id, worksheets: TheWorksheets, store: TheStore) -> Response:
     """The file that a worksheet was imported from, as it was sent."""
     row = worksheets.newest(id)

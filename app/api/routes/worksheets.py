@@ -10,11 +10,12 @@ from typing import Annotated
 from fastapi import APIRouter, Header, Path, Query, Response
 from fastapi.responses import PlainTextResponse
 from pydantic.config import JsonDict
-from starlette.convertors import StringConvertor, register_url_convertor
 
 from app.api.dependencies import TheOnce, TheThreads, TheWorksheets
 from app.api.gate.clients import TheClient
+from app.api.gate.roles import needs
 from app.api.paging import Cursor, Limit, page
+from app.api.paths import register_id
 from app.api.reading import StrictRoute
 from app.api.waiting import written
 from app.schemas.problems import refusals
@@ -26,14 +27,7 @@ from app.worksheets.naming import RESERVED
 from app.worksheets.schemas import ReviewIn, SheetCheckIn, SheetIn, SheetPatch, WithdrawIn
 from app.worksheets.service import Worksheets
 
-
-class SheetId(StringConvertor):
-    """An id at the end of a path, where no word stands that has a path of its own: `/worksheets/check`."""
-
-    regex = f"(?!(?:{'|'.join(sorted(RESERVED))})$)[^/]+"
-
-
-register_url_convertor("sheet", SheetId())
+register_id("sheet", RESERVED)
 router = APIRouter(prefix="/api/v1/worksheets", tags=["worksheets"], route_class=StrictRoute)
 
 Id = Annotated[str, Path(max_length=64, examples=["bush_duty"])]
@@ -49,7 +43,7 @@ PATCH: JsonDict = {
 }
 
 
-@router.post("/check", response_model=SheetCheck, responses=refusals(429))
+@router.post("/check", response_model=SheetCheck, responses=refusals(429), dependencies=[needs("viewer")])
 async def check_worksheet(
     body: SheetCheckIn, worksheets: TheWorksheets, threads: TheThreads, client: TheClient
 ) -> Response:
@@ -130,13 +124,15 @@ async def try_worksheet(
     return await threads.run(_shown, worksheets, row)
 
 
-@router.post("/{id}/review", response_model=Sheet, responses={**STEP, **refusals(403)})
+@router.post(
+    "/{id}/review", response_model=Sheet, responses={**STEP, **refusals(403)}, dependencies=[needs("checker")]
+)
 def review_worksheet(id: Id, body: ReviewIn, worksheets: TheWorksheets, if_match: IfMatch = None) -> Response:
     """Note who reviewed the text of this digest: tested → reviewed. The typed name is not verified."""
     return _shown(worksheets, worksheets.review(id, body, if_match))
 
 
-@router.post("/{id}/release", response_model=Sheet, responses=STEP)
+@router.post("/{id}/release", response_model=Sheet, responses=STEP, dependencies=[needs("checker")])
 async def release_worksheet(
     id: Id, worksheets: TheWorksheets, threads: TheThreads, client: TheClient, if_match: IfMatch = None
 ) -> Response:
@@ -145,7 +141,7 @@ async def release_worksheet(
     return await threads.run(_shown, worksheets, row)
 
 
-@router.post("/{id}/withdraw", response_model=Sheet, responses=STEP)
+@router.post("/{id}/withdraw", response_model=Sheet, responses=STEP, dependencies=[needs("checker")])
 def withdraw_worksheet(
     id: Id, body: WithdrawIn, worksheets: TheWorksheets, if_match: IfMatch = None
 ) -> Response:

@@ -7,9 +7,9 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from app.designs.variant_sheets.grid import Grid, address, column_of, refuse
+from app.designs.variant_sheets.headings import joined, place_named
 from app.designs.variant_sheets.values import given, relation, same
-from app.designs.variants.names import BASE, MOST_OVERRIDES, MOST_VARIANTS
-from app.designs.variants.table import RESERVED
+from app.designs.variants.names import MOST_OVERRIDES, MOST_VARIANTS, RESERVED
 from app.plain import Raw
 from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, plain, unknown_names
 from templates.core.units.units import require_same_kind, unit
@@ -110,7 +110,8 @@ def _columns(
     headings: dict[tuple[str, bool], int] = {}
     unknown: list[tuple[str, str]] = []
     for at in (at for at in range(1, grid.width) if at not in skipped):
-        place, named, is_relation = _heading(grid.cell(0, at))
+        heading, named, is_relation = _heading(grid.cell(0, at))
+        place = place_named(heading, units)
         if not place:
             if any(grid.cell(row, at) for row in range(len(grid.rows))):
                 message = "this column has no heading; name a parameter or input, such as film.bearing_width"
@@ -152,14 +153,14 @@ def _unit(below: str, named: str, declared: str | None, at: int, faults: list[Fa
 
 def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) -> str:
     """The name of the variant in a row; what is wrong with it is added to the faults."""
-    name, where = grid.cell(row, 0), address(row, 0)
+    name, where = joined(grid.cell(row, 0)), address(row, 0)
     if not name:
         faults.append(Fault(where, "missing_name", "this row has no name; name its variant, such as main_1"))
     elif not NAME.fullmatch(name):
         message = f"{excerpt(name)} is no name; write letters, digits and _, a letter first: main_1"
         faults.append(Fault(where, "ill_named", message))
-    elif name == BASE:
-        faults.append(Fault(where, "reserved", RESERVED))
+    elif name in RESERVED:
+        faults.append(Fault(where, "reserved", RESERVED[name]))
     elif name in variants:
         faults.append(Fault(where, "named_twice", f"{plain(name)} has a row already; name this one apart"))
     return name

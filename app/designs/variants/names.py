@@ -6,6 +6,11 @@ import re
 
 BASE = "base"
 """The design without any override; no variant has this name."""
+RESERVED = {
+    BASE: f"{BASE!r} is the design itself; give the variant another name, such as main_1",
+    "report": "'report' is where the report of all variants stands; give the variant another name",
+}
+"""Names that no variant may take, and why."""
 
 MOST_VARIANTS = 200
 MOST_OVERRIDES = 10_000  # values that all variants of a design override together

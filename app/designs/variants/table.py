@@ -8,7 +8,7 @@ from itertools import chain
 from app.designs.document import Document, Model, Step
 from app.designs.network import Graph, Network
 from app.designs.reference import Reference
-from app.designs.variants.names import BASE
+from app.designs.variants.names import RESERVED
 from app.plain import Raw
 from templates.core.errors import Fault, FaultyText, unknown_names
 from templates.core.units.quantity import read, read_any
@@ -16,8 +16,6 @@ from templates.core.units.relation import is_relation
 
 Overrides = Mapping[str, Raw]
 """Values of one variant by their places."""
-
-RESERVED = f"{BASE!r} is the design itself; give the variant another name, such as main_1"
 
 
 def applied(document: Document, overrides: Overrides) -> Document:
@@ -56,8 +54,8 @@ Cells = Mapping[tuple[str, str], Fault]
 def faulty_cells(document: Document, graph: Graph) -> Cells:
     """A reserved name, places that the design does not have, and parameters of another kind than its own."""
     faults: dict[tuple[str, str], Fault] = {}
-    if BASE in document.variants:
-        faults[BASE, ""] = Fault(f"variants.{BASE}", "reserved", RESERVED)
+    for name in RESERVED.keys() & document.variants.keys():
+        faults[name, ""] = Fault(f"variants.{name}", "reserved", RESERVED[name])
     unknown: list[tuple[str, str]] = []
     for variant, overrides in document.variants.items():
         for place, value in overrides.items():
@@ -89,7 +87,7 @@ def sound(document: Document, faults: Cells) -> Document:
     variants = {
         name: {place: value for place, value in overrides.items() if (name, place) not in faults}
         for name, overrides in document.variants.items()
-        if name != BASE
+        if name not in RESERVED
     }
     return document.model_copy(update={"variants": variants})
 

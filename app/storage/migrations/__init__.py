@@ -6,14 +6,16 @@ from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import Connection
+from sqlalchemy import Connection, func, select
 
-from app.storage.engines import migrating_engine
+from app.storage.engines import is_sqlite, migrating_engine
 from app.storage.errors import DatabaseNewer
+
+_LOCK = 0x4372616E6B  # of PostgreSQL: simultaneous starts would create the same tables
 
 
 def migrate(url: str) -> None:
-    """Bring the database to the schema of this program, in one transaction.
+    """Bring the database to the schema of this program, in one transaction; one server at a time does it.
 
     Raises
     ------
@@ -25,6 +27,8 @@ def migrate(url: str) -> None:
     engine = migrating_engine(url)
     try:
         with engine.begin() as connection:
+            if not is_sqlite(url):
+                connection.execute(select(func.pg_advisory_xact_lock(_LOCK)))
             _refuse_newer(connection)
             config.attributes["connection"] = connection
             command.upgrade(config, "head")

@@ -130,9 +130,22 @@ class Counted:
         return columns
 
 
-def all_refused(columns: Columns, count: int) -> InvalidInputs:
+class AllRefused(InvalidInputs):
+    """A search none of whose rows has all results that it needs."""
+
+
+def all_refused(problem: Problem, columns: Columns, count: int) -> AllRefused:
     """The error of a search none of whose rows has results, with the reasons given most often."""
     reasons = Counter(columns.reasons.values()).most_common(3)
-    listed = "; ".join(f"{times} times: {reason}" for reason, times in reasons) or "no reason is stated"
+    listed = "; ".join(f"{times} times: {reason}" for reason, times in reasons) or _absent(problem, columns)
     detail = f"none of {count} rows within the bounds can be calculated ({listed}); change the bounds"
-    return InvalidInputs([Fault("vary", "all_refused", detail)])
+    return AllRefused([Fault("vary", "all_refused", detail)])
+
+
+def _absent(problem: Problem, columns: Columns) -> str:
+    """Which results no row has."""
+    named = [(one.name, columns.objectives[:, n]) for n, one in enumerate(problem.objectives)]
+    named += [(f"criterion {one.name}", columns.values[:, n]) for n, one in enumerate(problem.held)]
+    named += [(f"limit of {one.name}", columns.limits[:, n]) for n, one in enumerate(problem.held)]
+    absent = [name for name, column in named if not np.isfinite(column).any()]
+    return f"no value: {', '.join(absent)}" if absent else "each row lacks another value"

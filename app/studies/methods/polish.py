@@ -26,8 +26,8 @@ REFUSED = 1e3
 """Scaled objective of a refused row: worse than any, so that the polish turns back."""
 STALE, WORTH = 12, 1e-9
 """A polish ends after so many places none of which is better by so much, scaled, than those before."""
-ACCURACY, MOST_STEPS = 1e-12, 100
-"""Of SLSQP: scaled objective, and iterations."""
+ACCURACY, ROUGH, MOST_STEPS = 1e-12, 1e-6, 100
+"""Of SLSQP: scaled objective, to the end or only so far that places can be compared; and iterations."""
 
 
 @dataclass(frozen=True)
@@ -150,18 +150,18 @@ def _slopes(middle: Array, one: Array, other: Array, a: Array, b: Array) -> Arra
     return np.where(np.isfinite(slopes), slopes, 0.0)
 
 
-def polished(scaled: Scaled, start: Array) -> Place:
-    """The best place on the way of SLSQP from a start."""
+def polished(scaled: Scaled, start: Array, accuracy: float = ACCURACY) -> Place:
+    """The best place on the way of SLSQP from a start, to an accuracy of the scaled objective."""
     tangent = _Tangent(scaled, start, scaled.surface.problem.space.continuous)
     first = tangent(start[tangent.free])
     if tangent.free.size and first[0] < REFUSED:
-        _slsqp(tangent, start[tangent.free], len(first[2]))
+        _slsqp(tangent, start[tangent.free], len(first[2]), accuracy)
     return min(tangent.places, key=rank, default=Place(start, REFUSED, np.inf))
 
 
-def _slsqp(tangent: _Tangent, start: Array, held: int) -> None:
+def _slsqp(tangent: _Tangent, start: Array, held: int, accuracy: float) -> None:
     limits = _Limits(type="ineq", fun=lambda z: tangent(z)[2], jac=lambda z: tangent(z)[3])
-    _minimise(lambda z: tangent(z)[:2], start, [(0.0, 1.0)] * start.size, [limits] if held else [])
+    _minimise(lambda z: tangent(z)[:2], start, [(0.0, 1.0)] * start.size, [limits] if held else [], accuracy)
 
 
 def relaxed(scaled: Scaled, place: Place) -> Place:
@@ -196,6 +196,7 @@ def _minimise(
     start: Array,
     bounds: list[tuple[float, float]],
     limits: list[_Limits],
+    accuracy: float = ACCURACY,
 ) -> None:
     """Run SLSQP; the functions remember where it was."""
     with suppress(_Stale):
@@ -206,5 +207,5 @@ def _minimise(
             method="SLSQP",
             bounds=bounds,
             constraints=limits,
-            options={"ftol": ACCURACY, "maxiter": MOST_STEPS},
+            options={"ftol": accuracy, "maxiter": MOST_STEPS},
         )

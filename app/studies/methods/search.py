@@ -14,7 +14,7 @@ import numpy as np
 from app.studies.methods.answers import Answer, Columns, Problem, all_refused
 from app.studies.methods.corrected import Corrected, Seen
 from app.studies.methods.points import Grid, sobol_sequence
-from app.studies.methods.polish import Place, Scaled, polished, rank, relaxed
+from app.studies.methods.polish import ROUGH, Place, Scaled, polished, rank, relaxed
 from app.studies.methods.space import Space, Values
 from templates.core.arrays import Array, Integers
 
@@ -52,7 +52,7 @@ def scan(problem: Problem, answer: Answer, seed: int) -> Scan:
     columns = answer(problem.space.at(unit))
     complete = np.isfinite(np.hstack([columns.objectives, columns.values, columns.limits])).all(axis=1)
     if not complete.any():
-        raise all_refused(columns, len(unit))
+        raise all_refused(problem, columns, len(unit))
     return Scan(unit, columns)
 
 
@@ -83,11 +83,11 @@ def best(surface: Corrected, scanned: Scan, starts: tuple[Array, ...] = ()) -> P
     scaled = Scaled(surface, *middle_and_width(seen.objectives[seen.complete]))
     count = AGAIN if starts else STARTS
     chosen = [*starts, *scanned.unit[_starts(surface.problem.space, scanned.unit, seen, count)]]
-    ends = [polished(scaled, start) for start in chosen]
+    ends = [polished(scaled, start, ROUGH) for start in chosen]
     ends.sort(key=rank)
     if ends[0].violation > 0:
         ends = sorted((relaxed(scaled, end) for end in ends[:RELAXED]), key=rank)
-    # A fresh start cures a Hessian that the way there has spoilt.
+    # Only the best is polished to the end. A fresh start cures a Hessian that the way there has spoilt.
     return min(ends[0], polished(scaled, ends[0].unit), key=rank)
 
 

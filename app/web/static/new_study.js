@@ -1,5 +1,7 @@
-// The form of a new study: bounds are suggested for the place that is chosen, and each method shows its own fields.
-const form = document.querySelector("[data-new-study]");
+// The form of a new study: bounds are suggested for the place that is chosen, each method shows its own fields, and
+// what the study takes is estimated while the form is filled in.
+const form = document.querySelector("[data-new-study]"), estimate = form.querySelector("[data-estimate]");
+const PAUSE = 500; // after the last change, before the estimate is asked for [ms]
 
 for (const line of form.querySelectorAll("[data-vary]")) {
   const choice = line.querySelector("select"), [low, high] = ["low", "high"].map((end) => line.querySelector(`[name^="${end}."]`));
@@ -7,7 +9,29 @@ for (const line of form.querySelectorAll("[data-vary]")) {
     const { low: least = "", high: largest = "" } = choice.selectedOptions[0].dataset;
     low.value = least;
     high.value = largest;
+    showRelation(line);
   });
+  showRelation(line);
+}
+
+// What is set aside if a value that a relation sets is varied, and what could be varied instead.
+function showRelation(line) {
+  const choice = line.querySelector("select"), words = line.querySelector("[data-aside]");
+  const { relation, instead = "" } = choice.selectedOptions[0].dataset;
+  words.hidden = !relation;
+  if (!relation) return;
+  const names = instead.split(" ").filter(Boolean);
+  words.replaceChildren(`The relation ${choice.value} ${relation} is set aside in this study. `, ...names.flatMap((name) => [other(choice, name), " "]));
+}
+
+function other(choice, name) {
+  const button = document.createElement("button");
+  Object.assign(button, { type: "button", textContent: `Keep it, and vary ${name}` });
+  button.addEventListener("click", () => {
+    choice.value = name;
+    choice.dispatchEvent(new Event("change", { bubbles: true }));
+  });
+  return button;
 }
 
 function showOwn() {
@@ -15,5 +39,29 @@ function showOwn() {
   for (const part of form.querySelectorAll("[data-for]")) part.hidden = !part.dataset.for.split(" ").includes(method);
 }
 
-form.addEventListener("change", showOwn);
+let pause, asked = new AbortController();
+
+function askSoon() {
+  clearTimeout(pause);
+  if (form.querySelector("[data-vary] select").value) pause = setTimeout(ask, PAUSE);
+}
+
+async function ask() {
+  asked.abort();
+  asked = new AbortController();
+  const body = new URLSearchParams(new FormData(form)), button = form.querySelector("[data-ask]");
+  try {
+    const answer = await fetch(`${button.formAction}?part=true`, { method: "POST", body, signal: asked.signal });
+    if (answer.ok) estimate.innerHTML = await answer.text();
+  } catch (error) {
+    if (error.name !== "AbortError") throw error;
+  }
+}
+
+form.querySelector("[data-ask]").hidden = true; // it is asked for by itself
+form.addEventListener("change", () => {
+  showOwn();
+  askSoon();
+});
 showOwn();
+askSoon();

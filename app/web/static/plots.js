@@ -41,5 +41,6 @@ export function scale(low, high, unit) {
 
 export async function draw(place, traces, more) {
   const Plotly = await plotly();
+  if (!place.isConnected) return;
   await Plotly.react(place, traces, layout(more), CONFIG);
 }

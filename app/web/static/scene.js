@@ -3,6 +3,7 @@ import { CONFIG, plotly, scale } from "./plots.js";
 
 const AXES = ["x", "y", "z"];
 const DIAGONAL = 2.5; // of the box about a part, in units of which the view shows 2.8: it fits, however it is turned
+const HEIGHT = 380; // px, where the place of a view reserves none
 const CAMERA = { eye: { x: 1.1, y: -1.3, z: 0.95 }, projection: { type: "orthographic" } };
 
 export const FIELD = { colorscale: "Viridis", showscale: false, lighting: { ambient: 0.9, diffuse: 0.2 } };
@@ -14,7 +15,12 @@ export async function drawScene(figure, traces) {
   const Plotly = await plotly();
   const scene = (figure.dataset.scene ??= `scene${++scenes}`);
   const all = traces.map((trace) => ({ ...trace, scene }));
-  await Plotly.react(figure, all, { height: 380, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "rgba(0,0,0,0)", uirevision: "kept", showlegend: false, [scene]: { ...box(traces), camera: CAMERA } }, CONFIG);
+  await Plotly.react(figure, all, { height: reserved(figure.parentElement), margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "rgba(0,0,0,0)", uirevision: "kept", showlegend: false, [scene]: { ...box(traces), camera: CAMERA } }, CONFIG);
+}
+
+// The height that a style reserves for a view before it is drawn.
+function reserved(place) {
+  return Math.round(parseFloat(getComputedStyle(place).minHeight)) || HEIGHT;
 }
 
 // The box about all traces, as large as fits.

@@ -78,7 +78,8 @@ function rowAt(table, x, y, point) {
   return table.rows[row];
 }
 
+// A drawing that another one replaced while Plotly was loading hears no clicks.
 function picked(place, pick) {
   place.removeAllListeners?.("plotly_click");
-  if (pick) place.on("plotly_click", ({ points }) => pick(points[0].customdata, points[0]));
+  if (pick) place.on?.("plotly_click", ({ points }) => pick(points[0].customdata, points[0]));
 }

@@ -3,23 +3,29 @@ import { call, units } from "./api.js";
 import { calculated } from "./calculation.js";
 
 export function startTolerances(api, patch) {
-  const button = document.querySelector("[data-analyse-tolerances]");
-  if (!button) return;
+  const button = document.querySelector("[data-analyse-tolerances]"), form = button?.form;
+  if (!form) return;
   const place = document.querySelector("[data-scatter]"), words = document.querySelector("[data-analysed]");
-  button.addEventListener("click", async (event) => {
-    event.preventDefault(); // without this script it opens a page of its own
+  const analyse = async () => {
     if (Object.keys(patch()).length) return (words.textContent = "save your changes first");
     button.disabled = true;
     words.textContent = "calculating …";
     try {
-      place.innerHTML = await result(api, button.form.action);
+      place.innerHTML = await result(api, form.action);
       words.textContent = "Nothing was saved.";
     } catch (error) {
       words.textContent = [...(error.faults?.values() ?? [])].join(" ") || error.message;
     } finally {
       button.disabled = false;
     }
+  };
+  form.addEventListener("submit", (event) => {
+    event.preventDefault(); // without this script it opens a page of its own
+    analyse();
   });
+  const { waits } = form.dataset; // early.js has kept what was asked before this script came
+  delete form.dataset.waits;
+  if (waits === "asked") analyse();
 }
 
 async function result(api, page) {

@@ -26,6 +26,15 @@ function addRow() {
   return row;
 }
 
+// The unit of a column that is being headed, as values without a unit will have it.
+function showUnit({ target }) {
+  if (!target.matches(".heading")) return;
+  const words = target.value.trim().toLowerCase().split(/\s+/).join("_");
+  const named = [...form.querySelectorAll("#variant-places option")].filter(({ value }) => value === target.value || value.toLowerCase().replace(/^.*\./, "") === words);
+  const unit = named.length === 1 ? named[0].dataset.unit : "";
+  target.closest("th").querySelector(".unit").placeholder = unit && unit !== "1" ? unit : "unit";
+}
+
 function changed() {
   if (fieldsOf(rows().at(-1)).some((field) => field.value.trim())) addRow();
   form.querySelector("[data-variants-state]").textContent = "not saved";
@@ -52,6 +61,7 @@ function paste(event) {
 
 if (form) {
   form.addEventListener("input", changed);
+  form.addEventListener("input", showUnit);
   form.addEventListener("paste", paste);
   for (const upload of document.querySelectorAll("[data-variants-file]")) {
     upload.querySelector("input[type=file]").addEventListener("change", () => upload.requestSubmit());

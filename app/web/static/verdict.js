@@ -127,12 +127,18 @@ function drawn(name, attributes) {
   return made;
 }
 
-// A link of the verdict opens what it leads to; the page leaves room for the verdict above it.
+// A link of the verdict opens what it leads to; the page leaves room for the verdict above it, and for the part.
 export function startVerdict(form) {
-  const measure = () => document.body.style.setProperty("--verdict", `${place.offsetHeight}px`);
-  new ResizeObserver(measure).observe(place);
+  leaveRoom("--verdict", place);
+  leaveRoom("--picture", document.querySelector(".part-view"));
   followLinks(place, form);
   rememberFolds(`folds:${form.dataset.design}`);
+}
+
+// The height of what stays in view: what a key or a link leads to must not lie behind it.
+function leaveRoom(name, box) {
+  const measure = () => document.body.style.setProperty(name, `${box.offsetHeight}px`);
+  if (box) new ResizeObserver(measure).observe(box);
 }
 
 // What is missing leads to its field, the name of a criterion to its step.

@@ -5,9 +5,10 @@ from __future__ import annotations
 from sqlalchemy.orm import Session
 
 from app.catalogue.catalogues import Catalogues
+from app.identity.usage import note_bytes
 from app.jobs.service import Completion, Job, JobContext, JobFailed, Jobs
 from app.plain import JsonObject
-from app.storage.artifacts import ArtifactStore
+from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactDamaged, ArtifactMissing
 from app.storage.idempotency import Once
@@ -34,7 +35,7 @@ class Imports:
     def __init__(
         self,
         database: Database,
-        store: ArtifactStore,
+        store: Artifacts,
         jobs: Jobs,
         catalogues: Catalogues,
         worksheets: Worksheets,
@@ -63,11 +64,12 @@ class Imports:
         payload = {"file": self.store.put(content), "id": id, "name": file, "client": once.client}
 
         def unit(session: Session) -> str:
-            if before := once.find(session):
+            if before := once.begin(session):
                 return str(before["job"])
             if repository.versions(session, id):
                 raise IdTaken(id, "another worksheet")
             job = self.jobs.enqueue(session, IMPORT, payload, client=once.client)
+            note_bytes(session, len(content))
             once.keep(session, 202, {"job": job})
             return job
 

@@ -27,6 +27,7 @@ from typing import Any
 
 from templates.core.catalogue.loading import text_of
 from templates.core.language.origin import file_of
+from templates.core.language.parsing import parse
 from templates.core.language.spec import Declaration, Requirement, Shared
 from templates.core.language.template import Template
 
@@ -66,7 +67,7 @@ def content_digest(cls: type[Template]) -> str:
 
 def content_digest_of(sources: Iterable[str]) -> str:
     """The second digest of the text of files: that of a template, then those of its groups."""
-    return _sha256("\n".join(dict.fromkeys(_content(ast.parse(source)) for source in sources)))
+    return _sha256("\n".join(dict.fromkeys(_content(parse(source)) for source in sources)))
 
 
 def is_digest_of(text: str, cls: type[Template]) -> bool:
@@ -114,7 +115,7 @@ def _sha256(text: str) -> str:
 
 def _bare(source: str) -> str:
     """A file as far as it calculates, for the first digest."""
-    return ast.unparse(_Bare().visit(ast.parse(source)))
+    return ast.unparse(_Bare().visit(parse(source)))
 
 
 class _Bare(ast.NodeTransformer):

@@ -7,7 +7,7 @@ exists is never overwritten: a change to a released version is a new version.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -24,15 +24,23 @@ from templates.core.language.template import Template
 STEPS = (0.9, 1.1)  # every numeric input in turn, around the example
 
 
-def record(cls: type[Template]) -> dict[str, Any]:
-    """The golden record of one version: SI inputs and SI results of the example and of steps around it."""
+def record(cls: type[Template], more: Iterable[Mapping[str, Any]] = ()) -> dict[str, Any]:
+    """The golden record of one version: SI inputs and SI results of the example and of steps around it.
+
+    Parameters
+    ----------
+    cls
+        The version.
+    more
+        Further cases: the quantities by which each differs from the example, under `inputs`, and its `level`.
+    """
     return {
         "id": cls.id,
         "version": cls.version,
         **digests(cls),
         "precision": cls.precision,
         "cases": list(_cases(cls)),
-        "levels": list(cases_of_levels(cls)),
+        "levels": [*cases_of_levels(cls), *(_case(cls, about["inputs"], about["level"]) for about in more)],
     }
 
 
@@ -49,13 +57,17 @@ def golden_file(cls: type[Template], folder: Path) -> Path:
 def freeze(cls: type[Template], folder: Path) -> Path:
     """Write the record of a version that is to be released, and its digests beside its file; where it stands.
 
+    Cases besides those around the example stand in the folder's `more`, in a file of the record's name.
+
     Raises
     ------
     FileExistsError
         If the version is frozen already.
     """
     path = golden_file(cls, folder)
-    text = json.dumps(record(cls), indent=1, ensure_ascii=False, allow_nan=False)
+    further = folder / "more" / path.name
+    more = json.loads(further.read_text(encoding="utf-8")) if further.exists() else []
+    text = json.dumps(record(cls, more), indent=1, ensure_ascii=False, allow_nan=False)
     folder.mkdir(parents=True, exist_ok=True)
     with path.open("x", encoding="utf-8") as file:
         file.write(text + "\n")
@@ -88,20 +100,24 @@ def _cases(cls: type[Template]) -> Iterator[dict[str, Any]]:
 
 def cases_of_levels(cls: type[Template]) -> Iterator[dict[str, Any]]:
     """The example at every level but the default one, at which the other cases are."""
-    example = _given(cls)
-    for level in cls.levels:
-        if level == cls.default_level:
-            continue
-        case = {"level": level, "inputs": _plain(example)}
-        try:
-            yield {**case, "outputs": results(cls, example, level)}
-        except InvalidInputs as refusal:
-            yield {**case, "refused": codes(refusal)}
+    yield from (_case(cls, {}, level) for level in cls.levels if level != cls.default_level)
 
 
-def _given(cls: type[Template]) -> dict[str, Any]:
+def _case(cls: type[Template], others: Mapping[str, Any], level: str) -> dict[str, Any]:
+    """The example at a level, but for other quantities."""
+    inputs = _given(cls, others)
+    case: dict[str, Any] = {"level": level, "inputs": _plain(inputs)}
+    if level in cls.level_precision:
+        case["precision"] = cls.level_precision[level]
+    try:
+        return {**case, "outputs": results(cls, inputs, level)}
+    except InvalidInputs as refusal:
+        return {**case, "refused": codes(refusal)}
+
+
+def _given(cls: type[Template], others: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """The example's inputs in SI with defaults; without what is missing or shown as an output."""
-    template = cls.from_quantities(cls.example)
+    template = cls.from_quantities({**cls.example, **(others or {})})
     reported = {name: declared for name, declared in cls.inputs.items() if is_reported(template, declared)}
     return {name: getattr(template, declared.attribute) for name, declared in reported.items()}
 

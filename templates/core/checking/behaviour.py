@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 from collections.abc import Callable, Iterator
 
@@ -13,6 +12,7 @@ from templates.core.errors import Fault, InvalidInputs, TemplateError
 from templates.core.language.dimensions import faults_by_part
 from templates.core.language.evaluate import evaluate
 from templates.core.language.origin import file_of
+from templates.core.language.parsing import lines_of
 from templates.core.language.template import Template
 from templates.core.paper import report
 from templates.core.paper.schema import describe
@@ -85,6 +85,6 @@ def _line_of_example(cls: type[Template]) -> int | None:
     """The line of the class that sets the example, or begins the class; None of a worksheet."""
     if cls.sheet:
         return None
-    lines, first = inspect.getsourcelines(cls)
+    lines, first = lines_of(cls)
     places = (n for n, text in enumerate(lines) if text.strip().startswith(("example =", "example:")))
     return first + next(places, 0)

@@ -68,7 +68,7 @@ def differences(cls: type[Template], record: Mapping[str, Any]) -> Iterator[str]
             if case.get("refused") != codes:
                 yield f"inputs {case['inputs']} are refused now: {refusal}"
             continue
-        yield from _of_case(case, outcome, precision)
+        yield from _of_case(case, outcome, float(case.get("precision", precision)))
 
 
 def _of_case(case: Mapping[str, Any], outcome: Mapping[str, Any], precision: float) -> Iterator[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import inspect
 import textwrap
 from collections.abc import Callable, Iterator
@@ -13,6 +12,7 @@ from typing import Any
 from templates.core.checking.faults import FileFault
 from templates.core.errors import FaultyText
 from templates.core.language.body import Body
+from templates.core.language.parsing import lines_of, parse
 from templates.core.language.spec import Derived, Formula, Requirement, Shared
 from templates.core.language.syntax import lines_of_attributes, returned
 from templates.core.language.template import Template
@@ -66,7 +66,7 @@ def _docstring(cls: type[Template]) -> Iterator[FileFault]:
             "docstring",
             f"class {cls.__name__} has no docstring",
             "say in a first sentence what it calculates, and in its section Limits where it is valid",
-            inspect.getsourcelines(cls)[1],
+            lines_of(cls)[1],
         )
 
 
@@ -83,8 +83,8 @@ def _units(cls: type[Template]) -> Iterator[FileFault]:
 
 def _lines_of_declarations(cls: type[Template]) -> dict[str, int]:
     """The line of the file in which the class sets each of its attributes."""
-    text, first = inspect.getsourcelines(cls)
-    tree = ast.parse(textwrap.dedent("".join(text))).body[0]
+    text, first = lines_of(cls)
+    tree = parse(textwrap.dedent("".join(text))).body[0]
     lines: dict[str, int] = {}
     for node in getattr(tree, "body", ()):
         targets = getattr(node, "targets", [getattr(node, "target", node)])

@@ -50,8 +50,7 @@ def climb(
 def reachable(cls: type[Template], ladder: tuple[str, ...]) -> tuple[str, ...]:
     """The levels that a tolerance may choose: none beyond the default one, if that states no error at all."""
     measured = accuracy(cls)
-    tables = measured.errors.get(cls.default_level, {}) if measured else {}
-    if cls.default_level not in ladder or any(np.isfinite(table).any() for table in tables.values()):
+    if cls.default_level not in ladder or (measured and measured.states_any(cls.default_level)):
         return ladder
     return ladder[: ladder.index(cls.default_level) + 1]
 

@@ -194,10 +194,13 @@ def _answers(template: Template, names: list[str], shown_in: Mapping[str, Unit])
         if formula.attribute in absent:
             answers[name] = Answer(None, scale.text, reason=absent[formula.attribute])
         elif isinstance(si, np.ndarray):
-            value, reasons = _with_reasons(template, formula, si)
+            finite = np.where(np.isinf(scale.from_si(si)), np.nan, si)
+            value, reasons = _with_reasons(template, formula, finite)
             answers[name] = Answer(scale.from_si(value), scale.text, reasons=reasons)
+        elif (shown := float(scale.from_si(si))) in (np.inf, -np.inf):
+            answers[name] = Answer(None, scale.text, reason=f"too large for a number of {scale.text}")
         else:
-            answers[name] = Answer(float(scale.from_si(si)), scale.text)
+            answers[name] = Answer(shown, scale.text)
     return answers
 
 

@@ -9,6 +9,9 @@ Each level and output names its *truth*: the solution, with its conventions, aga
 measured. Two levels may follow two conventions, and then their errors say nothing of each other
 (`truth_of`, `next_levels`). The error of a profile is relative to its largest absolute value
 (`absolute_error`).
+
+Errors may be measured apart for several cases of inputs, such as ways to feed a bearing: then the table holds
+them under `cases`, and `Template.measured_case` says which case its inputs are.
 """
 
 from __future__ import annotations
@@ -65,6 +68,18 @@ class Accuracy:
     content: dict[str, Any]  # the whole file, as it is served
 
     @cached_property
+    def cases(self) -> dict[str, dict[str, dict[str, Array]]]:
+        """Errors of single cases of inputs, by case, level and output, in the same cells."""
+        return {case: _tables(levels) for case, levels in self.content.get("cases", {}).items()}
+
+    def states_any(self, level: str) -> bool:
+        """Whether any error is stated at a level, in any case."""
+        measured = (self.errors, *self.cases.values())
+        return any(
+            np.isfinite(table).any() for levels in measured for table in levels.get(level, {}).values()
+        )
+
+    @cached_property
     def outputs(self) -> frozenset[str]:
         """The outputs of which errors were measured at any level."""
         return frozenset(output for table in self.errors.values() for output in table)
@@ -79,7 +94,10 @@ class Accuracy:
 
     def expected(self, template: Template, level: str, outputs: Iterable[str]) -> dict[str, Any]:
         """The errors stated for a level in the cell in which the template lies at its own level."""
-        names, tables = list(outputs), self.errors.get(level or SINGLE, {})
+        names, levels = list(outputs), self.errors
+        if self.cases:
+            levels = self.cases.get(template.measured_case(), levels)
+        tables = levels.get(level or SINGLE, {})
         there = template if level == template.level else template.at(level)
         exact = {name for name in names if _same_at_all_levels(template, name)} if template.levels else set()
         available = tables if there.is_measured() else {}
@@ -171,11 +189,16 @@ def accuracy(cls: type[Template]) -> Accuracy | None:
 def _loaded(path: Path) -> Accuracy:
     content = json.loads(path.read_text(encoding="utf-8"))
     (one, first), (two, second) = ((axis["attribute"], np.array(axis["values"])) for axis in content["axes"])
-    errors = {
-        level: {output: np.array(table, dtype=float) for output, table in measured["errors"].items()}
-        for level, measured in content["levels"].items()
-    }
+    errors = _tables({level: measured["errors"] for level, measured in content["levels"].items()})
     return Accuracy((one, two), (first, second), errors, content)
+
+
+def _tables(levels: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Array]]:
+    """Errors by level and output as arrays over the cells, NaN for null."""
+    return {
+        level: {output: np.array(table, dtype=float) for output, table in outputs.items()}
+        for level, outputs in levels.items()
+    }
 
 
 def truth_of(cls: type[Template], level: str, output: str) -> str | None:
@@ -248,8 +271,7 @@ def at_level(template: Template, level: str, where: NDArray[np.bool_] | None = N
     count = int(np.prod(template.shape_of_points())) if where is None else int(where.sum())
     most = template.most_points.get(level, count)
     if count > most:
-        message = (
-            f"level {level} takes at most {most} points at once, not {count}; ask for fewer, or for less"
-        )
+        points = "1 point" if most == 1 else f"{most} points"
+        message = f"level {level} takes at most {points} at once, not {count}; ask for fewer, or for less"
         raise InvalidInputs([Fault("level", "too_many_points", message)])
     return template.at(level, where)

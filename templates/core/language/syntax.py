@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from templates.core.language.body import Body
+from templates.core.language.parsing import parse
 
 
 def returned(function: Callable[..., Any]) -> ast.expr:
@@ -32,7 +33,7 @@ def returned(function: Callable[..., Any]) -> ast.expr:
 
 def syntax(function: Callable[..., Any]) -> ast.FunctionDef:
     """The syntax tree of a function."""
-    tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+    tree = parse(textwrap.dedent(inspect.getsource(function))).body[0]
     assert isinstance(tree, ast.FunctionDef)
     return tree
 

@@ -78,6 +78,7 @@ class Template:
     precision: ClassVar[float] = (
         1e-12  # relative, to which results of a released version are held; solvers: 1e-8
     )
+    level_precision: ClassVar[Mapping[str, float]] = {}  # of levels that repeat less well on other machines
 
     inputs: ClassVar[dict[str, Input]] = {}
     formulas: ClassVar[dict[str, Formula[Any]]] = {}
@@ -195,6 +196,10 @@ class Template:
     def is_measured(self) -> bool:
         """Whether the measured errors are those of such inputs."""
         return True
+
+    def measured_case(self) -> str:
+        """Which of the cases of such inputs these are, where errors were measured apart for several."""
+        return ""
 
     def starting_level(self) -> str:
         """The level that is taken when none is requested."""

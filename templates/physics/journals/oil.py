@@ -99,3 +99,25 @@ def _above_pole(T: Array, c: Array) -> Array:
 def by_law(law: str, of_walther: Array | float, of_vogel: Array) -> Array:
     """The value [Pa s] that belongs to the law `walther` or `vogel`."""
     return of_vogel if law == "vogel" else np.asarray(of_walther)[()]
+
+
+def viscosity_at(
+    T: Array, A: Array, B: Array, a: Array, b: Array, c: Array, eta: Array, rho_ref: Array, T_ref: Array
+) -> Array:
+    """Dynamic viscosity [Pa s] at T [K]: the one given, or by Vogel's law where its factor is, or Walther's.
+
+    Parameters
+    ----------
+    T
+        Temperature [K].
+    A, B
+        Walther's intercept and slope [-].
+    a, b, c
+        Vogel's factor [Pa s], slope and offset [K]; a is NaN for Walther's law.
+    eta
+        The viscosity, if it does not follow from the temperature, else NaN [Pa s].
+    rho_ref, T_ref
+        Density [kg/m³] at a temperature [K].
+    """
+    thin = np.where(np.isnan(a), walther(A, B, T) * density(rho_ref, T, T_ref), vogel(a, b, c, T))
+    return np.where(np.isnan(eta), thin, eta)

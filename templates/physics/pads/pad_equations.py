@@ -34,13 +34,13 @@ def solved_pads(a: Array, width: Array, along: int, across_half: int) -> tuple[A
     (N, n + 1) the pressure p h_o²/(6 eta U l) at mid-width.
     """
     x = grading(a, width).place(np.linspace(0, 1, along + 1))
-    middle, cells = (x[:, 1:] + x[:, :-1]) / 2, _cells(x)
+    middle, cells = (x[:, 1:] + x[:, :-1]) / 2, cell_lengths(x)
     a, width = a[:, None], width[:, None]
     H, H_mid = a - (a - 1) * x, a - (a - 1) * middle
     conductance, leak = H_mid**3 / np.diff(x), 4 * H**3 * cells / width**2
     eigenvalues, shares, centre = _modes(across(a[:, 0], width[:, 0], across_half))
     source = (a - 1) * np.diff(middle)
-    p = _tridiagonal(conductance, leak[:, 1:-1], eigenvalues, source)
+    p = eliminated(conductance, leak[:, 1:-1], eigenvalues, source)
     line = np.einsum("inm,nm->ni", p, shares**2)
     load = cells[:, 1:-1] * line
     inlet = H_mid[:, 0] / 2 - conductance[:, 0] * line[:, 0] / 2
@@ -50,15 +50,15 @@ def solved_pads(a: Array, width: Array, along: int, across_half: int) -> tuple[A
     return measures, np.pad(np.einsum("inm,nm->ni", p, shares * centre), ((0, 0), (1, 1)))
 
 
-def _cells(nodes: Array) -> Array:
-    """Lengths of the cells around the nodes, half cells at the ends, (..., n + 1)."""
+def cell_lengths(nodes: Array) -> Array:
+    """Lengths of the cells around the nodes (..., n + 1), half cells at the ends."""
     half = np.diff(nodes) / 2
     return np.pad(half, ((0, 0), (0, 1))) + np.pad(half, ((0, 0), (1, 0)))
 
 
 def _modes(zeta: Array) -> tuple[Array, Array, Array]:
     """Eigenvalues of the flow across (N, m), what of a constant each mode holds, and its mid-width value."""
-    step, cells = 1 / np.diff(zeta), _cells(zeta)[:, :-1]
+    step, cells = 1 / np.diff(zeta), cell_lengths(zeta)[:, :-1]
     stiff = np.zeros((*cells.shape, cells.shape[-1]))
     i = np.arange(cells.shape[-1])
     stiff[:, i, i] = step + np.pad(step[:, :-1], ((0, 0), (1, 0)))
@@ -68,7 +68,7 @@ def _modes(zeta: Array) -> tuple[Array, Array, Array]:
     return eigenvalues, np.einsum("ni,nik->nk", root, vectors), vectors[:, 0] / root[:, :1]
 
 
-def _tridiagonal(conductance: Array, leak: Array, eigenvalues: Array, source: Array) -> Array:
+def eliminated(conductance: Array, leak: Array, eigenvalues: Array, source: Array) -> Array:
     """Solve the balances along the pad for every mode by Gaussian elimination, (n − 1, N, m).
 
     Parameters

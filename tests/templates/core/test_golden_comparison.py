@@ -1,12 +1,30 @@
 """When two results of a golden record agree: texts exactly, numbers to their precision, shapes too."""
 
+import copy
 import math
 
 import pytest
 
-from templates.core.checking.golden import _equal
+from templates.core.catalogue.golden import record
+from templates.core.checking.golden import _equal, differences
+from templates.core.language.template import Template, formula, given
 
 PRECISION = 1e-9
+
+
+class Marched(Template):
+    """A cheap level that repeats everywhere, and one that repeats to 1e-4 on other machines."""
+
+    levels = ("cheap", "marched")
+    default_level = "cheap"
+    level_precision = {"marched": 1e-4}
+    example = {"length": "2 m"}
+
+    x = given("m", "length", ge=0)
+
+    @formula("m", "size")
+    def s(self):
+        return 2 * self.x
 
 
 @pytest.mark.parametrize(
@@ -28,3 +46,14 @@ PRECISION = 1e-9
 def test_results_agree_or_do_not(old, new, agree):
     assert _equal(old, new, PRECISION) is agree
     assert _equal(new, old, PRECISION) is agree
+
+
+@pytest.mark.parametrize(
+    ("of", "off", "found"), [("levels", 1e-5, 0), ("levels", 1e-3, 1), ("cases", 1e-5, 1), ("cases", 0.0, 0)]
+)
+def test_a_level_is_held_to_its_own_precision_and_the_others_to_that_of_the_class(of, off, found):
+    kept = copy.deepcopy(record(Marched))
+    assert kept["levels"][0]["precision"] == 1e-4
+    assert not any("precision" in case for case in kept["cases"])
+    kept[of][0]["outputs"]["size"] *= 1 + off
+    assert len(list(differences(Marched, kept))) == found

@@ -149,6 +149,11 @@ class TestLadder:
         with pytest.raises(InvalidInputs, match="level fine takes at most 3 points at once, not 4"):
             evaluated("size", length=metres(1, 2, 3, 4))
 
+    def test_property_a_single_point_is_no_plural(self, monkeypatch, measured):
+        monkeypatch.setitem(Ladder.most_points, "fine", 1)
+        with pytest.raises(InvalidInputs, match="level fine takes at most 1 point at once, not 2"):
+            evaluated("size", level="fine", length=metres(1, 2))
+
     @pytest.mark.parametrize("length", [metres(200, 5), metres(5, 200)])
     def test_property_a_point_beyond_both_ends_of_the_measured_grid_has_no_estimate(self, measured, length):
         """The breadth is twice the length, so both leave their grids together."""

@@ -26,6 +26,18 @@ class Hollow(Template):
         return 2 * self.bore
 
 
+class Huge(Template):
+    """A tube."""
+
+    example = {"x": "1 m"}
+
+    x = given("m", "x")
+
+    @formula("um", "bore")
+    def bore(self):
+        return 1 * self.x
+
+
 class Rated(Template):
     """A tube, of which a bore below 1 m is not rated."""
 
@@ -66,3 +78,12 @@ def test_the_schema_of_a_quantity_knows_its_parts_and_no_others(extra):
     if not is_valid:
         with pytest.raises(InvalidInputs, match="colour"):
             evaluate(Hollow, {"x": quantity})
+
+
+def test_a_value_too_large_for_its_unit_is_absent_with_a_reason():
+    """Finite in metres, beyond all numbers in micrometres: no infinity leaves."""
+    single = evaluate(Huge, {"x": "1e303 m"}).outputs["bore"]
+    assert (single.value, single.reason) == (None, "too large for a number of um")
+    many = evaluate(Huge, {"x": {"value": [1e303, 1], "unit": "m"}}).outputs["bore"]
+    np.testing.assert_array_equal(many.value, [np.nan, 1e6])
+    assert many.reasons.tolist() == ["the formula has no finite value here", None]

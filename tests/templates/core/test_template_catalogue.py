@@ -126,6 +126,16 @@ class TestFreezing:
         assert ({**example, "way": "down"}, {"twice_the_length": 4}) in cases
         assert len(cases) == 1 + 2 + 2 + 1 + 2
 
+    def test_golden_record_holds_further_cases(self, tmp_path):
+        """Those in the folder's `more`: the example but for the inputs named, as users give them."""
+        own = only(written(tmp_path / "own"))
+        more = tmp_path / "golden" / "more" / "own_v1.json"
+        more.parent.mkdir(parents=True)
+        more.write_text(json.dumps([{"level": "", "inputs": {"length": "1500 mm"}}]))
+        frozen = json.loads(freeze(own, tmp_path / "golden").read_text())
+        (case,) = frozen["levels"]
+        assert (case["inputs"]["length"], case["outputs"]) == (1.5, {"twice_the_length": 3})
+
 
 @pytest.mark.parametrize(
     "error",

@@ -279,7 +279,7 @@ class TestRefusals:
 
     def test_property_transient_takes_one_case(self):
         sizes = np.array([1.0, 2.0])[:, None]
-        assert "at most 1 points" in refusal(inputs(sizes * X, sizes * Y), "transient")["level"]
+        assert "at most 1 point at once" in refusal(inputs(sizes * X, sizes * Y), "transient")["level"]
 
 
 class TestAccuracy:

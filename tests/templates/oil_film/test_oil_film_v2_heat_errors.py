@@ -5,6 +5,7 @@ import pytest
 
 from benchmarks.accuracy import converged
 from benchmarks.heat_balance_accuracy import SEED, change, dependent, drawn, sizes, value_of
+from benchmarks.truths import FRICTION
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_v2 import OilFilm
 from templates.physics.films.reynolds import extrapolated_film
@@ -78,11 +79,26 @@ def test_property_what_the_balance_makes_is_not_exact():
     assert balanced["relative_clearance"] == 0
 
 
-def test_property_no_error_where_the_balance_has_another_friction_than_the_level():
+def test_property_friction_has_no_error_where_the_balance_has_another_convention_than_the_level():
+    """The film has one: the balance makes its viscosity as it does at every other level."""
     raw = {n: v for n, v in OilFilm.example.items() if not n.startswith("oil_")}
     raw["supply_temperature"] = "60 degC"
-    error = evaluate(
-        OilFilm, raw, level="mass_conserving", outputs=["power_loss", "relative_clearance"]
-    ).error
+    outputs = ["power_loss", "friction_coefficient", "minimum_film_thickness", "relative_clearance"]
+    error = evaluate(OilFilm, raw, level="mass_conserving", outputs=outputs).error
     assert np.isnan(error["power_loss"])
+    assert np.isnan(error["friction_coefficient"])
+    assert 0 < error["minimum_film_thickness"] < 1e-2
     assert error["relative_clearance"] == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("supplied", [True, False])
+def test_property_stated_error_bounds_the_true_one_where_mass_is_conserved(supplied):
+    """Other bearings than those that it was measured on: 100 of them, as each takes 0.2 s."""
+    _, y, film, _ = converged(streamers=False)
+    rng = np.random.default_rng(SEED + 2)
+    bearings = drawn(rng, film, np.exp(y), "iso_vg_46", supplied=supplied)
+    some = rng.choice(bearings.T.size, (5, 20), replace=False)  # the level takes 20 at once
+    parts = [shares(bearings.some(rows), "mass_conserving") for rows in some]
+    for name in parts[0].keys() - FRICTION:
+        assert np.mean([part[name] for part in parts]) >= 0.98, name

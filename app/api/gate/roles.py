@@ -1,0 +1,107 @@
+"""Which role a route needs: what its declaration says, else by its method; checked before it runs.
+
+A router or a route declares by `dependencies=[needs("author")]`; of several declarations the last one counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from fastapi import FastAPI, params
+from fastapi.routing import iter_route_contexts
+from starlette.routing import BaseRoute, Mount, Route
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from app.identity.acting import ANONYMOUS, Role, acting
+from app.identity.errors import NotSignedIn, RoleNeeded
+
+READING = frozenset({"GET", "HEAD", "OPTIONS"})
+OPEN_FOLDERS = frozenset({"/static", "/static-offline-docs"})
+"""Mounted files, which are those of the program: the page to sign in needs them."""
+
+
+@dataclass(frozen=True)
+class Needs:
+    """One of these roles; without any: whoever has signed in, or anybody if `is_public`."""
+
+    roles: tuple[Role, ...]
+    is_public: bool = False
+
+    async def __call__(self) -> None:
+        """As a dependency of a route it does nothing: the gate has read it."""
+
+    def check(self) -> None:
+        """Let the acting principal pass.
+
+        Raises
+        ------
+        NotSignedIn, RoleNeeded
+            If it may not.
+        """
+        if self.is_public:
+            return
+        who = acting()
+        if who is ANONYMOUS:
+            raise NotSignedIn
+        if self.roles and not any(who.may(role) for role in self.roles):
+            raise RoleNeeded(who, self.roles)
+
+
+VIEWER, AUTHOR, SIGNED_IN, PUBLIC = (
+    Needs(("viewer",)),
+    Needs(("author",)),
+    Needs(()),
+    Needs((), is_public=True),
+)
+
+
+def needs(*roles: Role) -> params.Depends:
+    """Declare that a route needs one of these roles; none: that whoever sends the request has signed in."""
+    return params.Depends(Needs(roles))
+
+
+def public() -> params.Depends:
+    """Declare that a route asks nobody for a key."""
+    return params.Depends(PUBLIC)
+
+
+def needs_of(route: BaseRoute) -> Needs:
+    """What a route needs."""
+    declared = [one.dependency for one in getattr(route, "dependencies", ())]
+    found = [one for one in declared if isinstance(one, Needs)]
+    if found:
+        return found[-1]
+    if isinstance(route, Mount) and route.path in OPEN_FOLDERS:
+        return PUBLIC
+    return VIEWER if isinstance(route, Route) and _only_reads(route.methods or ()) else AUTHOR
+
+
+def _only_reads(methods: Iterable[str]) -> bool:
+    methods = set(methods)
+    return bool(methods) and methods <= READING
+
+
+class Guarded:
+    """A route's or a router's way to handle a request, behind the check of the role."""
+
+    def __init__(self, handle: ASGIApp, needed: Needs) -> None:
+        self.handle, self.needed = handle, needed
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Check, then handle."""
+        self.needed.check()
+        await self.handle(scope, receive, send)
+
+
+def install(app: FastAPI) -> None:
+    """Guard all routes that an app has by now, and paths that it has not. Routes are shared by all apps."""
+    for route in routes_of(app):
+        if not isinstance(route.handle, Guarded):
+            route.handle = Guarded(route.handle, needs_of(route))  # type: ignore[method-assign]
+    app.router.default = Guarded(app.router.default, SIGNED_IN)
+
+
+def routes_of(app: FastAPI) -> list[BaseRoute]:
+    """All routes of an app, those of its routers included."""
+    return [context.original_route for context in iter_route_contexts(app.router.routes)]

@@ -1,0 +1,1 @@
+"""Approval of revisions by three principals, and comments on them."""

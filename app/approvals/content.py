@@ -1,0 +1,93 @@
+"""What a signature covers: document, results and files of a revision, who signs and when, the step before."""
+
+from __future__ import annotations
+
+import hashlib
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.approvals.errors import NotReady
+from app.schemas.approvals import ORDER, Approval, Files, Present, Signed
+from app.solids import rows
+from app.storage.tables import ApprovalRow, RevisionRow, canonical_json
+
+STEP = "step"
+
+
+def digest(value: object) -> str:
+    """SHA-256 of a JSON value in its canonical form."""
+    return hashlib.sha256(canonical_json(value).encode()).hexdigest()
+
+
+def present(session: Session, row: RevisionRow) -> Present:
+    """The hashes of what a revision holds now."""
+    builds = {m.name: m.build_key for m in (*row.models, *row.variant_models) if m.build_key}
+    files = rows.artifacts_of(session, set(builds.values()))
+    return Present(
+        document=digest(row.document),
+        results=digest(row.results),
+        files={name: files.get(key, {}) for name, key in builds.items()},
+    )
+
+
+def to_sign(row: RevisionRow, now: Present, previous: str | None) -> str:
+    """Digest of what a signer looks at: the same until a step is taken.
+
+    Of the files it has the STEP files alone: others follow from these, and are made when somebody asks.
+    """
+    steps = {name: {STEP: kinds[STEP]} for name, kinds in now.files.items() if STEP in kinds}
+    return digest(
+        {
+            "design": row.design_id,
+            "revision": row.number,
+            "document": now.document,
+            "results": now.results,
+            "files": steps,
+            "previous": previous,
+        }
+    )
+
+
+def require_files(row: RevisionRow, now: Present) -> Files:
+    """The files of a revision that is calculated and has a solid of every model.
+
+    Raises
+    ------
+    NotReady
+        If it is not, or has not.
+    """
+    if row.state != "current":
+        why = "is being regenerated; wait for it" if row.state == "regenerating" else "failed; correct it"
+        raise NotReady(f"revision {row.number} {why}")
+    bare = [model.name for model in row.models if STEP not in now.files.get(model.name, {})]
+    bare += [name for name, kinds in now.files.items() if STEP not in kinds and name not in bare]
+    if bare:
+        raise NotReady(f"revision {row.number} has no solid of {', '.join(bare)}: set its parameters first")
+    return now.files
+
+
+def steps_taken(session: Session, row: RevisionRow) -> list[ApprovalRow]:
+    """The steps of the approval of a revision that were taken, in their order."""
+    of_revision = ApprovalRow.design_id == row.design_id, ApprovalRow.revision == row.number
+    rows = {row.step: row for row in session.scalars(select(ApprovalRow).where(*of_revision))}
+    return [rows[step] for step in ORDER if step in rows]
+
+
+def shown(row: ApprovalRow) -> Approval:
+    """A step as the interface shows it."""
+    return Approval.model_validate(
+        {
+            "step": row.step,
+            "principal": row.principal_id,
+            "name": row.name,
+            "at": row.at,
+            "digest": row.digest,
+            "content": row.content,
+        }
+    )
+
+
+def hashed(content: Signed) -> str:
+    """The digest of what was signed."""
+    return digest(content.plain())

@@ -1,0 +1,76 @@
+"""Who may take which step, and when: three principals, one after another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from app.approvals.errors import OutOfOrder, SamePrincipal
+from app.designs.releases import last_of
+from app.identity.acting import Principal, Role
+from app.identity.errors import RoleNeeded
+from app.schemas.approvals import ORDER, ApprovalState, Step
+from app.storage.tables import ApprovalRow, RevisionRow
+
+ROLES: dict[Step, Role] = {
+    "calculated": "author",
+    "checked": "checker",
+    "released": "checker",
+    "withdrawn": "checker",
+}
+
+
+def state_of(taken: Sequence[ApprovalRow]) -> ApprovalState:
+    """The last step that was taken."""
+    return last_of({row.step for row in taken}) or "unsigned"
+
+
+def next_step(taken: Sequence[ApprovalRow]) -> Step | None:
+    """The step that comes next on the way to a release; None behind that."""
+    steps = {row.step for row in taken}
+    return next((step for step in ORDER[:3] if step not in steps), None)
+
+
+def require_turn(step: Step, taken: Sequence[ApprovalRow], number: int) -> None:
+    """Return if it is the turn of a step.
+
+    Raises
+    ------
+    OutOfOrder
+        If it is taken, or another one comes first.
+    """
+    for row in taken:
+        if row.step in (step, "withdrawn"):
+            raise OutOfOrder(f"revision {number} was {row.step} by {row.name} at {row.at}")
+    following = next_step(taken)
+    if following is not None and step != following:
+        raise OutOfOrder(f"revision {number} is to be {following} before it is {step}")
+    if following is None and step != "withdrawn":
+        raise OutOfOrder(f"revision {number} is released")
+
+
+def require_principal(step: Step, who: Principal, row: RevisionRow, taken: Sequence[ApprovalRow]) -> None:
+    """Return if a principal may take a step.
+
+    Raises
+    ------
+    RoleNeeded
+        If its roles do not allow it.
+    SamePrincipal
+        If it took another step, or if it hands over a revision of another author.
+    """
+    if not who.may(ROLES[step]):
+        raise RoleNeeded(who, (ROLES[step],))
+    if step == "withdrawn":
+        return
+    if step == "calculated":
+        if row.author not in (None, who.id):  # null: saved before there were principals
+            detail = f"revision {row.number} was saved by another principal, who hands it over for checking"
+            raise SamePrincipal(f"{detail}; or save a revision of your own", who.id)
+        return
+    if row.author == who.id:
+        raise SamePrincipal(f"{who.name} is the author of revision {row.number}: another has to act", who.id)
+    for before in taken:
+        if before.principal_id == who.id:
+            raise SamePrincipal(
+                f"{who.name} took the step {before.step} of revision {row.number}: another has to act", who.id
+            )

@@ -1,0 +1,182 @@
+"""What can be done with the approval of a revision: look, sign, withdraw."""
+
+from __future__ import annotations
+
+from sqlalchemy.orm import Session
+
+from app.approvals.content import STEP, digest, present, require_files, shown, steps_taken, to_sign
+from app.approvals.errors import ApprovalError, NotReady, OtherDigest
+from app.approvals.rules import next_step, require_principal, require_turn, state_of
+from app.approvals.schemas import ApprovalIn
+from app.designs import repository
+from app.designs.releases import NEWEST_RELEASED, newest_released
+from app.identity.acting import acting
+from app.identity.audit import record
+from app.identity.errors import RoleNeeded
+from app.schemas.approvals import Approvals, Present, Released, Signed, Step
+from app.storage.artifacts import Artifacts
+from app.storage.database import Database
+from app.storage.idempotency import Once
+from app.storage.identity import now
+from app.storage.tables import ApprovalRow, RevisionRow
+
+
+class Approving:
+    """Approvals of revisions."""
+
+    def __init__(self, database: Database, store: Artifacts) -> None:
+        self.database, self.store = database, store
+
+    def show(self, id: str, number: int) -> Approvals:
+        """The approval of a revision, as whoever asks sees it.
+
+        Raises
+        ------
+        NotFound
+            If there is no such revision.
+        """
+        with self.database.read() as session:
+            return _shown(session, repository.revision(session, id, number))
+
+    def sign(self, id: str, number: int, body: ApprovalIn, expected: str, once: Once) -> Approvals:
+        """Take a step on behalf of the acting principal.
+
+        Raises
+        ------
+        NotFound
+            If there is no such design or revision.
+        RoleNeeded, SamePrincipal
+            If the principal may not.
+        OutOfOrder, NotReady
+            If the revision is not there yet, or already beyond.
+        OtherDigest
+            If `expected` (an If-Match) is not the digest of what there is to sign.
+        """
+        self._require_good_files(id, number)
+
+        def unit(session: Session) -> Approvals:
+            if once.begin(session) is None:
+                repository.locked(session, id)
+                _take(session, repository.revision(session, id, number), body, expected)
+                once.keep(session, 201, {"design": id, "revision": number})
+            return _shown(session, repository.revision(session, id, number))
+
+        return self.database.write(unit)
+
+    def released(self, id: str) -> Released:
+        """The newest released revision of a design.
+
+        Raises
+        ------
+        NotFound
+            If there is none.
+        """
+        with self.database.read() as session:
+            repository.design(session, id)
+            row = repository.revision(session, id, newest_released(session, id))
+            release = next(one for one in steps_taken(session, row) if one.step == "released")
+            now, place = present(session, row), f"/api/v1/designs/{id}/revisions/{row.number}"
+        own = {name: kinds for name, kinds in now.files.items() if "." not in name}
+        return Released(
+            design=id,
+            revision=row.number,
+            title=row.document["name"],
+            approval=shown(release),
+            report=f"{place}/report.pdf",
+            files={name: _links(f"{place}/models/{name}", kinds) for name, kinds in own.items()},
+        )
+
+    def _require_good_files(self, id: str, number: int) -> None:
+        """Return if the STEP files of a revision are in the store with the right bytes; raises NotReady."""
+        with self.database.read() as session:
+            files = present(session, repository.revision(session, id, number)).files
+        for name, kinds in files.items():
+            if STEP in kinds and not self.store.exists(kinds[STEP]):
+                raise NotReady(f"the STEP file of {name} is lost: GET it, which makes it again, then sign")
+
+
+def _links(place: str, kinds: dict[str, str]) -> dict[str, str]:
+    return {kind: f"{place}/model.{kind}" for kind in sorted(kinds)}
+
+
+def _take(session: Session, row: RevisionRow, body: ApprovalIn, expected: str) -> None:
+    """Check and write a step."""
+    who, taken, held = acting(), steps_taken(session, row), present(session, row)
+    require_principal(body.step, who, row, taken)
+    require_turn(body.step, taken, row.number)
+    files = require_files(row, held)
+    previous = taken[-1].digest if taken else None
+    if expected.strip() != f'"{(right := to_sign(row, held, previous))}"':
+        raise OtherDigest(right)
+    signed = Signed(
+        design=row.design_id,
+        revision=row.number,
+        title=row.document["name"],
+        step=body.step,
+        principal=who.id,
+        name=who.name,
+        at=max(now(), taken[-1].at if taken else ""),  # the clock may have been set back
+        document=held.document,
+        results=held.results,
+        files=files,
+        previous=previous,
+        **({"reason": body.reason} if body.reason else {}),
+    )
+    _write(session, signed)
+
+
+def _write(session: Session, signed: Signed) -> None:
+    content = signed.plain()
+    session.add(
+        ApprovalRow(
+            design_id=signed.design,
+            revision=signed.revision,
+            step=signed.step,
+            principal_id=signed.principal,
+            name=signed.name,
+            digest=digest(content),
+            content=content,
+            at=signed.at,
+        )
+    )
+    session.flush()
+    place = f"designs/{signed.design}/revisions/{signed.revision}"
+    record(session, f"revision.{_VERBS[signed.step]}", place, digest(content), signed.at)
+
+
+_VERBS: dict[Step, str] = {
+    "calculated": "hand_over",
+    "checked": "check",
+    "released": "release",
+    "withdrawn": "withdraw",
+}
+
+
+def _shown(session: Session, row: RevisionRow) -> Approvals:
+    taken, held = steps_taken(session, row), present(session, row)
+    following, newest = next_step(taken), session.scalar(NEWEST_RELEASED, {"design": row.design_id})
+    return Approvals(
+        design=row.design_id,
+        revision=row.number,
+        state=state_of(taken),
+        steps=[shown(one) for one in taken],
+        next=following,
+        obstacle=_obstacle(row, taken, held),
+        to_sign=to_sign(row, held, taken[-1].digest if taken else None),
+        present=held,
+        supersedes=row.supersedes,
+        superseded_by=newest if newest is not None and newest > row.number else None,
+    )
+
+
+def _obstacle(row: RevisionRow, taken: list[ApprovalRow], held: Present) -> str | None:
+    """Why the acting principal cannot take the next step now."""
+    following = next_step(taken)
+    if following is None:
+        return None
+    try:
+        require_files(row, held)
+        require_principal(following, acting(), row, taken)
+    except (ApprovalError, RoleNeeded) as error:
+        return str(error)
+    return None

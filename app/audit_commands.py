@@ -1,0 +1,85 @@
+"""`crankwright audit …`: reads the audit in the database itself, whether the service runs or not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+from sqlalchemy.orm import Session
+
+from app.identity import audit_rows, chain
+from app.identity.audit_rows import AuditFilter
+from app.maintenance.errors import CannotRun
+from app.maintenance.folder import database_file
+from app.settings import Settings
+from app.storage.engines import reading_engine, sqlite_file
+from templates.core.errors import plain
+
+_data = click.option(
+    "--data", type=click.Path(path_type=Path), default=None, help="folder of designs and artifacts"
+)
+
+
+@click.group("audit")
+def audit_command() -> None:
+    """Who did what: list the rows, verify the chain that they are sealed in."""
+
+
+@audit_command.command("list")
+@click.option("--object", default=None, help="a path below /api/v1/, such as designs/ID")
+@click.option("--principal", default=None, help="id or name")
+@click.option("--action", default=None, help="such as design.create, or design")
+@click.option("--limit", type=click.IntRange(1, 100_000), default=50, show_default=True)
+@_data
+def list_command(
+    object: str | None, principal: str | None, action: str | None, limit: int, data: Path | None
+) -> None:
+    """Print changes, newest first."""
+    with _reading(data) as session:
+        for row in audit_rows.page(session, limit, None, AuditFilter(object, principal, action))[:limit]:
+            seal = f"{row.seq}" if row.seq is not None else "not sealed"
+            click.echo(plain(f"{row.at}  {row.name}  {row.action}  {row.object}  ({seal})", 500))
+
+
+@audit_command.command("verify")
+@click.option("--head", default=None, help="a hash that was noted earlier; it has to be in the chain")
+@_data
+@click.pass_context
+def verify_command(ctx: click.Context, head: str | None, data: Path | None) -> None:
+    """Walk along the chain, and name the first row that is changed, missing or inserted.
+
+    The exit code is 0 if all is sound, 1 if not. Rows at the end that were cut off, and a chain that was
+    written again from the start, show only against a hash of `GET /api/v1/audit/head` that was noted
+    elsewhere: give it as --head.
+    """
+    with _reading(data) as session:
+        result = chain.verify(session, head)
+    if result.fault:
+        click.secho(plain(result.fault, 1000), fg="red")
+    waiting = f"; {result.unsealed} more wait for the sealer" if result.unsealed else ""
+    click.echo(f"{result.head.seq} rows are sound{waiting}; head {result.head.hash or 'none'}")
+    ctx.exit(1 if result.fault else 0)
+
+
+@contextmanager
+def _reading(data: Path | None) -> Iterator[Session]:
+    """A snapshot of the database that the settings name."""
+    settings = Settings(data=data) if data else Settings()
+    engine = reading_engine(_url(settings))
+    try:
+        with Session(engine) as session:
+            yield session
+    finally:
+        engine.dispose()
+
+
+def _url(settings: Settings) -> str:
+    url = settings.database_url
+    if url and sqlite_file(url) is None:
+        return url
+    try:
+        return f"sqlite:///{database_file(settings.data, url).absolute()}"
+    except CannotRun as error:
+        raise click.ClickException(str(error)) from None

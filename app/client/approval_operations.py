@@ -1,0 +1,45 @@
+"""What a client can ask of the service about approvals of revisions, and comments on them."""
+
+from __future__ import annotations
+
+from app.client.design_operations import once
+from app.client.exchange import Exchange, answered, get, listed, post
+from app.schemas.approvals import Approvals, Comment, CommentList, Released, Step
+
+
+def approvals(id: str, revision: int) -> Exchange[Approvals]:
+    """Who has calculated, checked and released a revision, and what there is to sign."""
+    return answered(Approvals, get(f"/designs/{id}/revisions/{revision}/approvals"))
+
+
+def approve(
+    seen: Approvals, step: Step, reason: str | None = None, *, key: str | None = None
+) -> Exchange[Approvals]:
+    """Take a step of an approval that was read; a withdrawal needs a reason."""
+    body = {"step": step} if reason is None else {"step": step, "reason": reason}
+    path = f"/designs/{seen.design}/revisions/{seen.revision}/approvals"
+    return answered(Approvals, post(path, body, {"If-Match": f'"{seen.to_sign}"', **once(key)}))
+
+
+def released(id: str) -> Exchange[Released]:
+    """The newest released revision of a design, with links to its files."""
+    return answered(Released, get(f"/designs/{id}/released"))
+
+
+def comments(id: str, revision: int) -> Exchange[list[Comment]]:
+    """The comments on a revision, newest first."""
+    return listed(CommentList, f"/designs/{id}/revisions/{revision}/comments")
+
+
+def comment(
+    id: str, revision: int, text: str, subject: str | None = None, *, key: str | None = None
+) -> Exchange[Comment]:
+    """Comment on a revision, or on one of its names such as `film.bearing_width`."""
+    body = {"text": text, "subject": subject}
+    return answered(Comment, post(f"/designs/{id}/revisions/{revision}/comments", body, once(key)))
+
+
+def resolve_comment(comment: Comment) -> Exchange[Comment]:
+    """Say that a comment is dealt with."""
+    path = f"/designs/{comment.design}/revisions/{comment.revision}/comments/{comment.id}/resolve"
+    return answered(Comment, post(path, {}))

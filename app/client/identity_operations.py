@@ -1,0 +1,53 @@
+"""What a client can ask of the service about principals and keys: each function is an exchange."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from app.client.exchange import BASE, Exchange, Request, answered, get, listed, post
+from app.schemas.identity import Key, KeyList, Me, NewKey, Principal, PrincipalList, Role, Usage
+
+_PATH = "/principals"
+
+
+def me() -> Exchange[Me]:
+    """Who this client is for the service, with roles, limits and usage."""
+    return answered(Me, get("/me"))
+
+
+def principals() -> Exchange[list[Principal]]:
+    """Everybody who may use the service."""
+    return listed(PrincipalList, _PATH)
+
+
+def add_principal(name: str, roles: Sequence[Role], kind: str = "person") -> Exchange[Principal]:
+    """A new principal."""
+    return answered(Principal, post(_PATH, {"name": name, "roles": list(roles), "kind": kind}))
+
+
+def change_principal(id: str, **changes: object) -> Exchange[Principal]:
+    """Another `name`, other `roles` or `limits`; `disabled` or not."""
+    return answered(Principal, post(f"{_PATH}/{id}", changes))
+
+
+def usage(id: str) -> Exchange[Usage]:
+    """What a principal has used, and its limits."""
+    return answered(Usage, get(f"{_PATH}/{id}/usage"))
+
+
+def keys(principal: str) -> Exchange[list[Key]]:
+    """The keys of a principal."""
+    return listed(KeyList, f"{_PATH}/{principal}/keys")
+
+
+def add_key(
+    principal: str, *, name: str = "", scopes: Sequence[Role] = (), expires_days: float | None = None
+) -> Exchange[NewKey]:
+    """A new key, which only this answer has."""
+    body = {"name": name, "scopes": list(scopes), "expires_days": expires_days}
+    return answered(NewKey, post(f"{_PATH}/{principal}/keys", body))
+
+
+def revoke_key(principal: str, prefix: str) -> Exchange[Key]:
+    """End the life of a key."""
+    return answered(Key, Request("DELETE", f"{BASE}{_PATH}/{principal}/keys/{prefix}"))

@@ -1,0 +1,67 @@
+"""Which revisions of a design are released: the newest one, and those that later ones supersede."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from sqlalchemy import bindparam, func, select
+from sqlalchemy.orm import Session, aliased
+
+from app.schemas.approvals import ORDER, Step
+from app.storage.errors import NotFound
+from app.storage.tables import ApprovalRow, RevisionRow
+
+_withdrawal = aliased(ApprovalRow)
+_IS_WITHDRAWN = (
+    select(_withdrawal.step)
+    .where(
+        _withdrawal.design_id == ApprovalRow.design_id,
+        _withdrawal.revision == ApprovalRow.revision,
+        _withdrawal.step == "withdrawn",
+    )
+    .exists()
+)
+
+EVER_RELEASED = select(func.max(ApprovalRow.revision)).where(
+    ApprovalRow.design_id == bindparam("design"), ApprovalRow.step == "released"
+)
+"""The number of the newest revision of a `design` that was released, withdrawn since or not; or null."""
+NEWEST_RELEASED = EVER_RELEASED.where(~_IS_WITHDRAWN)
+"""The number of the newest released revision of a `design` that is not withdrawn; or null."""
+
+
+def newest_released(session: Session, design: str) -> int:
+    """The number of the newest released revision of a design.
+
+    Raises
+    ------
+    NotFound
+        If none is released, or all of them are withdrawn.
+    """
+    number = session.scalar(NEWEST_RELEASED, {"design": design})
+    if number is None:
+        raise NotFound(f"design {design[:80]!r} has no released revision")
+    return number
+
+
+def released_of(session: Session, designs: Collection[str]) -> dict[str, int]:
+    """The newest released revision of each of these designs that has one."""
+    query = (
+        select(ApprovalRow.design_id, func.max(ApprovalRow.revision))
+        .where(ApprovalRow.design_id.in_(designs), ApprovalRow.step == "released", ~_IS_WITHDRAWN)
+        .group_by(ApprovalRow.design_id)
+    )
+    return dict(session.execute(query).all())
+
+
+def state_of(session: Session, row: RevisionRow) -> Step | None:
+    """The last step of the approval of a revision; None before the first."""
+    newest = select(ApprovalRow.step).where(
+        ApprovalRow.design_id == row.design_id, ApprovalRow.revision == row.number
+    )
+    return last_of(set(session.scalars(newest)))
+
+
+def last_of(steps: Collection[str]) -> Step | None:
+    """The last of some steps; None if there are none."""
+    return next((step for step in reversed(ORDER) if step in steps), None)

@@ -1,0 +1,22 @@
+"""What a heading of a sheet, or the name of a row, means as a person writes it: `Radial load`, `main 1`."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+
+def place_named(heading: str, places: Collection[str]) -> str:
+    """The place that a heading names, by its whole name or in the words of its input; else the heading.
+
+    `Radial load` is `film.radial_load` where no other step has an input of these words.
+    """
+    if heading in places:
+        return heading
+    words = joined(heading.lower())
+    named = [place for place in places if words in (place.lower(), place.rpartition(".")[2].lower())]
+    return named[0] if len(named) == 1 else heading
+
+
+def joined(words: str) -> str:
+    """Words as a name: each space is an underscore."""
+    return "_".join(words.split())

@@ -1,0 +1,47 @@
+"""The record of who did what: a row in the transaction of the change itself."""
+
+from __future__ import annotations
+
+import secrets
+import time
+
+from sqlalchemy import insert
+from sqlalchemy.orm import Session
+
+from app.identity.acting import acting
+from app.storage.identity import now
+from app.storage.tables import AuditRow
+
+
+def record(
+    session: Session, action: str, object: str, digest: str | None = None, at: str | None = None
+) -> None:
+    """Record what the acting principal does to an object, in the unit of work that does it.
+
+    The id of the row begins with the time by this machine's clock, and is no counter of the database: units
+    of work that only record something do not wait for each other.
+
+    Parameters
+    ----------
+    session
+        The unit of work.
+    action
+        The object's kind and the verb, such as `design.create`.
+    object
+        Its path in the interface, without `/api/v1/`, such as `designs/<id>/revisions/3`.
+    digest
+        SHA-256 of what was written or signed, where there is one.
+    at
+        The time that the change itself carries, as text; the present if not given.
+    """
+    who = acting()
+    row = {
+        "id": f"{time.time_ns():016x}{secrets.token_hex(4)}",
+        "at": at or now(),
+        "principal": who.id,
+        "name": who.name,
+        "action": action,
+        "object": object,
+        "digest": digest,
+    }
+    session.execute(insert(AuditRow).values(row))

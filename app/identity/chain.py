@@ -1,0 +1,169 @@
+"""The chain of the audit: every sealed row has the number after, and the hash of, the row before.
+
+A hash is the SHA-256 of what a row says, its number and the hash before, as canonical JSON. Whoever changes,
+takes out or puts in a row has to write all that follow again, and then meets no hash that was exported.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sqlalchemy import BigInteger, Select, cast, func, select
+from sqlalchemy.exc import DBAPIError
+from sqlalchemy.orm import Session
+
+from app.storage.errors import DatabaseDamaged
+from app.storage.tables import AuditRow, canonical_json
+
+AT_ONCE = 1000  # rows that are read together
+SOME = 500  # rows that one unit seals: others' writes wait a few milliseconds for it
+NO_NUMBER = 2**62  # no sealer comes so far: whoever writes such a number leaves room for those that follow
+_TEXTS = ("id", "at", "principal", "name", "action", "object", "digest", "previous", "hash")
+_DAMAGED = (DBAPIError, DatabaseDamaged)  # when SQLite reads a text that is none
+
+
+@dataclass(frozen=True)
+class Link:
+    """The last row of a chain, or of a part of it."""
+
+    seq: int
+    hash: str | None
+
+
+START = Link(0, None)
+"""Before the first row."""
+
+
+@dataclass(frozen=True)
+class Verified:
+    """What a walk along the chain has come to."""
+
+    head: Link  # the last sound row
+    unsealed: int  # rows that have not been sealed yet
+    fault: str = ""  # what is wrong with the first broken row, or with the head that was looked for
+
+
+def hash_of(row: AuditRow, seq: int, previous: str | None) -> str:
+    """The hash of a row at a place in the chain."""
+    said = {
+        "id": row.id,
+        "at": row.at,
+        "principal": row.principal,
+        "name": row.name,
+        "action": row.action,
+        "object": row.object,
+        "digest": row.digest,
+        "seq": seq,
+        "previous": previous,
+    }
+    return hashlib.sha256(canonical_json(said).encode()).hexdigest()
+
+
+def head(session: Session) -> Link:
+    """The newest sealed row; one whose number was replaced by what is none is passed over."""
+    is_number = cast(AuditRow.seq, BigInteger) == AuditRow.seq  # SQLite keeps what somebody wrote: 2.5 or 'x'
+    numbered = select(AuditRow.seq).where(AuditRow.seq < NO_NUMBER, is_number)
+    seq = session.scalar(numbered.order_by(AuditRow.seq.desc()).limit(1))
+    if seq is None:
+        return START
+    try:
+        hash = session.scalar(select(AuditRow.hash).where(AuditRow.seq == seq))
+    except _DAMAGED:
+        hash = None
+    return Link(seq, hash if isinstance(hash, str) else None)
+
+
+def verify(session: Session, exported: str | None = None) -> Verified:
+    """Walk along the chain to its first broken row, or to its end.
+
+    Parameters
+    ----------
+    session
+        A snapshot of the database.
+    exported
+        A hash that was noted earlier. It has to be that of a row: a chain that was cut off at its end, or
+        written again as a whole, is sound in itself.
+    """
+    unsealed = session.scalar(select(func.count()).where(AuditRow.seq.is_(None))) or 0
+    last, met = START, exported is None
+    try:
+        for row in _sealed(session):
+            if fault := _fault(row, last):
+                return Verified(last, unsealed, fault)
+            last = Link(last.seq + 1, row.hash)
+            met = met or row.hash == exported
+    except _DAMAGED:
+        return Verified(last, unsealed, f"row {last.seq + 1} was changed: it holds what is no text")
+    if len(waiting(session)) < min(unsealed, SOME):
+        return Verified(last, unsealed, f"a row behind row {last.seq}, not sealed, holds what is no text")
+    cut = f"no row has the hash {exported}: rows were cut off at the end, or all of them written again"
+    return Verified(last, unsealed, "" if met else cut)
+
+
+def _sealed(session: Session) -> Iterator[AuditRow]:
+    """The sealed rows in their order, a page at a time."""
+    last = -(2**63)
+    while True:
+        query = select(AuditRow).where(AuditRow.seq > last).order_by(AuditRow.seq).limit(AT_ONCE)
+        try:
+            page = list(session.scalars(query))
+        except _DAMAGED:  # one of them is no text: those before it, one by one
+            page = list(session.scalars(query.limit(1)))
+        if not page:
+            return
+        yield from page
+        if not isinstance(place := page[-1].seq, int):
+            return
+        last = place
+        session.expunge_all()
+
+
+def _fault(row: AuditRow, last: Link) -> str:
+    """What is wrong with a row behind a sound one; empty if nothing is."""
+    seq, name = row.seq, f"row {row.seq} ({row.action} of {row.object} by {row.name}, {row.at})"
+    if not isinstance(seq, int):
+        return f"{name} was changed: its number is none"
+    if not _is_text(row):
+        return f"{name} was changed: it holds what is no text"
+    if seq > last.seq + 1:
+        return f"row {last.seq + 1} is missing: after row {last.seq} comes {name}"
+    if seq <= last.seq or row.hash is None:
+        return f"{name} was inserted: no sealer numbers a row so"
+    if row.hash != hash_of(row, seq, row.previous):
+        return f"{name} was changed: it does not say what its hash was made of"
+    if row.previous != last.hash:
+        return f"{name} was inserted, or the row before it was replaced: it does not continue row {last.seq}"
+    return ""
+
+
+def _is_text(row: AuditRow) -> bool:
+    return all(isinstance(getattr(row, column), str | None) for column in _TEXTS)
+
+
+def waiting(session: Session) -> list[AuditRow]:
+    """The oldest rows that are not sealed, without those that hold what is no text: `verify` names these."""
+    query = select(AuditRow).where(AuditRow.seq.is_(None)).order_by(AuditRow.id).limit(SOME)
+    try:
+        rows = list(session.scalars(query))
+    except _DAMAGED:
+        rows = [row for place in range(SOME) for row in _readable(session, query.offset(place).limit(1))]
+    return [row for row in rows if _is_text(row)]
+
+
+def _readable(session: Session, query: Select[AuditRow]) -> list[AuditRow]:
+    try:
+        return list(session.scalars(query))
+    except _DAMAGED:
+        return []
+
+
+def seal(session: Session) -> int:
+    """Number and chain rows that wait, in a unit of work; return how many."""
+    last, count = head(session), 0
+    for row in waiting(session):
+        row.seq, row.previous = last.seq + 1, last.hash
+        row.hash = hash_of(row, row.seq, row.previous)
+        last, count = Link(row.seq, row.hash), count + 1
+    return count

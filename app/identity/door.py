@@ -1,0 +1,114 @@
+"""Who a request comes from: by its key, or by the session of a browser.
+
+Until there is a principal, everybody is LOCAL; from then on keys are asked for, and that never ends. What was
+verified is trusted for `FRESH` seconds: so long a revoked key may live on another server.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import Counter
+from collections.abc import Callable
+
+from cachetools import TTLCache
+from sqlalchemy.orm import Session
+
+from app.identity import rows, usage
+from app.identity.keys import digest, key_prefix
+from app.identity.limits import limits_of
+from app.identity.rate import Rate
+from app.identity.rows import Guest
+from app.settings import Settings
+from app.storage.database import Database
+
+FRESH = 2.0  # s
+_KEEP = 10.0  # between two writings of how many requests there were [s]
+_MOST = 4096  # keys and sessions that are remembered
+_NO_PREFIX = ""
+
+
+class Door:
+    """Verifies keys and sessions, and counts the requests of each principal."""
+
+    def __init__(self, database: Database, settings: Settings) -> None:
+        self._database, self._settings = database, settings
+        self._asks, self._asked_at = settings.oidc_issuer is not None, -FRESH
+        self._rate, self._kept_at = Rate(), time.monotonic()
+        self.forget()
+
+    def forget(self) -> None:
+        """Verify again whatever comes: something has changed."""
+        self._known: TTLCache[str, Guest] = TTLCache(_MOST, FRESH)
+        self._asked_at = -FRESH
+
+    async def is_open(self) -> bool:
+        """Whether nothing asks for a key; nobody passes before that is read.
+
+        Raises
+        ------
+        DatabaseUnavailable
+            The database server cannot be reached.
+        """
+        if self._asks:
+            return False
+        if (present := time.monotonic()) - self._asked_at >= FRESH:
+            self._asks = await asyncio.to_thread(self._any_principal)
+            self._asked_at = present
+        return not self._asks
+
+    async def by_key(self, key: str) -> Guest | None:
+        """Whom this key lets in; None if it is not valid."""
+        return await self._guest(digest(key), lambda: self._holder(key))
+
+    async def by_session(self, token: str) -> Guest | None:
+        """Who has signed in by the session of this cookie; None if it is not valid."""
+        hash = digest(token)
+        return await self._guest(hash, lambda: self._signed_in(hash))
+
+    def count(self, guest: Guest) -> None:
+        """Count a request.
+
+        Raises
+        ------
+        LimitReached
+            There were too many.
+        """
+        limits = limits_of(self._settings, guest.limits)
+        self._rate.take(guest.principal, limits.requests_per_minute)
+
+    async def _guest(self, hash: str, find: Callable[[], Guest | None]) -> Guest | None:
+        """What is known by this hash, or what is found; it is kept in the cache that there was before."""
+        cache = self._known
+        if (known := cache.get(hash)) is not None:
+            return known
+        found = await asyncio.to_thread(find)
+        if found is not None:
+            cache[hash] = found
+            await self._keep_counts()
+        return found
+
+    async def _keep_counts(self) -> None:
+        """Write now and then how many requests there were."""
+        if (present := time.monotonic()) - self._kept_at >= _KEEP:
+            self._kept_at = present
+            await asyncio.to_thread(self._note, self._rate.counted())
+
+    def _note(self, counts: Counter[str]) -> None:
+        def unit(session: Session) -> None:
+            for principal, count in counts.items():
+                usage.note(session, principal, requests=count)
+
+        self._database.write(unit)
+
+    def _any_principal(self) -> bool:
+        with self._database.read() as session:
+            return rows.any_principal(session)
+
+    def _holder(self, key: str) -> Guest | None:
+        with self._database.read() as session:
+            return rows.holder(session, key_prefix(key) or _NO_PREFIX, key)
+
+    def _signed_in(self, hash: str) -> Guest | None:
+        with self._database.read() as session:
+            return rows.signed_in(session, hash)

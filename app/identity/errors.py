@@ -1,0 +1,78 @@
+"""Why a request is not carried out for the one who sends it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from app.identity.acting import Principal
+
+
+class IdentityError(Exception):
+    """A request that is refused because of who sends it."""
+
+    headers: dict[str, str] = {}
+
+
+class NotSignedIn(IdentityError):
+    """No key or session came, or one that is not valid; the answer does not say which."""
+
+    headers = {"WWW-Authenticate": "Bearer"}
+
+    def __init__(self) -> None:
+        super().__init__(
+            "send a valid key in the header Authorization, as `Bearer cw_…`, or sign in at /sign-in; "
+            "the operator makes keys by `crankwright keys add`"
+        )
+
+
+class RoleNeeded(IdentityError):
+    """The roles of whoever asks do not include the one that is needed."""
+
+    def __init__(self, who: Principal, roles: Iterable[str]) -> None:
+        own = ", ".join(sorted(who.roles)) or "none"
+        super().__init__(f"this needs the role {' or '.join(roles)}; {who.name} has here: {own}")
+
+
+class NotOwn(IdentityError):
+    """What belongs to another principal is left to that, or to an administrator."""
+
+
+class KeyInAddress(IdentityError):
+    """A key stands in the address, which is kept by logs and histories on the way."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "a key stands in the address, where logs and histories keep it: revoke that key, and send the "
+            "next one in the header Authorization, as `Bearer cw_…`"
+        )
+
+
+class Outlives(IdentityError):
+    """A key would be valid for longer than the one that makes it."""
+
+    def __init__(self, latest: str) -> None:
+        super().__init__(
+            f"a key ends at the latest with the one that makes it, {latest}: ask for less, or leave the life "
+            "away; an administrator makes one that lives longer"
+        )
+
+
+class TooManyKeys(IdentityError):
+    """A principal has as many keys as it may have."""
+
+
+class FirstByCommand(IdentityError):
+    """The first principal would lock everybody out who has no key."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "this service asks for no keys yet; the operator adds the first principal, with a key, by "
+            "`crankwright keys add NAME --role admin`"
+        )
+
+
+class NameTaken(IdentityError):
+    """Another principal has this name."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f"there is a principal {name!r} already; choose another name")

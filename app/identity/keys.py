@@ -1,0 +1,54 @@
+"""Keys of the interface: `cw_<prefix>_<secret>`. The database has their SHA-256 alone.
+
+A secret has 256 random bits, so a fast hash keeps it: a slow one would only protect what can be guessed, and
+would let anybody keep the server busy.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import secrets
+import string
+from dataclasses import dataclass
+
+from app.observation.secrets import MARK, PREFIX, SECRET, key_prefix
+
+_LETTERS = string.ascii_lowercase + string.digits
+_BYTES = 32
+NO_HASH = "0" * 64
+"""Compared with where there is no key of that prefix. No text has this SHA-256, as far as anybody knows."""
+
+
+@dataclass(frozen=True)
+class NewKey:
+    """A key that has just been made; `text` is shown once and never stored."""
+
+    prefix: str
+    text: str
+
+    @property
+    def hash(self) -> str:
+        """What is stored of it."""
+        return digest(self.text)
+
+
+def new_key() -> NewKey:
+    """Make a key."""
+    prefix = "".join(secrets.choice(_LETTERS) for _ in range(PREFIX))
+    secret = secrets.token_urlsafe(_BYTES)
+    assert len(secret) == SECRET
+    return NewKey(prefix, f"{MARK}{prefix}_{secret}")
+
+
+def digest(text: str) -> str:
+    """SHA-256 of a key or of a session's cookie, in hexadecimal digits."""
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def is_same(text: str, stored: str) -> bool:
+    """Whether a text has a stored hash, in a time that does not depend on where they differ."""
+    return hmac.compare_digest(digest(text), stored)
+
+
+__all__ = ["NO_HASH", "NewKey", "digest", "is_same", "key_prefix", "new_key"]

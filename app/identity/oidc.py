@@ -1,0 +1,174 @@
+"""Signing in by an OpenID provider: authorization code with state, nonce and PKCE.
+
+OpenID Connect Core 1.0, section 3.1, and RFC 7636.
+
+Needs the extra `team`, of which the parts are imported where they are used.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import hmac
+import secrets
+from collections.abc import Mapping
+from dataclasses import dataclass
+from urllib.parse import urlencode
+
+import httpx
+
+from app.identity.errors import IdentityError
+from app.settings import Settings
+
+DISCOVERY = "/.well-known/openid-configuration"
+SIGNED_BY = ["RS256", "PS256", "ES256", "EdDSA"]
+_PATIENCE = 10.0  # for an answer of the provider [s]
+_BYTES = 32
+_LONGEST_NAME = 90  # characters
+
+
+class ProviderRefused(IdentityError):
+    """The provider did not say who signs in, or not in a way that can be trusted."""
+
+
+@dataclass(frozen=True)
+class Begun:
+    """A sign-in that has begun: what the browser keeps until the provider sends it back."""
+
+    state: str
+    nonce: str
+    verifier: str
+
+    @property
+    def challenge(self) -> str:
+        """What the provider learns of the verifier (RFC 7636, S256)."""
+        hashed = hashlib.sha256(self.verifier.encode()).digest()
+        return base64.urlsafe_b64encode(hashed).rstrip(b"=").decode()
+
+
+@dataclass(frozen=True)
+class Person:
+    """Who the provider says has signed in; `subject` names this person for ever, with the provider."""
+
+    subject: str
+    name: str
+
+
+def begin() -> Begun:
+    """Begin a sign-in."""
+    return Begun(*(secrets.token_urlsafe(_BYTES) for _ in range(3)))
+
+
+class Provider:
+    """The OpenID provider of the settings."""
+
+    def __init__(self, settings: Settings, transport: httpx.AsyncBaseTransport | None = None) -> None:
+        if settings.oidc_issuer is None or settings.oidc_client is None:
+            raise ProviderRefused("the service has no provider: set CRANKWRIGHT_OIDC_ISSUER and _CLIENT")
+        self.issuer, self.client = settings.oidc_issuer.rstrip("/"), settings.oidc_client
+        self._secret = settings.oidc_secret.get_secret_value() if settings.oidc_secret else None
+        self._transport = transport
+
+    async def address(self, begun: Begun, back: str) -> str:
+        """Where the browser goes to sign in; the provider sends it to `back`.
+
+        Raises
+        ------
+        ProviderRefused
+            The provider does not answer as one.
+        """
+        async with self._http() as http:
+            place = _text(await self._about(http), "authorization_endpoint")
+        query = {
+            "response_type": "code",
+            "client_id": self.client,
+            "redirect_uri": back,
+            "scope": "openid profile email",
+            "state": begun.state,
+            "nonce": begun.nonce,
+            "code_challenge": begun.challenge,
+            "code_challenge_method": "S256",
+        }
+        return f"{place}{'&' if '?' in place else '?'}{urlencode(query)}"
+
+    async def person(self, begun: Begun, state: str, code: str, back: str) -> Person:
+        """Who has signed in, by the code that the browser brought back.
+
+        Raises
+        ------
+        ProviderRefused
+            The state is another, the code is not taken, or the token is not signed for this sign-in.
+        """
+        if not hmac.compare_digest(state.encode(), begun.state.encode()):
+            raise ProviderRefused("this sign-in was not begun in this browser: begin again")
+        sent = {
+            "grant_type": "authorization_code",
+            "code": code,
+            "redirect_uri": back,
+            "client_id": self.client,
+            "code_verifier": begun.verifier,
+            **({"client_secret": self._secret} if self._secret else {}),
+        }
+        async with self._http() as http:
+            about = await self._about(http)
+            answer = await _asked(http, "POST", _text(about, "token_endpoint"), sent)
+            keys = await _asked(http, "GET", _text(about, "jwks_uri"))
+        claims = self._verified(_text(answer, "id_token"), keys, begun.nonce)
+        subject = _text(claims, "sub")
+        named = [claims.get(field) for field in ("name", "preferred_username", "email")]
+        name = next((text.strip() for text in named if isinstance(text, str) and text.strip()), subject)
+        return Person(f"{self.issuer} {subject}", " ".join(name.split())[:_LONGEST_NAME])
+
+    def _verified(self, token: str, keys: Mapping[str, object], nonce: str) -> Mapping[str, object]:
+        """The claims of a token, if it is signed by the provider, for this service and this sign-in."""
+        try:
+            from joserfc import jwt
+            from joserfc.errors import JoseError
+            from joserfc.jwk import KeySet
+        except ModuleNotFoundError:
+            raise ProviderRefused("the service lacks a package: pip install crankwright[team]") from None
+        try:
+            claims = jwt.decode(token, KeySet.import_key_set(keys), algorithms=SIGNED_BY).claims  # type: ignore[arg-type]  # checked by it
+            jwt.JWTClaimsRegistry(
+                leeway=60,
+                iss={"essential": True, "value": self.issuer},
+                aud={"essential": True, "value": self.client},
+                nonce={"essential": True, "value": nonce},
+                exp={"essential": True},
+                sub={"essential": True},
+            ).validate(claims)
+        except (JoseError, ValueError, KeyError, TypeError) as error:
+            raise ProviderRefused(f"the provider's token is not valid: {type(error).__name__}") from None
+        if claims.get("azp", self.client) != self.client:  # OpenID Connect Core 1.0, section 3.1.3.7
+            raise ProviderRefused("the provider's token is for another service")
+        return claims
+
+    async def _about(self, http: httpx.AsyncClient) -> Mapping[str, object]:
+        about = await _asked(http, "GET", self.issuer + DISCOVERY)
+        if _text(about, "issuer").rstrip("/") != self.issuer:
+            raise ProviderRefused("the provider calls itself by another name than CRANKWRIGHT_OIDC_ISSUER")
+        return about
+
+    def _http(self) -> httpx.AsyncClient:
+        return httpx.AsyncClient(transport=self._transport, timeout=_PATIENCE, trust_env=False)
+
+
+async def _asked(
+    http: httpx.AsyncClient, method: str, place: str, sent: Mapping[str, str] | None = None
+) -> Mapping[str, object]:
+    """What the provider answers; nothing of it is quoted."""
+    try:
+        answer = await http.request(method, place, data=sent)
+        found: object = answer.json() if answer.is_success else None
+    except (httpx.HTTPError, httpx.InvalidURL, ValueError):
+        found = None
+    if not isinstance(found, dict):
+        raise ProviderRefused("the provider does not answer, or refuses")
+    return found
+
+
+def _text(about: Mapping[str, object], name: str) -> str:
+    found = about.get(name)
+    if not isinstance(found, str) or not found:
+        raise ProviderRefused(f"the provider does not say its {name}")
+    return found

@@ -1,0 +1,175 @@
+"""All SQL about principals, keys and sessions. Every function runs in the transaction of its caller."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from typing import Literal, cast
+
+from sqlalchemy import delete, exists, select
+from sqlalchemy.orm import Session
+
+from app.identity.acting import BUILT_IN, LOCAL, SYSTEM, Principal, Role
+from app.identity.keys import NO_HASH, is_same
+from app.storage.errors import NotFound
+from app.storage.identity import now
+from app.storage.tables import ApiKeyRow, PrincipalRow, SessionRow
+
+
+@dataclass(frozen=True)
+class Guest:
+    """Whom a key or a session lets in; `limits` are its own, `form_token` that of its session's forms."""
+
+    principal: Principal
+    limits: Mapping[str, object] | None
+    form_token: str = ""
+
+
+def any_principal(session: Session) -> bool:
+    """Whether there is a principal, so that keys are asked for."""
+    return bool(session.scalar(select(exists().where(PrincipalRow.id.is_not(None)))))
+
+
+def holder(session: Session, prefix: str, key: str) -> Guest | None:
+    """Whose key this is; None if it is not valid, for whatever reason.
+
+    Whether there is such a prefix makes no difference in what is done.
+    """
+    found = session.execute(
+        select(ApiKeyRow, PrincipalRow).join(PrincipalRow).where(ApiKeyRow.prefix == prefix)
+    ).one_or_none()
+    row, owner = found if found else (None, None)
+    fits = is_same(key, row.hash if row else NO_HASH)
+    if not fits or row is None or owner is None or owner.disabled or row.revoked or is_over(row.expires):
+        return None
+    return Guest(_by_key(owner, row), owner.limits)
+
+
+def signed_in(session: Session, hash: str) -> Guest | None:
+    """Who has signed in by a session; None if it, or the key by which it began, is not valid."""
+    query = select(SessionRow, PrincipalRow, ApiKeyRow).join(
+        PrincipalRow, SessionRow.principal_id == PrincipalRow.id
+    )
+    query = query.outerjoin(ApiKeyRow, SessionRow.key == ApiKeyRow.prefix).where(SessionRow.hash == hash)
+    if (found := session.execute(query).one_or_none()) is None:
+        return None
+    row, owner, key = found
+    if owner.disabled or is_over(row.expires) or (key and (key.revoked or is_over(key.expires))):
+        return None
+    return Guest(_by_key(owner, key) if key else principal(owner), owner.limits, row.csrf)
+
+
+def principal(row: PrincipalRow) -> Principal:
+    """A principal with all its roles."""
+    kind = cast(Literal["person", "service"], row.kind)
+    return Principal(row.id, row.name, kind, frozenset(cast(list[Role], row.roles)))
+
+
+def _by_key(row: PrincipalRow, key: ApiKeyRow) -> Principal:
+    """A principal with those of its roles that a key allows."""
+    whole = principal(row)
+    scopes = cast(list[Role], key.scopes)
+    allowed = frozenset(scope for scope in scopes if whole.may(scope)) if scopes else whole.roles
+    return replace(whole, roles=allowed, key=key.prefix)
+
+
+def is_over(moment: str | None) -> bool:
+    """Whether a moment has passed; none never does."""
+    return moment is not None and moment <= now()
+
+
+def find(session: Session, id: str) -> PrincipalRow:
+    """A principal by its id.
+
+    Raises
+    ------
+    NotFound
+        If there is none.
+    """
+    row = session.get(PrincipalRow, id)
+    if row is None:
+        raise NotFound(f"there is no principal {id[:60]!r}")
+    return row
+
+
+def named(session: Session, name: str) -> PrincipalRow | None:
+    """A principal by its name, or None."""
+    return session.scalar(select(PrincipalRow).where(PrincipalRow.name == name))
+
+
+def of_subject(session: Session, subject: str) -> PrincipalRow | None:
+    """The person whom an OpenID provider calls so, or None."""
+    return session.scalar(select(PrincipalRow).where(PrincipalRow.subject == subject))
+
+
+def principals(session: Session, limit: int, after: str | None) -> list[PrincipalRow]:
+    """Principals in the order of their creation, behind one of them if given."""
+    query = select(PrincipalRow).order_by(PrincipalRow.id).limit(limit)
+    return list(session.scalars(query.where(PrincipalRow.id > after) if after else query))
+
+
+def keys_of(session: Session, principal: str) -> list[ApiKeyRow]:
+    """The keys of a principal, oldest first."""
+    return list(
+        session.scalars(
+            select(ApiKeyRow)
+            .where(ApiKeyRow.principal_id == principal)
+            .order_by(ApiKeyRow.created, ApiKeyRow.prefix)
+        )
+    )
+
+
+def find_key(session: Session, prefix: str, principal: str | None = None) -> ApiKeyRow:
+    """A key by its prefix; that of one principal, if it is named.
+
+    Raises
+    ------
+    NotFound
+        If there is none.
+    """
+    row = session.get(ApiKeyRow, prefix)
+    if row is None or principal not in (None, row.principal_id):
+        raise NotFound(f"there is no key with the prefix {prefix[:60]!r}")
+    return row
+
+
+def made_by(session: Session, prefix: str, spared: str | None) -> list[ApiKeyRow]:
+    """A key, and those made by it or by one of these; without a spared one and those that it has made."""
+    found = [session.get_one(ApiKeyRow, prefix)]
+    for row in found:  # grows meanwhile
+        made = select(ApiKeyRow).where(ApiKeyRow.made_by == row.prefix)
+        found.extend(key for key in session.scalars(made) if key.prefix != spared)
+    return found
+
+
+def end_sessions(session: Session, principal: str) -> None:
+    """Sign a principal out in every browser."""
+    session.execute(delete(SessionRow).where(SessionRow.principal_id == principal))
+
+
+def end_old_sessions(session: Session) -> None:
+    """Forget sessions that are over."""
+    session.execute(delete(SessionRow).where(SessionRow.expires <= now()))
+
+
+def end_session(session: Session, hash: str) -> None:
+    """Forget a session."""
+    session.execute(delete(SessionRow).where(SessionRow.hash == hash))
+
+
+def asked_by(session: Session, id: str) -> Principal:
+    """On whose behalf a job runs; LOCAL where that principal is of another database."""
+    row = session.get(PrincipalRow, id)
+    return LOCAL if row is None else principal(row)
+
+
+def names(session: Session, ids: Collection[str]) -> dict[str, str]:
+    """The names of principals by their ids; one without a row has none."""
+    wanted = set(ids) - BUILT_IN
+    known = {LOCAL.id: LOCAL.name, SYSTEM.id: SYSTEM.name}
+    if not wanted:
+        return known
+    found = select(PrincipalRow.id, PrincipalRow.name).where(PrincipalRow.id.in_(wanted))
+    for id, name in session.execute(found):
+        known[id] = name
+    return known

@@ -1,0 +1,66 @@
+"""The sealer of the audit: each second it numbers and chains the rows that units of work have added.
+
+To chain a row in its own unit of work would let every commit wait for the one before. Of several servers on
+one database one seals at a time, under a lock that PostgreSQL keeps until the end of its transaction.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.identity.chain import seal
+from app.storage.database import Database
+from app.storage.tables import AuditRow
+
+logger = logging.getLogger(__name__)
+
+PAUSE = 1.0  # between two looks [s]
+LOCK = 0x63775F7365616C  # of PostgreSQL's advisory locks, which are numbers: "cw_seal"
+_WAITING = select(AuditRow.seq).where(AuditRow.seq.is_(None)).limit(1)
+
+
+class Sealer:
+    """Seals rows until it is stopped, and those that are there then."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._work, name="audit-sealer", daemon=True)
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Seal what is there, and end."""
+        self._stopping.set()
+        self._thread.join()
+
+    def run(self) -> int:
+        """Seal all rows that are there; return how many. It writes only if there are any."""
+        total = 0
+        while self._is_wanted() and (count := self._database.write(self._unit)):
+            total += count
+        return total
+
+    def _is_wanted(self) -> bool:
+        with self._database.read() as session:
+            return session.execute(_WAITING).first() is not None
+
+    def _unit(self, session: Session) -> int:
+        if self._database.is_shared and not session.scalar(select(func.pg_try_advisory_xact_lock(LOCK))):
+            return 0  # another server is sealing them
+        return seal(session)
+
+    def _work(self) -> None:
+        more = True
+        while more:
+            more = not self._stopping.wait(PAUSE)
+            try:
+                self.run()
+            except Exception:
+                logger.exception("Rows of the audit could not be sealed; trying again in %g s", PAUSE)

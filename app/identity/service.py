@@ -1,0 +1,350 @@
+"""Principals, their keys and sessions: every change has its row in the audit, and counts here at once."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from typing import Literal, TypeVar
+
+from sqlalchemy.orm import Session
+
+from app.identity import audit, rows, usage
+from app.identity.acting import BUILT_IN, ROLES, Principal, Role, acting
+from app.identity.door import Door
+from app.identity.errors import (
+    FirstByCommand,
+    NameTaken,
+    NotOwn,
+    NotSignedIn,
+    Outlives,
+    RoleNeeded,
+    TooManyKeys,
+)
+from app.identity.keys import NewKey, digest, new_key
+from app.identity.limits import Limits, limits_of
+from app.identity.usage import Used
+from app.settings import Settings
+from app.storage.database import Database
+from app.storage.identity import as_text, new_id, now
+from app.storage.tables import ApiKeyRow, PrincipalRow, SessionRow
+
+T = TypeVar("T")
+Kind = Literal["person", "service"]
+
+MOST_KEYS = 1000  # of one principal
+_TOKEN_BYTES = 32
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What shall be different about a principal; None: it stays."""
+
+    name: str | None = None
+    roles: Sequence[Role] | None = None
+    limits: dict[str, float | None] | None = None
+    disabled: bool | None = None
+
+
+class Identity:
+    """Who may use the service."""
+
+    def __init__(self, database: Database, settings: Settings) -> None:
+        self._database, self._settings = database, settings
+        self.door = Door(database, settings)
+
+    def add(
+        self, name: str, roles: Iterable[Role], kind: Kind = "person", subject: str | None = None
+    ) -> PrincipalRow:
+        """Make a principal.
+
+        Raises
+        ------
+        NameTaken
+            Another one has the name.
+        """
+        return self._write(lambda session: _added(session, name, roles, kind, subject))
+
+    def add_another(self, name: str, roles: Iterable[Role], kind: Kind) -> PrincipalRow:
+        """Make a principal beside those there are: the first one has the service ask for keys.
+
+        Raises
+        ------
+        FirstByCommand, NameTaken
+            It would be the first one; another one has the name.
+        """
+
+        def unit(session: Session) -> PrincipalRow:
+            if not rows.any_principal(session):
+                raise FirstByCommand
+            return _added(session, name, roles, kind, None)
+
+        return self._write(unit)
+
+    def find(self, id: str) -> PrincipalRow:
+        """A principal.
+
+        Raises
+        ------
+        NotFound
+            There is none of this id.
+        """
+        with self._database.read() as session:
+            return rows.find(session, id)
+
+    def named(self, name: str) -> PrincipalRow | None:
+        """A principal by its name, or None."""
+        with self._database.read() as session:
+            return rows.named(session, name)
+
+    def page(self, limit: int, after: str | None = None) -> list[PrincipalRow]:
+        """Principals in the order of their creation."""
+        with self._database.read() as session:
+            return rows.principals(session, limit, after)
+
+    def change(self, id: str, changes: Changes) -> PrincipalRow:
+        """Change a principal; who is disabled is signed out everywhere.
+
+        Raises
+        ------
+        NotFound, NameTaken
+            There is no such principal; another one has the name.
+        """
+
+        def unit(session: Session) -> PrincipalRow:
+            row = rows.find(session, id)
+            if changes.name is not None and changes.name != row.name:
+                _require_free(session, changes.name)
+                row.name = changes.name
+            if changes.roles is not None:
+                row.roles = _in_order(changes.roles)
+            if changes.limits is not None:
+                row.limits = {**(row.limits or {}), **changes.limits}
+            if changes.disabled is not None:
+                row.disabled = (row.disabled or now()) if changes.disabled else None
+                rows.end_sessions(session, id)
+            audit.record(session, _verb(changes), f"principals/{id}")
+            return row
+
+        return self._write(unit)
+
+    def add_key(
+        self, principal: str, name: str = "", scopes: Iterable[Role] = (), expires: datetime | None = None
+    ) -> tuple[NewKey, ApiKeyRow]:
+        """Make a key, which only this answer has.
+
+        A principal makes keys for itself with the roles and the life of the key that it acts by, at most; an
+        administrator makes them for others.
+
+        Raises
+        ------
+        NotFound, NotOwn, RoleNeeded, Outlives
+            There is no such principal; it is another; a scope is no role that the key may have; it would be
+            valid for longer than it may.
+        """
+        made = new_key()
+
+        def unit(session: Session) -> ApiKeyRow:
+            _require_own(principal)
+            owner = rows.principal(rows.find(session, principal))
+            if len(rows.keys_of(session, principal)) >= MOST_KEYS:
+                raise TooManyKeys(f"{owner.name} has {MOST_KEYS} keys, which is the most; revoked ones count")
+            maker = _maker(session, owner)
+            row = ApiKeyRow(
+                prefix=made.prefix, hash=made.hash, principal_id=principal, name=name,
+                scopes=_scopes(owner, list(scopes), maker), expires=_expires(expires, maker), revoked=None,
+                made_by=maker and maker.prefix, created=now(),
+            )  # fmt: skip
+            session.add(row)
+            audit.record(session, "key.add", f"keys/{made.prefix}")
+            return row
+
+        return made, self._write(unit)
+
+    def keys(self, principal: str) -> list[ApiKeyRow]:
+        """The keys of a principal, for itself or an administrator; oldest first.
+
+        Raises
+        ------
+        NotFound, NotOwn
+            There is no such principal; it is another.
+        """
+        _require_own(principal)
+        with self._database.read() as session:
+            rows.find(session, principal)
+            return rows.keys_of(session, principal)
+
+    def usage(self, principal: str) -> tuple[Used, Limits | None]:
+        """What a principal has used, and its limits, for itself or an administrator.
+
+        Raises
+        ------
+        NotFound, NotOwn
+            There is no such principal; it is another.
+        """
+        _require_own(principal)
+        with self._database.read() as session:
+            amounts = usage.used(session, principal)
+            if principal in BUILT_IN:
+                return amounts, None
+            return amounts, limits_of(self._settings, rows.find(session, principal).limits)
+
+    def revoke(self, prefix: str, principal: str | None = None) -> list[ApiKeyRow]:
+        """End the life of a key, of one principal if that is named; of a revoked one nothing changes.
+
+        The keys that its principal has made by it end as well, but for the one by which it is revoked: so one
+        changes from an old key to its successor. The key comes first in what is returned, then those others.
+
+        Raises
+        ------
+        NotFound, NotOwn
+            There is no such key; it, or the named principal, is another's.
+        """
+        if principal is not None:
+            _require_own(principal)
+
+        def unit(session: Session) -> list[ApiKeyRow]:
+            row = rows.find_key(session, prefix, principal)
+            _require_own(row.principal_id)
+            if row.revoked is not None:
+                return [row]
+            made = rows.made_by(session, prefix, spared=acting().key)
+            ended = [one for one in made if one.revoked is None]
+            for one in ended:
+                _end(session, one)
+            return ended
+
+        return self._write(unit)
+
+    def sign_in(self, principal: str, key: str | None = None, before: str = "") -> str:
+        """Begin a session in a browser, by a key or by what a provider says; the value of its cookie.
+
+        Parameters
+        ----------
+        principal
+            Who signs in.
+        key
+            The prefix of the key by which they do: the session can do no more, and ends with it.
+        before
+            The cookie that the browser has sent: its session ends.
+        """
+        token, form_token = (secrets.token_urlsafe(_TOKEN_BYTES) for _ in range(2))
+        expires = as_text(datetime.now(UTC) + timedelta(hours=self._settings.session_hours))
+
+        def unit(session: Session) -> None:
+            rows.end_old_sessions(session)
+            rows.end_session(session, digest(before))
+            row = SessionRow(
+                hash=digest(token), principal_id=principal, key=key, csrf=form_token, expires=expires,
+                created=now(),
+            )  # fmt: skip
+            session.add(row)
+            audit.record(session, "session.begin", f"principals/{principal}")
+
+        self._write(unit)
+        return token
+
+    def signed_in_as(self, subject: str, name: str) -> str:
+        """The principal whom a provider names by a subject; a new one has no roles yet."""
+
+        def unit(session: Session) -> str:
+            if (known := rows.of_subject(session, subject)) is not None:
+                return known.id
+            free = name if rows.named(session, name) is None else f"{name} {secrets.token_hex(3)}"
+            return _added(session, free, (), "person", subject).id
+
+        return self._write(unit)
+
+    def sign_out(self, token: str) -> None:
+        """End the session of a cookie."""
+        self._write(lambda session: rows.end_session(session, digest(token)))
+
+    def _write(self, unit: Callable[[Session], T]) -> T:
+        """Run a unit of work; whatever this server has verified before counts no longer."""
+        try:
+            return self._database.write(unit)
+        finally:
+            self.door.forget()
+
+
+def _added(
+    session: Session, name: str, roles: Iterable[Role], kind: Kind, subject: str | None
+) -> PrincipalRow:
+    _require_free(session, name)
+    row = PrincipalRow(
+        id=new_id(session), kind=kind, name=name, subject=subject, roles=_in_order(roles), limits=None,
+        disabled=None, created=now(),
+    )  # fmt: skip
+    session.add(row)
+    audit.record(session, "principal.add", f"principals/{row.id}")
+    return row
+
+
+def _require_free(session: Session, name: str) -> None:
+    if rows.named(session, name) is not None:
+        raise NameTaken(name)
+
+
+def _require_own(principal: str) -> None:
+    who = acting()
+    if who.id != principal and not who.may("admin"):
+        raise NotOwn("keys and usage of another principal are left to that or to an administrator")
+
+
+def _in_order(roles: Iterable[Role]) -> list[str]:
+    wanted = set(roles)
+    return [role for role in ROLES if role in wanted]
+
+
+def _end(session: Session, key: ApiKeyRow) -> None:
+    key.revoked = now()
+    audit.record(session, "key.revoke", f"keys/{key.prefix}")
+
+
+def _maker(session: Session, owner: Principal) -> ApiKeyRow | None:
+    """The key by which a principal makes another one for itself; None for others, or without a key.
+
+    Raises
+    ------
+    NotSignedIn
+        That key has just ended, which the gate does not know yet.
+    """
+    who = acting()
+    if who.key is None or who.id != owner.id:
+        return None
+    row = session.get_one(ApiKeyRow, who.key)
+    if row.revoked or rows.is_over(row.expires):
+        raise NotSignedIn
+    return row
+
+
+def _scopes(owner: Principal, scopes: list[Role], maker: ApiKeyRow | None) -> list[str]:
+    """The scopes of a new key: as asked, within what its owner may, and within what whoever makes it may."""
+    for scope in scopes:
+        if not owner.may(scope):
+            raise RoleNeeded(owner, [scope])
+    if maker is None or not maker.scopes:
+        return _in_order(scopes)
+    who = acting()
+    if not who.roles:  # the scope of the present key is no role of its principal any more
+        raise RoleNeeded(who, owner.roles)
+    for scope in scopes:
+        if not who.may(scope):
+            raise RoleNeeded(who, [scope])
+    return _in_order(scopes or who.roles)
+
+
+def _expires(asked: datetime | None, maker: ApiKeyRow | None) -> str | None:
+    """When a new key ends: as asked, at the latest with the key that makes it."""
+    wanted = None if asked is None else as_text(asked)
+    latest = None if maker is None else maker.expires
+    if wanted and latest and wanted > latest:
+        raise Outlives(latest)
+    return wanted or latest
+
+
+def _verb(changes: Changes) -> str:
+    if changes.disabled is None:
+        return "principal.change"
+    return "principal.disable" if changes.disabled else "principal.enable"

@@ -1,0 +1,105 @@
+"""What principals use: rows by day, raised in the unit of work that uses something. LOCAL has no limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sqlalchemy import func, select, text
+from sqlalchemy.orm import Session
+
+from app.identity.acting import ACTING, BUILT_IN, client_of
+from app.identity.limits import LimitReached, Limits, limits_of, seconds_to_midnight, today
+from app.settings import Settings
+from app.storage.tables import JobRow, PrincipalRow, UsageRow
+
+MIB = 2**20
+_RAISE = text(
+    'INSERT INTO "usage" (principal_id, day, requests, jobs, seconds, bytes) '
+    "VALUES (:principal, :day, :requests, :jobs, :seconds, :bytes) "
+    "ON CONFLICT (principal_id, day) DO UPDATE SET "
+    'requests = "usage".requests + excluded.requests, jobs = "usage".jobs + excluded.jobs, '
+    'seconds = "usage".seconds + excluded.seconds, bytes = "usage".bytes + excluded.bytes'
+)
+
+
+@dataclass(frozen=True)
+class Used:
+    """What a principal has used today (UTC), how many bytes it has stored in all, and how many jobs wait."""
+
+    requests: int
+    jobs: int
+    seconds: float
+    bytes: int
+    queued: int = 0
+
+
+def note(
+    session: Session,
+    principal: str,
+    *,
+    requests: int = 0,
+    jobs: int = 0,
+    seconds: float = 0.0,
+    bytes: int = 0,
+) -> None:
+    """Add to what a principal has used today; of a built-in one nothing is kept."""
+    if principal not in BUILT_IN:
+        day = {"principal": principal, "day": today()}
+        session.execute(
+            _RAISE, {**day, "requests": requests, "jobs": jobs, "seconds": seconds, "bytes": bytes}
+        )
+
+
+def note_bytes(session: Session, size: int) -> None:
+    """Count bytes that are stored for the first time for the acting principal."""
+    if (principal := ACTING.get().id) not in BUILT_IN:
+        note(session, principal, bytes=size)
+
+
+def used(session: Session, principal: str) -> Used:
+    """What a principal has used."""
+    row = session.get(UsageRow, (principal, today()), populate_existing=True)
+    total = select(func.sum(UsageRow.bytes)).where(UsageRow.principal_id == principal)
+    waiting = select(func.count()).where(JobRow.client == client_of(principal), JobRow.state == "queued")
+    stored, queued = int(session.scalar(total) or 0), session.scalar(waiting) or 0
+    if row is None:
+        return Used(0, 0, 0.0, stored, queued)
+    return Used(row.requests, row.jobs, row.seconds, stored, queued)
+
+
+def own_limits(session: Session, settings: Settings) -> Limits | None:
+    """The limits of the acting principal; None: nothing limits it."""
+    who = ACTING.get()
+    if who.id in BUILT_IN:
+        return None
+    own = session.scalar(select(PrincipalRow.limits).where(PrincipalRow.id == who.id))
+    return limits_of(settings, own)
+
+
+def admit(session: Session, limits: Limits) -> None:
+    """Let the acting principal queue one more job, and count it.
+
+    Raises
+    ------
+    LimitReached
+        It has used its calculation of this day, or its storage.
+    """
+    who = ACTING.get()
+    check(limits, used(session, who.id), who.name)
+    note(session, who.id, jobs=1)
+
+
+def check(limits: Limits, used: Used, name: str) -> None:
+    """Refuse whoever has used all.
+
+    Raises
+    ------
+    LimitReached
+        If so.
+    """
+    if used.seconds >= limits.calculation_seconds:
+        amounts = f"{used.seconds:.0f} s of {limits.calculation_seconds:.0f} s of calculation today (UTC)"
+        raise LimitReached(f"{name} has used {amounts}", seconds_to_midnight())
+    if used.bytes >= limits.storage_mb * MIB:
+        amounts = f"{used.bytes / MIB:.0f} MiB of {limits.storage_mb:.0f} MiB of storage"
+        raise LimitReached(f"{name} has used {amounts}, which no waiting and no deletion gives back", None)

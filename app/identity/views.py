@@ -1,0 +1,40 @@
+"""Principals, keys and usage as the interface shows them."""
+
+from __future__ import annotations
+
+from app.identity import usage
+from app.identity.acting import ROLES, Principal
+from app.identity.limits import Limits
+from app.identity.usage import Used
+from app.schemas import identity as schemas
+from app.storage.tables import ApiKeyRow, PrincipalRow
+
+
+def principal(row: PrincipalRow) -> schemas.Principal:
+    """A principal."""
+    return schemas.Principal.model_validate(
+        {name: getattr(row, name) for name in schemas.Principal.model_fields}
+    )
+
+
+def me(who: Principal, amounts: schemas.Usage) -> schemas.Me:
+    """Who sends the request."""
+    roles = [role for role in ROLES if role in who.roles]
+    return schemas.Me(id=who.id, name=who.name, kind=who.kind, roles=roles, usage=amounts)
+
+
+def key(row: ApiKeyRow) -> schemas.Key:
+    """A key, without its secret."""
+    return schemas.Key.model_validate({name: getattr(row, name) for name in schemas.Key.model_fields})
+
+
+def used(amounts: Used, limits: Limits | None) -> schemas.Usage:
+    """What was used, beside the limits."""
+    return schemas.Usage(
+        requests=amounts.requests,
+        jobs=amounts.jobs,
+        calculation_seconds=amounts.seconds,
+        storage_mb=amounts.bytes / usage.MIB,
+        queued_jobs=amounts.queued,
+        limits=schemas.Limits(**vars(limits)) if limits else None,
+    )

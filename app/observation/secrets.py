@@ -1,0 +1,26 @@
+"""What no line of a log and no answer may hold: keys of the interface."""
+
+from __future__ import annotations
+
+import re
+
+MARK = "cw_"
+PREFIX, SECRET = 10, 43  # characters: what names a key, and 32 random bytes as base64url
+LENGTH = len(MARK) + PREFIX + 1 + SECRET
+_KEY = re.compile(rf"{MARK}([a-z0-9]{{{PREFIX}}})_[A-Za-z0-9_-]{{{SECRET}}}")
+
+
+def key_prefix(text: str) -> str | None:
+    """The prefix of a key; None for a text that has not the form of one."""
+    match = _KEY.fullmatch(text) if len(text) == LENGTH else None
+    return match[1] if match else None
+
+
+def holds_key(text: str) -> bool:
+    """Whether a key stands somewhere in a text."""
+    return MARK in text and _KEY.search(text) is not None
+
+
+def without_keys(text: str) -> str:
+    """A text in which of each key the prefix is left."""
+    return _KEY.sub(rf"{MARK}\1_***", text) if MARK in text else text

@@ -1,0 +1,73 @@
+"""The signature block of a report: who calculated, checked and released the revision, and the digests."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from app.identity.acting import LOCAL
+from app.presentation.units import System
+from app.reports.cells import clean
+from app.reports.content import Signature, Signatures
+from app.schemas.approvals import ORDER, Approval, ApprovalState
+from app.schemas.identity import Author
+from app.schemas.signatures import Block, BlockStep
+
+ROLES = {"calculated": "Calculated", "checked": "Checked", "released": "Released", "withdrawn": "Withdrawn"}
+
+
+def signatures_of(design: str, revision: int, units: System, steps: Sequence[Approval]) -> Signatures:
+    """The signatures of a revision; a step that nobody has taken has none."""
+    taken = {one.step: one for one in steps}
+    state: ApprovalState = steps[-1].step if steps else "unsigned"
+    block = Block(
+        format=1,
+        design=design,
+        revision=revision,
+        units=units,
+        state=state,
+        steps=[BlockStep(step=s.step, name=s.name, at=s.at, digest=s.digest) for s in steps],
+    )
+    shown = [step for step in ORDER if step != "withdrawn" or step in taken]
+    return Signatures(
+        words=_words(state),
+        is_released=state == "released",
+        items=[_signature(ROLES[step], taken.get(step)) for step in shown],
+        block=block.model_dump_json(),
+    )
+
+
+def author_of(author: Author | None, steps: Sequence[Approval]) -> str:
+    """The name of a revision's author; empty for `local`, and before 0.2.
+
+    From the hand-over on it is the name of that time: to rename somebody changes no report that is signed.
+    """
+    if author is None or author.id == LOCAL.id:
+        return ""
+    signed = next((one.name for one in steps if one.principal == author.id), author.name)
+    return clean(signed)
+
+
+def of_variants(signatures: Signatures) -> Signatures:
+    """The signatures in the report of all variants."""
+    block = Block.model_validate_json(signatures.block).model_copy(update={"has_variants": True})
+    return replace(signatures, block=block.model_dump_json())
+
+
+def _signature(role: str, step: Approval | None) -> Signature:
+    if step is None:
+        return Signature(role)
+    return Signature(role, clean(step.name), moment(step.at), step.digest, clean(step.content.reason or ""))
+
+
+def moment(at: str) -> str:
+    """A time as it is printed."""
+    return f"{at[:10]} {at[11:19]} UTC"
+
+
+def _words(state: ApprovalState) -> str:
+    if state == "released":
+        return "Released"
+    if state == "withdrawn":
+        return "Withdrawn: not to be used any longer"
+    return "Not released" if state == "unsigned" else f"Not released: {state} so far"

@@ -1,0 +1,170 @@
+"""What of a printed report holds, line by line, against the approval that a service has."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import unicodedata
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+from itertools import pairwise
+
+from pydantic import ValidationError
+
+from app.approvals.content import hashed
+from app.reports.signatures import moment
+from app.schemas.approvals import Approval, Approvals
+from app.schemas.signatures import ATTACHMENT, Block, BlockStep
+from templates.core.errors import plain
+
+LARGEST = 64 * 2**20  # bytes of a report that is read
+LARGEST_BLOCK = 64 * 2**10  # bytes of the attachment
+MOST_SHOWN = 3  # places in which the text differs
+
+
+class NotReport(Exception):
+    """The file is no report with an approval block."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """One thing that was checked."""
+
+    holds: bool
+    words: str
+
+
+def read_block(pdf: bytes) -> Block:
+    """The approval block that a report carries.
+
+    Raises
+    ------
+    NotReport
+        If it carries none.
+    """
+    from pypdf import PdfReader  # of the extra `team`; nothing else reads PDF
+
+    if len(pdf) > LARGEST:
+        raise NotReport(f"the file has more than {LARGEST // 2**20} MiB: it is no report of this service")
+    try:
+        attached = PdfReader(io.BytesIO(pdf)).attachments.get(ATTACHMENT, [])
+    except Exception as error:  # whatever somebody wrote into the file
+        raise NotReport(f"the file cannot be read as PDF: {plain(str(error), 200)}") from error
+    if len(attached) != 1 or len(attached[0]) > LARGEST_BLOCK:
+        raise NotReport(f"the file carries no attachment {ATTACHMENT}: it is no report, or an old one")
+    try:
+        return Block.model_validate_json(attached[0])
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = plain(".".join(map(str, first["loc"])), 100)
+        raise NotReport(f"its attachment {ATTACHMENT} is wrong: {place}: {first['msg']}") from None
+
+
+def verify(pdf: bytes, block: Block, approvals: Approvals, printed: bytes) -> Iterator[Line]:
+    """Compare a report with what a service has.
+
+    Parameters
+    ----------
+    pdf
+        The report.
+    block
+        What it carries for programs.
+    approvals
+        The approval of the revision that the block names, as the service has it.
+    printed
+        The report of that revision as the service prints it now.
+    """
+    by_step = {one.step: one for one in approvals.steps}
+    for step in block.steps:
+        yield _signature(step, by_step.get(step.step))
+    for one in approvals.steps:
+        yield from _row(one, approvals)
+    yield _chain(approvals.steps)
+    yield _state(block, approvals)
+    yield from _text(pdf, printed)
+
+
+def _signature(step: BlockStep, row: Approval | None) -> Line:
+    """Whether a signature of the block is one that the service has."""
+    if row is None:
+        return Line(False, f"{step.step}: the service knows no such step of this revision")
+    if step.digest != row.digest:
+        return Line(False, f"{step.step}: digest {step.digest[:16]}… is unknown; it is {row.digest[:16]}…")
+    if (step.name, step.at) != (row.name, row.at):
+        said, right = f"{step.name} at {step.at}", f"{row.name} at {row.at}"
+        return Line(False, plain(f"{step.step}: the file says {said}; it was {right}", 500))
+    return Line(True, plain(f"{step.step} by {row.name}, {moment(row.at)}, digest {row.digest[:16]}…", 500))
+
+
+def _row(row: Approval, approvals: Approvals) -> Iterator[Line]:
+    """Whether a row of the service says what its digest was made of, and the revision still does."""
+    content, present = row.content, approvals.present
+    sound = hashed(content) == row.digest and (
+        (content.step, content.name, content.at, content.principal)
+        == (row.step, row.name, row.at, row.principal)
+        and (content.design, content.revision) == (approvals.design, approvals.revision)
+    )
+    if not sound:
+        yield Line(False, f"{row.step}: the signed content was changed: it does not hash to the digest")
+    for name in ("document", "results"):
+        if getattr(content, name) != getattr(present, name):
+            yield Line(False, f"{row.step}: the revision's {name}: not as signed")
+    for model, kinds in content.files.items():
+        for kind, sha in kinds.items():
+            if present.files.get(model, {}).get(kind) != sha:
+                words = f"{row.step}: file {model}.{kind} is not the one that was signed"
+                yield Line(False, plain(words, 300))
+
+
+def _chain(steps: Sequence[Approval]) -> Line:
+    """Whether every step names the one before."""
+    linked = all(later.content.previous == earlier.digest for earlier, later in pairwise(steps))
+    if not (linked and (not steps or steps[0].content.previous is None)):
+        return Line(False, "the steps do not follow each other: one was replaced")
+    return Line(True, "the service has document, results and files as they were signed, step by step")
+
+
+def _state(block: Block, approvals: Approvals) -> Line:
+    """Whether the revision is released."""
+    if approvals.state == "withdrawn":
+        last = approvals.steps[-1]
+        reason = last.content.reason or "no reason"
+        return Line(False, plain(f"withdrawn by {last.name}, {moment(last.at)}: {reason}", 5000))
+    if approvals.state != "released":
+        return Line(False, f"not released: the revision is {approvals.state}")
+    if block.state != "released":
+        return Line(False, f"printed when the revision was {block.state}; it is released now: print it again")
+    later = approvals.superseded_by
+    return Line(True, "released" + (f"; revision {later} is a later release" if later else ""))
+
+
+def _text(pdf: bytes, printed: bytes) -> Iterator[Line]:
+    """Whether the pages are those that the service prints."""
+    if hashlib.sha256(pdf).digest() == hashlib.sha256(printed).digest():
+        yield Line(True, "every byte is that of the report as the service prints it")
+        return
+    try:
+        ours, theirs = _lines(printed), _lines(pdf)
+    except Exception as error:  # whatever somebody wrote into the file
+        yield Line(False, f"the text of the pages cannot be read: {plain(str(error), 200)}")
+        return
+    changes = [
+        f"the file says {' '.join(theirs[c:d])!r}, the service {' '.join(ours[a:b])!r}"
+        for kind, a, b, c, d in SequenceMatcher(None, ours, theirs, autojunk=False).get_opcodes()
+        if kind != "equal"
+    ]
+    for change in changes[:MOST_SHOWN]:
+        yield Line(False, plain(f"the text differs: {change}", 600))
+    if not changes:
+        yield Line(False, "the text is the same, but pictures, fonts or hidden parts differ from what the "
+                   "service prints (another version of the program prints other bytes too)")  # fmt: skip
+
+
+def _lines(pdf: bytes) -> list[str]:
+    """The lines of the pages."""
+    from pypdf import PdfReader
+
+    pages = PdfReader(io.BytesIO(pdf)).pages
+    text = unicodedata.normalize("NFKC", "\n".join(page.extract_text() for page in pages))
+    return [" ".join(line.split()) for line in text.splitlines() if line.strip()]

@@ -1,0 +1,103 @@
+"""Approvals of revisions and comments on them, as the interface shows them."""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+from pydantic import ConfigDict, Field
+
+from app.schemas.answers import Answer, Page
+
+Step = Literal["calculated", "checked", "released", "withdrawn"]
+ORDER: tuple[Step, ...] = get_args(Step)
+"""The steps, one after another."""
+ApprovalState = Literal["unsigned", "calculated", "checked", "released", "withdrawn"]
+"""The last step that was taken; `unsigned` before the first."""
+Files = dict[str, dict[str, str]]
+"""SHA-256 of files of solids, by the name of the model and the kind of the file."""
+
+
+class Signed(Answer):
+    """What a signature covers; `digest` of its step is the SHA-256 of this as canonical JSON.
+
+    Canonical: names sorted, no blanks, letters beyond ASCII as they are, UTF-8; `reason` only where there is
+    one.
+    """
+
+    design: str
+    revision: int
+    title: str = Field(description="name of the design in this revision")
+    step: Step
+    principal: str
+    name: str = Field(description="of the principal at that time")
+    at: str
+    document: str = Field(description="SHA-256 of what its user wrote, as canonical JSON")
+    results: str = Field(description="SHA-256 of what was calculated, likewise")
+    files: Files = Field(description="of every file of its solids that there was, at least STEP")
+    previous: str | None = Field(description="digest of the step before; null in the first one")
+    reason: str | None = Field(None, description="of a withdrawal")
+
+
+class Approval(Answer):
+    """One step of the approval of a revision."""
+
+    step: Step
+    principal: str
+    name: str = Field(description="of the principal at that time")
+    at: str
+    digest: str
+    content: Signed
+
+
+class Present(Answer):
+    """What a revision holds now, to be compared with what was signed."""
+
+    document: str
+    results: str
+    files: Files
+
+
+class Approvals(Answer):
+    """The approval of a revision: calculated by its author, checked and released by two others."""
+
+    design: str
+    revision: int
+    state: ApprovalState
+    steps: list[Approval] = Field(description="in the order in which they were taken")
+    next: Step | None = Field(description="the step that comes next; null where none does")
+    obstacle: str | None = Field(description="why whoever asks cannot take it now; null where nothing is")
+    to_sign: str = Field(description="digest of what there is to sign: send it as If-Match; also the ETag")
+    present: Present
+    supersedes: int | None = Field(description="the released revision that this one replaces")
+    superseded_by: int | None = Field(description="the newest released revision, if it is a later one")
+
+
+class Released(Answer):
+    """The newest released revision of a design, and where its files are."""
+
+    design: str
+    revision: int
+    title: str
+    approval: Approval
+    report: str = Field(description="link to its report (PDF)")
+    files: Files = Field(description="links to the files of its solids")
+
+
+class Comment(Answer):
+    """A comment on a revision. Its text is plain."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    id: str
+    design: str
+    revision: int
+    name: str = Field(description="of whoever wrote it, at that time")
+    subject: str | None = Field(description="the name in the design that it is about")
+    text: str
+    created: str
+    resolved: str | None = Field(description="since when")
+    resolved_by: str | None = Field(description="name of whoever resolved it")
+
+
+class CommentList(Page[Comment]):
+    """A page of comments, newest first."""

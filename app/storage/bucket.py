@@ -1,0 +1,227 @@
+"""Artifacts in a bucket of S3, served from verified copies on this machine.
+
+In the bucket lie `<sha>`, the files; `database`, whose files they are; `quarantine/<sha>.<tag>`, copies of
+files with other bytes than their name says; `discarded/<sha>`, files that no row named, until the next sweep.
+
+What is trusted: a copy, once its bytes were hashed, as long as inode, size and times stay (`ArtifactStore`);
+an object, once its bytes were hashed or sent by this process, as long as its tag stays, which changes with
+its bytes.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from app.storage.artifacts import OWNER, QUARANTINE, SHA256, Stored, hashed, require_name
+from app.storage.copies import Copies
+from app.storage.errors import ArtifactDamaged, ArtifactMissing, ArtifactsUnreachable
+from app.storage.s3 import Bucket, Found
+from app.storage.verified import Newest, Opened
+
+logger = logging.getLogger(__name__)
+
+YOUNG = 3600.0  # an object of this age is not renewed: no sweep's grace is so short [s]
+DISCARDED = "discarded/"
+_TRIES = 2  # at a download whose bytes are not those of the name
+
+
+class BucketStore:
+    """Artifacts in a bucket. `on_look` is called with whether a read found its copy on this machine."""
+
+    def __init__(
+        self, bucket: Bucket, copies: Copies, on_look: Callable[[bool], object] | None = None
+    ) -> None:
+        self._bucket, self._copies = bucket, copies
+        self._tags: Newest[str] = Newest()  # of objects whose bytes this process has hashed or sent
+        self._on_look = on_look or (lambda is_there: None)
+        self._fetching = [threading.Lock() for _ in range(16)]  # by the first digit: one download at a time
+
+    def put(self, *parts: bytes | memoryview) -> str:
+        """Store bytes in the bucket, and return their SHA-256; a copy stays on this machine.
+
+        If-None-Match keeps simultaneous puts apart. An object that is there already is replaced by the same
+        bytes, which renews its age and repairs it, unless this process knows it to be good and young.
+        """
+        sha, data = hashed(parts), b"".join(parts)
+        if not self._is_good_and_young(sha):
+            tag = self._bucket.create(sha, data)
+            if tag is None:
+                tag = self._bucket.replace(sha, data)
+            self._note(sha, tag)
+        self._keep(data)
+        return sha
+
+    def fetch(self, sha: str) -> Path:
+        """Where a verified copy lies; it stays there for a minute. Raises as `open` does."""
+        with self.open(sha):
+            return self._copies.path(sha)
+
+    def read(self, sha: str) -> bytes:
+        """Return the verified bytes; raises as `open` does."""
+        require_name(sha)
+        data = self._copies.read(sha)
+        self._on_look(data is not None)
+        if data is None:
+            data = self._download(sha)
+            self._keep(data)
+        return data
+
+    def open(self, sha: str) -> Opened:
+        """Open a verified copy for reading, downloaded if there is none on this machine.
+
+        Raises
+        ------
+        ArtifactMissing
+            The bucket has no such object, or the name is no SHA-256.
+        ArtifactDamaged
+            Its bytes have another hash; a copy of it lies under `quarantine/`.
+        ArtifactsUnreachable
+            There is no copy, and the bucket does not answer.
+        """
+        require_name(sha)
+        opened = self._copies.open(sha)
+        self._on_look(opened is not None)
+        if opened:
+            return opened
+        with self._fetching[int(sha[0], 16)]:
+            if opened := self._copies.open(sha):
+                return opened
+            self._copies.put(self._download(sha))
+            if opened := self._copies.open(sha):
+                return opened
+        raise ArtifactDamaged(sha, "its copy on this machine changed as soon as it was written")
+
+    def exists(self, sha: str) -> bool:
+        """Whether the bucket has the bytes, and they are good.
+
+        It asks the bucket, so that an object that somebody deleted is noticed. What the bucket has lost and
+        this machine still holds is put back. While the bucket does not answer, a copy is enough.
+        """
+        if not SHA256.fullmatch(sha):
+            return False
+        if self._bucket.is_silent and self._has_copy(sha):
+            return True
+        try:
+            return self._is_good(sha) or self._is_put_back(sha)
+        except ArtifactsUnreachable:
+            if self._has_copy(sha):
+                return True
+            raise
+
+    def delete(self, sha: str) -> None:
+        """Remove an object and its copy on this machine, if they are there."""
+        require_name(sha)
+        for key in (sha, DISCARDED + sha):
+            self._bucket.delete(key)
+        self._copies.delete(sha)
+        self._tags.forget(sha)
+
+    def delete_unchanged(self, seen: Stored) -> bool:
+        """Move an object to `discarded/` unless it was put again since; delete it for good from there.
+
+        S3 cannot delete on a condition: a put between the last look and the deletion would lose its bytes.
+        They are in `discarded/` then, where readers and the next sweep find them, so nothing is lost.
+        """
+        key = DISCARDED + seen.sha if seen.is_discarded else seen.sha
+        if not _is_same(self._bucket.head(key), seen):
+            return False
+        if not seen.is_discarded:
+            self._bucket.copy(key, DISCARDED + seen.sha)
+            if not _is_same(self._bucket.head(key), seen):
+                return False
+            self._copies.delete(seen.sha)
+            self._tags.forget(seen.sha)
+        self._bucket.delete(key)
+        return True
+
+    def list(self) -> Iterator[Stored]:
+        """Every object, verified or not, and the discarded ones, without those that were set aside."""
+        for key, found in self._bucket.list():
+            sha = key.removeprefix(DISCARDED)
+            if SHA256.fullmatch(sha):
+                yield Stored(sha, found.size, found.modified, is_discarded=sha != key)
+
+    def claim(self, owner: str) -> str:
+        """Have the bucket belong to an owner, if it has none; return whose it is."""
+        while self._bucket.create(OWNER, owner.encode()) is None:
+            if answer := self._bucket.get(OWNER):  # nobody has deleted it meanwhile
+                return answer[0].decode(errors="replace").strip()
+        return owner
+
+    def probe(self) -> None:
+        """Return if the bucket answers; raises ArtifactsUnreachable."""
+        self._bucket.probe()
+
+    def _download(self, sha: str) -> bytes:
+        """The bytes in the bucket, verified; raises as `open` does."""
+        for _ in range(_TRIES):  # the second time because a connection may have broken off unnoticed
+            answer = self._bucket.get(sha) or self._brought_back(sha)
+            if answer is None:
+                self._tags.forget(sha)
+                raise ArtifactMissing(sha)
+            data, found = answer
+            if hashed([data]) == sha:
+                self._note(sha, found.tag)
+                return data
+        self._tags.forget(sha)
+        logger.error("object %s in the bucket has other bytes than its name says; it is set aside", sha)
+        self._bucket.copy(sha, f"{QUARANTINE}/{sha}.{(found.tag or '').strip(chr(34))}")
+        raise ArtifactDamaged(sha, f"its {len(data)} bytes in the bucket have another hash")
+
+    def _brought_back(self, sha: str) -> tuple[bytes, Found] | None:
+        """An object that a sweep has discarded, in its place again."""
+        return self._bucket.get(sha) if self._bucket.copy(DISCARDED + sha, sha) else None
+
+    def _is_good(self, sha: str) -> bool:
+        """Whether the object has the tag that it had when its bytes were right, or right bytes now."""
+        found = self._bucket.head(sha)
+        if self._is_known_good(sha, found):
+            return True
+        try:
+            self._keep(self._download(sha))
+        except (ArtifactMissing, ArtifactDamaged):
+            return False
+        return True
+
+    def _is_put_back(self, sha: str) -> bool:
+        """Whether this machine had a good copy of what the bucket has lost, which is there again now."""
+        data = self._copies.read(sha)
+        if data is None:
+            return False
+        logger.warning("object %s was lost or damaged; the copy of this machine is put in its place", sha)
+        self._note(sha, self._bucket.replace(sha, data))
+        return True
+
+    def _is_good_and_young(self, sha: str) -> bool:
+        found = self._bucket.head(sha) if self._tags.knows(sha) else None
+        return found is not None and self._is_known_good(sha, found) and time.time() - found.modified < YOUNG
+
+    def _is_known_good(self, sha: str, found: Found | None) -> bool:
+        """Whether an object has the tag that it had when its bytes were right."""
+        return found is not None and found.tag is not None and self._tags.has(sha, found.tag)
+
+    def _note(self, sha: str, tag: str | None) -> None:
+        """Remember the tag of an object whose bytes are right; a server that gives none is asked again."""
+        if tag:
+            self._tags.add(sha, tag)
+
+    def _has_copy(self, sha: str) -> bool:
+        opened = self._copies.open(sha)
+        if opened:
+            opened.file.close()
+        return opened is not None
+
+    def _keep(self, data: bytes) -> None:
+        """Keep a copy if the disk takes one: the bucket has the bytes."""
+        try:
+            self._copies.put(data)
+        except OSError as error:
+            logger.warning("a copy of a file of the bucket cannot be kept: %s", error.strerror)
+
+
+def _is_same(found: Found | None, seen: Stored) -> bool:
+    return found is not None and found.modified == seen.modified

@@ -1,0 +1,94 @@
+"""The database of the settings: checked, brought to the schema of this program, and opened."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from sqlalchemy import make_url
+from sqlalchemy.exc import ArgumentError, DBAPIError, NoSuchModuleError
+
+from app.settings import Settings
+from app.storage.database import Database
+from app.storage.engines import is_sqlite, writing_engine
+from app.storage.errors import DatabaseUnavailable, NotForTeams
+from app.storage.folder import DataFolder
+from app.storage.integrity import refuse_damage
+from app.storage.migrations import migrate
+
+FORMS = "postgresql+psycopg://user:password@host:5432/database"
+BACKENDS = ("sqlite", "postgresql", "postgres")
+
+
+def opened_database(
+    settings: Settings, folder: DataFolder, on_commit: Callable[[int, float, bool], object]
+) -> Database:
+    """The database, migrated; a damaged one is refused before anything is written to it.
+
+    Raises
+    ------
+    NotForTeams
+        The settings do not fit together; the text names the remedy.
+    DatabaseDamaged, DatabaseNewer, DatabaseUnavailable
+        It cannot be used.
+    """
+    require_answer(settings)
+    url = settings.database_url or folder.database_url
+    refuse_damage(url)
+    migrate(url)
+    return Database(url, on_commit, settings.database_pool)
+
+
+def require_answer(settings: Settings) -> None:
+    """Return if the settings fit together and a shared database takes connections; a file needs neither.
+
+    Raises
+    ------
+    NotForTeams
+        The settings do not fit together.
+    DatabaseUnavailable
+        The database server does not answer, or refuses this user.
+    """
+    url = settings.database_url
+    if url is None:
+        return
+    require_database(url)
+    if not is_sqlite(url) and settings.artifacts_url is None:
+        raise NotForTeams(
+            "Several servers share a PostgreSQL database, so they must share their files as well: set "
+            "CRANKWRIGHT_ARTIFACTS_URL to s3://bucket, or to file:///folder if all of them see that folder."
+        )
+    require_connection(url)
+
+
+def require_connection(url: str) -> None:
+    """Return if a URL names a file, or a database that takes connections.
+
+    Raises
+    ------
+    NotForTeams
+        It names no database of a known kind.
+    DatabaseUnavailable
+        The database server does not answer, or refuses this user.
+    """
+    require_database(url)
+    if is_sqlite(url):
+        return
+    engine = writing_engine(url)
+    try:
+        with engine.connect():
+            pass
+    except DBAPIError as error:
+        reason = str(error.orig).strip().partition("\n")[0]
+        raise DatabaseUnavailable(f"CRANKWRIGHT_DATABASE_URL leads nowhere ({reason})") from error
+    finally:
+        engine.dispose()
+
+
+def require_database(url: str) -> None:
+    """Return if a URL names a kind of database that there is; raises NotForTeams."""
+    try:
+        backend = make_url(url).drivername.partition("+")[0]
+    except (ArgumentError, NoSuchModuleError, ValueError):  # it may hold a password: it is not quoted
+        backend = ""
+    if backend not in BACKENDS:
+        raise NotForTeams(f"CRANKWRIGHT_DATABASE_URL names no database of a known kind; write {FORMS}.")

@@ -1,0 +1,153 @@
+"""The writer of SQLite: one thread commits all waiting units of work in one transaction.
+
+SQLite takes one writer at a time and syncs the disk at every commit. One thread that runs all waiting units
+in one transaction pays one sync for all of them, and nobody ever meets a locked database.
+"""
+
+from __future__ import annotations
+
+import contextvars
+import queue
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+from sqlalchemy import Connection, Engine
+from sqlalchemy.orm import Session
+
+from app.storage.clock import OperationClock
+from app.storage.damage import Watch
+from app.storage.errors import CommitFailed, DatabaseClosed, DatabaseDamaged
+from app.storage.units import AFTER, T, Unit, follow
+
+GROUP = 256  # units in one transaction: bounds how long the first of them waits for the last
+
+
+class GroupWriter:
+    """Commits units of work in groups; `on_commit` is that of `Database`."""
+
+    def __init__(
+        self,
+        engine: Engine,
+        clock: OperationClock,
+        watch: Watch,
+        on_commit: Callable[[int, float, bool], object],
+    ) -> None:
+        self.engine = engine
+        self._clock, self._watch, self._on_commit = clock, watch, on_commit
+        self._waiting: queue.SimpleQueue[_Pending | None] = queue.SimpleQueue()
+        self._closing = threading.Lock()
+        self._closed = False
+        self._thread = threading.Thread(target=self._serve, name="database-writer", daemon=True)
+        self._thread.start()
+
+    def write(self, unit: Unit[T]) -> T:
+        """Run a unit of work in the writer thread and return its result once that is durable."""
+        if threading.current_thread() is self._thread:
+            raise RuntimeError("A unit of work may not wait for another: use its session.")
+        return self.submit(unit).result()
+
+    def submit(self, unit: Unit[T]) -> Future[T]:
+        """Queue a unit of work; its future raises as `write` does."""
+        if self._watch.damage is not None:  # whether the file is still there shows when the group begins
+            self._watch.refuse()
+        pending = _Pending(unit)
+        with self._closing:  # nothing may enter the queue behind its end
+            if self._closed:
+                raise DatabaseClosed("The database is closed.")
+            self._waiting.put(pending)
+        return pending.future
+
+    def close(self) -> None:
+        """Commit what waits, then end the thread. A second call does nothing."""
+        with self._closing:
+            if not self._closed:
+                self._waiting.put(None)
+            self._closed = True
+        self._thread.join()
+
+    def _serve(self) -> None:
+        more = True
+        while more:
+            group, more = self._next_group()
+            if group:
+                self._commit(group)
+        if self._clock.elapsed:
+            self._commit([])
+
+    def _next_group(self) -> tuple[list[_Pending], bool]:
+        """Wait for a unit, then take those that came meanwhile; also return whether more may come."""
+        group: list[_Pending] = []
+        while not group or (len(group) < GROUP and not self._waiting.empty()):
+            pending = self._waiting.get()
+            if pending is None:
+                return group, False
+            if pending.future.set_running_or_notify_cancel():
+                group.append(pending)
+        return group, True
+
+    def _commit(self, group: list[_Pending]) -> None:
+        start = time.perf_counter()
+        try:
+            with self.engine.begin() as connection:
+                self._watch.refuse()  # damage may have shown while the group was waiting
+                seconds = self._clock.advance(connection)
+                for pending in group:
+                    pending.run(connection)
+                    if pending.error is not None:
+                        self._watch.raise_if_damage(pending.error)
+            self._watch.refuse()  # a file that was deleted meanwhile has taken the commit along
+        except Exception as error:
+            self._on_commit(len(group), time.perf_counter() - start, True)
+            cause = self._watch.translated(error)
+            for pending in group:
+                pending.refuse(cause)
+        else:
+            self._on_commit(len(group), time.perf_counter() - start, False)
+            self._clock.commit(seconds)
+            for pending in group:
+                pending.settle()
+
+
+class _Pending:
+    """A unit of work on its way through the writer thread."""
+
+    # `Any`: one queue holds units of every type; `submit` returns the future under the type of its unit.
+    def __init__(self, unit: Unit[Any]) -> None:
+        self.future: Future[Any] = Future()
+        self._unit = unit
+        self._context = contextvars.copy_context()
+        self._result: Any = None
+        self._following: list[Callable[[], object]] = []
+        self.error: BaseException | None = None
+
+    def run(self, connection: Connection) -> None:
+        """Run the unit in a savepoint of its own; what it raises is kept for its caller."""
+        session = Session(connection, join_transaction_mode="create_savepoint", expire_on_commit=False)
+        try:
+            with session:
+                self._result = self._context.run(self._unit, session)
+                session.commit()  # releases the savepoint; raises if the unit has hidden a failed statement
+            self._following = session.info.get(AFTER, [])
+        except BaseException as error:  # even SystemExit belongs to the caller, not to the writer thread
+            self.error = error
+
+    def settle(self) -> None:
+        """Hand the outcome to the caller: the group is durable."""
+        if self._following:
+            self._context.run(follow, self._following)
+        if self.error is None:
+            self.future.set_result(self._result)
+        else:
+            self.future.set_exception(self.error)
+
+    def refuse(self, cause: Exception) -> None:
+        """Tell the caller that the group is lost."""
+        if isinstance(cause, DatabaseDamaged):
+            self.future.set_exception(cause)
+            return
+        lost = CommitFailed("The changes could not be committed; nothing was stored.")
+        lost.__cause__ = cause
+        self.future.set_exception(self.error or lost)

@@ -1,0 +1,46 @@
+"""What errors of PostgreSQL mean: a conflict with others, a connection that is lost, or a fault of ours."""
+
+from __future__ import annotations
+
+from sqlalchemy.exc import DBAPIError, OperationalError
+from sqlalchemy.exc import TimeoutError as PoolExhausted
+
+from app.storage.errors import DatabaseUnavailable
+
+_CONFLICTS = {"40001", "40P01"}  # serialization_failure, deadlock_detected
+_LOSSES = {"57P01", "57P02", "57P03", "53300"}  # shut down, crashed, starting, too many connections
+_CONNECTION, _RESOURCES, _INTERVENTION, _SYSTEM = "08", "53", "57", "58"  # classes of codes
+
+
+def is_conflict(error: DBAPIError) -> bool:
+    """Whether a transaction was rolled back because of another one, and may be run again."""
+    return state_of(error) in _CONFLICTS
+
+
+def is_loss(error: DBAPIError) -> bool:
+    """Whether the connection was lost, or there could be none."""
+    state = state_of(error)
+    if error.connection_invalidated or state in _LOSSES or (state or "").startswith(_CONNECTION):
+        return True
+    return state is None and isinstance(error, OperationalError)
+
+
+def translated(error: Exception) -> Exception:
+    """DatabaseUnavailable in place of an error that says so; any other error as it is."""
+    if isinstance(error, PoolExhausted):
+        return DatabaseUnavailable("all its connections are in use")
+    if not isinstance(error, DBAPIError):
+        return error
+    if is_conflict(error):
+        return DatabaseUnavailable("others kept changing the same rows at the same time")
+    if is_loss(error):
+        return DatabaseUnavailable("it cannot be reached")
+    if (state_of(error) or "")[:2] in (_RESOURCES, _INTERVENTION, _SYSTEM):
+        return DatabaseUnavailable(str(error.orig).partition("\n")[0])
+    return error
+
+
+def state_of(error: DBAPIError) -> str | None:
+    """The SQLSTATE of an error of PostgreSQL; None if it came from no answer of the server."""
+    state: str | None = getattr(error.orig, "sqlstate", None)
+    return state

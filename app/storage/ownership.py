@@ -1,0 +1,67 @@
+"""One store of files belongs to one database: another's sweep would delete what it does not know.
+
+A database that several servers, or a bucket, use has an identity; the store holds it under the name `OWNER`.
+"""
+
+from __future__ import annotations
+
+import secrets
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.settings import Settings
+from app.storage.artifacts import OWNER, Artifacts
+from app.storage.connecting import opened_database
+from app.storage.database import Database
+from app.storage.errors import StoreRefused
+from app.storage.folder import DataFolder
+from app.storage.opening import opened_store
+from app.storage.tables import CounterRow
+from app.storage.units import repeatable
+from app.storage.upserts import insert_new
+
+NAME = "database"  # of the row that holds the identity
+
+
+def claim(database: Database, store: Artifacts) -> None:
+    """Have a store belong to a database, if it belongs to none.
+
+    Raises
+    ------
+    StoreRefused
+        It belongs to another database.
+    ArtifactsUnreachable
+        It does not answer.
+    """
+    own = database.write(_identity)
+    if (owner := store.claim(own)) != own:
+        raise StoreRefused(
+            f"CRANKWRIGHT_ARTIFACTS_URL: these files belong to another database ({owner[:40]}; this one is "
+            f"{own}). Each would delete the other's files. Name another bucket, prefix or folder. If that "
+            f"database no longer exists, delete `{OWNER}` there, and the files belong to this one."
+        )
+
+
+def require_own_store(settings: Settings, folder: DataFolder) -> None:
+    """Return if the store of the settings answers and belongs to their database, which is migrated for that.
+
+    Raises
+    ------
+    StorageError
+        Either cannot be used, or the store belongs to another database; the text names the remedy.
+    """
+    store = opened_store(settings, folder)
+    database = opened_database(settings, folder, lambda units, seconds, failed: None)
+    try:
+        claim(database, store)
+    finally:
+        database.close()
+
+
+def _identity(session: Session) -> str:
+    """The identity of a database, chosen at random when it is first asked for; a backup keeps it."""
+    repeatable(session)
+    insert_new(session, CounterRow(name=NAME, value=secrets.randbits(63)))
+    number = session.scalars(select(CounterRow.value).where(CounterRow.name == NAME)).one()
+    return f"{number:016x}"

@@ -1,0 +1,22 @@
+"""Where the programs of PostgreSQL are: Debian keeps those of each version in a folder of its own."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+DEBIAN = Path("/usr/lib/postgresql")
+
+
+def postgres_program(name: str) -> Path | None:
+    """The program of this name, such as `pg_dump`, of the newest version; None if none is installed."""
+    versions = sorted((path for path in DEBIAN.glob("[0-9]*") if path.name.isdecimal()), key=_number)
+    for version in reversed(versions):
+        if (program := version / "bin" / name).is_file():
+            return program
+    found = shutil.which(name)
+    return Path(found) if found else None
+
+
+def _number(folder: Path) -> int:
+    return int(folder.name)

@@ -1,0 +1,9 @@
+"""What keeps the processes of a team from running."""
+
+
+class Missing(Exception):
+    """A component is not installed; the text names it and says how to install it."""
+
+
+class DidNotStart(Exception):
+    """A process ended, or did not answer in time; the text has the last lines that it wrote."""

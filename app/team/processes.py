@@ -1,0 +1,151 @@
+"""Processes that are waited for, stopped by their number, and die with the process that started them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from app.team.errors import DidNotStart
+from app.workers.lifeline import Lifeline
+
+LOOPBACK = "127.0.0.1"
+START = 120.0  # for a process to answer [s]
+END = 30.0  # for a process to end when it is asked to [s]
+_GLANCE = 0.05  # between two questions [s]
+_LONGEST = 400  # characters of a line of a log
+
+
+def free_port() -> int:
+    """A TCP port of loopback on which nothing listens."""
+    with socket.socket() as probe:
+        probe.bind((LOOPBACK, 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+def listens(port: int) -> bool:
+    """Whether something on loopback accepts connections on a port."""
+    with suppress(OSError), socket.create_connection((LOOPBACK, port), timeout=1.0):
+        return True
+    return False
+
+
+class Tied:
+    """A program in a session of its own, with its output in a file; it ends with this process.
+
+    Parameters
+    ----------
+    name
+        What the program is, in errors.
+    command
+        The program and its arguments.
+    log
+        The file that its output is appended to.
+    environment
+        Variables beside those of this process.
+    user
+        Who runs it, if another user than this process does; for root only.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        command: Sequence[str],
+        log: Path,
+        *,
+        environment: Mapping[str, str] | None = None,
+        user: str | None = None,
+    ) -> None:
+        self.name, self.log = name, log
+        self._line = Lifeline()
+        tied = [sys.executable, "-m", "app.team.tied", str(self._line.reader), user or ""]
+        with log.open("ab") as output:
+            self._process = subprocess.Popen(
+                [*tied, *command],
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                env={**os.environ, "PYTHONPATH": _path(), **(environment or {})},
+                pass_fds=[self._line.reader],
+                start_new_session=True,
+            )
+        self._line.close_reader()
+
+    @property
+    def pid(self) -> int:
+        """The number of the process, and of its group."""
+        return self._process.pid
+
+    @property
+    def lives(self) -> bool:
+        """Whether the process has not ended."""
+        return self._process.poll() is None
+
+    def until(self, answers: Callable[[], bool], seconds: float = START) -> None:
+        """Wait until the process answers.
+
+        Raises
+        ------
+        DidNotStart
+            It has ended, or does not answer in time.
+        """
+        end = time.monotonic() + seconds
+        while not answers():
+            self.require()
+            if time.monotonic() > end:
+                raise DidNotStart(f"{self.name} does not answer after {seconds:.0f} s; {self.said()}")
+            time.sleep(_GLANCE)
+
+    def require(self) -> None:
+        """Raise DidNotStart if the process has ended."""
+        if not self.lives:
+            code = self._process.returncode
+            raise DidNotStart(f"{self.name} ended with exit code {code}; {self.said()}")
+
+    def send(self, number: int) -> None:
+        """Send a signal to the process, unless it has ended."""
+        self._process.send_signal(number)
+
+    def kill(self) -> None:
+        """Kill -9 the process alone, as an accident would; what it started is on its own."""
+        self._process.kill()
+        self._process.wait()
+
+    def stop(self, number: int = signal.SIGTERM, seconds: float = END) -> int:
+        """Ask the process to end, end it hard after some time, and kill what is left of its group.
+
+        Returns
+        -------
+        int
+            Its exit code; negative if a signal ended it.
+        """
+        with suppress(ProcessLookupError):
+            self.send(number)
+        try:
+            self._process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+        finally:
+            self._line.cut()
+        return self._process.wait()
+
+    def said(self, lines: int = 5) -> str:
+        """The end of what it wrote, in words."""
+        written = [
+            line[-_LONGEST:] for line in self.log.read_text(errors="replace").strip().splitlines()[-lines:]
+        ]
+        if not written:
+            return f"it wrote nothing to {self.log}"
+        return "\n  ".join([f"{self.log} ends with", *written])
+
+
+def _path() -> str:
+    """The module path of this process for another, which may stand in another folder."""
+    return os.pathsep.join(filter(None, sys.path))

@@ -1,0 +1,41 @@
+"""The audit: who did what, for administrators."""
+
+from __future__ import annotations
+
+from typing import Annotated
+from urllib.parse import urlencode
+
+from fastapi import APIRouter, Query, Request, Response
+
+from app.api.gate.roles import needs
+from app.schemas.audit import AuditHead, AuditList
+from app.web.api import TheApi
+from app.web.rendering import show
+
+router = APIRouter(include_in_schema=False, dependencies=[needs("admin")])
+
+Text = Annotated[str, Query(max_length=200)]
+
+
+@router.get("/audit", dependencies=[needs("admin")])
+async def audit(
+    request: Request,
+    api: TheApi,
+    cursor: Text = "",
+    object: Text = "",
+    principal: Text = "",
+    action: Annotated[str, Query(max_length=100)] = "",
+) -> Response:
+    """Changes, page by page: all, or those that fit what was typed into the filter."""
+    typed = {"object": object.strip(), "principal": principal.strip(), "action": action.strip()}
+    wanted = {name: text for name, text in typed.items() if text}  # a form sends empty fields too
+    place = {"cursor": cursor} if cursor else {}
+    page = await api.get("/audit", AuditList, limit=50, **wanted, **place)
+    return show(
+        request,
+        "audit.html",
+        entries=page.items,
+        head=await api.get("/audit/head", AuditHead),
+        wanted=wanted,
+        older=urlencode({**wanted, "cursor": page.next}) if page.next else None,
+    )

@@ -1,0 +1,52 @@
+"""Dask's client, as a server uses it: it begins and ends within a time, whatever the scheduler does."""
+
+from __future__ import annotations
+
+from distributed import Client, Security
+
+_CONNECT = 5.0  # how long each step of an attempt to connect may take [s]
+_START = 15.0  # and all of them together [s]
+_END = 1.0  # how long a farewell to the scheduler may take [s]
+
+
+class BoundedClient(Client):
+    """A client that no other part of the process finds.
+
+    Dask's own constructor waits without end if the scheduler falls silent at a certain moment of the
+    connection; a client that does not begin, or does not end in time, leaves a thread behind. Here the
+    constructor raises, and the thread ends.
+
+    Raises
+    ------
+    OSError, TimeoutError
+        There is no scheduler, or it does not answer.
+    """
+
+    def __init__(self, address: str, security: Security) -> None:
+        super().__init__(
+            address,
+            security=security,
+            set_as_default=False,
+            direct_to_workers=True,  # results do not pass through the scheduler
+            timeout=_CONNECT,
+        )
+
+    def start(self, **how: object) -> None:
+        """Connect; the constructor calls it."""
+        try:
+            super().start(callback_timeout=_START, **how)
+        except BaseException:
+            self._abandon()
+            raise
+
+    def end(self) -> None:
+        """Say farewell, and end the thread of the connection in any case."""
+        try:
+            self.close(timeout=_END)
+        finally:
+            self._abandon()
+
+    def _abandon(self) -> None:
+        """End the thread of the connection; as a closed client, garbage collection leaves it alone then."""
+        self.status = "closed"
+        self._loop_runner.stop()

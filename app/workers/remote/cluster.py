@@ -1,0 +1,261 @@
+"""A server's connection to the scheduler, made again when it breaks, and the free places of the machines."""
+
+from __future__ import annotations
+
+import logging
+import queue
+import threading
+import uuid
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from concurrent.futures import CancelledError
+from contextlib import contextmanager
+from typing import cast
+
+from distributed import Future, KilledWorker, Security
+
+from app.workers.base import Lane
+from app.workers.errors import JobCancelled, WorkerLost
+from app.workers.messages import Outcome
+from app.workers.remote.client import BoundedClient
+from app.workers.remote.label import label
+from app.workers.remote.wire import Order, Places, carry_out, places
+from templates.core.progress import Reporter
+
+logger = logging.getLogger(__name__)
+
+LANES: tuple[Lane, ...] = ("geometry", "analysis")
+_GLANCE = 0.05  # how often a waiting thread looks whether its job was cancelled [s]
+_LOOK = 0.25  # time between two looks at the places of all machines [s]
+_PATIENCE = 10.0  # how long the scheduler may take to answer a look [s]
+_PAUSE = 1.0  # before the next [s]
+_FETCH = 120.0  # how long a result may take on its way [s]
+
+Messages = queue.SimpleQueue[tuple[float, str] | None]
+"""From a task: how far it is; None when it has ended."""
+
+
+class Cluster:
+    """The machines behind a scheduler that run the same program.
+
+    A thread of its own connects and looks around, so nobody waits for a scheduler that does not answer. What
+    this server has submitted it counts itself, at once; what others have, it saw at its latest look.
+    """
+
+    def __init__(self, address: str, security: Security, program: str) -> None:
+        self.address = address
+        self._security = security
+        self._labels: Mapping[Lane, str] = {lane: label(lane, program) for lane in LANES}
+        self._name = uuid.uuid4().hex
+        self._topic = f"progress-{self._name}"
+        self._listeners: dict[str, Messages] = {}  # by the key of a task
+        self._client: BoundedClient | None = None
+        self._places: dict[Lane, dict[str, Places]] = {}
+        self._own: Counter[tuple[Lane, str]] = Counter()
+        self._changed = threading.Condition()
+        self._closed = threading.Event()
+        self._failure = "connecting"  # what came of the latest attempt to connect
+        self._thread = threading.Thread(target=self._work, name="scheduler", daemon=True)
+        self._thread.start()
+
+    def size(self, lane: Lane) -> int:
+        """How many functions of a lane the machines run at the same time."""
+        return sum(there.size for there in self._places.get(lane, {}).values())
+
+    def free(self, lane: Lane) -> int:
+        """How many more they would begin now."""
+        with self._changed:
+            return sum(max(0, count) for count in self._free(lane).values())
+
+    def why_silent(self) -> str:
+        """Why no machine runs anything, if none does."""
+        if not self._thread.is_alive():
+            return f"the thread that connects to {self.address} has ended: start this server again"
+        if (client := self._client) is None or client.status != "running":
+            return f"no connection to the scheduler {self.address} ({self._failure})"
+        return f"no machine of this program is connected to the scheduler {self.address}"
+
+    def run(
+        self,
+        lane: Lane,
+        order: Order,
+        preferred: str | None,
+        on_progress: Reporter | None,
+        cancelled: threading.Event | None,
+    ) -> tuple[Outcome, str]:
+        """Wait for a place, the preferred machine's if it has one, run an order there, and say where it was.
+
+        Raises
+        ------
+        JobCancelled
+            Somebody has cancelled it.
+        WorkerLost
+            The machine or the scheduler has gone while it ran.
+        """
+        cancelled = cancelled or threading.Event()
+        with self._place(lane, preferred, cancelled) as (client, machine):
+            try:
+                return self._run_there(client, lane, order, machine, on_progress, cancelled), machine
+            except JobCancelled:
+                raise
+            except Exception as error:
+                if client.status == "running" and not isinstance(error, WorkerLost):
+                    raise
+                if self._closed.is_set():  # it is this server that has gone
+                    raise JobCancelled from None
+                if isinstance(error, WorkerLost):
+                    raise
+                raise WorkerLost("the scheduler has gone") from error
+
+    def close(self) -> None:
+        """Leave the scheduler; what still runs is killed there."""
+        self._closed.set()
+        with self._changed:
+            self._changed.notify_all()
+        self._thread.join(_PAUSE)  # an attempt to connect may take longer
+
+    def _run_there(
+        self,
+        client: BoundedClient,
+        lane: Lane,
+        order: Order,
+        machine: str,
+        on_progress: Reporter | None,
+        cancelled: threading.Event,
+    ) -> Outcome:
+        key = f"{lane}-{self._name}-{uuid.uuid4().hex}"
+        messages = self._listeners[key] = Messages()
+        try:
+            future = self._submit(client, lane, key, order, machine)
+            try:
+                future.add_done_callback(lambda _: messages.put(None))
+                self._follow(client, future, messages, on_progress, cancelled)
+                return _result(future)
+            finally:
+                future.release()  # nobody wants it any more: if it runs, its process is killed
+        finally:
+            del self._listeners[key]
+
+    def _submit(
+        self, client: BoundedClient, lane: Lane, key: str, order: Order, machine: str
+    ) -> Future[Outcome]:
+        return client.submit(
+            carry_out,
+            key,
+            order,
+            self._topic,
+            key=key,
+            pure=False,
+            retries=0,
+            resources={self._labels[lane]: 1},
+            workers=[machine],
+            allow_other_workers=True,  # if it goes before the task has begun
+        )
+
+    def _follow(
+        self,
+        client: BoundedClient,
+        future: Future[Outcome],
+        messages: Messages,
+        on_progress: Reporter | None,
+        cancelled: threading.Event,
+    ) -> None:
+        """Pass progress on until the task has ended."""
+        while True:
+            if cancelled.is_set() or self._closed.is_set():
+                raise JobCancelled
+            if client.status != "running" or future.status in ("lost", "cancelled"):
+                raise WorkerLost("the scheduler has gone")
+            try:
+                message = messages.get(timeout=_GLANCE)
+            except queue.Empty:
+                continue
+            if message is None:
+                return
+            if on_progress is not None:
+                on_progress(*message)
+
+    @contextmanager
+    def _place(
+        self, lane: Lane, preferred: str | None, cancelled: threading.Event
+    ) -> Iterator[tuple[BoundedClient, str]]:
+        """Hold a free place of a lane, and give the client and the address of the machine."""
+        with self._changed:
+            while (machine := self._best(lane, preferred)) is None or (client := self._client) is None:
+                if cancelled.is_set() or self._closed.is_set():
+                    raise JobCancelled
+                self._changed.wait(_GLANCE)
+            self._own[lane, machine] += 1
+        try:
+            yield client, machine
+        finally:
+            with self._changed:
+                self._own[lane, machine] -= 1
+                self._own += Counter()  # forgets those of which nothing is left
+                self._changed.notify_all()
+
+    def _best(self, lane: Lane, preferred: str | None) -> str | None:
+        free = {machine: count for machine, count in self._free(lane).items() if count > 0}
+        return preferred if preferred in free else max(free, key=free.__getitem__, default=None)
+
+    def _free(self, lane: Lane) -> dict[str, int]:
+        if self._client is None or self._client.status != "running":
+            return {}  # what was seen then is no longer true
+        there = self._places.get(lane, {}).items()
+        return {machine: its.size - its.of_others - self._own[lane, machine] for machine, its in there}
+
+    def _work(self) -> None:
+        """Connect, look around until the connection breaks, and connect again."""
+        is_told = False
+        while not self._closed.is_set():
+            try:
+                with self._connected() as client:
+                    logger.warning("connected to the scheduler %s", self.address)
+                    is_told, self._failure = False, "the connection is lost"
+                    while client.status == "running" and not self._closed.is_set():
+                        self._look_around(client)
+                        self._closed.wait(_LOOK)
+            except Exception as error:  # whatever it is, no job can be sent until it has passed
+                self._failure = str(error) or type(error).__name__
+                if not is_told:
+                    logger.warning("no connection to the scheduler %s: %s", self.address, error)
+                is_told = True
+            self._closed.wait(_PAUSE)
+
+    @contextmanager
+    def _connected(self) -> Iterator[BoundedClient]:
+        """A client; without its scheduler it is useless, as are its futures, so it is closed then."""
+        client = BoundedClient(self.address, self._security)
+        try:
+            client.subscribe_topic(self._topic, self._hear)
+            self._client = client
+            yield client
+        finally:
+            self._client = None
+            with self._changed:
+                self._places = {}
+            client.end()
+
+    def _hear(self, event: tuple[float, tuple[str, float, str]]) -> None:
+        key, fraction, text = event[1]
+        if listener := self._listeners.get(key):
+            listener.put((fraction, text))
+
+    def _look_around(self, client: BoundedClient) -> None:
+        async def look() -> dict[Lane, dict[str, Places]]:
+            seen = await client.run_on_scheduler(places, labels=self._labels, own=self._name)
+            return cast(dict[Lane, dict[str, Places]], seen)
+
+        seen = client.sync(look, callback_timeout=_PATIENCE)
+        with self._changed:
+            self._places = seen
+            self._changed.notify_all()
+
+
+def _result(future: Future[Outcome]) -> Outcome:
+    try:
+        return future.result(timeout=_FETCH)
+    except KilledWorker:
+        raise WorkerLost("the machine that ran it has gone") from None
+    except (CancelledError, OSError, TimeoutError) as error:
+        raise WorkerLost(str(error) or type(error).__name__) from error

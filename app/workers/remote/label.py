@@ -1,0 +1,47 @@
+"""By what a server and a machine see that they run the same program: jobs go to such machines only.
+
+While a team upgrades, servers and machines of both versions share one scheduler and do not disturb each
+other.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+from collections.abc import Iterator
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+import cad
+import templates
+from app.workers.base import Lane
+
+LIBRARIES = ("distributed", "cadquery", "cadquery-ocp", "netgen-mesher", "ngsolve", "numpy", "scipy")
+"""What carries jobs, and what their results depend on."""
+_PACKAGES = (Path(__file__).parents[2], Path(cad.__file__).parent, Path(templates.__file__).parent)
+
+
+@cache
+def program() -> str:
+    """A digest of the files of this program, the recipe of solids among them, and of what it stands on."""
+    libraries = [(name, version(name)) for name in LIBRARIES]
+    digest = hashlib.sha256(json.dumps([sys.version_info[:2], libraries]).encode())
+    for name, file in _files():
+        content = file.read_bytes()
+        digest.update(f"{name} {len(content)}\n".encode())
+        digest.update(content)
+    return digest.hexdigest()
+
+
+def label(lane: Lane, of: str) -> str:
+    """The resource that a machine offers for a lane, and a job of it asks for, by the digest of a program."""
+    return f"{lane}-{of[:12]}"
+
+
+def _files() -> Iterator[tuple[str, Path]]:
+    for package in _PACKAGES:
+        for file in sorted(package.rglob("*")):
+            if file.is_file() and "__pycache__" not in file.parts:
+                yield str(file.relative_to(package.parent)), file

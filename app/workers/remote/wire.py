@@ -1,0 +1,85 @@
+"""What crosses the wire: packed requests and outcomes, which the scheduler and Dask's workers never open.
+
+The scheduler imports this module, so it needs this program too; of another version is enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Protocol, cast
+
+from distributed import Scheduler, get_worker
+from distributed.scheduler import TaskState
+
+from app.workers.base import Lane
+from app.workers.errors import RemoteError
+from app.workers.messages import Outcome, Packed, Request
+
+MOST_BYTES = 2**30
+"""Of a request or a result; both are held in memory on both sides."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """A request, the batch whose process it may use, and whether somebody hears how far it is."""
+
+    request: Request
+    batch: str | None = None
+    is_heard: bool = False
+
+
+class CarriesOut(Protocol):
+    """A Dask worker of ours."""
+
+    def carry_out(self, key: str, order: Order, topic: str) -> Outcome:
+        """Run a request in a process of its own; see `app.workers.remote.machine`."""
+        ...
+
+
+def carry_out(key: str, order: Order, topic: str) -> Outcome:
+    """The one function that Dask runs, in a thread of its worker; it reports progress under a topic."""
+    return cast(CarriesOut, get_worker()).carry_out(key, order, topic)
+
+
+@dataclass(frozen=True)
+class Places:
+    """How many functions of a lane a machine runs at the same time, and how many of them it has of others."""
+
+    size: int
+    of_others: int
+
+
+def places(labels: Mapping[Lane, str], own: str, dask_scheduler: Scheduler) -> dict[Lane, dict[str, Places]]:
+    """The places of each lane by the address of the machine; runs in the scheduler.
+
+    `own` is part of the keys of tasks of who asks, and counts them itself without delay.
+    """
+    return {
+        lane: {
+            machine.address: Places(int(machine.resources[label]), _of_others(machine.processing, label, own))
+            for machine in dask_scheduler.workers.values()
+            if label in machine.resources
+        }
+        for lane, label in labels.items()
+    }
+
+
+def _of_others(tasks: Iterable[TaskState], label: str, own: str) -> int:
+    return sum(label in (task.resource_restrictions or ()) and own not in str(task.key) for task in tasks)
+
+
+def check_size(packed: Packed) -> None:
+    """Refuse what is too large to be sent.
+
+    Raises
+    ------
+    RemoteError
+        `TooLarge`.
+    """
+    size = len(packed.message) + sum(memoryview(piece).nbytes for piece in packed.pieces)
+    if size > MOST_BYTES:
+        most = (
+            f"{size / 2**20:.0f} MiB; a worker on another machine takes and returns {MOST_BYTES // 2**20} MiB"
+        )
+        raise RemoteError("TooLarge", f"{most} at most")

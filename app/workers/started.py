@@ -1,0 +1,47 @@
+"""What runs functions, by the settings: processes of this machine, or those of other machines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+
+from app.machines import LOCAL
+from app.settings import Settings
+from app.workers.base import BatchWorker, Worker
+from app.workers.local import LocalProcesses
+
+CHECKS = ("cad.model", "templates.core.checking.check")
+"""What the check of a team's file imports."""
+
+
+@dataclass(frozen=True)
+class Workers:
+    """What runs the functions of jobs, and what runs those of this machine: reports, checks of files.
+
+    `why_silent` says why no process answers that would run a job, if none does.
+    """
+
+    of_jobs: BatchWorker
+    here: Worker
+    why_silent: Callable[[], str]
+
+
+def why_silent_here() -> str:
+    """Why no process of this machine answers."""
+    return "they are being started, or hang"
+
+
+def started_workers(settings: Settings, stack: ExitStack) -> Workers:
+    """Start the workers; the stack ends them."""
+    if settings.engine == LOCAL:
+        local = LocalProcesses()
+        stack.callback(local.close)
+        return Workers(local, local, why_silent_here)
+    from app.workers.remote.engine import DaskWorker  # the embedded default does without Dask
+
+    here = LocalProcesses(CHECKS if settings.template_folders else ())
+    stack.callback(here.close)
+    of_jobs = DaskWorker.of(settings)
+    stack.callback(of_jobs.close)
+    return Workers(of_jobs, here, of_jobs.why_silent)

@@ -1,0 +1,54 @@
+"""Processor time by /proc: of a process with all that descends from it, and of the whole machine."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+_TICK = 1 / os.sysconf("SC_CLK_TCK")  # s
+_PARENT, _OWN, _ENDED = 1, slice(11, 13), slice(13, 15)  # fields of a `stat` behind the name of its program
+
+
+@dataclass(frozen=True)
+class Cores:
+    """Processor time of the machine since it started, in work and idle [s]."""
+
+    busy: float
+    idle: float
+
+    @classmethod
+    def now(cls) -> Cores:
+        """That of the present moment."""
+        line = Path("/proc/stat").read_text().partition("\n")[0]
+        user, nice, system, idle, waiting, *more = (int(text) * _TICK for text in line.split()[1:8])
+        return cls(user + nice + system + sum(more), idle + waiting)
+
+    def share_since(self, before: Cores) -> float:
+        """The share of all cores that has been in use since then, by whatever process."""
+        busy, idle = self.busy - before.busy, self.idle - before.idle
+        return busy / (busy + idle)
+
+
+def used(pid: int) -> float:
+    """What a process, its living descendants and the children that it has waited for have used [s]."""
+    processes = {
+        int(place.name): _fields(place) for place in Path("/proc").iterdir() if place.name.isdecimal()
+    }
+    family, found = {pid}, {pid}
+    while found := {one for one, fields in processes.items() if fields and fields[_PARENT] in found} - family:
+        family |= found
+    return sum(_seconds(fields) for one in family if (fields := processes.get(one)))
+
+
+def _seconds(fields: list[int]) -> float:
+    return _TICK * (sum(fields[_OWN]) + sum(fields[_ENDED]))
+
+
+def _fields(place: Path) -> list[int]:
+    """The numbers of a process; none if it has ended."""
+    with suppress(OSError):
+        text = (place / "stat").read_text().rpartition(")")[2].split()
+        return [0, *(int(field) for field in text[1:20])]  # the first is a letter, its state
+    return []

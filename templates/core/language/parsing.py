@@ -1,0 +1,49 @@
+"""Python source as a syntax tree, one thread at a time.
+
+CPython 3.11 counts the depth of a syntax tree in one number of the interpreter. While one thread parses, a
+collection of garbage may let another thread run. If that one parses too, one of them stops with "SystemError:
+AST constructor recursion depth mismatch" (python/cpython issue 106905). A server parses in several threads,
+so Crankwright makes every syntax tree here, under one lock.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import os
+import threading
+
+_ONE_AT_A_TIME = threading.RLock()
+
+
+def parse(source: str) -> ast.Module:
+    """The syntax tree of Python source.
+
+    Raises
+    ------
+    SyntaxError
+        If the text is not Python.
+    """
+    with _ONE_AT_A_TIME:
+        return ast.parse(source)
+
+
+def lines_of(cls: type) -> tuple[list[str], int]:
+    """The source lines of a class and the number of the first, found by `inspect` in a syntax tree.
+
+    Raises
+    ------
+    OSError
+        If the class has no source file.
+    """
+    with _ONE_AT_A_TIME:
+        return inspect.getsourcelines(cls)
+
+
+def _unlock_in_child() -> None:
+    """A process forked while another thread parsed would wait for that thread, which it does not have."""
+    global _ONE_AT_A_TIME
+    _ONE_AT_A_TIME = threading.RLock()
+
+
+os.register_at_fork(after_in_child=_unlock_in_child)

@@ -1,0 +1,243 @@
+"""Thrust bearing: a collar on fixed-incline sector pads, with its heat balance (MEC 315).
+
+The film follows from the load, and its temperature from what the collar's friction leaves in the oil.
+Isothermal film of effective viscosity, incompressible, laminar; rigid faces; ambient pressure around.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from templates.core.language.template import Array, Truth, formula, given, require, shared
+from templates.groups.oil import Oil
+from templates.physics.journals.oil import by_law, viscosity_at
+from templates.physics.pads.thrust_collar import LEVELS, SECTOR, Collar, CollarFilm, working_collar
+
+NO_SUPPLY = "needs supply_temperature"
+UNBORNE = "no film ratio from 1.000001 to 100 bears this load: change taper, speed, viscosity or pads"
+MEC = "MEC 315"
+
+
+class ThrustBearing(Oil):
+    """Thrust bearing: a collar on fixed-incline sector pads, with its heat balance (MEC 315).
+
+    The film follows from the load, and its temperature from what the collar's friction leaves in the oil.
+    Isothermal film of effective viscosity, incompressible, laminar; rigid faces; ambient pressure around.
+
+    Limits
+    ------
+    Each pad slopes over its whole angle: the film falls in proportion to the angle, by the taper, and is the
+    same at all radii. Pads with a flat part, and pads that tilt, have other films.
+    Level sector solves the Reynolds equation of a sector; level mean_rectangle that of a rectangle of the
+    pad's mean length and its width, which is what slider_bearing 1 calculates. Measured by
+    `benchmarks/thrust_bearing.py` for pads of 15° to 60°, the rectangle's torque is 3 to 4 % low at outer
+    over inner diameter 1.5, 8 to 10 % at 2 and 16 to 20 % at 3; its smallest film at a load within 0.2, 2 and
+    8 %. So the sector, which costs as little, is the default.
+    Both solve 16 × 4 and 32 × 8 intervals and extrapolate. Against finer meshes the sector's load errs by
+    0.1 %, its flows by 0.06 % of the inlet's for film ratios to 5, b/l 0.3 to 3 and diameters to 3; at the
+    worst corner of what is taken (film ratio 100, b/l 10, diameters 5) by 0.7 % and 7 %.
+    The load is spread evenly over all pads: the collar runs true.
+    Heat: the oil of a pad leaves at its outlet with the outlet's temperature, and at its sides with the mean
+    of inlet and outlet, which is the film's. Of the outlet's oil the share that is carried over goes on under
+    the next pad. That share is a matter of the grooves, and no source for its default of one half is claimed;
+    0 is the coolest, 1 the hottest. No heat leaves through pads and collar.
+    Without a supply temperature give the viscosity; there is no heat balance then.
+    The film Reynolds number is that of the inlet film at the mean radius; the film is laminar up to about
+    1000.
+
+    References
+    ----------
+    Course MEC 315, hydrodynamic lubrication.
+    Michell: Zeitschrift für Mathematik und Physik 52, 1905, p. 123, for pads of finite width.
+    ASTM D341 (Walther) or Vogel: Physikalische Zeitschrift 22, 1921, p. 645, for the viscosity.
+    """
+
+    levels = LEVELS
+    default_level = SECTOR
+    most_points = dict.fromkeys(LEVELS, 10_000)
+    precision = 1e-8
+
+    example = {
+        "load": "20 kN",
+        "outer_diameter": "200 mm",
+        "inner_diameter": "110 mm",
+        "pads": 8,
+        "taper": "30 um",
+        "speed": "1500 rpm",
+        "oil_grade": "iso_vg_46",
+        "supply_temperature": "40 degC",
+    }
+    criteria = {
+        "film": {
+            "require": "minimum_film_thickness >= smallest_permissible_film",
+            "words": "the smallest film is not thinner than the smallest permissible one",
+            "limits": {
+                "smallest_permissible_film": {
+                    "unit": "um",
+                    "words": "smallest film that the bearing may have",
+                }
+            },
+        },
+        "film_exists": {
+            "require": "minimum_film_thickness >= 0.05 um",
+            "words": "the film is not thinner than the finest surfaces are rough",
+            "source": "ISO 1302:1992, grade N2: Ra 0.05 um, lapped or superfinished",
+            "warning": "film_too_thin",
+        },
+        "specific_load": {
+            "require": "specific_load <= permissible_specific_load",
+            "words": "the load over the area of the pads is within what the bearing material bears",
+            "limits": {
+                "permissible_specific_load": {
+                    "unit": "MPa",
+                    "words": "largest load over the area of the pads that the bearing material bears",
+                    "from": "bearing_material",
+                }
+            },
+        },
+        "temperature": {
+            "require": "outlet_temperature <= permissible_temperature",
+            "words": "the oil at the outlet is no hotter than the bearing material bears",
+            "limits": {
+                "permissible_temperature": {
+                    "unit": "degC",
+                    "words": "largest temperature that the bearing material bears",
+                    "from": "bearing_material",
+                }
+            },
+        },
+        "laminar": {
+            "require": "film_reynolds_number <= 1000",
+            "words": "the flow in the film is laminar",
+            "source": "MEC 315",
+            "warning": "turbulent_flow",
+        },
+    }
+
+    F: Array = given("kN", "load", symbol="F", gt=0)
+    D_o: Array = given("mm", "outer diameter", gt=0)
+    D_i: Array = given("mm", "inner diameter", gt=0)
+    z: Array = given("1", "pads", symbol="z", integer=True, ge=1, le=1000)
+    share: Array = given("1", "pad share", symbol=r"\kappa", default=0.8, gt=0, lt=1,
+                         remedy="the part of the circle that pads cover; grooves are the rest")  # fmt: skip
+    t: Array = given("um", "taper", symbol="t", gt=0)
+    omega: Array = given("rpm", "speed", gt=0)
+    T_s: Array = given("degC", "supply temperature", alternative=True, ge=-100, le=499)
+    k: Array = given("1", "carried over share", symbol="k", default=0.5, ge=0, le=1)
+    rho_c: Array = given("kJ/(m**3*K)", "heat capacity", default="1800 kJ/(m**3*K)", gt=0)
+
+    @require("inner_diameter", "outer_diameter", remedy="swap them")
+    def pads_have_a_width(self) -> Truth:
+        """The inner diameter is smaller than the outer one."""
+        return self.D_i < self.D_o
+
+    @require("supply_temperature", missing=True, remedy="give it, or dynamic_viscosity")
+    def viscosity_follows(self) -> Truth:
+        """The viscosity follows from the heat balance, or is given."""
+        return ~(np.isnan(self.T_s) & np.isnan(self.as_given("eta")))
+
+    @formula("deg", "pad angle", symbol=r"\varphi")
+    def phi(self) -> Array:
+        return 2 * np.pi * self.share / self.z
+
+    @formula("mm", "pad width", symbol="b")
+    def b(self) -> Array:
+        return (self.D_o - self.D_i) / 2
+
+    @formula("mm", "mean diameter", symbol="D_m")
+    def D_m(self) -> Array:
+        return (self.D_o + self.D_i) / 2
+
+    @formula("mm", "mean pad length", symbol="l")
+    def l(self) -> Array:  # noqa: E743, the course's symbol
+        return self.phi * self.D_m / 2
+
+    @formula("1", "width ratio", symbol=r"\lambda", ge=0.1, le=10,
+             remedy="pads 0.1 to 10 times as wide as long are resolved: change their number")  # fmt: skip
+    def ratio(self) -> Array:
+        return self.b / self.l
+
+    @formula("1", "diameter ratio", symbol=r"\chi", le=5, remedy="sectors of up to 5 are resolved")
+    def reach(self) -> Array:
+        return self.D_o / self.D_i
+
+    @formula("cm**2", "pad area", symbol=r"A_\mathrm{p}")
+    def area(self) -> Array:
+        return self.z * self.l * self.b
+
+    @formula("MPa", "specific load", symbol=r"\bar{p}")
+    def p(self) -> Array:
+        return self.F / self.area
+
+    @shared
+    def collar(self) -> Collar:
+        """The collar at work."""
+        return Collar(
+            load=self.p, taper=self.t, omega=self.omega, radius=self.D_m / 2, angle=self.phi,
+            reach=self.reach + 0 * self.ratio, heat_capacity=self.rho_c, T_supply=self.T_s, carried=self.k,
+        )  # fmt: skip
+
+    @shared
+    def film(self) -> CollarFilm:
+        """The film that bears the load, with the heat balance, dimensionless."""
+        return working_collar(
+            self.level, self.collar, viscosity_at, self.A, self.B, by_law(self.law, np.nan, self.a_V),
+            self.b_V, self.c_V, self.as_given("eta"), self.rho_ref, self.T_ref,
+        )  # fmt: skip
+
+    @formula("1", "film ratio", symbol="a", gt=1, remedy=UNBORNE)
+    def a(self) -> Array:
+        return self.film.a
+
+    @formula("um", "minimum film thickness", symbol="h_o", gt=0)
+    def h_o(self) -> Array:
+        return self.t / (self.a - 1)
+
+    @formula("N*m", "friction torque", symbol="M")
+    def M(self) -> Array:
+        return self.F * self.D_m / 2 * self.h_o / self.l * self.film.friction
+
+    @formula("W", "power loss", symbol="P")
+    def P(self) -> Array:
+        return self.M * self.omega
+
+    @formula("1", "friction coefficient", symbol="f")
+    def f(self) -> Array:
+        return self.M / (self.F * self.D_m / 2)
+
+    @formula("l/min", "inlet flow", symbol=r"Q_\mathrm{i}")
+    def Q_i(self) -> Array:
+        return self.z * self.omega * self.D_m / 2 * self.h_o * self.b * self.film.inlet
+
+    @formula("l/min", "side flow", symbol=r"Q_\mathrm{s}")
+    def Q_s(self) -> Array:
+        return self.z * self.omega * self.D_m / 2 * self.h_o * self.b * self.film.side
+
+    @formula("l/min", "fresh oil flow", symbol="Q")
+    def Q(self) -> Array:
+        return self.Q_i - self.k * (self.Q_i - self.Q_s)
+
+    @formula("K", "temperature gain", symbol=r"\delta T")
+    def gain(self) -> Array:
+        return self.P / (self.rho_c * (self.Q_i - self.Q_s / 2))
+
+    @formula("degC", "inlet temperature", symbol="T_{i}", absent=NO_SUPPLY)
+    def T_i(self) -> Array:
+        return self.T_s + self.gain * (self.Q_i - self.Q) / self.Q
+
+    @formula("degC", "outlet temperature", symbol="T_{e}", absent=NO_SUPPLY)
+    def T_e(self) -> Array:
+        return self.T_i + self.gain
+
+    @formula("degC", "film temperature", symbol="T", absent=NO_SUPPLY, le=500,
+             remedy="the heat balance finds none below 500 °C: cool more, or less load or speed")  # fmt: skip
+    def T_film(self) -> Array:
+        return (self.T_i + self.T_e) / 2
+
+    @formula("K", "temperature rise", symbol=r"\Delta T", absent=NO_SUPPLY)
+    def rise(self) -> Array:
+        return self.T_e - self.T_s
+
+    @formula("1", "film Reynolds number", symbol=r"\mathrm{Re}", source=MEC, published=(None, 1000))
+    def Re(self) -> Array:
+        return self.rho * self.omega * self.D_m / 2 * self.a * self.h_o / self.eta

@@ -1,0 +1,235 @@
+"""Static position of a journal in a bore of any shape, tilted or not, from its load.
+
+Newton's method on a mesh that stands still while it searches; then the mesh is graded to the place found,
+until both agree, and refined: 32, 64 and 128 intervals around. No step takes more than 70 % of the gap
+anywhere, and none is kept that leaves the force farther from the load. The last two meshes give Richardson's
+extrapolation and an estimate of the error.
+
+Oil comes in where `Feed` has grooves, which stand still relative to the load. Without grooves it comes along
+the joints of a lobed bore, and else along a line opposite the displacement of the journal's middle.
+
+A balance may lie on either side: supply pressure can lift the journal above the bearing's middle. So the
+search begins where the plain film would have the journal, then near the middle, then on the other sides. A
+balance without resistance to slow displacement, det K ≤ 0, is none.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.cavities.fed_film import Feed
+from templates.physics.cavities.shaped_film import ShapedFilm, shaped_film
+from templates.physics.cavities.shaped_network import FULL_TURN, Nodes, Pocket, shaped_nodes
+from templates.physics.films.film_map import mapped_film
+from templates.physics.films.film_map_inverse import mapped_eccentricity
+from templates.physics.films.film_shape import Bore, Lie, narrowest
+from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
+
+MESHES = ((32, 6), (64, 8), (128, 16))
+"""Intervals around, and across half the width."""
+LEAST_GAP = 1e-6
+"""Smallest gap at which a film is looked for [-]."""
+SMALLEST = 1e-3
+"""Eccentricity of the plain film below which a load is taken as this one's, in proportion [-]."""
+_STEPS = 40
+_TURNS = 8
+"""How often the mesh is graded again before the place is taken as it is."""
+_ACCURACY = 1e-7
+"""Step over the least gap at which a search on one mesh ends."""
+_AGREED = 1e-5
+"""Turn of the line of supply at which place and mesh agree [rad]."""
+_NEAR_ENOUGH = 1e-2
+"""Change of the least gap, relative, at which they agree; the grading asks for no more."""
+
+
+class NoBalance(ArithmeticError):
+    """No place was found at which the film bears the load."""
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """A bearing whose journal's place is wanted."""
+
+    So: float
+    """Sommerfeld number of the smallest clearance, 0 or more [-]."""
+    ratio: float
+    """Width over diameter B/D [-]."""
+    bore: Bore
+    tilt: Array
+    """(2,) what the journal's end zeta = 1 is displaced beyond its middle, over the radial clearance [-]."""
+    feed: Feed
+    conserving: bool
+    """Whether cavities conserve mass."""
+
+    def pockets(self, attitude: float) -> list[Pocket]:
+        """Where oil comes in, if the journal's middle is displaced in a direction."""
+        if self.feed.grooves:
+            return [Pocket(angle, width, self.feed.pressure) for angle, width in self.feed.grooves]
+        if self.bore.is_lobed:
+            return [Pocket(float(angle), 0.0, self.feed.pressure) for angle in self.bore.joints()]
+        return [Pocket(attitude + np.pi, 0.0, self.feed.pressure)]
+
+    @property
+    def line_turns(self) -> bool:
+        """Whether the line of supply turns with the journal."""
+        return not self.feed.grooves and not self.bore.is_lobed
+
+    def lie(self, e: Array) -> Lie:
+        """The journal displaced by e."""
+        return Lie(e, self.tilt)
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The film that bears a load, on two meshes."""
+
+    coarse: ShapedFilm
+    fine: ShapedFilm
+    at_coarse: Lie
+    at_fine: Lie
+
+
+def balance(loaded: Loaded) -> Balance:
+    """Find where the journal lies.
+
+    Raises
+    ------
+    NoBalance
+        If no search ends at a stable place.
+    """
+    failure: Exception | None = None
+    for meshes, start in product(_ladders(loaded), _starts(loaded)):
+        try:
+            return _refined(loaded, start, meshes)
+        except (ArithmeticError, RuntimeError, np.linalg.LinAlgError) as reason:  # the last: singular
+            failure = reason
+    raise NoBalance("no place was found at which the film bears the load") from failure
+
+
+def _ladders(loaded: Loaded) -> list[tuple[tuple[int, int], ...]]:
+    """Meshes to refine over; in a bore of lobes also without the coarsest, which may miss some of them."""
+    return [MESHES, MESHES[1:]] if loaded.bore.is_lobed and not loaded.feed.grooves else [MESHES]
+
+
+def _starts(loaded: Loaded) -> Iterator[Array]:
+    """Displacements from which to search."""
+    eps = float(np.nan_to_num(mapped_eccentricity(np.array(loaded.So), np.array(loaded.ratio)), nan=0.999))
+    eps = min(max(eps, SMALLEST), ECCENTRICITY_LIMIT)
+    attitude = float(mapped_film(np.array(eps), np.array(loaded.ratio))["attitude"])
+    plain = np.array([np.cos(attitude), np.sin(attitude)])
+    yield _inside(loaded, eps * plain)
+    yield _inside(loaded, 0.05 * plain)
+    if loaded.feed.grooves:
+        for turn in (np.pi / 2, np.pi, -np.pi / 2):
+            cos, sin = np.cos(attitude + turn), np.sin(attitude + turn)
+            yield _inside(loaded, 0.6 * np.array([cos, sin]))
+
+
+def _inside(loaded: Loaded, e: Array) -> Array:
+    """The displacement, shortened until the journal is free everywhere."""
+    for _ in range(60):
+        if narrowest(loaded.bore, loaded.lie(e))[0] > 10 * LEAST_GAP:
+            return e
+        e = e * 0.9
+    raise NoBalance("the tilted journal touches the bore wherever it lies")
+
+
+def _refined(loaded: Loaded, e: Array, meshes: tuple[tuple[int, int], ...]) -> Balance:
+    """The balance on the meshes, each begun at that of the coarser one."""
+    films: list[tuple[ShapedFilm, Lie]] = []
+    for mesh in meshes:
+        film, lie = _agreed(loaded, e, mesh, films[-1][0] if films else None)
+        if np.linalg.det(film.linear[0]) <= 0:
+            raise NoBalance("the place found is not stable")
+        films.append((film, lie))
+        e = lie.e
+    (coarse, at_coarse), (fine, at_fine) = films[-2:]
+    return Balance(coarse, fine, at_coarse, at_fine)
+
+
+def _agreed(
+    loaded: Loaded, e: Array, mesh: tuple[int, int], near: ShapedFilm | None
+) -> tuple[ShapedFilm, Lie]:
+    """The balance on a mesh graded to it, whose line of supply lies opposite it."""
+    line = loaded.lie(e).attitude
+    for turn in range(_TURNS):
+        before = narrowest(loaded.bore, loaded.lie(e))[0]
+        pockets = loaded.pockets(line)
+        nodes = shaped_nodes(loaded.bore, loaded.lie(e), loaded.ratio, pockets, *mesh)
+        near, e = film, e = _searched(loaded, e, nodes, pockets, near)
+        after = narrowest(loaded.bore, loaded.lie(e))[0]
+        aside = (loaded.lie(e).attitude - line + np.pi) % FULL_TURN - np.pi
+        graded = abs(after / before - 1) <= _NEAR_ENOUGH or turn >= _TURNS // 2
+        if graded and (not loaded.line_turns or abs(aside) <= _AGREED):
+            break
+        line += aside
+    return film, loaded.lie(e)
+
+
+def _searched(
+    loaded: Loaded, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
+) -> tuple[ShapedFilm, Array]:
+    """Newton's method on one mesh."""
+    film = _solved(loaded, e, nodes, pockets, near)
+    wanted = np.array([loaded.So, 0.0])
+    for _ in range(_STEPS):
+        lack = wanted - film.force
+        step = np.asarray(np.linalg.solve(film.linear[0], lack), float)
+        H = film.H
+        gains = np.cos(nodes.phi[:-1]) * step[0] + np.sin(nodes.phi[:-1]) * step[1]
+        share = min(1.0, 0.7 / max(float((gains[:, None] / H.nodes).max()), 1e-300))
+        least = float(H.nodes.min())
+        if float(np.hypot(*step)) <= _ACCURACY * least:
+            return film, e
+        film, e = _nearer(loaded, film, e, share * step, nodes, pockets)
+        if float(film.H.nodes.min()) < LEAST_GAP:
+            raise NoBalance("the film that would bear it is thinner than a millionth of the clearance")
+    raise NoBalance("the search for the journal's place does not settle")
+
+
+def _nearer(
+    loaded: Loaded, film: ShapedFilm, e: Array, step: Array, nodes: Nodes, pockets: list[Pocket]
+) -> tuple[ShapedFilm, Array]:
+    """The film after a step, which is halved until the force is nearer to the load than before."""
+    wanted = np.array([loaded.So, 0.0])
+    distance = float(np.hypot(*(wanted - film.force)))
+    for _ in range(12):
+        try:
+            after = _solved(loaded, e + step, nodes, pockets, film)
+        except (ArithmeticError, RuntimeError):
+            after = None
+        if after is not None and float(np.hypot(*(wanted - after.force))) < distance:
+            return after, e + step
+        step = step / 2
+    raise NoBalance("no displacement brings the film's force nearer to the load")
+
+
+def _solved(
+    loaded: Loaded, e: Array, nodes: Nodes, pockets: list[Pocket], near: ShapedFilm | None
+) -> ShapedFilm:
+    """The film at a displacement, begun from a near one if there is any."""
+    start = None if near is None else _carried(near, nodes)
+    lie = loaded.lie(e)
+    try:
+        return shaped_film(nodes, loaded.bore, lie, pockets, conserving=loaded.conserving, start=start)
+    except ArithmeticError:
+        return shaped_film(nodes, loaded.bore, lie, pockets, conserving=loaded.conserving)
+
+
+def _carried(film: ShapedFilm, nodes: Nodes) -> tuple[Array, Array]:
+    """Pressure and void of a film at other nodes, linearly along each direction."""
+    if film.nodes is nodes:
+        return film.solution.P.copy(), film.solution.void.copy()
+    own = film.nodes
+
+    def carried(values: Array) -> Array:
+        columns = values.T
+        rows = np.stack(
+            [np.interp(nodes.phi[:-1], own.phi[:-1], c, period=FULL_TURN) for c in columns], axis=1
+        )
+        return np.stack([np.interp(nodes.zeta, own.zeta, row) for row in rows]).ravel()
+
+    return carried(film.P), carried(film.void)

@@ -1,0 +1,186 @@
+"""Balances of flow of a film whose gap is given, on a ring of nodes, and their change with the gap.
+
+As `cavitating_network`, but the gap may differ across as well: a tilted journal needs the whole width, a bore
+with lobes or a bell mouth half of it. Angles count from the load.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import csc_array, csr_array, diags_array, eye_array, kron, vstack
+
+from templates.core.arrays import Array, Mask
+from templates.physics.cavities.cavitation import Network
+from templates.physics.films.film_equations import dual_widths, midpoints
+from templates.physics.films.film_mesh import ring_mesh
+from templates.physics.films.film_shape import Bore, Lie, directions, gap, narrowest
+from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
+
+FULL_TURN = 2 * np.pi
+
+
+@dataclass(frozen=True)
+class Pocket:
+    """An axial groove over the whole width, full at its pressure; a width of 0 makes a line."""
+
+    centre: float
+    """From the load in the sense of rotation [rad]."""
+    width: float
+    """Extent around [rad]."""
+    P: float
+    """Supply pressure above that of the cavity [-]."""
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """Where the nodes are: those around × those across, the axial index fastest; phi ends where it starts."""
+
+    ratio: float
+    """Width over diameter B/D [-]."""
+    phi: Array
+    """(n + 1,) angles from the load; the last is the first and a full turn [rad]."""
+    zeta: Array
+    """(m + 1,) axial places, from 0 (middle) or −1 to 1 (ends)."""
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """How many nodes there are around and across."""
+        return self.phi.size - 1, self.zeta.size
+
+    @property
+    def is_half(self) -> bool:
+        """Whether they span half the width, of which the other half is the mirror image."""
+        return bool(self.zeta[0] == 0)
+
+    @cached_property
+    def around(self) -> Array:
+        """(n,) widths of the cells around the nodes [rad]."""
+        widths = dual_widths(self.phi)
+        return np.append(widths[0] + widths[-1], widths[1:-1])
+
+    @cached_property
+    def across(self) -> Array:
+        """(m + 1,) lengths of the cells across [-]."""
+        return dual_widths(self.zeta)
+
+    @cached_property
+    def weight(self) -> Array:
+        """(n, m + 1) areas of the cells over four, doubled where they stand for both halves."""
+        return np.outer(self.around, self.across) / (2 if self.is_half else 4)
+
+    @cached_property
+    def steps(self) -> tuple[csr_array, csr_array]:
+        """Differences between neighbours around and across, (edges, nodes) each."""
+        n, m = self.shape
+        turn = csr_array((np.ones(n), (np.arange(n), np.arange(1, n + 1) % n)), shape=(n, n)) - eye_array(n)
+        axial = eye_array(m - 1, m, k=1) - eye_array(m - 1, m)
+        return csr_array(kron(turn, eye_array(m))), csr_array(kron(eye_array(n), axial))
+
+
+@dataclass(frozen=True)
+class Gaps:
+    """A gap, or its change, where the balances need it."""
+
+    nodes: Array
+    """(n, m + 1) at the nodes."""
+    around: Array
+    """(n, m + 1) midway between neighbours around."""
+    across: Array
+    """(n, m) midway between neighbours across."""
+
+
+def shaped_nodes(bore: Bore, lie: Lie, ratio: float, pockets: list[Pocket], n: int, m: int) -> Nodes:
+    """A mesh graded to the thin film, with nodes at the edges of pockets, at joints and where mouths begin.
+
+    It is that of the plain bearing whose film is as thin and as long: that of a lobe's radius.
+    """
+    least, place = narrowest(bore, lie)
+    radius = 1 + (bore.excess if bore.is_lobed else 0.0)
+    eps = float(np.clip(1 - least / radius, 0.0, ECCENTRICITY_LIMIT))
+    mesh = ring_mesh(eps, ratio, n, m)
+    edges = [pocket.centre + side * pocket.width / 2 for pocket in pockets for side in (-1, 1)]
+    places = (np.array([*edges, *bore.joints()]) - place + np.pi) % FULL_TURN - np.pi
+    zeta = _moved_to(mesh.zeta, np.array([1 - bore.mouth_length] if bore.mouth > 0 else []))
+    zeta[0] = 0.0
+    whole = np.concatenate([-zeta[:0:-1], zeta]) if lie.is_tilted else zeta
+    return Nodes(ratio, place + _moved_to(mesh.phi, places), whole)
+
+
+def _moved_to(nodes: Array, places: Array) -> Array:
+    """The nodes with the inner one that is nearest to each place moved there; none is moved twice."""
+    nodes, held = nodes.copy(), np.zeros(nodes.size, bool)
+    for place in np.unique(places[(places > nodes[0]) & (places < nodes[-1])]):
+        k = 1 + int(np.abs(nodes[1:-1] - place).argmin())
+        if not held[k]:
+            nodes[k], held[k] = place, True
+    return nodes
+
+
+def gaps(nodes: Nodes, bore: Bore, lie: Lie) -> Gaps:
+    """The gap where the balances need it."""
+    phi, zeta = nodes.phi[:-1], nodes.zeta
+    return Gaps(
+        gap(bore, lie, phi, zeta),
+        gap(bore, lie, midpoints(nodes.phi), zeta),
+        gap(bore, lie, phi, midpoints(zeta)),
+    )
+
+
+def displaced(nodes: Nodes) -> tuple[Gaps, Gaps]:
+    """How the gap changes with the journal's displacement along and ahead of the load."""
+    n, m = nodes.shape
+    at_nodes, between = directions(nodes.phi[:-1]), directions(midpoints(nodes.phi))
+
+    def change(k: int) -> Gaps:
+        across = np.broadcast_to(-at_nodes[k][:, None], (n, m))
+        return Gaps(across, np.broadcast_to(-between[k][:, None], (n, m)), across[:, :-1])
+
+    return change(0), change(1)
+
+
+def pressed(nodes: Nodes, H: Gaps) -> csc_array:
+    """What nodes lose by pressure, per pressure."""
+    return _conducted(nodes, H.around**3, H.across**3)
+
+
+def sheared(nodes: Nodes, H: Gaps) -> csc_array:
+    """What nodes lose by shear, per fill of the node from which it comes."""
+    n, m = nodes.shape
+    flow = diags_array((6 * H.around * nodes.across).ravel())
+    return csc_array(-nodes.steps[0].T @ flow @ eye_array(n * m))
+
+
+def perturbed(nodes: Nodes, H: Gaps, change: Gaps) -> tuple[csc_array, csc_array]:
+    """The derivatives of both in the direction of a change of the gap."""
+    A = _conducted(nodes, 3 * H.around**2 * change.around, 3 * H.across**2 * change.across)
+    return A, sheared(nodes, change)
+
+
+def _conducted(nodes: Nodes, around: Array, across: Array) -> csc_array:
+    """The matrix of conductances made from H³, or from its change, between neighbours."""
+    turn, axial = nodes.steps
+    by_turn = around * nodes.across / np.diff(nodes.phi)[:, None]
+    by_axis = across * nodes.around[:, None] / np.diff(nodes.zeta) / nodes.ratio**2
+    step = vstack([turn, axial])
+    conductance = np.concatenate([by_turn.ravel(), by_axis.ravel()])
+    return csc_array(step.T @ diags_array(conductance) @ step)
+
+
+def fed(nodes: Nodes, pockets: list[Pocket]) -> tuple[Array, Mask]:
+    """Fixed pressures (−1: none) and which nodes pockets feed, (n, m + 1) each; the ends are at ambient."""
+    P = np.full(nodes.shape, -1.0)
+    P[:, -1] = 0.0
+    if not nodes.is_half:
+        P[:, 0] = 0.0
+    inside = np.zeros(nodes.shape, bool)
+    for pocket in pockets:
+        away = np.abs((nodes.phi[:-1] - pocket.centre + np.pi) % FULL_TURN - np.pi)
+        P[away <= pocket.width / 2 + 1e-9] = pocket.P
+        inside[away <= pocket.width / 2 + 1e-9] = True
+    return P, inside
+
+
+def network(nodes: Nodes, H: Gaps, P_fixed: Array) -> Network:
+    """The balances of flow."""
+    return Network(pressed(nodes, H), sheared(nodes, H), (P_fixed >= 0).ravel(), P_fixed.ravel())

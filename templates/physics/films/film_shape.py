@@ -1,0 +1,145 @@
+r"""Shape of the gap of a journal bearing: lobes, bell mouth, and where the journal lies, tilted or not.
+
+.. math::
+    H(\varphi,\zeta) = 1 + \delta(\varphi) + \mu(\zeta)
+        - (\mathbf e + \zeta\,\mathbf t)\cdot\mathbf n(\varphi)
+
+phi counts from the load in the sense of the hydrodynamic speed, n = (cos phi, sin phi), zeta = 2z/B from
+−1 to 1. All lengths are over the radial clearance c_b of the largest cylinder that fits into the bore, the
+assembled clearance: a centred, aligned journal has H ≥ 1 everywhere, whatever the shape.
+
+Lobes are arcs of one radius, which is larger than the journal's by c_p, the clearance of machining. Their
+preload is 1 − c_b/c_p. With the least gap at psi_k, delta = (c_p/c_b − 1)(1 − cos(phi − psi_k)) on lobe k.
+
+References
+----------
+T. Someya (ed.), Journal-Bearing Databook, Springer 1989, for lobes and preload.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+
+_ALONG = np.linspace(-1, 1, 401)
+"""Axial places at which the narrowest gap is looked for; with a tilt alone it is at an end."""
+
+
+@dataclass(frozen=True)
+class Bore:
+    """Shape of a bore; without arguments a plain cylinder."""
+
+    lobes: int = 1
+    """How many arcs there are; 1 with a preload of 0 is a cylinder."""
+    preload: float = 0.0
+    """1 − c_b/c_p of each lobe, 0 to below 1 [-]."""
+    angle: float = 0.0
+    """Where the middle of the first lobe is, from the load [rad]."""
+    offset: float = 0.5
+    """Which share of a lobe's arc lies before its least gap: ½ centred, 1 at its end [-]."""
+    mouth: float = 0.0
+    """How far the bell mouth opens at the ends over the radial clearance [-]."""
+    mouth_length: float = 0.0
+    """Axial length of each of the two mouths over half the bearing's width, 0 to 1 [-]."""
+
+    @property
+    def is_lobed(self) -> bool:
+        """Whether the gap of a centred journal differs around."""
+        return self.preload > 0
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the bore is a cylinder."""
+        return not self.is_lobed and not (self.mouth > 0 and self.mouth_length > 0)
+
+    @property
+    def excess(self) -> float:
+        """Distance of a lobe's centre from the bearing's: c_p/c_b − 1 [-]."""
+        return self.preload / (1 - self.preload)
+
+    def joints(self) -> Array:
+        """Where lobes meet, (lobes,) or none, from the load [rad]."""
+        arc = 2 * np.pi / self.lobes
+        joints = self.angle + arc * (np.arange(self.lobes) - 0.5)
+        return np.asarray(joints, float) if self.is_lobed else np.zeros(0)
+
+    def arcs(self) -> tuple[Array, Array, Array]:
+        """Begin and end of each lobe, and the direction of its least gap, (lobes,) each [rad]."""
+        arc = 2 * np.pi / self.lobes
+        begin = np.asarray(self.angle + arc * (np.arange(self.lobes) - 0.5), float)
+        return begin, begin + arc, begin + arc * self.offset
+
+    def around(self, phi: Array) -> Array:
+        """What lobes add to the gap of a centred journal, at angles from the load [-]."""
+        if not self.is_lobed:
+            return np.zeros_like(phi)
+        arc = 2 * np.pi / self.lobes
+        within = (phi - self.angle + arc / 2) % arc
+        return np.asarray(2 * self.excess * np.sin((within - arc * self.offset) / 2) ** 2)
+
+    def along(self, zeta: Array) -> Array:
+        """What the bell mouth adds: a parabola that begins at its length from the end [-]."""
+        if self.mouth_length <= 0:
+            return np.zeros_like(zeta)
+        depth = np.maximum(np.abs(zeta) - (1 - self.mouth_length), 0.0) / self.mouth_length
+        return np.asarray(self.mouth * depth**2)
+
+
+@dataclass(frozen=True)
+class Lie:
+    """Where the journal lies; axes x along the load, y ahead of it in the sense of rotation."""
+
+    e: Array
+    """(2,) displacement of its middle over the radial clearance [-]."""
+    tilt: Array
+    """(2,) further displacement at the end zeta = 1, the opposite one at zeta = −1 [-]."""
+
+    @property
+    def is_tilted(self) -> bool:
+        """Whether the journal's axis is not the bearing's direction."""
+        return bool(np.any(self.tilt != 0))
+
+    @property
+    def eps(self) -> float:
+        """Relative eccentricity of its middle; above 1 where a lobed bore lets it [-]."""
+        return float(np.hypot(*self.e))
+
+    @property
+    def attitude(self) -> float:
+        """Angle of its middle's displacement from the load [rad]."""
+        return float(np.arctan2(self.e[1], self.e[0]))
+
+
+def directions(phi: Array) -> Array:
+    """Outward normals n at angles from the load, (2, ...)."""
+    return np.stack([np.cos(phi), np.sin(phi)])
+
+
+def gap(bore: Bore, lie: Lie, phi: Array, zeta: Array) -> Array:
+    """Film thickness over the radial clearance at every angle and axial place, (angles, places) [-]."""
+    x, y = directions(phi)
+    e, t = lie.e, lie.tilt
+    aligned = (1 + bore.around(phi) - e[0] * x - e[1] * y)[:, None] + bore.along(zeta)
+    return np.asarray(aligned - np.outer(t[0] * x + t[1] * y, zeta))
+
+
+def narrowest(bore: Bore, lie: Lie) -> tuple[float, float]:
+    """The least gap [-] and its angle from the load [rad].
+
+    On each lobe, at each axial place, the gap is least in the direction of the journal's displacement from
+    the lobe's centre, or at the lobe's end that is nearer to it.
+    """
+    begin, end, least = bore.arcs()
+    zeta = _ALONG if lie.is_tilted or not bore.is_plain else np.zeros(1)
+    x, y = (lie.e[k] + zeta * lie.tilt[k] for k in (0, 1))
+    excess = bore.excess if bore.is_lobed else 0.0
+    x, y = (own[:, None] + excess * axis for own, axis in zip((x, y), directions(least), strict=True))
+    past = (np.arctan2(y, x) - begin) % (2 * np.pi)
+    arc = end - begin
+    beyond = past > arc
+    past = np.where(beyond, np.where(past - arc < 2 * np.pi - past, arc, 0.0), past)
+    phi = begin + past
+    H = 1 + excess + bore.along(zeta)[:, None] - x * np.cos(phi) - y * np.sin(phi)
+    place = np.unravel_index(H.argmin(), H.shape)
+    return float(H[place]), float(phi[place])

@@ -1,0 +1,279 @@
+"""One journal bearing under static load, of any bore, aligned or tilted, at every fidelity that knows it.
+
+A plain, aligned bearing has the levels of `static_journal`. A bore with lobes or bell mouth, a tilted
+journal, and a plain bearing with grooves or supply pressure are solved by `shaped_balance`: level reynolds
+with rupture after Swift and Stieber, mass_conserving with cavities that conserve mass. Everything is
+dimensionless as there, over the smallest clearance; angles count from the load.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import on_paper, units
+from templates.physics.cavities.fed_film import Feed
+from templates.physics.cavities.shaped_balance import SMALLEST, Balance, Loaded, NoBalance, balance
+from templates.physics.films.film_map import mapped_load
+from templates.physics.films.film_shape import Bore, Lie, narrowest
+from templates.physics.journals.journal_coefficients import Linear, coefficients_at
+from templates.physics.journals.static_journal import FED, WIDTHS, is_fed, static_film_at
+from templates.physics.journals.whirl import threshold_mass
+
+BORES = ("plain", "lemon", "offset", "multi_lobe")
+"""Shapes of a bore around."""
+START_LINES = ("fixed", "moving")
+"""What the line of supply at the widest gap does while the journal is displaced from where it lies."""
+MOVABLE = ("short_bearing", "map", "reynolds")
+"""Levels that know the coefficients of a plain film whose line of supply moves with the journal."""
+
+Grooves = tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A bore and a tilt; numbers and arrays that broadcast together, lengths over the radial clearance."""
+
+    bore: str
+    """One of `BORES`."""
+    lobes: int
+    """How many lobes a bore multi_lobe has."""
+    preload: Array
+    """1 − c_b/c_p of each lobe [-]."""
+    angle: Array
+    """Where the middle of a lobe is, from the load [rad]."""
+    offset: Array
+    """Which share of a lobe's arc lies before its least gap [-]."""
+    mouth: Array
+    """How far the bell mouth opens at the ends [-]."""
+    mouth_length: Array
+    """Axial length of each mouth over half the width [-]."""
+    tilt_x: Array
+    """What the journal's end is displaced beyond its middle along the load [-]."""
+    tilt_y: Array
+    """The same ahead of the load [-]."""
+
+    def numbers(self) -> list[Array]:
+        """All but the first two."""
+        return [np.asarray(getattr(self, field.name), float) for field in fields(self)[2:]]
+
+    def at(self, preload: float, angle: float, offset: float, mouth: float, mouth_length: float) -> Bore:
+        """The bore of one point."""
+        lobes = self.lobes if self.bore == "multi_lobe" else 2
+        return Bore(1 if self.bore == "plain" else lobes, preload, angle, offset, mouth, mouth_length)
+
+
+@dataclass(frozen=True)
+class StaticFilm:
+    """What a static film does; dimensionless arrays of one shape, but the matrices (..., 2, 2)."""
+
+    eps: Array
+    """Displacement of the journal's middle over the radial clearance; infinite where none bears the load."""
+    attitude: Array
+    """Its direction from the load [rad]."""
+    least: Array
+    """Smallest gap over the radial clearance."""
+    P_max: Array
+    """Largest pressure p psi²/(eta omega_h); NaN at level fit, which has none."""
+    peak: Array
+    """Its angle from the load [rad]; likewise."""
+    shear: Array
+    """Shear force on the journal F_s psi/(B D eta (omega_journal − omega_sleeve))."""
+    load_couple: Array
+    """What pressure adds to that with the hydrodynamic speed; So eps sin(attitude)/2 in a plain bearing."""
+    side_flow: Array
+    """Oil that leaves at both ends, Q/(R³ psi omega_h)."""
+    couple_x: Array
+    """Moment against a tilt along the load, over psi²/(B D eta omega_h) and B/2."""
+    couple_y: Array
+    """The same ahead of the load."""
+    mesh_error: Array
+    """Difference of the smallest gap on two meshes, relative; NaN of a plain film."""
+    K: Array
+    """Stiffness in the units of So; NaN of a plain film, see `linear_of`."""
+    B: Array
+    """Damping likewise."""
+
+    def admitted(self, eps: Array) -> StaticFilm:
+        """The same film with NaN where eps was not admitted."""
+        none = np.isnan(eps)
+        values = {field.name: np.asarray(getattr(self, field.name)) for field in fields(self)}
+        wide = {name: none[..., None, None] if name in ("K", "B") else none for name in values}
+        return StaticFilm(**{name: np.where(wide[name], np.nan, v)[()] for name, v in values.items()})
+
+
+@units(None, returns="1")
+def middle_of_least_gap(bore: str) -> Array:
+    """Which share of a lobe's arc lies before its least gap: all if halves are offset, else half [-]."""
+    return np.asarray(1.0 if bore == "offset" else 0.5)
+
+
+def is_shaped(shape: Shape) -> bool:
+    """Whether any point has a bore that is not plain, or a tilted journal."""
+    return bool(np.any(departure(shape.preload, shape.mouth, shape.tilt_x, shape.tilt_y) > 0))
+
+
+@units("1", "1", "1", "1", returns="1", latex=r"\max\left({0},\,{1},\,|{2}|,\,|{3}|\right)")
+def departure(preload: Array, mouth: Array, tilt_x: Array, tilt_y: Array) -> Array:
+    """How far bore and journal depart from plain and aligned: the largest of what describes them [-]."""
+    return np.asarray(np.maximum(np.maximum(preload, mouth), np.maximum(np.abs(tilt_x), np.abs(tilt_y))))[()]
+
+
+@on_paper(
+    {
+        "short_bearing": "solved numerically by bracketing the eccentricity of Ocvirk's short bearing",
+        "fit": "solved numerically by bracketing the eccentricity in the fit of ISO 7902",
+        "map": "solved numerically by splines in a map of solutions of the Reynolds equation",
+        "reynolds": "solved numerically by finite volumes of the Reynolds equation, extrapolated",
+        "mass_conserving": "solved numerically by finite volumes with mass-conserving cavities, extrapolated",
+    }
+)
+def journal_film_at(
+    level: str, So: Array, ratio: Array, pressure: Array, grooves: Grooves, shape: Shape, away: Array
+) -> StaticFilm:
+    """The film that bears So, at a level of fidelity.
+
+    Parameters
+    ----------
+    level
+        A key of `static_journal.WIDTHS`; a shaped bearing needs reynolds or mass_conserving.
+    So
+        Sommerfeld number of the smallest clearance, 0 or more [-].
+    ratio
+        Width over diameter B/D [-].
+    pressure
+        Supply pressure above ambient, P = p psi²/(eta omega_h) [-].
+    grooves
+        (angle from the load, width) of each [rad].
+    shape
+        Bore and tilt.
+    away
+        Their `departure` from plain and aligned, NaN where the level does not know it [-].
+    """
+    parts = np.broadcast_arrays(
+        *(np.asarray(a, float) for a in (So, ratio, pressure, away)), *shape.numbers()
+    )
+    So, ratio, pressure, away, *numbers = parts
+    solved = (away > 0) | (is_fed(pressure, grooves) & (level == FED))
+    film = _plain(level, np.where(solved | np.isnan(away), np.nan, So), ratio)
+    names = [field.name for field in fields(StaticFilm)]
+    values = {name: np.array(getattr(film, name), float) for name in names}
+    low, high = WIDTHS[level]
+    valid = np.isfinite(parts).all(axis=0) & (So >= 0) & (ratio >= low) & (ratio <= high)
+    for place in zip(*np.nonzero(np.atleast_1d(solved & valid)), strict=True):
+        at = place if So.shape else ()
+        one = _solved(
+            level, float(So[at]), float(ratio[at]), Feed(float(pressure[at]), grooves), shape,
+            [float(part[at]) for part in numbers],
+        )  # fmt: skip
+        for name in names:
+            values[name][at] = one[name]
+    return StaticFilm(**{name: value[()] for name, value in values.items()})
+
+
+def _plain(level: str, So: Array, ratio: Array) -> StaticFilm:
+    """The film of a plain, aligned bearing that is fed along its widest gap."""
+    film = static_film_at(level, So, ratio)
+    nought, matrix = np.zeros_like(film.eps), np.full((*np.shape(film.eps), 2, 2), np.nan)
+    with np.errstate(invalid="ignore"):
+        couple = film.So * np.where(np.isinf(film.eps), np.nan, film.eps) * np.sin(film.attitude) / 2
+    return StaticFilm(
+        film.eps, film.attitude, 1 - film.eps, film.P_max, film.attitude + film.peak, film.shear, couple,
+        film.side_flow, nought, nought, np.full_like(nought, np.nan), matrix, matrix,
+    )  # fmt: skip
+
+
+def _solved(
+    level: str, So: float, ratio: float, feed: Feed, shape: Shape, numbers: list[float]
+) -> dict[str, Array | float]:
+    """The fields of `StaticFilm` of one point by `shaped_balance`; eps infinite where nothing bears it."""
+    bore, tilt, conserving = shape.at(*numbers[:5]), np.array(numbers[5:]), level == FED
+    if level not in ("reynolds", FED):
+        return _unborne()
+    loaded = Loaded(So, ratio, bore, tilt, feed, conserving)
+    smallest = float(mapped_load(np.array(SMALLEST), np.array(ratio))) if loaded.line_turns else 0.0
+    if feed.pressure > 0 or So >= smallest:
+        smallest = So
+    try:
+        found = balance(Loaded(smallest, ratio, bore, tilt, feed, conserving))
+    except NoBalance:
+        return _unborne()
+    return _measured(found, bore, tilt, So / smallest if smallest > 0 else 1.0)
+
+
+def _unborne() -> dict[str, Array | float]:
+    none: dict[str, Array | float] = dict.fromkeys((field.name for field in fields(StaticFilm)), np.nan)
+    return none | {"eps": np.inf}
+
+
+def _measured(found: Balance, bore: Bore, tilt: Array, share: float) -> dict[str, Array | float]:
+    """Values extrapolated by Richardson, with order 2, or 1 where they see a front or the ends' pressure.
+
+    The share is that of the load wanted: below 1 the journal lies as much nearer to the middle.
+    """
+    coarse, fine = found.coarse, found.fine
+    gaps = [narrowest(bore, lie)[0] for lie in (found.at_coarse, found.at_fine)]
+    lie = Lie(share * (found.at_fine.e + (found.at_fine.e - found.at_coarse.e) / 3), tilt)
+    if not 0.5 * gaps[1] < narrowest(bore, lie)[0] and share == 1:
+        lie = found.at_fine
+    couple = fine.couple + (fine.couple - coarse.couple) / 3
+    first = 1 if fine.conserving else 3
+    return {
+        "eps": lie.eps,
+        "attitude": lie.attitude,
+        "least": narrowest(bore, lie)[0],
+        "P_max": share * (fine.peak[0] + (fine.peak[0] - coarse.peak[0]) / 3),
+        "peak": fine.peak[1],
+        "shear": fine.shear + (fine.shear - coarse.shear) / first,
+        "load_couple": share * (fine.load_couple + (fine.load_couple - coarse.load_couple) / 3),
+        "side_flow": share * (2 * fine.side_flow - coarse.side_flow),
+        "couple_x": float(couple[0]),
+        "couple_y": float(couple[1]),
+        "mesh_error": abs(gaps[1] - gaps[0]) / gaps[1],
+        "K": fine.linear[0],
+        "B": fine.linear[1],
+    }
+
+
+def linear_of(
+    level: str, film: StaticFilm, So: Array, ratio: Array, start_line: str, pressure: Array, grooves: Grooves
+) -> Linear:
+    """Stiffness, damping and threshold mass; NaN at points without and at level fit [-].
+
+    With start line fixed the line of supply stays where it is while the journal is displaced; with moving it
+    turns with the journal's displacement: the film then turns as a whole, which changes the stiffness against
+    displacement across the line of centres. Damping is the same. Lobes and grooves stand still.
+    """
+    K, B = (np.array(matrix, float) for matrix in (film.K, film.B))
+    plain = np.isfinite(film.eps) & np.isnan(K).all(axis=(-1, -2))
+    K_plain, B_plain = coefficients_at(level, np.where(plain, film.eps, np.nan), ratio)
+    if start_line == "moving":
+        K_plain = _turning(K_plain, film, So) if level in MOVABLE else np.full_like(K_plain, np.nan)
+        if not (is_fed(pressure, grooves) and level == FED):
+            K = np.where(np.asarray(film.couple_x == 0)[..., None, None], K, np.nan)
+    K, B = (np.where(plain[..., None, None], *pair) for pair in ((K_plain, K), (B_plain, B)))
+    entries = {
+        f"{name}_{xy}": matrix[..., i, j][()]
+        for name, matrix in (("K", K), ("B", B))
+        for xy, i, j in (("xx", 0, 0), ("xy", 0, 1), ("yx", 1, 0), ("yy", 1, 1))
+    }
+    valid = np.asarray(np.isfinite(K).all(axis=(-1, -2)))
+    unit = np.broadcast_to(np.eye(2), K.shape)
+    mass = threshold_mass(*(np.where(valid[..., None, None], matrix, unit) for matrix in (K, B)))
+    return Linear(**entries, M_c=np.where(valid, mass, np.nan)[()])
+
+
+def _turning(K: Array, film: StaticFilm, So: Array) -> Array:
+    """The stiffness with the second column, across the line of centres, that of a film turned as a whole.
+
+    A displacement across by eps d(gamma) turns the force by d(gamma): it changes by So/eps at right angles.
+    """
+    cos, sin = np.cos(film.attitude), np.sin(film.attitude)
+    turn = np.stack([np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)], axis=-2)
+    along_centres = np.swapaxes(turn, -1, -2) @ K @ turn
+    eps = np.maximum(np.asarray(film.eps, float), 1e-12)
+    along_centres[..., 0, 1] = So * sin / eps
+    along_centres[..., 1, 1] = So * cos / eps
+    return np.asarray(turn @ along_centres @ np.swapaxes(turn, -1, -2))

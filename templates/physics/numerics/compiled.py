@@ -1,0 +1,38 @@
+"""Functions compiled to machine code by numba when they are first called.
+
+The machine code is kept beside the module, or, where that folder cannot be written, in numba's folder for
+the user (`NUMBA_CACHE_DIR` sets another); where neither can be written it is compiled in every process. Numba
+looks for changes in the file of a function alone: functions that call each other belong in one module.
+Importing numba takes a second, so a module of compiled functions is imported by the function that needs it.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pickle import UnpicklingError
+from typing import ParamSpec, TypeVar
+
+from numba import njit
+from numba.core.caching import FunctionCache
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+_REORDERED = {"contract", "reassoc", "arcp", "nsz"}
+"""Freedom of the compiler with sums and products; infinity and NaN keep their meaning."""
+
+
+class _Spare(FunctionCache):
+    """Machine code on disk that a calculation can do without: a full disk, a damaged file mean compiling."""
+
+    @contextmanager
+    def _guard_against_spurious_io_errors(self) -> Iterator[None]:
+        with suppress(OSError, EOFError, UnpicklingError):
+            yield
+
+
+def compiled(function: Callable[P, R]) -> Callable[P, R]:
+    """The function as machine code; arguments are arrays, numbers and named tuples of these."""
+    result: Callable[P, R] = njit(fastmath=_REORDERED, error_model="numpy")(function)
+    with suppress(RuntimeError):  # numba has no folder that it can write
+        result._cache = _Spare(function)  # type: ignore[attr-defined, no-untyped-call]
+    return result

@@ -1,0 +1,162 @@
+"""How oil gets into a bearing, as a drawing has it: a groove and a hole in the sleeve, a hole in the pin.
+
+Angles count in the sense x to y. At crank angle 0 the axes of frame, sleeve and journal coincide: a hole in
+the pin counts from the throw, groove and hole of a rod's bore from the rod's axis.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array, Mask, Truth
+from templates.core.language.declare import units
+from templates.physics.orbits.cyclic_film import Duty, cycle_of, weights
+from templates.physics.orbits.supply import LONGEST, Pocket, Supply
+from templates.physics.orbits.turning import turning
+
+UNDER_LOAD = np.pi / 3
+"""A hole nearer than this to the load's direction lies under the load [rad]."""
+HALF = np.pi / 3
+"""By how much the extent of a half groove may differ from 180° [rad]."""
+AROUND = 2 * np.pi * (1 - 1e-9)
+"""An extent that goes all around [rad]."""
+
+
+@dataclass(frozen=True)
+class Feeding:
+    """Groove and holes of some points, SI, each midway across; NaN where there is none."""
+
+    D: Array
+    """Diameter of the bearing [m]."""
+    W: Array
+    """Its width [m]."""
+    groove_width: Array
+    """Groove in the sleeve [m]."""
+    groove_start: Array
+    """Where it begins, from the sleeve's axis [rad]."""
+    groove_extent: Array
+    """How far it goes around [rad]."""
+    sleeve_length: Array
+    """Hole or slot in the sleeve: along the width [m]."""
+    sleeve_arc: Array
+    """Around [m]."""
+    sleeve_angle: Array
+    """Its middle, from the sleeve's axis [rad]."""
+    pin_length: Array
+    """Hole or slot in the pin: along the width [m]."""
+    pin_arc: Array
+    """Around [m]."""
+    pin_angle: Array
+    """Its middle, from the throw [rad]."""
+
+    @property
+    def grooved(self) -> Mask:
+        """Where there is a groove."""
+        return np.isfinite(self.groove_width)
+
+    @property
+    def sleeve_holed(self) -> Mask:
+        """Where the sleeve has a hole."""
+        return np.isfinite(self.sleeve_length)
+
+    @property
+    def pin_holed(self) -> Mask:
+        """Where the pin has a hole."""
+        return np.isfinite(self.pin_length)
+
+    @property
+    def count(self) -> Array:
+        """How many of the three there are."""
+        return np.asarray(1.0 * self.grooved + self.sleeve_holed + self.pin_holed)[()]
+
+    def partial(self) -> Mask:
+        """Where the groove does not go all around."""
+        return np.asarray(self.grooved & (self.groove_extent < AROUND))
+
+    def parts(self) -> Iterator[tuple[Mask, Array, Array, Array, bool]]:
+        """Whether there is each, its middle, half extent [rad] and length [m], and whether in the pin."""
+        half = self.groove_extent / 2
+        yield self.grooved, self.groove_start + half, half, self.groove_width, False
+        yield self.sleeve_holed, self.sleeve_angle, self.sleeve_arc / self.D, self.sleeve_length, False
+        yield self.pin_holed, self.pin_angle, self.pin_arc / self.D, self.pin_length, True
+
+    def pockets(self) -> Iterator[Pocket]:
+        """The pockets of a single point; one so small that it rounds to nothing feeds nothing."""
+        for present, middle, half, length, on_journal in self.parts():
+            if np.all(present):
+                whole = min(float(np.ravel(half)[0]), np.pi)
+                across = float(np.ravel(length / self.W)[0])
+                if whole > 0 and across > 0:
+                    yield Pocket(float(np.ravel(middle)[0]), whole, across, on_journal)
+
+
+def supply_of(feeding: Feeding, pressure: Array) -> Supply | None:
+    """What feeds a single point; None where there is nothing, or no pressure P = p psi²/(eta Omega) [-]."""
+    pockets = tuple(feeding.pockets())
+    if not pockets or not np.all(pressure > 0):
+        return None
+    return Supply(pockets, float(np.ravel(pressure)[0]))
+
+
+def supply_kind(feeding: Feeding) -> str:
+    """The kind of supply of all points; empty where they differ."""
+    half = np.abs(feeding.groove_extent - np.pi) <= HALF + 1e-9
+    kinds = {
+        "none": feeding.count == 0,
+        "several": feeding.count > 1,
+        "full_groove": (feeding.count == 1) & feeding.grooved & ~feeding.partial(),
+        "half_groove": (feeding.count == 1) & feeding.partial() & half,
+        "partial_groove": (feeding.count == 1) & feeding.partial() & ~half,
+        "sleeve_hole": (feeding.count == 1) & feeding.sleeve_holed,
+        "pin_hole": (feeding.count == 1) & feeding.pin_holed,
+    }
+    return next((kind for kind, holds in kinds.items() if np.all(holds)), "")
+
+
+def within_bearing(length: Array, W: Array, arc: Array, D: Array) -> Truth:
+    """Whether a groove or hole leaves a land at the ends and is no longer than the bearing is around."""
+    inside = (length <= LONGEST * W) & ~(arc > np.pi * D)
+    return np.asarray(np.isnan(length) | inside)[()]
+
+
+@units(None, "rad/s", None, returns="1")
+def is_back(duty: Duty, speed: Array, needed: Mask) -> Truth:
+    """Whether a part is back at its place in the load's frame after the cycle, where that is needed.
+
+    Angles that cover no cycle are not judged here.
+    """
+    period = cycle_of(duty.angle)
+    if not (np.any(needed) and np.isfinite(period)):
+        return True
+    curves = np.broadcast_arrays((speed - duty.omega_F) / duty.Omega[..., None], duty.angle)
+    points = curves[0].shape[:-1]
+    turned = turning(duty.angle, period, curves[0].reshape(-1, duty.angle.size))
+    return np.asarray(~needed | np.isfinite(turned.turns.reshape(points)))[()]
+
+
+def feed_under_load(duty: Duty, feeding: Feeding) -> Array:
+    """Share of the cycle in which every groove and hole lies within 60° of the load's direction [-].
+
+    NaN where there is none. A groove or slot longer than that is never under the load as a whole.
+    """
+    direction, sleeve, journal = _in_frame(duty)
+    under, fed = np.ones(direction.shape, bool), np.zeros((), bool)
+    for present, middle, half, _, on_journal in feeding.parts():
+        turned = journal if on_journal else sleeve
+        off = (direction - turned - middle[..., None] + np.pi) % (2 * np.pi) - np.pi
+        there = (np.abs(off) <= UNDER_LOAD) & (half[..., None] <= UNDER_LOAD)
+        under, fed = under & (there | ~present[..., None]), fed | present
+    period = cycle_of(duty.angle)
+    share = under @ weights(duty.angle, period) / period
+    return np.where(fed, share, np.nan)[()]
+
+
+def _in_frame(duty: Duty) -> tuple[Array, Array, Array]:
+    """Directions of the load and turns of sleeve and journal in the frame, (..., N) each [rad]."""
+    period, Omega = cycle_of(duty.angle), np.asarray(duty.Omega)[..., None]
+    of_sleeve, of_journal = ((speed - duty.omega_F) / Omega for speed in (duty.omega_B, duty.omega_J))
+    x, y, *speeds, _ = np.broadcast_arrays(duty.F_x, duty.F_y, of_sleeve, of_journal, duty.angle)
+    parts = (turning(duty.angle, period, speed.reshape(-1, duty.angle.size)) for speed in speeds)
+    sleeve, journal = (part.at(duty.angle, part.swing).reshape(x.shape) for part in parts)
+    return np.arctan2(y, x), sleeve, journal

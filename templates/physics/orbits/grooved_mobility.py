@@ -1,0 +1,189 @@
+r"""Mobility of a bearing with a circumferential groove in its sleeve: where the load passes, two lands bear.
+
+.. math:: \vec M = (1-s)\,\vec M(b) + s\,\frac{\vec M\left(b(1-g)/2\right)}{1-g}
+
+b is the width ratio, g the groove's width over the bearing's, and s the share of the 90° around the load's
+direction that the groove covers. M is the finite bearing's mobility (`mobility_map`). With s = 1 this is
+exact: two bearings of half the land side by side, of which each bears half the load. Between, it is a blend.
+
+The film is always full of oil, so nothing starves. Compared with level supplied by
+`benchmarks/film_cycle_ensemble.py`.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array, Mask
+from templates.physics.orbits.journal_orbit import (
+    CyclicLoad,
+    Orbit,
+    Ring,
+    node_counts,
+    periodic_orbit,
+    ring_of,
+)
+from templates.physics.orbits.mobility_law import MapLaw
+from templates.physics.orbits.mobility_map import mapped_film_under_load
+from templates.physics.orbits.turning import Turning
+
+SECTOR = np.pi / 4
+"""Half of the sector about the load's direction in which the groove counts [rad]."""
+_FINENESSES = 1, 4
+"""How many times finer than usual the finest rings of `periodic_orbit` are."""
+_HALVINGS = 12
+"""How often such a ring is thinned to every other node, at most."""
+
+
+@dataclass(frozen=True)
+class Groove:
+    """A circumferential groove in the sleeve midway across, of some cases."""
+
+    share: Array
+    """(C,) its width over that of the bearing; 0 is none [-]."""
+    start: Array
+    """(C,) where it begins, from the sleeve's axis in the sense x to y [rad]."""
+    extent: Array
+    """(C,) how far it goes in that sense; 2 pi goes all around [rad]."""
+
+    def of(self, cases: Mask) -> "Groove":
+        """The same of fewer cases."""
+        return Groove(self.share[cases], self.start[cases], self.extent[cases])
+
+    def covers(self, direction: Array, half: float = SECTOR) -> Array:
+        """The share of a sector about directions in the sleeve, (C, K) [rad], that it covers [-]."""
+        extent = self.extent[:, None]
+
+        def up_to(angle: Array) -> Array:
+            turns, part = np.divmod(angle, 2 * np.pi)
+            return np.asarray(turns * extent + np.minimum(part, extent))
+
+        along = direction - self.start[:, None]
+        covered = (up_to(along + half) - up_to(along - half)) / (2 * half)
+        return np.where(self.share[:, None] > 0, covered, 0.0)
+
+    def land(self, ratio: Array) -> Array:
+        """Width over diameter of each of the two lands beside it, (C,) [-]."""
+        return np.asarray(ratio * (1 - self.share) / 2)
+
+
+@dataclass(frozen=True)
+class Passing:
+    """A load that passes a groove: the load of some cases, the groove, and how the sleeve turns."""
+
+    load: CyclicLoad
+    sleeve: Turning
+    groove: Groove
+
+    def of(self, cases: Mask) -> "Passing":
+        """The same of fewer cases."""
+        return Passing(self.load.of(cases), self.sleeve.of(cases), self.groove.of(cases))
+
+    def told_apart(self) -> tuple["Passing", NDArray[np.intp]]:
+        """The same at angles whose rings differ in their number of nodes; and where the old angles are.
+
+        With equal steps they do. With others the angles are divided until the finest ring is the only one.
+        """
+        steps = np.diff(self.load.angle, append=self.load.angle[0] + self.load.period)
+        if np.ptp(steps) < 1e-9:
+            return self, np.arange(steps.size)
+        ring, own = self.ring(max(_FINENESSES))
+        divided = CyclicLoad(ring.place, ring.period, ring.S[:2], ring.w)
+        return Passing(divided, replace(self.sleeve, swing=ring.S[2]), self.groove), own
+
+    def ring(self, finer: int) -> tuple[Ring, NDArray[np.intp]]:
+        """The finest nodes, the sleeve's swing as the third row of their load; which are the load's own."""
+        rows = np.concatenate([self.load.S, self.sleeve.swing[None]])
+        return ring_of(replace(self.load, S=rows), finer)
+
+    def covered(self, nodes: int) -> Array:
+        """The share s on the ring of `periodic_orbit` that has so many nodes, (C, nodes) [-].
+
+        Raises
+        ------
+        ValueError
+            If there is no such ring.
+        """
+        for finer in _FINENESSES:
+            finest = int(node_counts(self.load, finer).sum())
+            for stride in (1 << k for k in range(_HALVINGS)):
+                if -(-finest // stride) == nodes:
+                    ring = self.ring(finer)[0].every(stride)
+                    x, y, swing = ring.S
+                    return self.groove.covers(np.arctan2(y, x) - self.sleeve.at(ring.place, swing))
+        raise ValueError(f"no ring of the orbit has {nodes} nodes")
+
+
+class GroovedLaw:
+    """The mobility beside a groove; a `MobilityLaw`.
+
+    It recognises the ring on which it is asked by the number of nodes: `Passing.told_apart`.
+    """
+
+    def __init__(self, ratio: Array, passing: Passing) -> None:
+        """Take the widths B/D of the cases, (C,), those of their lands within the map [-]."""
+        self.ratio, self.passing = ratio, passing
+        self.whole, self.lands = MapLaw(ratio), MapLaw(passing.groove.land(ratio))
+        self._covered: dict[int, Array] = {}
+
+    def of(self, cases: Mask) -> "GroovedLaw":
+        """The same law of fewer cases."""
+        fewer = GroovedLaw(self.ratio[cases], self.passing.of(cases))
+        fewer._covered = {nodes: covered[cases] for nodes, covered in self._covered.items()}
+        return fewer
+
+    def covered(self, nodes: int) -> Array:
+        """The share s on a ring, kept."""
+        if nodes not in self._covered:
+            self._covered[nodes] = self.passing.covered(nodes)
+        return self._covered[nodes]
+
+    def __call__(self, xi: Array, eta: Array) -> tuple[Array, Array]:
+        """M and its slopes on a ring of the orbit."""
+        s, left = self.covered(xi.shape[-1]), 1 - self.passing.groove.share[:, None]
+        (M, slopes), (M_land, slopes_land) = self.whole(xi, eta), self.lands(xi, eta)
+        return (1 - s) * M + s / left * M_land, (1 - s) * slopes + s / left * slopes_land
+
+
+def grooved_orbit(passing: Passing, ratio: Array) -> Orbit:
+    """The periodic orbit of each case by the mobility beside its groove; NaN where none was found.
+
+    Parameters
+    ----------
+    passing
+        Load, groove and sleeve.
+    ratio
+        (C,) width over diameter B/D; it and that of the lands 0.02 … 10 [-].
+    """
+    divided, own = passing.told_apart()
+    orbit = periodic_orbit(divided.load, GroovedLaw(ratio, divided))
+    return replace(orbit, eps=orbit.eps[..., own])
+
+
+def grooved_film_under_load(xi: Array, eta: Array, ratio: Array, passing: Passing) -> tuple[Array, Array]:
+    """What the film beside a groove does, at the load's angles (C, N), in Booker's frame [-].
+
+    Parameters
+    ----------
+    xi, eta
+        Relative eccentricity along the load and ahead of it [-].
+    ratio
+        (C,) width over diameter B/D [-].
+    passing
+        Load, groove and sleeve.
+
+    Returns
+    -------
+    Mobility M, (2, C, N), and as `mapped_film_under_load` largest pressure p_max B D/F and side flow
+    Q/(B D v), (2, C, N); the groove's own flow is left out.
+    """
+    x, y = passing.load.S
+    turned = passing.sleeve.at(passing.load.angle, passing.sleeve.swing)
+    s, left = passing.groove.covers(np.arctan2(y, x) - turned), 1 - passing.groove.share[:, None]
+    land = passing.groove.land(ratio)
+    M, M_land = MapLaw(ratio)(xi, eta)[0], MapLaw(land)(xi, eta)[0]
+    P, leak = mapped_film_under_load(xi, eta, ratio[:, None])
+    P_land, leak_land = mapped_film_under_load(xi, eta, land[:, None])
+    film = np.stack([(1 - s) * P + s * P_land / left, (1 - s) * leak + s * leak_land * left])
+    return (1 - s) * M + s / left * M_land, film

@@ -1,0 +1,304 @@
+r"""One step of a supplied film by Newton's method: the compiled kernel of level `supplied`.
+
+In the frame of the mesh the shear flow vanishes. A cell balances, with 12 times the time derivative,
+
+.. math:: 12\,\partial_\theta(\alpha H) = \partial_\varphi(H^3\partial_\varphi P)
+    + (D/B)^2\,\partial_\zeta(H^3\partial_\zeta P) + \text{feed}, \quad P\ge0,\ 1-\alpha\ge0,\ P(1-\alpha)=0
+
+Conductances around are the inverse of the mean of H^-3 between two nodes, by Simpson's rule. Per cell the
+complementarity (active set: the smaller of pressure and void is 0; or the function of Fischer and Burmeister)
+has two slopes, by pressure and by void, and the larger is eliminated. The matrix that is left has dominant
+columns whatever the film: with r <= 1 the smaller slope over the larger, the column of a full cell has 1 + r
+on its diagonal and conductances over their sum beside it, that of another 1 + r and r times these. So its
+banded factors need no pivots.
+"""
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.numerics.compiled import compiled
+from templates.physics.orbits.supplied_mesh import Mesh
+
+MOST = 25
+"""Iterations of Newton's method."""
+SETTLED = 3e-5
+"""Last change of the eccentricity over the gap, and imbalance of a cell over what a full one stores [-]."""
+LEAVES = 0.3
+"""An iteration leaves this share of the gap."""
+
+
+@compiled
+def covered(mesh: Mesh, places: Array) -> Array:
+    """Share of each cell that lies in a pocket, (n, m).
+
+    places: (k, 3) centre in the mesh [rad], half angle [rad] and half length [-] of each pocket.
+    """
+    n, m = mesh.order.size, mesh.width.size
+    step, share = 2 * np.pi / n, np.zeros((n, m))
+    for pocket in range(places.shape[0]):
+        centre, half, length = places[pocket, 0], places[pocket, 1], places[pocket, 2]
+        reach = min(half, np.pi + step)
+        for i in range(n):
+            off = (i * step - centre + np.pi) % (2 * np.pi) - np.pi
+            part = min(off + step / 2, reach) - max(off - step / 2, -reach)
+            if half >= np.pi:
+                part = step
+            for j in range(m):
+                if part > 0 and mesh.zeta[j] <= length + 1e-9:
+                    share[i, j] = max(share[i, j], min(part / step, 1.0))
+    return share
+
+
+@compiled
+def coefficients(mesh: Mesh, e: Array) -> tuple[Array, Array, Array]:
+    """Conductances around and across and the gap; value, and slopes by e_x and e_y: (3, n) each."""
+    n = mesh.order.size
+    step = 2 * np.pi / n
+    around, across, gap = np.empty((3, n)), np.empty((3, n)), np.empty((3, n))
+    for i in range(n):
+        x, y = mesh.normal[0, i], mesh.normal[1, i]
+        gap[0, i], gap[1, i], gap[2, i] = 1 - e[0] * x - e[1] * y, -x, -y
+        across[0, i] = step / mesh.ratio**2 * gap[0, i] ** 3
+        for d in range(2):
+            across[1 + d, i] = -3 * across[0, i] * mesh.normal[d, i] / gap[0, i]
+    for i in range(n):
+        k = (i + 1) % n
+        a, c = 1 / gap[0, i], 1 / gap[0, k]
+        b = 1 / (1 - e[0] * mesh.middle[0, i] - e[1] * mesh.middle[1, i])
+        mean = (a**3 + 4 * b**3 + c**3) / 6
+        around[0, i] = 1 / (mean * step)
+        for d in range(2):
+            slope = (mesh.normal[d, i] * a**4 + 4 * mesh.middle[d, i] * b**4 + mesh.normal[d, k] * c**4) / 2
+            around[1 + d, i] = -around[0, i] * slope / mean
+    return around, across, gap
+
+
+@compiled
+def lost(mesh: Mesh, around: Array, across: Array, P: Array, loss: Array) -> None:
+    """Enter what the cells lose by pressure, (n, m)."""
+    n, m = P.shape
+    loss[:] = 0.0
+    for i in range(n):
+        k = (i + 1) % n
+        for j in range(m):
+            flow = around[i] * mesh.width[j] * (P[i, j] - P[k, j])
+            loss[i, j] += flow
+            loss[k, j] -= flow
+            after = P[i, j + 1] if j + 1 < m else 0.0
+            axial = across[i] / (mesh.zeta[j + 1] - mesh.zeta[j]) * (P[i, j] - after)
+            loss[i, j] += axial
+            if j + 1 < m:
+                loss[i, j + 1] -= axial
+
+
+@compiled
+def diagonal(mesh: Mesh, around: Array, across: Array) -> Array:
+    """Sum of a cell's conductances, (n, m)."""
+    n, m = around.size, mesh.width.size
+    total = np.empty((n, m))
+    for i in range(n):
+        ring = around[i] + around[i - 1]
+        for j in range(m):
+            total[i, j] = ring * mesh.width[j] + across[i] / (mesh.zeta[j + 1] - mesh.zeta[j])
+            if j > 0:
+                total[i, j] += across[i] / (mesh.zeta[j] - mesh.zeta[j - 1])
+    return total
+
+
+@compiled
+def matrix(mesh: Mesh, around: Array, across: Array, alpha: Array, own: Array) -> Array:
+    """Rows of the banded matrix, (n m, 4 m + 1), diagonal in column 2 m: by k, where P = alpha k."""
+    n, m = alpha.shape
+    band = 2 * m
+    rows = np.zeros((n * m, 2 * band + 1))
+    for i in range(n):
+        k = (i + 1) % n
+        for j in range(m):
+            here, there = mesh.order[i] * m + j, mesh.order[k] * m + j
+            flow = around[i] * mesh.width[j]
+            rows[here, band] += own[i, j]
+            rows[here, band + there - here] -= flow * alpha[k, j]
+            rows[there, band + here - there] -= flow * alpha[i, j]
+            if j + 1 < m:
+                axial = across[i] / (mesh.zeta[j + 1] - mesh.zeta[j])
+                rows[here, band + 1] -= axial * alpha[i, j + 1]
+                rows[here + 1, band - 1] -= axial * alpha[i, j]
+    return rows
+
+
+@compiled
+def eliminate(rows: Array, right: Array) -> None:
+    """Solve a banded system with dominant columns in place; right is (rows, 3)."""
+    size, band = rows.shape[0], rows.shape[1] // 2
+    for k in range(size):
+        pivot = 1 / rows[k, band]
+        for i in range(k + 1, min(k + band + 1, size)):
+            shift = band + k - i
+            factor = rows[i, shift] * pivot
+            if factor == 0:
+                continue
+            for j in range(1, band + 1):
+                rows[i, shift + j] -= factor * rows[k, band + j]
+            for c in range(3):
+                right[i, c] -= factor * right[k, c]
+    for k in range(size - 1, -1, -1):
+        for j in range(1, min(band, size - 1 - k) + 1):
+            for c in range(3):
+                right[k, c] -= rows[k, band + j] * right[k + j, c]
+        for c in range(3):
+            right[k, c] /= rows[k, band]
+
+
+@compiled
+def complement(P: Array, void: Array, A: Array, T: Array, smooth: bool) -> tuple[Array, Array, Array, Array]:
+    """The complementarity of every cell: dP = alpha k + P0, dvoid = beta k + v0, with one unknown k each.
+
+    A and T turn pressure and void into flow. The larger slope is by the void where a cell is full, by the
+    pressure elsewhere.
+    """
+    alpha, beta, P0, v0 = np.empty(P.shape), np.empty(P.shape), np.zeros(P.shape), np.zeros(P.shape)
+    for i in range(P.shape[0]):
+        for j in range(P.shape[1]):
+            p, v = A[i, j] * P[i, j], T[i, j] * void[i, j]
+            ratio, shift = 0.0, -min(p, v)
+            if smooth:
+                size = np.hypot(p, v) + 1e-300
+                larger = 1 - min(p, v) / size
+                ratio, shift = (1 - max(p, v) / size) / larger, -(p + v - size) / larger
+            if p >= v:
+                alpha[i, j], beta[i, j], v0[i, j] = 1 / A[i, j], -ratio / T[i, j], shift / T[i, j]
+            else:
+                alpha[i, j], beta[i, j], P0[i, j] = -ratio / A[i, j], 1 / T[i, j], shift / A[i, j]
+    return alpha, beta, P0, v0
+
+
+@compiled
+def borne(mesh: Mesh, alpha: Array, k: Array) -> tuple[float, float]:
+    """What a pressure alpha k bears along both axes of the mesh."""
+    n, m = k.shape
+    x, y = 0.0, 0.0
+    for i in range(n):
+        line = 0.0
+        for j in range(m):
+            line += alpha[i, j] * k[i, j] * mesh.quadrature[j]
+        x += line * mesh.normal[0, i]
+        y += line * mesh.normal[1, i]
+    return x * np.pi / n, y * np.pi / n
+
+
+@compiled
+def displacement(a: float, b: float, c: float, d: float, x: float, y: float) -> tuple[float, float]:
+    """Solve [[a, b], [c, d]] for (x, y); the least squares of a matrix whose determinant vanishes."""
+    size, det = a * a + b * b + c * c + d * d, a * d - b * c
+    if abs(det) > 1e-13 * size:
+        return (d * x - b * y) / det, (a * y - c * x) / det
+    return (a * x + c * y) / size, (b * x + d * y) / size
+
+
+@compiled
+def balances(
+    mesh: Mesh, e: Array, P: Array, void: Array, share: Array, supply: float, store: float, rest: Array
+) -> tuple[tuple[Array, Array], Array, Array, Array, Array]:
+    """Conductances around and across, A, T, that of the feed, and loss of oil with slopes by e, (3, n, m)."""
+    n, m = P.shape
+    around, across, gap = coefficients(mesh, e)
+    A, T, feeding = diagonal(mesh, around[0], across[0]), np.empty((n, m)), np.empty((n, m))
+    loss = np.empty((3, n, m))
+    for d in range(3):
+        lost(mesh, around[d], across[d], P, loss[d])
+    for i in range(n):
+        for j in range(m):
+            feeding[i, j] = share[i, j] / (1.0001 - share[i, j]) * A[i, j]
+            A[i, j] += feeding[i, j]
+            T[i, j] = store * gap[0, i] * mesh.width[j]
+            loss[0, i, j] += T[i, j] * (1 - void[i, j]) + rest[i, j] * mesh.width[j] * 24 * np.pi / n
+            loss[0, i, j] -= feeding[i, j] * (supply - P[i, j])
+            for d in range(1, 3):
+                loss[d, i, j] += store * gap[d, i] * mesh.width[j] * (1 - void[i, j])
+    return (around[0], across[0]), A, T, feeding, loss
+
+
+@compiled
+def responses(
+    mesh: Mesh, flows: tuple[Array, Array], A: Array, T: Array, feeding: Array, loss: Array,
+    law: tuple[Array, Array, Array, Array],
+) -> Array:  # fmt: skip
+    """The unknown k of every cell without displacement, and by each component of it, (3, n, m)."""
+    alpha, beta, P0, v0 = law
+    n, m = A.shape
+    own, right, k = np.empty((n, m)), np.empty((n * m, 3)), np.empty((3, n, m))
+    offset = np.empty((n, m))
+    lost(mesh, flows[0], flows[1], P0, offset)
+    for i in range(n):
+        for j in range(m):
+            own[i, j] = A[i, j] * alpha[i, j] - T[i, j] * beta[i, j]
+            offset[i, j] += feeding[i, j] * P0[i, j] - T[i, j] * v0[i, j]
+            row = mesh.order[i] * m + j
+            right[row, 0] = -loss[0, i, j] - offset[i, j]
+            right[row, 1], right[row, 2] = -loss[1, i, j], -loss[2, i, j]
+    eliminate(matrix(mesh, flows[0], flows[1], alpha, own), right)
+    for i in range(n):
+        for j in range(m):
+            for c in range(3):
+                k[c, i, j] = right[mesh.order[i] * m + j, c]
+    return k
+
+
+@compiled
+def displaced(
+    mesh: Mesh, e: Array, P: Array, k: Array, alpha: Array, P0: Array, S: Array, mass: float, inertia: Array
+) -> tuple[float, float]:
+    """The change of the eccentricity for which the film bears the load and the journal's inertia."""
+    n, m = P.shape
+    x, y = S[0], S[1]
+    for i in range(n):
+        for j in range(m):
+            line = (P[i, j] + P0[i, j] + alpha[i, j] * k[0, i, j]) * mesh.quadrature[j] * np.pi / n
+            x -= line * mesh.normal[0, i]
+            y -= line * mesh.normal[1, i]
+    (xx, yx), (xy, yy) = borne(mesh, alpha, k[1]), borne(mesh, alpha, k[2])
+    M = mass * inertia[0]
+    x -= M * e[0] + mass * inertia[1]
+    y -= M * e[1] + mass * inertia[2]
+    return displacement(xx + M, xy, yx, yy + M, x, y)
+
+
+@compiled
+def solved(
+    mesh: Mesh, state: tuple[Array, Array, Array], S: Array, share: Array, supply: float,
+    rate: float, rest: Array, mass: float, inertia: Array, smooth: bool,
+) -> tuple[bool, Array, Array, Array, float, float]:  # fmt: skip
+    """Whether Newton's method settled; then eccentricity, pressure and void, feed and side flow times 24.
+
+    Pressure and void may be below 0 by what Newton's method leaves.
+
+    d(oil)/dtheta = rate·oil + rest, acceleration = inertia[0]·e + inertia[1:]; `state` is where to start.
+    """
+    e, P, void = state[0].copy(), state[1].copy(), state[2].copy()
+    n, m = P.shape
+    store = 24 * np.pi / n * rate
+    for _ in range(MOST):
+        flows, A, T, feeding, loss = balances(mesh, e, P, void, share, supply, store, rest)
+        law = complement(P, void, A, T, smooth)
+        alpha, beta, P0, v0 = law
+        k = responses(mesh, flows, A, T, feeding, loss, law)
+        x, y = displaced(mesh, e, P, k, alpha, P0, S, mass, inertia)
+        part, room, change = 1.0, 1 - np.hypot(e[0], e[1]), np.hypot(x, y)
+        if not np.isfinite(change):
+            break
+        while 1 - np.hypot(e[0] + part * x, e[1] + part * y) < LEAVES * room:
+            part /= 2
+        lacks, stores, fed, side = 0.0, 0.0, 0.0, 0.0
+        for i in range(n):
+            for j in range(m):
+                lacks, stores = max(lacks, abs(loss[0, i, j])), max(stores, T[i, j])
+                move = k[0, i, j] + x * k[1, i, j] + y * k[2, i, j]
+                P[i, j] += part * (alpha[i, j] * move + P0[i, j])
+                void[i, j] += part * (beta[i, j] * move + v0[i, j])
+                fed += feeding[i, j] * (supply - P[i, j])
+            side += flows[1][i] * P[i, m - 1] / (mesh.zeta[m] - mesh.zeta[m - 1])
+        e[0] += part * x
+        e[1] += part * y
+        if part == 1 and change < SETTLED * room and lacks < SETTLED * stores:
+            return True, e, P, void, fed, side
+    return False, e, P, void, 0.0, 0.0

@@ -1,0 +1,198 @@
+"""A supplied film marched over a cycle: steps of BDF2 whose size follows the gap, halved where one fails."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.orbits.journal_orbit import CyclicLoad
+from templates.physics.orbits.supplied_mesh import Mesh
+from templates.physics.orbits.supply import Supply
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+GAP_CHANGE = 0.2
+"""A step is chosen so that the gap changes by about this share, down to an eighth of the step asked for."""
+SHORTEST = 1e-3
+"""Share of the step asked for below which a step that still fails ends the march."""
+OVERDRAWN = 1.02
+"""Void of a cell beyond which a step of second order, which took oil that was not there, is repeated with
+first order [-]."""
+
+
+@dataclass(frozen=True)
+class TurnedAngle:
+    """The integral of a speed that repeats and is linear between its angles."""
+
+    angle: Array
+    """(N,) rising crank angles [rad]."""
+    period: float
+    speed: Array
+    """(N,) over Omega [-]."""
+
+    def __call__(self, theta: Array) -> Array:
+        """Angle turned by since crank angle 0 [rad]."""
+        return self._since_first(theta - self.angle[0]) - self._at_zero
+
+    @cached_property
+    def of_cycle(self) -> float:
+        """Angle turned by in a cycle [rad]."""
+        return float(self._nodes[2][-1])
+
+    @cached_property
+    def _nodes(self) -> tuple[Array, Array, Array]:
+        """(N + 1,) angles since the first, speeds there and angles turned by since."""
+        place = np.append(self.angle - self.angle[0], self.period)
+        speed = np.append(self.speed, self.speed[0])
+        turned = np.cumsum((speed[1:] + speed[:-1]) / 2 * np.diff(place))
+        return place, speed, np.append(0.0, turned)
+
+    @cached_property
+    def _at_zero(self) -> float:
+        return float(self._since_first(np.array([-self.angle[0] % self.period]))[0])
+
+    def _since_first(self, since: Array) -> Array:
+        place, speed, turned = self._nodes
+        cycle = np.floor(since / self.period)
+        part = since - cycle * self.period
+        k = np.searchsorted(place[1:-1], part, side="right")
+        into = part - place[k]
+        slope = (speed[k + 1] - speed[k]) / (place[k + 1] - place[k])
+        return np.asarray(cycle * turned[-1] + turned[k] + speed[k] * into + slope * into**2 / 2)
+
+
+@dataclass(frozen=True)
+class Duty:
+    """What one bearing has to do, and how it is fed."""
+
+    load: CyclicLoad
+    """One case."""
+    sliding: Array
+    """(N,) speed of the journal over the sleeve, over Omega [-]."""
+    supply: Supply
+    mass: float
+    """Mass of the journal m c Omega psi²/(B D eta), c radial [-]."""
+
+    @property
+    def begin(self) -> float:
+        """The first crank angle [rad]."""
+        return float(self.load.angle[0])
+
+    @cached_property
+    def mesh_turning(self) -> TurnedAngle:
+        """Of the mesh in the frame, at the mean speed of journal and sleeve."""
+        return TurnedAngle(self.load.angle, self.load.period, self.load.w[0])
+
+    @cached_property
+    def journal_turning(self) -> TurnedAngle:
+        """Of the journal in the mesh; the sleeve turns back by as much."""
+        return TurnedAngle(self.load.angle, self.load.period, self.sliding / 2)
+
+    def seen(self, theta: Array) -> tuple[Array, Array]:
+        """Load (K, 2), and places of the pockets (K, k, 3) as the kernel takes them, in axes of the mesh."""
+        x, y = (np.interp(theta, self.load.angle, s, period=self.load.period) for s in self.load.S[:, 0])
+        S = (x + 1j * y) * np.exp(-1j * self.mesh_turning(theta))
+        turned = self.journal_turning(theta)
+        places = np.empty((theta.size, len(self.supply.pockets), 3))
+        for k, pocket in enumerate(self.supply.pockets):
+            places[:, k, 0] = pocket.centre + (turned if pocket.on_journal else -turned)
+            places[:, k, 1:] = pocket.half_angle, pocket.half_length
+        return np.stack([S.real, S.imag], axis=-1), places
+
+
+@dataclass(frozen=True)
+class State:
+    """A film at one crank angle, in the axes of the mesh."""
+
+    theta: float
+    e: Array
+    """(2,) relative eccentricity."""
+    P: Array
+    """(n, m) pressure."""
+    void: Array
+    """(n, m) 1 − alpha."""
+    oil: Array
+    """(n, m) alpha H."""
+    velocity: Array
+    """(2,) d(e)/d(theta)."""
+    step: float
+    """That led here; 0 at a start [rad]."""
+    feed: float = 0.0
+    """Oil fed, Q/(B D c Omega), c radial."""
+    side_flow: float = 0.0
+    """Oil lost at both ends, likewise."""
+    flows: tuple[float, float] = (0.0, 0.0)
+    """Both over the step that led here, in the mean that the step takes: fed less lost is stored."""
+
+
+def gap_at(mesh: Mesh, e: Array) -> Array:
+    """H at the nodes, (n,)."""
+    return np.asarray(1 - e @ mesh.normal)
+
+
+def start(mesh: Mesh, duty: Duty) -> State:
+    """A full film, the journal half way along the load."""
+    S = duty.seen(np.array([duty.begin]))[0][0]
+    e, none = 0.5 * S / max(float(np.hypot(*S)), 1e-9), np.zeros((mesh.order.size, mesh.width.size))
+    return State(duty.begin, e, none, none, none + gap_at(mesh, e)[:, None], np.zeros(2), 0.0)
+
+
+def stepped(mesh: Mesh, duty: Duty, states: list[State], h: float) -> State | None:
+    """The state after a step: of second order if it can be, by the active set if it can be."""
+    from templates.physics.orbits.supplied_kernel import covered, solved  # numba takes a second
+
+    last = states[-1]
+    theta = last.theta + h
+    (S,), (places,) = duty.seen(np.array([theta]))
+    share = covered(mesh, places)
+    for second, smooth in ((True, False), (True, True), (False, False), (False, True)):
+        if second and (len(states) < 2 or last.step == 0):
+            continue
+        r = h / last.step if second else 0.0
+        older = states[-2] if second else last
+        rate, a1, a2 = (1 + 2 * r) / (1 + r) / h, -(1 + r) / h, r * r / (1 + r) / h
+        drift = a1 * last.e + a2 * older.e
+        done, e, P, void, fed, side = solved(
+            mesh, (last.e, last.P, last.void), S, share, duty.supply.pressure, rate,
+            a1 * last.oil + a2 * older.oil, duty.mass, np.array([rate / h, *((drift - last.velocity) / h)]),
+            smooth,
+        )  # fmt: skip
+        if done and (not second or void.max() < OVERDRAWN):
+            P, void = np.maximum(P, 0.0), np.maximum(void, 0.0)
+            oil = (1 - void) * gap_at(mesh, e)[:, None]
+            fed, side = fed / 24, side / 24
+            now, past = (1 + r) / (1 + 2 * r), r / (1 + 2 * r)
+            flows = (now * fed + past * last.flows[0], now * side + past * last.flows[1])
+            return State(theta, e, P, void, oil, rate * e + drift, h, fed, side, flows)
+    return None
+
+
+def marched(
+    mesh: Mesh, duty: Duty, begin: State, step: float, say: Callable[[float], None]
+) -> tuple[list[State], int, bool]:
+    """One cycle: its states, the first of them where it began; how often a step was halved; whether it ended.
+
+    say: is given the share of the cycle that is done, before each step.
+    """
+    states, halvings, h = [begin], 0, step
+    end = begin.theta + duty.load.period
+    while states[-1].theta < end - 1e-9:
+        last = states[-1]
+        say(1 - (end - last.theta) / duty.load.period)
+        left = end - last.theta
+        h = left if left < 1.3 * h else h
+        after = stepped(mesh, duty, states, h)
+        if after is None:
+            h, halvings = h / 2, halvings + 1
+            if h < SHORTEST * step:
+                return states, halvings, False
+            continue
+        change = abs(np.log((1 - np.hypot(*after.e)) / (1 - np.hypot(*last.e))))
+        h = min(max(h * float(np.clip(GAP_CHANGE / max(change, 1e-9), 0.5, 2.0)), step / 8), step)
+        states.append(after)
+    return states, halvings, True

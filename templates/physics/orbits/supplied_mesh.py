@@ -1,0 +1,125 @@
+"""The mesh of a supplied film: cells around, turning with the mean speed of journal and sleeve, and across.
+
+Across, half the width is taken: rows of nodes from the middle to the edge of the shortest pocket, one on
+the edge of every other, then rows that grow finer towards the end of a wide bearing. The end, at ambient
+pressure, is left out.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from templates.core.arrays import Array, Integers
+
+_FADES = 0.35
+"""Distance from the end over D/2 within which the pressure of a wide bearing falls to that of the end [-]."""
+_FADES_THIN = 2.0
+"""The same over the width of the least gap, sqrt(2 (1 − eps)) [-]."""
+_DENSITY = 0.6
+"""Rows in the length of a pocket over those of equal spacing [-]."""
+
+
+class Mesh(NamedTuple):
+    """n nodes around × m across half the width; what the compiled kernel needs of it."""
+
+    ratio: float
+    """Width over diameter B/D [-]."""
+    zeta: Array
+    """(m + 1,) axial places of the nodes, 0 (middle) … 1 (end)."""
+    width: Array
+    """(m,) axial widths of the cells."""
+    quadrature: Array
+    """(m,) weights of the nodes' pressures in the mean over the width, exact for a parabola."""
+    normal: Array
+    """(2, n) cosine and sine of the nodes' angles."""
+    middle: Array
+    """(2, n) the same midway to the next node."""
+    order: Integers
+    """(n,) place of each node in the sequence 0, 1, 3, …, 4, 2, in which neighbours are at most two apart."""
+
+
+def supplied_mesh(
+    ratio: float,
+    around: int,
+    across: int,
+    edges: tuple[float, ...] = (),
+    grooved: bool = False,
+    gap: float = 1.0,
+) -> Mesh:
+    """A mesh with rows of nodes on the edges of pockets, and one more row for each edge after the first.
+
+    Parameters
+    ----------
+    ratio
+        Width over diameter B/D [-].
+    around
+        Nodes around.
+    across
+        Rows across half the width, the end not counted.
+    edges
+        Rising half lengths of the pockets over B/2 [-].
+    grooved
+        Whether the pressure falls towards the pockets too; the land is then finer at both of its sides.
+    gap
+        Least gap to be expected: where it is thin, the film is short around, and its pressure falls nearer to
+        the edges [-].
+    """
+    inner = _inner_cells(edges[0], across) if edges else 0
+    edge, rows = (edges[-1], across - inner + 1) if edges else (0.0, across + 1)
+    fades = min(_FADES, _FADES_THIN * np.sqrt(2 * gap))
+    fine, t = min(1.0, fades / (ratio * (1 - edge))), np.linspace(0, 1, rows)
+    t = t - (1 - fine) * np.sin(2 * np.pi * t) / (2 * np.pi) if grooved else _towards_end(t, fine)
+    zeta = np.concatenate(
+        [np.arange(inner) / max(inner, 1) * min(edges, default=0.0), edges[:-1], edge + (1 - edge) * t]
+    )
+    phi = np.arange(around) * 2 * np.pi / around
+    half = phi + np.pi / around
+    node = np.arange(around)
+    order = np.where(2 * node <= around, 2 * node - 1, 2 * (around - node))
+    order[0] = 0
+    return Mesh(
+        ratio=float(ratio),
+        zeta=zeta,
+        width=np.diff(np.concatenate([[0.0], (zeta[1:] + zeta[:-1]) / 2])),
+        quadrature=_quadrature(zeta, inner, len(edges)),
+        normal=np.stack([np.cos(phi), np.sin(phi)]),
+        middle=np.stack([np.cos(half), np.sin(half)]),
+        order=order.astype(np.int64),
+    )
+
+
+def _towards_end(t: Array, fine: float) -> Array:
+    """Places 0 … 1 whose distance shrinks to `fine` of equal ones."""
+    return np.asarray(1 - (1 - t) * (fine + (1 - fine) * (1 - t)))
+
+
+def _inner_cells(edge: float, across: int) -> int:
+    """Cells from the middle to the first edge; three rows at least are left for the land."""
+    return min(max(1, round(_DENSITY * edge * across)), max(1, across - 3))
+
+
+def _quadrature(zeta: Array, inner: int, edges: int) -> Array:
+    """Weights that give an even parabola across exactly; the pressure has a kink at each edge."""
+    weights = np.zeros(zeta.size)
+    first = inner if edges else zeta.size - 1
+    if first == 1:
+        weights[:2] = zeta[1] * np.array([2 / 3, 1 / 3])
+    else:
+        even = zeta[: first + 1]
+        spline = CubicSpline(even, np.eye(even.size), bc_type=((1, np.zeros(even.size)), "not-a-knot"))
+        weights[: first + 1] = spline.integrate(0.0, even[-1])
+    for row in range(first, first + edges - 1):
+        weights[row : row + 2] += (zeta[row + 1] - zeta[row]) / 2
+    if edges:
+        land = zeta[first + edges - 1 :]
+        spline = CubicSpline(land, np.eye(land.size), bc_type="not-a-knot")
+        weights[-land.size :] += spline.integrate(land[0], 1.0)
+    return weights[:-1]
+
+
+def carried(mesh: Mesh, finer: Mesh, values: Array, end: Array) -> Array:
+    """Values (n, m) of one mesh at the nodes of another; `end` are those at the bearing's end, (n,)."""
+    phi, finer_phi = (np.arange(one.order.size) * 2 * np.pi / one.order.size for one in (mesh, finer))
+    around = [np.interp(finer_phi, phi, v, period=2 * np.pi) for v in (*values.T, end)]
+    return np.stack([np.interp(finer.zeta[:-1], mesh.zeta, row) for row in np.stack(around, axis=1)])

@@ -1,0 +1,293 @@
+"""The orbit of a journal in a film that conserves its oil and is fed by holes and grooves: level `supplied`.
+
+The film is marched over cycle after cycle (`supplied_march`) in a mesh that turns with the mean speed of
+journal and sleeve. There the shear flow vanishes, and oil in a cavity stays in its cell: its history is not
+smeared. A coarse mesh is run in until the orbit repeats, or it is clear that the film starves; then a mesh
+whose cells follow the least gap. Measured by `python -m benchmarks.supplied_orbits`.
+"""
+
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.progress import report
+from templates.physics.orbits.journal_orbit import CyclicLoad
+from templates.physics.orbits.supplied_march import Duty, State, gap_at, start
+from templates.physics.orbits.supplied_mesh import Mesh, carried, supplied_mesh
+from templates.physics.orbits.supplied_run import WANDERS, Ending, Run, in_frame, least_gap, returns, run_in
+from templates.physics.orbits.supply import Supply
+
+MASS = 2.5e-4
+"""Mass of the journal m c Omega psi²/(B D eta), c radial: it regularises where the film is empty [-]."""
+SECTOR = np.pi / 3
+"""A pocket whose centre lies within this angle of the load's direction, and whose half angle is smaller, is
+under the load [rad]."""
+OFTEN = 0.4
+"""Share of the cycle under the load from which a pocket stays there [-]."""
+THINNEST = 1e-4
+"""Least gap that the mesh follows [-]."""
+_REPORTED = 0.05  # share of a cycle between two reports of progress
+
+
+class Verdict(StrEnum):
+    """How a march ended."""
+
+    REPEATING = "repeating"
+    """The orbit repeats: its least gap to 1e-3."""
+    WANDERING = "wandering"
+    """The least gap repeats to `repeat_error` only, 3 % at most."""
+    STARVED = "starved"
+    """The film thins like 1/n with the cycle n, or none is left and the pockets are under the load."""
+    UNSETTLED = "unsettled"
+    """No orbit was found: the least gap changes by more than 3 % from cycle to cycle without thinning, as
+    where the supply lifts a journal more than its load presses it; or no film bears the load."""
+
+
+@dataclass(frozen=True)
+class Meshing:
+    """A mesh, the largest step in time on it, and how many cycles to march on it at most."""
+
+    around: int
+    across: int
+    step: float
+    """[rad]."""
+    most: int
+
+
+COARSE = Meshing(64, 4, np.radians(4.0), 30)
+"""The mesh that runs in."""
+FINE = Meshing(128, 6, np.radians(2.0), 24)
+"""The mesh of the result; more around where the least gap is thin."""
+RESOLVED, MOST_AROUND = 0.3, 384
+"""Largest width of a cell over that of the least gap, sqrt(2 (1 − eps)), up to so many cells [-]."""
+
+
+@dataclass(frozen=True)
+class SuppliedOrbit:
+    """The last cycle marched; dimensionless, at K angles of unequal steps."""
+
+    theta: Array
+    """(K,) rising crank angles; the last is one cycle after the load's first [rad]."""
+    eps: Array
+    """(2, K) relative eccentricity along the axes of the frame."""
+    gap: Array
+    """(K,) 1 − |eps|."""
+    P_max: Array
+    """(K,) largest pressure p psi²/(eta Omega)."""
+    feed: Array
+    """(K,) oil fed by all pockets, Q/(B D c Omega), c the radial clearance."""
+    side_flow: Array
+    """(K,) oil that leaves at both ends, likewise."""
+    shear: Array
+    """(K,) shear of the oil that there is; pi/sqrt(1 − eps²) for a full film."""
+    void: Array
+    """(K,) share of the gap's volume that is void."""
+    least_gap: float
+    """Smallest gap over the cycle, between the angles too, by a parabola; NaN without a whole cycle [-]."""
+    least_angle: float
+    """Its crank angle [rad]."""
+    verdict: Verdict
+    repeat_error: float
+    """Change of the least gap from the cycle before, relative; unless it repeats the largest of the last
+    three, infinite if there were not two cycles."""
+    drift: float
+    """Change of the eccentricity from the cycle before, over the gap, mean over the cycle; likewise."""
+    cycles: tuple[int, ...]
+    """Cycles marched on each mesh."""
+    around: int
+    """Cells around of the last mesh."""
+    mean_feed: float
+    """Oil fed in the mean over the cycle, as the steps took it [-]."""
+    mean_side_flow: float
+    """Oil that leaves at both ends, likewise [-]."""
+    mass_balance: float
+    """Oil fed less oil lost at the ends less oil stored, over the oil lost [-]."""
+    halvings: int
+    """How often a step was halved in the last cycle, because it had not converged."""
+    under_load: float
+    """Share of the cycle in which every pocket lies under the load, within 60° of its direction [-]."""
+
+    @property
+    def reason(self) -> str:
+        """Why the orbit does not repeat, in words; empty if it does."""
+        if self.verdict is Verdict.REPEATING:
+            return ""
+        if self.verdict is Verdict.WANDERING:
+            return f"the smallest film wanders by {100 * self.repeat_error:.2g} % from cycle to cycle"
+        if self.verdict is Verdict.UNSETTLED:
+            return "no orbit repeats: the load is too large for a film, or too small to hold the journal"
+        share, thins = f"{100 * self.under_load:.0f} % of the cycle", "the film thins from cycle to cycle"
+        if self.under_load < OFTEN:
+            return f"starved: {thins}, although the hole is within 60° of the load for {share} only"
+        return f"starved: the hole stays under the load, within 60° of it for {share}; {thins}"
+
+
+def supplied_orbit(
+    load: CyclicLoad,
+    sliding: Array,
+    ratio: float,
+    supply: Supply,
+    meshes: tuple[Meshing, ...] = (COARSE, FINE),
+    mass: float = MASS,
+    refined: bool = True,
+) -> SuppliedOrbit:
+    """March one case until it repeats, or until it is clear that it starves.
+
+    Says how far it is by `templates.core.progress.report`, which may raise to cancel. The first call compiles
+    the kernel, or reads it from disk (`templates.physics.numerics.compiled`).
+
+    Parameters
+    ----------
+    load
+        One case: S (2, 1, N), with which the journal pushes; w (1, N).
+    sliding
+        (N,) speed of the journal over the sleeve, over Omega, at the load's angles [-].
+    ratio
+        Width over diameter B/D [-].
+    supply
+        Pockets and supply pressure.
+    meshes
+        Meshes to march on in turn.
+    mass
+        Mass of the journal m c Omega psi²/(B D eta), c radial [-].
+    refined
+        Whether meshes after the first follow a thin gap: more cells around, and rows nearer to the edges.
+
+    Raises
+    ------
+    ValueError
+        If a pocket that does not go all around is not back at its place in the frame after the cycle.
+    """
+    duty = Duty(load, np.asarray(sliding, float), supply, mass)
+    _require_return(duty)
+    runs: list[Run] = []
+    for number, meshing in enumerate(meshes):
+        gap = min(runs[-1].gaps, default=0.0) if runs and refined else 1.0
+        around = max(meshing.around, _cells(gap))
+        mesh = supplied_mesh(ratio, around, meshing.across, supply.edges, supply.grooved, max(gap, THINNEST))
+        state = start(mesh, duty) if not runs else transferred(runs[-1].mesh, mesh, runs[-1].states[-1])
+        progress = _Progress(number, meshes)
+        runs.append(run_in(mesh, duty, state, meshing.step, meshing.most, progress))
+        if runs[-1].ending is Ending.THINNING:
+            break
+    return _measured(duty, runs)
+
+
+def _cells(gap: float) -> int:
+    """Cells around that resolve a gap, in steps of 16."""
+    wanted = 2 * np.pi / (RESOLVED * np.sqrt(2 * max(gap, THINNEST)))
+    return int(min(16 * np.ceil(wanted / 16), MOST_AROUND))
+
+
+class _Progress:
+    """Says how far a march is, a few times in a cycle."""
+
+    def __init__(self, number: int, meshes: tuple[Meshing, ...]) -> None:
+        self.number, self.meshes, self.last = number, meshes, -1.0
+
+    def __call__(self, cycle: int, part: float) -> None:
+        if cycle + part < self.last + _REPORTED:
+            return
+        self.last, most = cycle + part, self.meshes[self.number].most
+        done = (self.number + (cycle - 1 + part) / most) / len(self.meshes)
+        report(done, f"mesh {self.number + 1} of {len(self.meshes)}, cycle {cycle} of at most {most}")
+
+
+def transferred(mesh: Mesh, finer: Mesh, state: State) -> State:
+    """A state on another mesh."""
+    void = carried(mesh, finer, state.void, state.void[:, -1])
+    P = carried(mesh, finer, state.P, 0 * state.P[:, -1])
+    oil = (1 - void) * gap_at(finer, state.e)[:, None]
+    return replace(state, P=P, void=void, oil=oil, step=0.0, velocity=0 * state.velocity)
+
+
+def return_error(duty: Duty) -> float:
+    """By how much a pocket misses its place in the frame after a cycle, at most [rad]."""
+    mean, half = duty.mesh_turning.of_cycle, duty.journal_turning.of_cycle
+    turns = [
+        mean + half if p.on_journal else mean - half for p in duty.supply.pockets if p.half_angle < np.pi
+    ]
+    return max((abs((turn + np.pi) % (2 * np.pi) - np.pi) for turn in turns), default=0.0)
+
+
+def under_load(duty: Duty) -> float:
+    """Share of the cycle in which every pocket lies within 60° of the load's direction [-]."""
+    theta = duty.begin + duty.load.period * np.arange(720) / 720
+    S, places = duty.seen(theta)
+    off = places[..., 0] - np.arctan2(S[:, 1], S[:, 0])[:, None]
+    away = np.abs((off + np.pi) % (2 * np.pi) - np.pi)
+    return float(((away < SECTOR) & (places[..., 1] < SECTOR)).all(axis=1).mean())
+
+
+def _require_return(duty: Duty) -> None:
+    missed = return_error(duty)
+    if not returns(missed):
+        raise ValueError(
+            f"a pocket is {np.degrees(missed):.3g}° off its place in the frame after the cycle: "
+            "sleeve and journal speed must turn it by whole turns relative to the frame"
+        )
+
+
+def _measured(duty: Duty, runs: list[Run]) -> SuppliedOrbit:
+    """What the last cycle was like."""
+    run = next((run for run in reversed(runs) if run.gaps), runs[-1])
+    mesh, states = run.mesh, run.states[1:] or run.states
+    theta, z = in_frame(duty, states)
+    shift = duty.begin + duty.load.period - theta[-1]
+    gap = 1 - np.abs(z)
+    least, angle = least_gap(theta, gap, duty.load.period)
+    H = np.array([gap_at(mesh, state.e) for state in states])
+    fill = np.array([(1 - state.void) @ mesh.width for state in states])
+    step, share = 2 * np.pi / mesh.order.size, under_load(duty)
+    fed, lost = _flows(run.states)
+    return SuppliedOrbit(
+        theta=theta + shift,
+        eps=np.stack([z.real, z.imag]),
+        gap=gap,
+        P_max=np.array([state.P.max() for state in states]),
+        feed=np.array([state.feed for state in states]),
+        side_flow=np.array([state.side_flow for state in states]),
+        shear=(fill / H).sum(axis=1) / mesh.width.sum() * step / 2,
+        void=1 - (fill * H).sum(axis=1) / (mesh.width.sum() * H.sum(axis=1)),
+        least_gap=least if run.gaps else np.nan,
+        least_angle=angle + shift,
+        verdict=_verdict(runs[-1], share),
+        repeat_error=run.repeat_error,
+        drift=run.drift,
+        cycles=tuple(len(run.gaps) for run in runs),
+        around=mesh.order.size,
+        mean_feed=fed / duty.load.period,
+        mean_side_flow=lost / duty.load.period,
+        mass_balance=(fed - lost - _stored(mesh, run.states)) / max(lost, 1e-300),
+        halvings=run.halvings,
+        under_load=share,
+    )
+
+
+def _verdict(run: Run, share: float) -> Verdict:
+    """How the last run ended; `share` of the cycle the pockets are under the load."""
+    if run.ending is Ending.REPEATING:
+        return Verdict.REPEATING
+    if run.ending is Ending.THINNING or (run.ending is Ending.FAILED and share >= OFTEN):
+        return Verdict.STARVED
+    wanders = run.ending is Ending.UNSETTLED and run.repeat_error <= WANDERS
+    return Verdict.WANDERING if wanders else Verdict.UNSETTLED
+
+
+def _flows(states: list[State]) -> tuple[float, float]:
+    """Oil fed and oil lost over a cycle.
+
+    A step of BDF2 stores a mean of the flow at its end and of the mean of the step before. Summed in this way
+    the flows are those of the oil that the march kept; the trapezoidal rule differs by up to some per cent
+    where the steps do, as at an impact.
+    """
+    fed, lost = (sum(state.step * state.flows[k] for state in states[1:]) for k in range(2))
+    return float(fed), float(lost)
+
+
+def _stored(mesh: Mesh, states: list[State]) -> float:
+    """Oil in the film at the end of a cycle less that at its start."""
+    kept = (states[-1].oil - states[0].oil) @ mesh.width
+    return float(kept.sum()) * np.pi / mesh.order.size

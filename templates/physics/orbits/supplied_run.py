@@ -1,0 +1,168 @@
+"""Cycles of a supplied film on one mesh, until they repeat or the film is seen to lose its oil.
+
+A fed bearing forgets its start fast: most repeat after 3 to 6 cycles. Two kinds do not. Where all the oil
+must enter under the load, none does: the film thins like 1/n with the cycle n. From cycle 12 to 24 it then
+falls by half, but by little where an orbit settles (`STARVING`). And where the journal crosses a space
+without oil and meets the film on the other side, the place of the impact may change from cycle to cycle by
+more than a step, although the least gap does not; so the mean of the change over the cycle is taken.
+
+Where the mesh, and with it the oil, has made half a turn after a cycle, as with cycles of 360°, the film that
+the load meets is that of the last but one cycle: then two changes in a row must be small.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.orbits.step_bound import least_between
+from templates.physics.orbits.supplied_march import Duty, State, marched
+from templates.physics.orbits.supplied_mesh import Mesh
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+REPEATS = 1e-3
+"""Change of the least gap between two cycles, relative, of an orbit that repeats [-]."""
+DRIFTS = 0.02
+"""The same of the eccentricity over the gap, mean over the cycle [-]."""
+WANDERS = 0.03
+"""Largest change of the least gap in `RECENT` cycles of an orbit that `repeat_error` goes with [-]."""
+RECENT = 3
+STARVING, EARLIEST = 0.5, 24
+"""A film starves whose least gap falls, from half of the cycles to all of them, by more than this power of
+their number; from this cycle on [-]."""
+
+_SAMPLES = 361
+
+
+class Ending(StrEnum):
+    """How a run on one mesh ended."""
+
+    REPEATING = "repeating"
+    UNSETTLED = "unsettled"
+    THINNING = "thinning"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True)
+class Run:
+    """Cycles on one mesh."""
+
+    mesh: Mesh
+    states: list[State]
+    """Of the last whole cycle; the first is where it began."""
+    gaps: list[float]
+    """Least gap of each cycle [-]."""
+    drift: float
+    """Change of the eccentricity over the gap from the cycle before, mean over the cycle; infinite in the
+    first [-]."""
+    halvings: int
+    """In the last cycle."""
+    ending: Ending
+
+    @property
+    def repeat_error(self) -> float:
+        """Change of the least gap in the last cycle or, unless it repeats, the largest of recent ones."""
+        if len(self.gaps) < 2:
+            return np.inf
+        return change(self.gaps, 1 if self.ending is Ending.REPEATING else RECENT)
+
+
+def run_in(
+    mesh: Mesh,
+    duty: Duty,
+    state: State,
+    step: float,
+    most: int,
+    say: Callable[[int, float], None],
+) -> Run:
+    """March until the orbit repeats, thins or fails, or the cycles are used up.
+
+    Parameters
+    ----------
+    mesh
+        Of the state.
+    duty
+        What the bearing has to do.
+    state
+        Where to begin.
+    step
+        Largest step [rad].
+    most
+        Cycles to march at most.
+    say
+        Is given the cycle, from 1, and the share of it that is done.
+    """
+    gaps: list[float] = []
+    before, states, drift, halvings = None, [state], np.inf, 0
+    alternating = 1 if returns(duty.mesh_turning.of_cycle) else 2
+    for cycle in range(1, most + 1):
+        new, halved, ended = marched(mesh, duty, states[-1], step, partial(say, cycle))
+        if not ended:
+            return Run(mesh, states, gaps, drift, halvings, Ending.FAILED)
+        states, halvings = new, halved
+        theta, z = in_frame(duty, states)
+        gaps.append(least_gap(theta[1:], 1 - np.abs(z[1:]), duty.load.period)[0])
+        sampled = np.interp(np.linspace(theta[0], theta[-1], _SAMPLES), theta, z)
+        if before is not None:
+            drift = float(np.mean(np.abs(sampled - before) / (1 - np.abs(sampled))))
+            if len(gaps) > alternating and change(gaps, alternating) < REPEATS and drift < DRIFTS:
+                return Run(mesh, states, gaps, drift, halvings, Ending.REPEATING)
+        before = sampled
+        if thins(gaps):
+            return Run(mesh, states, gaps, drift, halvings, Ending.THINNING)
+    return Run(mesh, states, gaps, drift, halvings, Ending.UNSETTLED)
+
+
+def change(gaps: list[float], cycles: int) -> float:
+    """The largest relative change of the least gap from cycle to cycle, in the last so many."""
+    return float(np.abs(np.diff(gaps[-cycles - 1 :]) / gaps[-cycles:]).max())
+
+
+def returns(turned: float, within: float = 0.02) -> bool:
+    """Whether an angle is one of whole turns [rad]."""
+    return bool(abs((turned + np.pi) % (2 * np.pi) - np.pi) <= within)
+
+
+def thins(gaps: list[float]) -> bool:
+    """Whether the least gaps of all cycles on a mesh fall like 1/n or faster at last."""
+    n = len(gaps)
+    if n < EARLIEST:
+        return False
+    half = n // 2
+    fell = min(gaps[half - 2 : half]) / max(gaps[-2:])
+    return bool(np.log(fell) > STARVING * np.log(n / half))
+
+
+def in_frame(duty: Duty, states: list[State]) -> tuple[Array, Array]:
+    """Crank angles and eccentricities e_x + i e_y of states in the frame, (K,) each."""
+    theta = np.array([state.theta for state in states])
+    e = np.array([state.e for state in states])
+    return theta, (e[:, 0] + 1j * e[:, 1]) * np.exp(1j * duty.mesh_turning(theta))
+
+
+def least_gap(theta: Array, gap: Array, period: float) -> tuple[float, float]:
+    """The smallest gap of a cycle between its angles, by a parabola through three, and its angle.
+
+    Parameters
+    ----------
+    theta
+        (K,) rising angles of one cycle [rad].
+    gap
+        (K,) gaps there [-].
+    period
+        The cycle [rad].
+    """
+    if theta.size < 3:
+        return float(gap.min()), float(theta[gap.argmin()])
+    nodes = (int(gap.argmin()) + np.array([-1, 0, 1])) % theta.size
+    here = theta[nodes[1]]
+    bend, slope, _ = np.polyfit((theta[nodes] - here + period / 2) % period - period / 2, gap[nodes], 2)
+    angle = here - slope / (2 * bend) if bend > 0 else here
+    return float(least_between(theta, period, gap[None])[0]), float(angle)

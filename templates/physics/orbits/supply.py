@@ -1,0 +1,62 @@
+"""Where oil enters the film over a cycle, and at what pressure: holes, slots and grooves of either surface.
+
+Angles count in the sense of rotation. The axes of frame, sleeve and journal coincide at crank angle 0: a hole
+in the pin counts from the throw, a groove of the rod's bore from the rod's axis.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+LONGEST = 0.95
+"""Largest half length of a pocket over B/2: beyond it the land at the bearing's end seals nothing [-]."""
+
+
+@dataclass(frozen=True)
+class Pocket:
+    """A hole, slot or groove full of oil at the supply pressure, symmetric about the bearing's middle."""
+
+    centre: float
+    """Angle in the axes of the sleeve or, on_journal, of the journal, at crank angle 0 [rad]."""
+    half_angle: float
+    """Half its extent around; pi goes all around [rad]."""
+    half_length: float
+    """Half its length across over B/2, above 0, at most 0.95 [-]."""
+    on_journal: bool = False
+    """Whether it turns with the journal; otherwise with the sleeve."""
+
+
+@dataclass(frozen=True)
+class Supply:
+    """What feeds a film: at least one pocket, and a pressure above that of the cavities.
+
+    Raises
+    ------
+    ValueError
+        If there is no pocket, the pressure is not above 0, or a pocket's extent lies outside its range.
+    """
+
+    pockets: tuple[Pocket, ...]
+    pressure: float
+    """Supply pressure above ambient, P = p psi²/(eta Omega) [-]."""
+
+    def __post_init__(self) -> None:
+        if not self.pockets:
+            raise ValueError("a supply needs at least one pocket")
+        if not (0 < self.pressure < np.inf):
+            raise ValueError("the supply pressure must be above 0, that of the cavities")
+        for pocket in self.pockets:
+            if not 0 < pocket.half_angle <= np.pi:
+                raise ValueError("half_angle of a pocket must lie in (0, pi] rad")
+            if not 0 < pocket.half_length <= LONGEST:
+                raise ValueError(f"half_length of a pocket must lie in (0, {LONGEST}] of half the width")
+
+    @property
+    def grooved(self) -> bool:
+        """Whether a pocket goes half around or more, and so passes through the loaded zone."""
+        return any(pocket.half_angle >= np.pi / 2 for pocket in self.pockets)
+
+    @property
+    def edges(self) -> tuple[float, ...]:
+        """The different half lengths, rising [-]."""
+        return tuple(sorted({pocket.half_length for pocket in self.pockets}))

@@ -1,0 +1,65 @@
+"""How far sleeve and journal have turned in the frame of the load, from their speeds over the cycle.
+
+The axes of frame, sleeve and journal coincide at crank angle 0, as in `supply`. What the cycle brings back to
+its place turns whole times in the frame; a groove in anything else is elsewhere in every cycle.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array, Mask
+
+CLOSED = np.radians(2.0)
+"""Largest angle by which a sum of speeds between angles may miss whole turns [rad]."""
+
+
+@dataclass(frozen=True)
+class Turning:
+    """The angle of a part in the frame of some cases: even turning, and a swing that repeats."""
+
+    turns: Array
+    """(C,) turns in the frame over the cycle; NaN where these are not whole [-]."""
+    period: float
+    """The cycle [rad]."""
+    swing: Array
+    """(C, N) angle at the load's angles, less that of the even turning, 0 at crank angle 0 [rad]."""
+
+    def of(self, cases: Mask) -> "Turning":
+        """The same of fewer cases."""
+        return Turning(self.turns[cases], self.period, self.swing[cases])
+
+    def at(self, place: Array, swing: Array) -> Array:
+        """The angle at crank angles, with the swing there, (C, K) [rad]."""
+        return np.asarray(swing + 2 * np.pi * self.turns[:, None] * place / self.period)
+
+
+def turning(angle: Array, period: float, speed: Array) -> Turning:
+    """The turning of a part by its speed in the frame over that of the crank.
+
+    Parameters
+    ----------
+    angle
+        (N,) crank angles of one cycle [rad].
+    period
+        The cycle [rad].
+    speed
+        (C, N) at these angles, linear between them [-].
+
+    Examples
+    --------
+    >>> angle = np.arange(0, 4 * np.pi, np.pi / 90)
+    >>> rod = turning(angle, 4 * np.pi, -0.25 * np.cos(angle)[None])
+    >>> rod.turns.tolist(), round(float(np.degrees(rod.swing.min())), 1)
+    ([0.0], -14.3)
+    """
+    widths = np.diff(angle, append=angle[0] + period)
+    steps = widths * (speed + np.roll(speed, -1, axis=-1)) / 2
+    whole = steps.sum(axis=-1)
+    turns = np.round(whole / (2 * np.pi))
+    missed = whole - 2 * np.pi * turns
+    turns = np.where(np.abs(missed) <= CLOSED, turns, np.nan)
+    past = np.cumsum(steps, axis=-1) - steps
+    swing = past - whole[:, None] * (angle - angle[0]) / period
+    start = [np.interp(0.0, angle, row, period=period) for row in swing]
+    return Turning(turns, period, swing - np.array(start)[:, None])

@@ -1,0 +1,169 @@
+r"""A collar on fixed-incline pads: film from load, with the temperature of a heat balance.
+
+Every pad has the same film, h = h_o + t (1 − xi) over its angle. The film ratio a = h_i/h_o is the one
+unknown: it makes the outlet film h_o = t/(a − 1), by the load the viscosity, and by the balance the
+temperature; the oil has that viscosity at that temperature for one a.
+
+Heat of a pad: its oil enters with T_1; it leaves at the outlet with T_2, and at the sides with their mean,
+which is that of the film. A share k of the outlet's oil goes on under the next pad, fresh oil replaces the
+rest; nothing leaves through pads and collar:
+
+.. math::
+    P = \rho c\,(T_2 - T_1)(Q_i - \tfrac12 Q_s), \quad Q_i T_1 = k Q_o T_2 + (Q_i - k Q_o) T_s
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import on_paper
+from templates.physics.numerics.roots import root_between
+from templates.physics.pads.sector_equations import solved_sectors
+from templates.physics.pads.slider_film import finite_pad, shear_of_wedge
+
+RECTANGLE, SECTOR = "mean_rectangle", "sector"
+LEVELS = (RECTANGLE, SECTOR)
+"""Pads as rectangles of their mean length, or as sectors."""
+FLATTEST, STEEPEST = 1e-6, 99.0
+"""Smallest and largest h_i/h_o − 1 that is looked for [-]."""
+HOTTEST = 773.15
+"""Highest film temperature that is looked for [K]."""
+
+_MESH = 32, 8
+_BLOCK = 512
+_LARGEST_LOGARITHM = 60.0
+
+Law = Callable[..., Array]
+"""Viscosity [Pa s] at a temperature [K], with the oil's constants as further arguments."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Collar:
+    """A collar at work, in SI; arrays that broadcast together."""
+
+    load: Array
+    """Specific load, that over the area of the pads [Pa]."""
+    taper: Array
+    """h_i − h_o [m]."""
+    omega: Array
+    """Angular velocity [rad/s]."""
+    radius: Array
+    """Mean radius r_m [m]."""
+    angle: Array
+    """Of one pad [rad]."""
+    reach: Array
+    """Outer over inner radius [-]."""
+    heat_capacity: Array
+    """Of the oil per volume, rho c [J/(m³ K)]."""
+    T_supply: Array
+    """Temperature of fresh oil; NaN if there is no heat balance [K]."""
+    carried: Array
+    """Share k of the outlet's oil that goes on under the next pad [-]."""
+
+
+@dataclass(frozen=True)
+class CollarFilm:
+    """What the film does, dimensionless; NaN where no film ratio bears the load."""
+
+    a: Array
+    """Film ratio h_i/h_o."""
+    load: Array
+    """Specific load times h_o²/(6 eta omega r_m² angle)."""
+    friction: Array
+    """Torque over load, mean radius and h_o/l."""
+    inlet: Array
+    """Flow into a pad over omega r_m h_o b."""
+    side: Array
+    """Flow out at its sides, likewise."""
+
+
+def collar_film(level: str, a: Array, angle: Array, reach: Array) -> CollarFilm:
+    """The film of pads in a row.
+
+    Parameters
+    ----------
+    level
+        One of `LEVELS`.
+    a
+        (N,) film ratio above 1 [-].
+    angle
+        (N,) of a pad [rad].
+    reach
+        (N,) outer over inner radius [-].
+    """
+    if level == RECTANGLE:
+        pad = finite_pad(a, 2 * (reach - 1) / ((reach + 1) * angle), *_MESH)
+        return CollarFilm(a, pad.load, pad.friction_moving / (6 * pad.load), pad.inlet_flow, pad.side_flow)
+    blocks = [slice(i, i + _BLOCK) for i in range(0, a.size, _BLOCK)]
+    numbers = [_extrapolated(a[part], angle[part], reach[part]) for part in blocks]
+    load, inlet, side = np.concatenate(numbers).T if numbers else np.empty((3, 0))
+    farther_out = 2 * (1 + reach**2) / (1 + reach) ** 2  # the mean of r² over r_m², by which shear goes
+    friction = farther_out * shear_of_wedge(a) / (6 * load) + (a - 1) / 2
+    return CollarFilm(a, load, friction, inlet, side)
+
+
+def _extrapolated(a: Array, angle: Array, reach: Array) -> Array:
+    """Load, inlet and side flow of sectors (N, 3), by Richardson from two meshes."""
+    along, across_half = _MESH
+    coarse = solved_sectors(a, angle, reach, along // 2, across_half // 2)
+    fine = solved_sectors(a, angle, reach, along, across_half)
+    return fine + (fine - coarse) / 3
+
+
+def collar_temperature(collar: Collar, film: CollarFilm) -> Array:
+    """Temperature of a film that bears the load, NaN without a supply [K]."""
+    gain = collar.load / collar.heat_capacity * film.friction / (film.inlet - film.side / 2)
+    kept = collar.carried * (film.inlet - film.side)
+    return collar.T_supply + gain * (kept / (film.inlet - kept) + 0.5)
+
+
+def _excess(level: str, law: Law, logarithm: Array, collar: Collar, oil: tuple[Array, ...]) -> Array:
+    """How much thicker the oil is than the load needs it at a film ratio of 1 + e to the logarithm [-]."""
+    wedge = np.exp(logarithm)
+    film = collar_film(level, 1 + wedge, collar.angle, collar.reach)
+    T = np.minimum(collar_temperature(collar, film), HOTTEST)
+    h_o = collar.taper / wedge
+    needed = collar.load * (h_o / collar.radius) ** 2 / (6 * collar.omega * collar.angle * film.load)
+    there = np.log(law(T, *oil))
+    return np.clip(there, -_LARGEST_LOGARITHM, _LARGEST_LOGARITHM) - np.log(needed)
+
+
+@on_paper(
+    "solved numerically by bracketing the film ratio, of pads by finite volumes of the Reynolds equation"
+)
+def working_collar(level: str, collar: Collar, law: Law, *oil: Array) -> CollarFilm:
+    """The film that bears the load with the viscosity that the oil has at the film's temperature.
+
+    Parameters
+    ----------
+    level
+        One of `LEVELS`.
+    collar
+        With arrays that broadcast together.
+    law
+        Viscosity at a temperature and the oil's constants.
+    oil
+        Those constants, arrays.
+    """
+    names = [field.name for field in fields(Collar)]
+    values = [np.asarray(getattr(collar, name), dtype=float) for name in names]
+    parts = np.broadcast_arrays(*values, *oil)
+    needed = [part for name, part in zip(names, parts, strict=False) if name != "T_supply"]
+    usable = np.all(np.isfinite(needed), axis=0)
+    chosen = [part[usable] for part in parts]
+
+    def excess(logarithm: Array, *points: Array) -> Array:
+        at = Collar(**dict(zip(names, points, strict=False)))
+        return _excess(level, law, logarithm, at, points[len(names) :])
+
+    low, high = (np.full(chosen[0].shape, np.log(limit)) for limit in (FLATTEST, STEEPEST))
+    a, numbers = np.full(usable.shape, np.nan), np.full((len(fields(CollarFilm)), *usable.shape), np.nan)
+    with np.errstate(all="ignore"):
+        root = np.atleast_1d(root_between(excess, low, high, *chosen)) if usable.any() else low
+    a[usable] = 1 + np.exp(root)
+    borne = np.isfinite(a)
+    film = collar_film(level, a[borne], *(parts[names.index(name)][borne] for name in ("angle", "reach")))
+    numbers[:, borne] = [getattr(film, field.name) for field in fields(CollarFilm)]
+    return CollarFilm(*(number[()] for number in numbers))

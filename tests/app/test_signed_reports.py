@@ -1,0 +1,195 @@
+"""Reports carry who signed what; a printed one is verified line by line, and each tampering is named."""
+
+import io
+
+import pypdf
+import pytest
+from approving import Room, signed, signing
+from click.testing import CliRunner
+from serving import API, created, paper, patched
+
+from app.approval_commands import verify_report_command
+from app.identity.service import Changes
+from app.reports.verification import NotReport, read_block, verify
+from app.schemas.approvals import Approvals
+from app.schemas.signatures import ATTACHMENT
+
+
+@pytest.fixture(scope="module")
+def room(team):
+    with Room.of(team) as room:
+        yield room
+
+
+@pytest.fixture(scope="module")
+def design(room):
+    """A released revision, and a later one that nobody has signed."""
+    design = created(room.author, paper())
+    signed(room, design)
+    return patched(room.author, design, {"parameters": {"scale": "1.1"}})
+
+
+@pytest.fixture(scope="module")
+def printed(room, design):
+    return pdf_of(room.author, design)
+
+
+def pdf_of(http, design, number=1, **query):
+    place = f"{API}/designs/{design['id']}/revisions/{number}/report.pdf"
+    answer = http.get(place, params=query, headers={"Prefer": "wait=60"})
+    assert answer.status_code == 200, answer.text[:300]
+    return answer.content
+
+
+def text_of(pdf):
+    pages = pypdf.PdfReader(io.BytesIO(pdf)).pages
+    return " ".join("\n".join(page.extract_text() for page in pages).split())
+
+
+def approvals_of(http, design, number=1):
+    place = f"{API}/designs/{design['id']}/revisions/{number}/approvals"
+    return Approvals.model_validate(http.get(place).json())
+
+
+def failures(pdf, approvals, printed):
+    return [line.words for line in verify(pdf, read_block(pdf), approvals, printed) if not line.holds]
+
+
+def with_block(pdf, change):
+    """The same pages with another attachment."""
+    block = change(read_block(pdf))
+    writer = pypdf.PdfWriter(clone_from=io.BytesIO(pdf))
+    writer.root_object["/Names"].get_object().pop("/EmbeddedFiles", None)
+    writer.add_attachment(ATTACHMENT, block.model_dump_json().encode())
+    return written(writer)
+
+
+def written(writer):
+    out = io.BytesIO()
+    writer.write(out)
+    return out.getvalue()
+
+
+def test_a_released_report_says_who_signed_when_and_the_digests(room, design, printed):
+    said, steps = text_of(printed), approvals_of(room.author, design).steps
+    for one in steps:
+        assert f"{one.name} {one.at[:10]} {one.at[11:19]} UTC {one.digest[:32]} {one.digest[32:]}" in said
+    assert "Released." in said
+    assert [one.digest for one in read_block(printed).steps] == [one.digest for one in steps]
+    html = room.author.get(f"{API}/designs/{design['id']}/revisions/1/report.html").text
+    assert all(one.digest in html for one in steps)
+
+
+def test_the_head_of_a_report_names_the_author_whether_or_not_anything_is_signed(room, team, design, printed):
+    """In a signed one by the name of that time, so that it stays the same."""
+    identity, id = team.identity, team.principals["author"]
+    place = f"{API}/designs/{design['id']}/revisions"
+    assert "Author author" in " ".join(text_of(pdf_of(room.author, design, 2)).split())
+    assert pypdf.PdfReader(io.BytesIO(printed)).metadata.author == "author"
+    identity.change(id, Changes(name="renamed"))
+    try:
+        assert "Author</dt><dd><bdi>renamed" in room.author.get(f"{place}/2/report.html").text
+        assert pdf_of(room.author, design) == printed
+    finally:
+        identity.change(id, Changes(name="author"))
+
+
+def test_where_nobody_is_asked_for_a_key_a_report_names_no_author(http):
+    alone = created(http, paper(name="of nobody"))
+    page = http.get(f"{API}/designs/{alone['id']}/report.html").text
+    assert "<dt>Author</dt>" not in page
+
+
+def test_an_unreleased_report_says_so(room, design):
+    said = text_of(pdf_of(room.author, design, 2))
+    assert "Not released." in said
+    assert "Checked: name, date, signature" in said
+
+
+def test_a_released_report_is_the_same_whatever_follows(room, design, printed):
+    assert pdf_of(room.author, design) == printed
+    assert failures(printed, approvals_of(room.author, design), printed) == []
+
+
+def test_a_changed_page_is_named(room, design, printed):
+    other = pdf_of(room.author, design, 2)
+    pages = pypdf.PdfWriter(clone_from=io.BytesIO(other))
+    pages.root_object["/Names"].get_object().pop("/EmbeddedFiles", None)
+    pages.add_attachment(ATTACHMENT, read_block(printed).model_dump_json().encode())
+    failed = failures(written(pages), approvals_of(room.author, design), printed)
+    assert failed
+    assert all(line.startswith("the text differs: the file says") for line in failed)
+
+
+def test_other_bytes_of_the_same_text_are_named(room, design, printed):
+    same = with_block(printed, lambda block: block)
+    (failed,) = failures(same, approvals_of(room.author, design), printed)
+    assert "the text is the same, but pictures, fonts or hidden parts differ" in failed
+
+
+def test_an_unknown_digest_and_another_name_are_named(room, design, printed):
+    approvals = approvals_of(room.author, design)
+
+    def forged(**change):
+        def changed(block):
+            first, *rest = block.steps
+            return block.model_copy(update={"steps": [first.model_copy(update=change), *rest]})
+
+        return failures(with_block(printed, changed), approvals, printed)
+
+    assert f"calculated: digest {'0' * 16}… is unknown" in forged(digest="0" * 64)[0]
+    assert "calculated: the file says Eve at" in forged(name="Eve")[0]
+
+
+def test_the_report_of_another_revision_is_named(room, design, printed):
+    other = with_block(printed, lambda block: block.model_copy(update={"revision": 2}))
+    failed = failures(other, approvals_of(room.author, design, 2), pdf_of(room.author, design, 2))
+    assert "calculated: the service knows no such step of this revision" in failed
+    assert "not released: the revision is unsigned" in failed
+
+
+def test_rows_that_were_changed_are_named(room, design, printed):
+    approvals = approvals_of(room.author, design)
+    present = approvals.present.model_copy(update={"document": "0" * 64})
+    failed = failures(printed, approvals.model_copy(update={"present": present}), printed)
+    assert "calculated: the revision's document: not as signed" in failed[0]
+    first, second, third = approvals.steps
+    other = second.model_copy(update={"content": second.content.model_copy(update={"title": "another"})})
+    failed = failures(printed, approvals.model_copy(update={"steps": [first, other, third]}), printed)
+    assert failed == ["checked: the signed content was changed: it does not hash to the digest"]
+
+
+def test_a_report_printed_before_the_release_and_a_withdrawn_one_are_named(room):
+    fresh = created(room.author, paper(name="early"))
+    signing(room.author, fresh, "calculated")
+    early = pdf_of(room.author, fresh)
+    signing(room.checker, fresh, "checked")
+    signing(room.releaser, fresh, "released")
+    failed = failures(early, approvals_of(room.author, fresh), pdf_of(room.author, fresh))
+    assert "printed when the revision was calculated; it is released now: print it again" in failed
+    final = pdf_of(room.author, fresh)
+    signing(room.checker, fresh, "withdrawn", reason="the load was wrong")
+    failed = failures(final, approvals_of(room.author, fresh), pdf_of(room.author, fresh))
+    assert any(line.startswith("withdrawn by checker") and "the load was wrong" in line for line in failed)
+
+
+def test_what_is_no_report_is_refused(room):
+    with pytest.raises(NotReport, match="cannot be read as PDF"):
+        read_block(b"%PDF-1.7 nothing")
+    writer = pypdf.PdfWriter()
+    writer.add_blank_page(100, 100)
+    with pytest.raises(NotReport, match=r"carries no attachment approval\.json"):
+        read_block(written(writer))
+
+
+def test_the_command_verifies_against_a_service(team, design, printed, tmp_path):
+    file = tmp_path / "report.pdf"
+    file.write_bytes(printed)
+    environment = {"CRANKWRIGHT_KEY": team.keys["viewer"]}
+    run = CliRunner().invoke(verify_report_command, [str(file), "--url", team.server.url], env=environment)
+    assert run.exit_code == 0, run.output
+    assert "holds  every byte is that of the report as the service prints it" in run.output
+    file.write_bytes(with_block(printed, lambda block: block.model_copy(update={"revision": 2})))
+    run = CliRunner().invoke(verify_report_command, [str(file), "--url", team.server.url], env=environment)
+    assert run.exit_code == 1
+    assert "FAILS  not released" in run.output

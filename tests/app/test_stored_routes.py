@@ -1,0 +1,15 @@
+"""Every stored file of a folder is sent whole, in ranges, or not at all to who has it."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.append(str(Path(__file__).parent / "worksheet_import"))  # mathcad_files
+
+from stored_routes import ROUTES, check_conditions, path_of
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_conditions_of_a_file_in_a_folder(http, route):
+    check_conditions(http, path_of(http, route))

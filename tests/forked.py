@@ -1,0 +1,81 @@
+"""The command line, and the fork servers of servers, forked from what has imported them.
+
+`python -m app serve` takes seconds to import the geometry kernel, and so does each fork server of a server;
+a fork takes none of them. All else is the same. `test_demo.py` and `test_version_0_1.py` start the real
+command. Fork servers whose modules are imported in no time, as in `test_workers.py`, are real ones too.
+"""
+
+import os
+import select
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+import origins
+
+from app.workers import isolated
+
+LONG = ("app.calculations.warm", "cad.models")  # what takes seconds to import
+
+
+class Forked(origins.Forked):
+    """A process of the command line, in a session of its own."""
+
+    def __init__(self, arguments, environment, log: Path) -> None:
+        request = {"arguments": list(map(str, arguments)), "environment": environment}
+        with log.open("ab") as errors:
+            super().__init__("forked:run_command", ("app.cli", *LONG), request, [errors.fileno()])
+
+
+def run_command(request, errors: int) -> None:
+    """Do what `python -m app` does."""
+    from app.__main__ import main
+
+    os.setsid()
+    os.dup2(0, 1)  # nobody reads it
+    os.dup2(errors, 2)
+    os.close(errors)
+    sys.argv = ["crankwright", *request["arguments"]]
+    own = origins.own_origin(
+        run_forkserver
+    )  # a descendant, so that its forks are seen to end with this process
+    origins.origin = lambda function, preload: own
+    isolated.launch = launch_forkserver
+    main()
+
+
+def launch_forkserver(preload, channel: int, lifeline: int, environment, launch=isolated.launch):
+    """Take the place of `isolated.launch`: fork what would import for seconds."""
+    if set(LONG).isdisjoint(preload):
+        return launch(preload, channel, lifeline, environment)
+    request = {"path": sys.path, "modules": list(preload), "environment": {**environment, **os.environ}}
+    return ForkedForkServer("forked:run_forkserver", tuple(preload), request, [channel, lifeline])
+
+
+class ForkedForkServer(origins.Forked):
+    """A fork server; tests may stop all processes of a server, with them the one that knows its exit code."""
+
+    def wait(self, timeout=None):
+        """Wait until the process has ended, however it did."""
+        if self.returncode is None:
+            with suppress(ProcessLookupError):
+                ended = os.pidfd_open(self.pid)
+                try:
+                    if not select.select([ended], [], [], timeout)[0]:
+                        raise subprocess.TimeoutExpired("crankwright", timeout)
+                finally:
+                    os.close(ended)
+            self.returncode = 0
+            self._status.close()
+        return self.returncode
+
+
+def run_forkserver(request, channel: int, lifeline: int) -> None:
+    """Do what a new fork server does, whose modules are here already."""
+    from app.workers.forkserver import main
+
+    os.setpgid(0, 0)
+    Path("/proc/self/comm").write_text(request["modules"][0])  # its command line is not its own
+    sys.path[:] = request["path"]
+    main(channel, lifeline, request["modules"])

@@ -1,0 +1,139 @@
+"""Jobs of servers on one PostgreSQL: whoever waits, asks or cancels need not be where the job runs."""
+
+import asyncio
+import threading
+from contextlib import contextmanager
+
+import pytest
+from listening import NEVER
+from patience import until
+from sqlalchemy import text
+
+from app.jobs.dispatcher import FAST
+from app.jobs.service import Jobs
+from app.settings import Settings
+from app.storage import event_log
+from app.storage.database import Database
+from app.workers.errors import JobCancelled
+from app.workers.inline import Inline
+
+pytest.importorskip("psycopg", reason="the driver of PostgreSQL is not installed")
+KIND, LANE, PATIENT = "k", "lane", 60.0
+
+
+@contextmanager
+def server(url, handler, threads, poll=NEVER, lane=LANE):
+    """A server that runs so many jobs at a time, or none."""
+    lease = {"lease_seconds": 3 * NEVER, "beat_seconds": NEVER}
+    database = Database(url)
+    jobs = Jobs(database, Inline(), Settings(database_url=url, poll_seconds=poll, **lease), str)
+    jobs.register(KIND, handler, lane=lane)
+    jobs.start({lane: threads})
+    try:
+        yield jobs
+    finally:
+        jobs.stop()
+        database.close()
+
+
+def never(job, context):
+    raise AssertionError("this server runs no jobs")
+
+
+def queued(url, jobs):
+    """A job that a server queues, after all servers have begun to listen."""
+    database = Database(url)
+    query = text(
+        "SELECT count(*) FROM pg_stat_activity WHERE datname = current_database() AND query ~ '^LISTEN'"
+    )
+
+    def listening():
+        with database.read() as session:
+            return session.scalar(query)
+
+    until(listening, lambda servers: servers == 2)
+    id = database.write(lambda session: jobs.enqueue(session, KIND, {}))
+    database.close()
+    jobs.wake(KIND)
+    return id
+
+
+def test_a_job_that_another_server_runs_ends_the_wait(own_postgres):
+    """Neither looks by itself within the test: it takes the hints of the queue and of the end."""
+    with (
+        server(own_postgres, lambda job, context: lambda session: "/found", threads=1) as there,
+        server(own_postgres, never, threads=0) as here,
+    ):
+        id = queued(own_postgres, here)
+        assert asyncio.run(here.wait(id, PATIENT)) == "done"
+        assert here.get(id).result == there.get(id).result == "/found"
+
+
+def test_a_failure_elsewhere_ends_it_too(own_postgres):
+    with server(own_postgres, never, threads=1), server(own_postgres, never, threads=0) as here:
+        assert asyncio.run(here.wait(queued(own_postgres, here), PATIENT)) == "failed"
+
+
+def test_a_job_is_cancelled_from_another_server(own_postgres):
+    began, ended = threading.Event(), threading.Event()
+
+    def handler(job, context):
+        began.set()
+        assert context.cancelled.wait(PATIENT)
+        ended.set()
+        return lambda session: None
+
+    with server(own_postgres, handler, threads=1) as there, server(own_postgres, never, threads=0) as here:
+        id = queued(own_postgres, here)
+        assert began.wait(PATIENT)
+        assert here.cancel(id).state == "cancelled"
+        assert ended.wait(PATIENT)
+        assert asyncio.run(there.wait(id, PATIENT)) == "cancelled"
+
+
+def test_without_hints_the_wait_ends_with_the_poll(own_postgres):
+    def silent(job, context):
+        there.events.tell = list
+        return lambda session: None
+
+    with (
+        server(own_postgres, silent, threads=1) as there,
+        server(own_postgres, never, threads=0, poll=0.3) as here,
+    ):
+        assert asyncio.run(here.wait(queued(own_postgres, here), PATIENT)) == "done"
+
+
+def test_what_a_stopping_server_gives_back_is_queued_for_all(own_postgres):
+    began = threading.Event()
+
+    def interrupted(job, context):
+        began.set()
+        assert context.cancelled.wait(PATIENT)
+        raise JobCancelled
+
+    with server(own_postgres, never, threads=0) as here:
+        with server(own_postgres, interrupted, threads=1):
+            id = queued(own_postgres, here)
+            assert began.wait(PATIENT)
+        assert here.get(id).state == "queued"
+        assert names(own_postgres, id) == ["running", "queued"]
+
+
+def test_a_job_of_a_kind_that_only_newer_servers_know_waits_for_them(own_postgres):
+    """The older server takes the one behind it. What it does not know would fail there for good."""
+    with server(own_postgres, lambda job, context: lambda session: None, threads=1, lane=FAST) as older:
+        database = Database(own_postgres)
+        newer, own = database.write(lambda s: [older.enqueue(s, kind, {}) for kind in ("of newer", KIND)])
+        database.close()
+        older.wake(KIND)
+        assert asyncio.run(older.wait(own, PATIENT)) == "done"
+        assert (older.get(newer).state, older.get(newer).attempt) == ("queued", 0)
+
+
+def names(url, id):
+    """The events of a job."""
+    database = Database(url)
+    with database.read() as session:
+        noted = [event.name for event in event_log.above(session, f"job:{id}", 0)]
+    database.close()
+    return noted

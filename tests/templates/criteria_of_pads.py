@@ -1,0 +1,46 @@
+"""Cases of the criteria of pads, collars and mixed friction, for `test_criteria_of_families`.
+
+Each: template, criterion, what differs from the example, limits given, verdict, value and limit.
+"""
+
+from math import pi
+
+HYDROSTATIC, THRUST, MIXED = ("hydrostatic_pad", 1), ("thrust_bearing", 1), ("mixed_friction", 1)
+GIVEN_OIL = {"supply_temperature": None, "dynamic_viscosity": "1 mPa*s"}
+THICK = {**GIVEN_OIL, "taper": "200 um", "load": "20 N"}
+THIN = {**GIVEN_OIL, "dynamic_viscosity": "0.001 mPa*s", "taper": "0.2 um", "load": "200 kN"}
+BEARS = 20e3 / (0.8 * pi / 4 * (200**2 - 110**2))  # MPa
+BABBITT, RUBBER = {"bearing_material": "tin_babbitt_b23_2"}, {"bearing_material": "rubber"}
+
+CASES = [
+    (HYDROSTATIC, "film", {}, {"smallest_permissible_film": "30 um"}, "met", 35.632507, 30),
+    (HYDROSTATIC, "film", {}, {"smallest_permissible_film": "0.04 mm"}, "not_met", 35.632507, 40),
+    (HYDROSTATIC, "film_exists", {}, {}, "met", 35.632507, 0.05),
+    (HYDROSTATIC, "film_exists", {"restrictor_diameter": "1 um"}, {}, "not_met", 5.733005e-3, 0.05),
+    # 3 W (1 − beta)/h
+    (HYDROSTATIC, "stiffness", {}, {"smallest_stiffness": "1 MN/mm"}, "met",
+     3 * 60e3 * (1 - 0.63609424) / 35.632507, 1000),
+    (HYDROSTATIC, "stiffness", {}, {"smallest_stiffness": "2 kN/um"}, "not_met",
+     3 * 60e3 * (1 - 0.63609424) / 35.632507, 2000),
+    (HYDROSTATIC, "temperature_rise", {}, {"permissible_temperature_rise": "30 K"}, "met", 29.034017, 30),
+    (HYDROSTATIC, "temperature_rise", {}, {"permissible_temperature_rise": "20 K"}, "not_met", 29.034017, 20),
+    (THRUST, "film", {}, {"smallest_permissible_film": "20 um"}, "met", 28.761270, 20),
+    (THRUST, "film", {}, {"smallest_permissible_film": "30 um"}, "not_met", 28.761270, 30),
+    (THRUST, "film_exists", {}, {}, "met", 28.761270, 0.05),
+    (THRUST, "film_exists", THIN, {}, "not_met", 0.049638956, 0.05),
+    (THRUST, "specific_load", {}, BABBITT, "met", BEARS, 5.5),
+    (THRUST, "specific_load", {}, RUBBER, "not_met", BEARS, 0.35),
+    (THRUST, "temperature", {}, BABBITT, "met", 55.921054, 150),
+    (THRUST, "temperature", {}, {"permissible_temperature": "50 degC"}, "not_met", 55.921054, 50),
+    (THRUST, "laminar", {}, {}, "met", 24.681966, 1000),
+    # rho U h_i/eta at the mean radius
+    (THRUST, "laminar", THICK, {}, "not_met", 875 * 50 * pi * 0.0775 * 383.073604e-6 / 1e-3, 1000),
+    (MIXED, "full_film", {"speed": "600 rpm"}, {}, "met", 4.9008874, 3),
+    (MIXED, "full_film", {}, {}, "not_met", 2.9660099, 3),
+    (MIXED, "above_transition", {"speed": "600 rpm"}, {}, "met", 600, 304.596723),
+    (MIXED, "above_transition", {}, {}, "not_met", 300, 304.596723),
+    (MIXED, "specific_load", {}, {"bearing_material": "tin_bronze"}, "met", 8, 30),
+    (MIXED, "specific_load", {}, BABBITT, "not_met", 8, 5.5),
+    (MIXED, "wear", {}, {"permissible_wear_intensity": "1 MPa*m/s"}, "met", 0.014497377, 1),
+    (MIXED, "wear", {}, {"permissible_wear_intensity": "0.01 MPa*m/s"}, "not_met", 0.014497377, 0.01),
+]  # fmt: skip

@@ -1,0 +1,68 @@
+"""The criteria of `oil_film_cycle` 2, each met and not met, as if the error of its model were no matter.
+
+A table of errors may come to state one, or another: the verdicts with it are not held here.
+"""
+
+from math import cos, hypot, pi, sin
+
+import pytest
+
+from templates.core.language import levels
+from templates.core.language.evaluate import evaluate
+from templates.oil_film.oil_film_cycle_v2 import OilFilmCycle
+
+RIGID = 231e3 * 0.055 / 48  # MPa
+THIN = {"dynamic_viscosity": "0.02 mPa*s"}
+PUSHED = hypot(14.4, 1.9) * 1e3 / (48 * 18)  # MPa
+# A load that turns with the pin, and so with its hole.
+HOLE = {
+    "pin_hole_length": "4 mm",
+    "load_x": {"value": [10 * cos(k * pi / 12) for k in range(24)], "unit": "kN"},
+    "load_y": {"value": [10 * sin(k * pi / 12) for k in range(24)], "unit": "kN"},
+}
+EXACT = [
+    ("specific_load", {"bearing_material": "tin_bronze"}, {}, "met", PUSHED, 30),
+    ("specific_load", {"bearing_material": "copper_lead"}, {}, "not_met", PUSHED, 10.3),
+    ("hole_leaves_the_load", {}, {**HOLE, "pin_hole_angle": "180 deg"}, "met", 0, 0.6),
+    ("hole_leaves_the_load", {}, HOLE, "not_met", 1, 0.6),
+]
+CASES = [
+    ("film", {"permissible_film": "2 um"}, "met", 2.88560, 2),
+    ("film", {"permissible_film": "3 um"}, "not_met", 2.88560, 3),
+    ("pressure", {"permissible_pressure": "80 MPa"}, "met", 74.3887, 80),
+    ("pressure", {"permissible_pressure": "70 MPa"}, "not_met", 74.3887, 70),
+    ("film_exists", {}, "met", 2.88560, 0.05),
+    ("film_exists", THIN, "not_met", 0.0145597, 0.05),
+    ("rigid", {}, "met", 74.3887, RIGID),
+    ("rigid", THIN, "not_met", 659.286, RIGID),
+    ("isoviscous", {}, "met", 74.3887, 500),
+    ("isoviscous", THIN, "not_met", 659.286, 500),
+]
+
+
+@pytest.mark.parametrize(("name", "changes", "verdict", "value", "limit"), CASES)
+def test_both_verdicts_of_the_film(monkeypatch, name, changes, verdict, value, limit):
+    monkeypatch.setitem(levels._cache, OilFilmCycle, None)
+    result = evaluate(OilFilmCycle, {**OilFilmCycle.example, **changes})
+    judgement = next(one for one in result.criteria if one.name == name)
+    assert (judgement.verdict, judgement.is_certain) == (verdict, False)
+    warned = judgement.warning in {notice.code for notice in result.warnings}
+    assert warned == (verdict == "not_met" and judgement.warning is not None)
+    assert judgement.value == pytest.approx(value, rel=2e-5)
+    assert judgement.limit == pytest.approx(limit, rel=2e-5)
+
+
+@pytest.mark.parametrize(("name", "limits", "changes", "verdict", "value", "limit"), EXACT)
+def test_both_verdicts_where_the_level_is_no_matter(name, limits, changes, verdict, value, limit):
+    example = {n: v for n, v in OilFilmCycle.example.items() if not (changes and n.startswith("groove"))}
+    result = evaluate(OilFilmCycle, {**example, **changes}, limits=limits)
+    judgement = next(one for one in result.criteria if one.name == name)
+    assert judgement.verdict == verdict
+    assert (judgement.value, judgement.limit) == (pytest.approx(value, abs=1e-9), pytest.approx(limit))
+
+
+def test_every_criterion_has_a_case_of_both_verdicts():
+    declared = {criterion.name for criterion in OilFilmCycle.declared_criteria}
+    for wanted in ("met", "not_met"):
+        shown = {name for name, _, verdict, *_ in CASES if verdict == wanted}
+        assert shown | {name for name, _, _, verdict, *_ in EXACT if verdict == wanted} == declared
