@@ -2,18 +2,17 @@
 
 import logging
 import threading
-import time
 from collections.abc import Callable
 from functools import partial
 from typing import TypeVar, TypeVarTuple
 
 from sqlalchemy.orm import Session
 
-from app.jobs import repository
 from app.jobs.events import Event, Events
 from app.jobs.job import FINAL, Job
+from app.jobs.progress import Keep, publish
 from app.observation import metrics
-from app.storage.database import Database, after_commit
+from app.storage.database import after_commit
 from app.workers.base import Batch, Limits, Runner
 
 T = TypeVar("T")
@@ -22,7 +21,6 @@ Ts = TypeVarTuple("Ts")
 logger = logging.getLogger(__name__)
 
 _LINES = 200  # of the log that are kept
-_INTERVAL = 0.5  # between two times that progress is stored [s]
 
 
 class JobContext:
@@ -35,20 +33,19 @@ class JobContext:
     def __init__(
         self,
         job: Job,
-        database: Database,
+        keep: Keep,
         batch: Batch,
         limits: Limits,
         events: Events,
         cancelled: threading.Event,
     ) -> None:
         self.log: list[str] = []
-        self._job, self._topics = job, job.topics
-        self._database = database
+        self._job = job
+        self._keep = keep
         self._batch = batch
         self._limits = limits
         self._events = events
         self._cancelled = cancelled
-        self._stored = time.monotonic()
 
     @property
     def is_cancelled(self) -> bool:
@@ -87,15 +84,10 @@ class JobContext:
         self._batch.close()
 
     def progress(self, fraction: float, text: str) -> None:
-        """Publish how far the job is (0 to 1) and what it does next; store it now and then."""
+        """Publish how far the job is (0 to 1) and what it does next, and have it stored."""
         self.log = [*self.log, text][-_LINES:]
-        data = {"job": self._job.id, "revision": self._job.revision, "progress": fraction, "text": text}
-        self._events.publish(*map(partial(Event, name="progress", data=data), self._topics))
-        if time.monotonic() - self._stored >= _INTERVAL:
-            self._database.write(
-                lambda session: repository.note_progress(session, self._job, fraction, self.log)
-            )
-            self._stored = time.monotonic()
+        publish(self._events, self._job, fraction, text)
+        self._keep(self._job, fraction, self.log)
 
 
 class _Quietly:

@@ -18,6 +18,7 @@ from app.jobs.context import JobContext, note
 from app.jobs.errors import JobFailed, JobLost, JobRests
 from app.jobs.events import Events
 from app.jobs.job import Job
+from app.jobs.progress import ProgressKeeper
 from app.jobs.turns import Lane
 from app.observation import logs
 from app.plain import JsonObject
@@ -86,6 +87,7 @@ class Dispatcher:
         self._worker = worker
         self._limits = limits
         self._events = events
+        self._progress = ProgressKeeper(database, events)
         self._describe = describe
         self._counts = {FAST: threads, SLOW: 1}  # threads of each lane
         self._awake = {FAST: threading.Semaphore(0), SLOW: threading.Semaphore(0)}
@@ -96,6 +98,7 @@ class Dispatcher:
 
     def start(self, beside: Mapping[str, int]) -> None:
         """Begin to take jobs from the queue, with so many threads for the lanes `beside` the usual two."""
+        self._progress.start()
         self._counts |= beside
         self._awake = {lane: threading.Semaphore(0) for lane in self._counts}
         for number, lane in enumerate(lane for lane, count in self._counts.items() for _ in range(count)):
@@ -153,6 +156,7 @@ class Dispatcher:
         end = time.monotonic() + patience
         for thread in self._threads:
             thread.join(max(0.0, end - time.monotonic()))
+        self._progress.stop()
         if busy := [thread.name for thread in self._threads if thread.is_alive()]:
             logger.warning("still busy, and left behind: %s", ", ".join(busy))
 
@@ -217,7 +221,7 @@ class Dispatcher:
             cancelled.set()
         logger.info("job %s (%s) begins", job.id, job.kind, extra={"job": job.id})
         batch = self._worker.batch(WORKER_LANES.get(self._lane_name(job.kind), GEOMETRY))
-        context = JobContext(job, self._database, batch, self._limits, self._events, cancelled)
+        context = JobContext(job, self._progress.keep, batch, self._limits, self._events, cancelled)
         try:
             with closing(context):
                 completion = self.kinds[job.kind].handler(job, context)

@@ -74,6 +74,11 @@ class Events:
                 if newest > start:
                     self.publish(*event_log.above(session, topic, start))
 
+    def heard(self, topics: Iterable[str] | None = None) -> set[str]:
+        """Those of these topics, or of all, to which somebody listens here."""
+        with self._lock:
+            return set(self._topics) if topics is None else self._topics.keys() & set(topics)
+
     @asynccontextmanager
     async def subscribe(self, topic: str) -> AsyncIterator[Subscription]:
         """Listen from now on; the subscription ends when the server closes."""

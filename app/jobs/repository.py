@@ -127,9 +127,18 @@ def reap(session: Session) -> list[Job]:
     return [_job(row) for row in session.scalars(taken.returning(JobRow))]
 
 
-def note_progress(session: Session, job: Job, progress: float, log: list[str]) -> None:
-    """Store how far a claimed job is."""
-    _fenced(session, job, progress=progress, log=log)
+def note_progress(session: Session, job: Job, progress: float, log: list[str]) -> bool:
+    """Store how far a claimed job is; return whether it was still held."""
+    return _fenced(session, job, progress=progress, log=log)
+
+
+def running_elsewhere(
+    session: Session, ids: Collection[str], designs: Collection[str], owner: str
+) -> list[Job]:
+    """Return those of these jobs, and of these designs' jobs, that run in other servers than this owner."""
+    which = or_(JobRow.id.in_(ids), JobRow.design_id.in_(designs))
+    running = select(JobRow).where(JobRow.state == "running", JobRow.owner != owner, which)
+    return [_job(row) for row in session.scalars(running.order_by(JobRow.id))]
 
 
 def end(session: Session, job: Job, state: State, log: list[str], **more: object) -> bool:

@@ -23,6 +23,7 @@ from app.jobs.errors import JobFailed, JobFinished, JobNotFound, JobRests
 from app.jobs.events import Events
 from app.jobs.job import FINAL, Job
 from app.jobs.leases import Leases
+from app.jobs.progress import ProgressFollower
 from app.plain import JsonObject
 from app.schemas.jobs import State
 from app.settings import Settings
@@ -66,6 +67,7 @@ class Jobs:
         self._dispatcher = Dispatcher(
             database, worker, limits, self.events, describe, settings.workers, settings.lease_seconds
         )
+        self._progress = ProgressFollower(database, self.events, self._dispatcher.owner)
         self._leases = Leases(database, self._dispatcher, self.events, settings, describe)
 
     def register(
@@ -287,6 +289,7 @@ class Jobs:
                 self._dispatcher.wake(name or None)
             elif subject == "cancel":
                 self._dispatcher.interrupt(name)
+        self._progress.look(hints)
         self.events.look(hints)
 
 

@@ -130,7 +130,7 @@ def test_a_job_that_was_cancelled_calculates_nothing(bearings, served):
         "none", "impact", "running", None, None, payload, 1, 0, 0.0, [], None, None, "", ""
     )  # fmt: skip
     context = JobContext(
-        job, services.database, services.jobs._dispatcher._worker, None, services.jobs.events, cancelled
+        job, lambda *how_far: None, services.jobs._dispatcher._worker, None, services.jobs.events, cancelled
     )
     cancelled.set()
     with pytest.raises(JobCancelled):

@@ -380,19 +380,20 @@ def test_progress_is_told_and_logged(make, database, worker):
     assert jobs.get(id).log == steps
 
 
-def test_progress_is_stored_now_and_then(make, database, monkeypatch):
-    monkeypatch.setattr("app.jobs.context._INTERVAL", 0.0)
+def test_the_latest_progress_is_stored_while_the_job_goes_on_silently(make, database):
     jobs, seen = make(), []
 
     def handler(job, context):
-        context.progress(0.5, "half")
+        for number in range(1, 4):
+            context.progress(number / 4, f"part {number}")
+        wait_until(lambda: jobs.get(job.id).log, lambda log: len(log) == 3)
         seen.append(jobs.get(job.id))
         return lambda session: None
 
     jobs.register(KIND, handler)
     jobs.start()
-    ended(jobs, put(jobs, database))
-    assert [(job.progress, job.log) for job in seen] == [(0.5, ["half"])]
+    ended(jobs, put(jobs, database), 60)
+    assert [(job.progress, job.log[-1]) for job in seen] == [(0.75, "part 3")]
 
 
 def test_two_jobs_run_at_the_same_time(make, database):

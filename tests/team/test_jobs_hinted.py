@@ -40,8 +40,8 @@ def never(job, context):
     raise AssertionError("this server runs no jobs")
 
 
-def queued(url, jobs):
-    """A job that a server queues, after all servers have begun to listen."""
+def queued(url, jobs, wake=True):
+    """A job that a server queues, after all servers have begun to listen; perhaps nobody hears of it yet."""
     database = Database(url)
     query = text(
         "SELECT count(*) FROM pg_stat_activity WHERE datname = current_database() AND query ~ '^LISTEN'"
@@ -54,7 +54,8 @@ def queued(url, jobs):
     until(listening, lambda servers: servers == 2)
     id = database.write(lambda session: jobs.enqueue(session, KIND, {}))
     database.close()
-    jobs.wake(KIND)
+    if wake:
+        jobs.wake(KIND)
     return id
 
 
@@ -101,6 +102,64 @@ def test_without_hints_the_wait_ends_with_the_poll(own_postgres):
         server(own_postgres, never, threads=0, poll=0.3) as here,
     ):
         assert asyncio.run(here.wait(queued(own_postgres, here), PATIENT)) == "done"
+
+
+def slowly(go_on):
+    """A handler that says that it is at its second stage, and goes on when that is allowed."""
+
+    def handler(job, context):
+        context.progress(0.1, "draw")
+        context.progress(0.4, "mesh")
+        assert go_on.wait(PATIENT)
+        return lambda session: None
+
+    return handler
+
+
+async def stages(jobs, id, go_on):
+    """The progress of a job as a listener gets it, at least to "mesh"; then it may end."""
+    heard = []
+    async with jobs.events.subscribe(f"job:{id}") as events, asyncio.timeout(PATIENT):
+        jobs.wake(KIND)
+        async for event in events:
+            if event.name == "progress":
+                heard.append((event.data["job"], event.data["progress"], event.data["text"]))
+                if event.data["text"] == "mesh":
+                    go_on.set()
+            if event.name == "done":
+                return heard
+
+
+@pytest.mark.parametrize("poll", [NEVER, 0.3])
+def test_progress_is_seen_at_another_server(own_postgres, poll):
+    """By hints alone, or where no hint of it comes by the poll alone."""
+    go_on = threading.Event()
+    with (
+        server(own_postgres, slowly(go_on), threads=1) as there,
+        server(own_postgres, never, threads=0, poll=poll) as here,
+    ):
+        if poll != NEVER:
+            tell = there.events.tell
+            there.events.tell = lambda hints: tell([hint for hint in hints if "progress" not in hint])
+        id = queued(own_postgres, here, wake=False)
+        heard = asyncio.run(stages(here, id, go_on))
+        assert heard[-1] == (id, 0.4, "mesh")
+        assert {one[1:] for one in heard} <= {(0.1, "draw"), (0.4, "mesh")}
+        assert len(heard) == len(set(heard)), "nothing is sent twice"
+
+
+def test_who_asks_at_another_server_gets_stage_and_share(own_postgres):
+    go_on = threading.Event()
+    with (
+        server(own_postgres, slowly(go_on), threads=1),
+        server(own_postgres, never, threads=0) as here,
+    ):
+        id = queued(own_postgres, here)
+        job = until(lambda: here.get(id), lambda job: job.log[-1:] == ["mesh"])
+        assert (job.state, job.progress, job.log) == ("running", 0.4, ["draw", "mesh"])
+        go_on.set()
+        assert asyncio.run(here.wait(id, PATIENT)) == "done"
+        assert here.get(id).progress == 1.0
 
 
 def test_what_a_stopping_server_gives_back_is_queued_for_all(own_postgres):

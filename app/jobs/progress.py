@@ -1,0 +1,131 @@
+"""How far running jobs are, beyond the server that runs them: their rows, and what other servers read there.
+
+Progress is no event that is kept: only the latest counts, and it costs one small write now and then.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Collection, Iterable
+from functools import partial
+
+from app.jobs import repository
+from app.jobs.events import Event, Events
+from app.jobs.job import Job
+from app.plain import JsonObject
+from app.storage.database import Database
+
+logger = logging.getLogger(__name__)
+
+SUBJECT = "progress"  # of the hints by which other servers look at the row of a job
+ALONE, SHARED = 0.5, 1.0  # between two writes for one job, where servers share the database or not [s]
+_PATIENCE = 5.0  # for the end of the thread [s]
+
+Keep = Callable[[Job, float, list[str]], object]
+"""Takes how far a claimed job is (0 to 1) and its log, to be stored soon; never blocks."""
+
+
+class ProgressKeeper:
+    """Stores the latest progress of the jobs that this server runs, in a thread of its own.
+
+    The first is stored at once, what comes within `interval` [s] of it at the end of that: so the row is
+    never behind for longer, however long the job's next step is silent. Other servers get a hint each time.
+    """
+
+    def __init__(self, database: Database, events: Events, interval: float | None = None) -> None:
+        self._database, self._events = database, events
+        self._interval = interval or (SHARED if database.is_shared else ALONE)
+        self._latest: dict[str, tuple[Job, float, list[str]]] = {}
+        self._lock = threading.Lock()
+        self._some, self._stopping = threading.Event(), threading.Event()
+        self._thread = threading.Thread(target=self._work, name="progress", daemon=True)
+
+    def start(self) -> None:
+        """Begin to store."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End; what is not stored is not: who goes on with the job begins from zero."""
+        self._stopping.set()
+        self._some.set()
+        if self._thread.ident is not None:
+            self._thread.join(_PATIENCE)
+
+    def keep(self, job: Job, fraction: float, log: list[str]) -> None:
+        """Have the progress of a job stored; see `Keep`."""
+        with self._lock:
+            self._latest[job.id] = job, fraction, log
+        self._some.set()
+
+    def _work(self) -> None:
+        while self._some.wait() and not self._stopping.is_set():
+            self._some.clear()
+            with self._lock:
+                latest, self._latest = self._latest, {}
+            for job, fraction, log in latest.values():
+                self._store(job, fraction, log)
+            self._stopping.wait(self._interval)
+
+    def _store(self, job: Job, fraction: float, log: list[str]) -> None:
+        """Write the row of a job that is still held here; nothing depends on it, so an error ends nothing."""
+        try:
+            unit = partial(repository.note_progress, job=job, progress=fraction, log=log)
+            if self._database.write(unit):
+                self._events.tell([f"{SUBJECT}:{job.id}:{job.design or ''}"])
+        except Exception as error:
+            logger.warning("The progress of job %s is not stored: %s", job.id, error)
+
+
+class ProgressFollower:
+    """Publishes how far jobs of other servers are, to those who listen here to them or to their designs."""
+
+    def __init__(self, database: Database, events: Events, owner: str) -> None:
+        self._database, self._events, self._owner = database, events, owner
+        self._shown: dict[str, tuple[int, float, str]] = {}  # by job: attempt, progress, text
+
+    def look(self, hints: Iterable[str] | None = None) -> None:
+        """Read the rows of jobs that other servers hint at, or of all that somebody listens to."""
+        if hints is None:
+            heard = self._events.heard()
+        else:
+            hinted = {topic for hint in hints for topic in _topics(hint)}
+            heard = self._events.heard(hinted)
+        if not heard:
+            return
+        with self._database.read() as session:
+            running = repository.running_elsewhere(
+                session, _ids(heard, "job"), _ids(heard, "design"), self._owner
+            )
+        for job in running:
+            self._show(job)
+        if hints is None:  # of what has ended nothing comes any more
+            self._shown = {job.id: self._shown[job.id] for job in running if job.id in self._shown}
+
+    def _show(self, job: Job) -> None:
+        if not job.log:  # it has just begun
+            return
+        stands = job.attempt, job.progress, job.log[-1]
+        if self._shown.get(job.id) != stands:
+            self._shown[job.id] = stands
+            publish(self._events, job, job.progress, job.log[-1])
+
+
+def publish(events: Events, job: Job, fraction: float, text: str) -> None:
+    """Send how far a job is to all who listen to it, or to its design, in this process."""
+    data: JsonObject = {"job": job.id, "revision": job.revision, "progress": fraction, "text": text}
+    events.publish(*(Event(topic, "progress", data) for topic in job.topics))
+
+
+def _topics(hint: str) -> Collection[str]:
+    """The topics to which a hint of progress belongs; none, if it is another hint."""
+    subject, _, names = hint.partition(":")
+    job, _, design = names.partition(":")
+    if subject != SUBJECT:
+        return ()
+    return (f"job:{job}", f"design:{design}") if design else (f"job:{job}",)
+
+
+def _ids(topics: Iterable[str], kind: str) -> list[str]:
+    parts = (topic.partition(":") for topic in topics)
+    return [id for subject, _, id in parts if subject == kind]
