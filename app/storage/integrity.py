@@ -17,7 +17,7 @@ from sqlalchemy.exc import DBAPIError
 
 from app.storage.engines import sqlite_file
 from app.storage.errors import DatabaseDamaged
-from app.storage.tables import Base, Json, NotWritten
+from app.storage.tables import Base, JsonText, NotWritten
 
 MOST = 5  # faults that a message names
 _CORRUPT = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
@@ -145,7 +145,7 @@ def _of_texts(connection: sqlite3.Connection) -> Iterator[str]:
     """Rows with texts that should be JSON and are not; a database of an older program may lack columns."""
     for table in Base.metadata.sorted_tables:
         there = {row[1] for row in connection.execute(f"PRAGMA table_info({table.name})")}
-        for column in (c.name for c in table.columns if isinstance(c.type, Json) and c.name in there):
+        for column in (c.name for c in table.columns if isinstance(c.type, JsonText) and c.name in there):
             wrong = f"SELECT rowid FROM {table.name} WHERE {column} IS NOT NULL AND NOT json_valid({column})"
             for (row,) in connection.execute(wrong):
                 yield f"row {row} of table {table.name}: {column} is no JSON"

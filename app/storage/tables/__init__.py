@@ -1,0 +1,40 @@
+"""The tables. Times are ISO 8601 texts in UTC; JSON is stored canonically: equal values are equal texts."""
+
+from app.storage.tables.approvals import ApprovalRow, CommentRow
+from app.storage.tables.base import NAMING, Base, JsonText, NotWritten, canonical_json
+from app.storage.tables.designs import DesignRow, DesignTagRow, RevisionModelRow, RevisionRow
+from app.storage.tables.jobs import CounterRow, EventRow, JobRow
+from app.storage.tables.people import ApiKeyRow, PrincipalRow, SessionRow, UsageRow
+from app.storage.tables.records import AuditRow, IdempotencyRow
+from app.storage.tables.solids import AnalysisRow, ArtifactRow, BuildRow
+from app.storage.tables.studies import StudyChunkRow, StudyRow
+from app.storage.tables.worksheets import WorksheetVersionRow
+
+__all__ = [
+    "NAMING",
+    "AnalysisRow",
+    "ApiKeyRow",
+    "ApprovalRow",
+    "ArtifactRow",
+    "AuditRow",
+    "Base",
+    "BuildRow",
+    "CommentRow",
+    "CounterRow",
+    "DesignRow",
+    "DesignTagRow",
+    "EventRow",
+    "IdempotencyRow",
+    "JobRow",
+    "JsonText",
+    "NotWritten",
+    "PrincipalRow",
+    "RevisionModelRow",
+    "RevisionRow",
+    "SessionRow",
+    "StudyChunkRow",
+    "StudyRow",
+    "UsageRow",
+    "WorksheetVersionRow",
+    "canonical_json",
+]

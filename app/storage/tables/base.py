@@ -1,0 +1,52 @@
+"""What all tables share: names of constraints, the canonical text of JSON, and the column that holds it."""
+
+import json
+
+from sqlalchemy import Dialect, MetaData, Text, TypeDecorator
+from sqlalchemy.orm import DeclarativeBase
+
+from app import plain
+from app.plain import JsonObject
+
+NAMING = {
+    "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+    "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+    "ck": "ck_%(table_name)s_%(constraint_name)s",
+    "fk": "fk_%(table_name)s_%(column_0_N_name)s_%(referred_table_name)s",
+    "pk": "pk_%(table_name)s",
+}
+
+
+canonical_json = json.JSONEncoder(
+    sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False
+).encode
+"""Write a JSON value in its one canonical form; raises ValueError for NaN and infinity, which are no JSON."""
+
+
+class NotWritten(ValueError):
+    """A column holds what this program has never written there."""
+
+
+class JsonText(TypeDecorator[plain.Json]):
+    """A JSON value in a text column; None is NULL. Replace a value whole: a change inside it is not seen."""
+
+    impl = Text
+    cache_ok = True
+
+    def process_bind_param(self, value: plain.Json, dialect: Dialect) -> str | None:
+        """From Python to the column."""
+        return None if value is None else canonical_json(value)
+
+    def process_result_value(self, value: str | None, dialect: Dialect) -> plain.Json:
+        """From the column to Python; text that is no JSON was not written by this program."""
+        try:
+            return None if value is None else json.loads(value)
+        except ValueError as error:
+            raise NotWritten(f"a stored text is no JSON: {error}") from error
+
+
+class Base(DeclarativeBase):
+    """All tables share one metadata and one way to name constraints, which migrations rely on."""
+
+    metadata = MetaData(naming_convention=NAMING)
+    type_annotation_map = {str: Text, JsonObject: JsonText, list[JsonObject]: JsonText, list[str]: JsonText}

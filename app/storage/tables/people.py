@@ -1,0 +1,65 @@
+"""Principals, the keys and sessions by which they sign in, and what they used."""
+
+from sqlalchemy import BigInteger, Double, ForeignKey, UniqueConstraint
+from sqlalchemy.orm import Mapped, mapped_column
+
+from app.plain import JsonObject
+from app.storage.tables.base import Base
+
+
+class PrincipalRow(Base):
+    """A person or a service that may use the interface."""
+
+    __tablename__ = "principal"
+    __table_args__ = (UniqueConstraint("name"), UniqueConstraint("subject"))
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    kind: Mapped[str]  # person, service
+    name: Mapped[str]
+    subject: Mapped[str | None]  # what the OpenID provider calls this person
+    roles: Mapped[list[str]]  # viewer, author, checker, admin
+    limits: Mapped[JsonObject | None]  # where they differ from those of the settings
+    disabled: Mapped[str | None]  # since when
+    created: Mapped[str]
+
+
+class ApiKeyRow(Base):
+    """A key of a principal. The key itself is not stored."""
+
+    __tablename__ = "api_key"
+
+    prefix: Mapped[str] = mapped_column(primary_key=True)
+    hash: Mapped[str]  # SHA-256 of the whole key
+    principal_id: Mapped[str] = mapped_column(ForeignKey("principal.id"), index=True)
+    name: Mapped[str]
+    scopes: Mapped[list[str]]  # roles that the key may use; empty: all of its principal
+    expires: Mapped[str | None]
+    revoked: Mapped[str | None]  # since when
+    made_by: Mapped[str | None]  # prefix of the key by which its principal made it; it ends with that
+    created: Mapped[str]
+
+
+class SessionRow(Base):
+    """A browser in which a principal has signed in. The cookie itself is not stored."""
+
+    __tablename__ = "session"
+
+    hash: Mapped[str] = mapped_column(primary_key=True)  # SHA-256 of the cookie's value
+    principal_id: Mapped[str] = mapped_column(ForeignKey("principal.id"), index=True)
+    key: Mapped[str | None]  # prefix of the key by which they signed in; its end is that of the session
+    csrf: Mapped[str]
+    expires: Mapped[str] = mapped_column(index=True)
+    created: Mapped[str]
+
+
+class UsageRow(Base):
+    """What a principal used on a day (UTC)."""
+
+    __tablename__ = "usage"
+
+    principal_id: Mapped[str] = mapped_column(primary_key=True)
+    day: Mapped[str] = mapped_column(primary_key=True)  # 2026-11-22
+    requests: Mapped[int] = mapped_column(BigInteger, default=0)
+    jobs: Mapped[int] = mapped_column(BigInteger, default=0)
+    seconds: Mapped[float] = mapped_column(Double, default=0.0)  # of calculation
+    bytes: Mapped[int] = mapped_column(BigInteger, default=0)  # of files, stored for the first time

@@ -1,0 +1,41 @@
+"""Records of what clients did: the audit, and answers to requests that may be sent again."""
+
+from sqlalchemy import BigInteger, Index, UniqueConstraint
+from sqlalchemy.orm import Mapped, mapped_column
+
+from app.plain import JsonObject
+from app.storage.tables.base import Base
+
+
+class AuditRow(Base):
+    """Who did what. Rows are only added; a sealer numbers and chains them."""
+
+    __tablename__ = "audit"
+    __table_args__ = (UniqueConstraint("seq"),)
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    at: Mapped[str]
+    principal: Mapped[str]
+    name: Mapped[str]  # of the principal at that time
+    action: Mapped[str]  # design.create, key.revoke, …
+    object: Mapped[str] = mapped_column(index=True)  # designs/<id>/revisions/<n>, keys/<prefix>, …
+    digest: Mapped[str | None]  # of what was written or signed
+    seq: Mapped[int | None] = mapped_column(BigInteger)
+    previous: Mapped[str | None]  # the hash of the row before
+    hash: Mapped[str | None]
+
+
+class IdempotencyRow(Base):
+    """What was answered to a request that may be sent again."""
+
+    __tablename__ = "idempotency"
+    __table_args__ = (Index(None, "operated"),)
+
+    key: Mapped[str] = mapped_column(primary_key=True)
+    scope: Mapped[str] = mapped_column(primary_key=True)  # method and path
+    client: Mapped[str] = mapped_column(primary_key=True, default="")  # see `app.api.gate.clients`
+    fingerprint: Mapped[str]  # SHA-256 of the body
+    status: Mapped[int]
+    location: Mapped[JsonObject]  # what to render again
+    created: Mapped[str]
+    operated: Mapped[int] = mapped_column(BigInteger, default=0)  # when it was kept [s of operation]
