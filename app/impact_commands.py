@@ -79,7 +79,7 @@ def _line(one: DesignImpact) -> str:
     parts = [_moved(verdict) for verdict in one.verdicts[:3]]
     if one.margin:
         share = f" ({numbers.percent(one.margin.relative)})" if one.margin.relative is not None else ""
-        parts.append(f"{one.margin.name} loses {numbers.told(one.margin.lost)} of margin{share}")
+        parts.append(f"{one.margin.name} loses {numbers.in_line(one.margin.lost)} of margin{share}")
     if one.output and one.output.change is not None:
         sign = "+" if one.output.change > 0 else "−"
         parts.append(f"{one.output.name} {sign}{numbers.percent(abs(one.output.change))}")

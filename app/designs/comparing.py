@@ -91,7 +91,7 @@ class _Parts:
         steps = {name: {**typed, **calculated.get(name, {})} for name, typed in row.document["steps"].items()}
         models = {model.name: model for model in row.models}
         return cls(
-            parameters={name: numbers.told(raw) for name, raw in _typed(row.document).items()},
+            parameters={name: numbers.in_line(raw) for name, raw in _typed(row.document).items()},
             versions={**_versions(row.document["steps"], calculated), **_model_versions(row)},
             relations={
                 **_named({name: _texts(step.get("relations", {})) for name, step in steps.items()}),
@@ -129,7 +129,7 @@ def _named(groups: Mapping[str, Mapping[str, T]]) -> dict[str, T]:
 
 
 def _texts(relations: Mapping[str, Json]) -> dict[str, str]:
-    return {name: numbers.told(raw) for name, raw in relations.items()}
+    return {name: numbers.in_line(raw) for name, raw in relations.items()}
 
 
 def _outputs(step: JsonObject) -> dict[str, Json]:

@@ -149,11 +149,11 @@ class Survey:
         if (caller := present_caller()) is None:
             return compared(task)
         report = caller.report
-        told = (
+        report_of_share = (
             None if report is None else lambda fraction, _: report(share.at(fraction), share.text(fraction))
         )
         key = IMPACT, self.asked.template, self.asked.version, tuple(design.id for design, _ in batch)
-        return replace(caller, report=told).calculated(key, compared, task)
+        return replace(caller, report=report_of_share).calculated(key, compared, task)
 
 
 @dataclass(frozen=True)

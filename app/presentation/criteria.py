@@ -160,7 +160,7 @@ def compared(criterion: Judged) -> str:
         return ""
     right = sides(criterion.require)[2]
     called = f"{plain_name(right)} " if _ONE_NAME.fullmatch(right) else ""
-    return f"{numbers.told(value)} {_sign(criterion, value, limit)} {called}{numbers.told(limit)}"
+    return f"{numbers.in_line(value)} {_sign(criterion, value, limit)} {called}{numbers.in_line(limit)}"
 
 
 def _sign(criterion: Judged, value: Amount, limit: Amount) -> str:
@@ -174,7 +174,7 @@ def margin(criterion: Judged) -> str:
     """What is left to the limit, with the ends that the error allows; negative if the limit is passed."""
     if criterion.margin is None:
         return ""
-    left = numbers.told(criterion.margin)
+    left = numbers.in_line(criterion.margin)
     ends = _ends(criterion)
     return f"{left} ({numbers.plain(ends[0])} … {numbers.plain(ends[1])})" if ends else left
 
@@ -222,7 +222,7 @@ def remarks(criterion: Judged) -> tuple[str, ...]:
 
 
 def _where(criterion: Judged) -> str:
-    places = [f"{plain_name(name)} {numbers.told(at)}" for name, at in (criterion.where or {}).items()]
+    places = [f"{plain_name(name)} {numbers.in_line(at)}" for name, at in (criterion.where or {}).items()]
     at = f"worst at {', '.join(places)}" if places else ""
     if not criterion.points or criterion.points == 1:
         return at

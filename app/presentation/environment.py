@@ -56,7 +56,7 @@ def environment(folder: Path) -> Environment:
         "unit": numbers.unit,
         "percent": numbers.percent,
         "rough": numbers.rough,
-        "told": numbers.told,
+        "in_line": numbers.in_line,
         "course": course,
     }
     jinja.filters.update(filters)

@@ -73,7 +73,7 @@ SIGNS = {"plus": "+", "minus": "−", "upper": "", "lower": ""}  # of deviations
 PARTS = ("value", "unit", "reason", *SIGNS, "zone", "distribution")
 
 
-def told(quantity: object) -> str:
+def in_line(quantity: object) -> str:
     """A quantity, as typed or as answered, in one line: `25 kN`, `= scale * 48 mm`, `[1, 2, 3] mm`."""
     if quantity is None:
         return ""

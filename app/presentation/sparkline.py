@@ -36,7 +36,7 @@ def course(values: object, axis: object = None, unit: str | None = None) -> Cour
 
 def _place(end: int, axis: object, unit: str | None, count: int) -> str:
     if isinstance(axis, list) and len(axis) == count and isinstance(axis[end], int | float):
-        return f"at {numbers.told({'value': axis[end], 'unit': unit})}"
+        return f"at {numbers.in_line({'value': axis[end], 'unit': unit})}"
     return f"no. {end + 1}"
 
 

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 from app.plain import Json, Raw
 from app.presentation import numbers
-from app.presentation.numbers import told as in_line
+from app.presentation.numbers import in_line
 from app.presentation.typed import text_of
 from app.schemas.analyses import AnalysisOutput
 from app.schemas.answers import Quantity, Shown

@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 from app.designs import repository
 from app.plain import JsonObject
 from app.presentation import numbers
-from app.presentation.numbers import told as in_line
+from app.presentation.numbers import in_line
 from app.presentation.units import System
 from app.reports.cells import NOTHING, cell, typed
 from app.reports.content import File, Line, Mapped, Model, Rule, Warned

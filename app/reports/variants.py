@@ -89,8 +89,10 @@ def _inputs(out: VariantsOut, rows: Sequence[VariantResult]) -> list[Column]:
     """Every place in which variants differ; the design's own value in brackets."""
     columns = []
     for about in out.columns:
-        own = f"({numbers.told(about.nominal)})" if about.nominal else ""
-        texts = [numbers.told(row.values[about.place]) if about.place in row.values else own for row in rows]
+        own = f"({numbers.in_line(about.nominal)})" if about.nominal else ""
+        texts = [
+            numbers.in_line(row.values[about.place]) if about.place in row.values else own for row in rows
+        ]
         columns.append((clean(about.words), [clean(text) for text in texts]))
     return columns
 

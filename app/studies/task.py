@@ -115,7 +115,7 @@ def _net(
     measured: Mapping[Reference, float],
     aside: Sequence[Reference],
 ) -> Net:
-    """The design with rows; where a relation is refused, the remedy of a study is told besides."""
+    """The design with rows; where a relation is refused, the refusal names the remedy of a study too."""
     try:
         return Net.of(document, catalogues, varied, measured=measured, pending=True, set_aside=aside)
     except InvalidInputs as error:

@@ -23,7 +23,7 @@ def differences(old: Revision, new: Revision) -> list[Difference]:
     before, after = dict(_values(old)), dict(_values(new))
     names = dict.fromkeys([*after, *before])
     return [
-        Difference(name, numbers.told(before.get(name)), numbers.told(after.get(name)))
+        Difference(name, numbers.in_line(before.get(name)), numbers.in_line(after.get(name)))
         for name in names
         if before.get(name) != after.get(name)
     ]

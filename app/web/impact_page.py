@@ -45,7 +45,7 @@ class Line:
         if lost is None:
             return ""
         share = "" if lost.relative is None else f" ({numbers.percent(lost.relative)})"
-        return f"{numbers.told(lost.lost)} of {_placed(lost.name, lost.variant)}{share}"
+        return f"{numbers.in_line(lost.lost)} of {_placed(lost.name, lost.variant)}{share}"
 
     @property
     def output(self) -> str:
@@ -68,7 +68,7 @@ class Line:
 
 
 def _shown(quantity: Quantity | None) -> str:
-    return "no value" if quantity is None else numbers.told(quantity)
+    return "no value" if quantity is None else numbers.in_line(quantity)
 
 
 def _placed(name: str, variant: str | None) -> str:

@@ -26,7 +26,7 @@ def values_of(
         quantities |= {f"{block}.{name}": value for name, value in model.parameters.items()}
     for block, part in measured.items():
         quantities |= {f"{block}.{name}": value for name, value in _measures(part).items()}
-    return {name: numbers.told(value) for name, value in quantities.items()}
+    return {name: numbers.in_line(value) for name, value in quantities.items()}
 
 
 def _measures(part: ModelMeasurements) -> dict[str, object]:

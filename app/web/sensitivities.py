@@ -43,7 +43,7 @@ def _line(item: Sensitivity, largest: float) -> SensitivityLine:
     slope = item.slope
     return SensitivityLine(
         item.name,
-        "–" if slope is None else numbers.told({"value": _digits(slope.value), "unit": slope.unit}),
+        "–" if slope is None else numbers.in_line({"value": _digits(slope.value), "unit": slope.unit}),
         "–" if item.elasticity is None else numbers.plain(_digits(item.elasticity)),
         _bar(item.elasticity, largest) if item.elasticity else None,
         HELPS[item.helps] if item.helps else "",

@@ -142,7 +142,7 @@ def _field(name: str, declared: Declared, text: str, value: object, error: str |
 def _hint(declared: Declared) -> str:
     """What an empty field stands for, or how it is written."""
     if declared.has_default:
-        return numbers.told(declared.default)
+        return numbers.in_line(declared.default)
     if declared.default_formula is not None:
         return "follows from the rest"
     example = next(iter(declared.examples), None)

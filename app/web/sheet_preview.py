@@ -90,5 +90,5 @@ def _changes(preview: Preview) -> Iterator[Changed]:
     sides: dict[str, tuple[object, object]] = {n: (c.old, c.new) for n, c in preview.outputs.items()}
     sides |= {name: (change.old, change.new) for name, change in preview.model_parameters.items()}
     for name, (old, new) in sides.items():
-        if (before := numbers.told(old) or "–") != (after := numbers.told(new) or "–"):
+        if (before := numbers.in_line(old) or "–") != (after := numbers.in_line(new) or "–"):
             yield Changed(name, before, after)

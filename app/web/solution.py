@@ -34,7 +34,7 @@ class ShownRoot:
         """A crossing of the target, or an extremum that touches it."""
         return cls(
             text=f"{root.value!r} {root.unit}" if root.unit != "1" else repr(root.value),
-            shown=numbers.told(root),
+            shown=numbers.in_line(root),
             rises={1: "rises", -1: "falls", 0: "touches"}[root.slope],
             level=(root.level or "").replace("_", " ") + ("" if root.confirmed else " (not confirmed)"),
             error="not stated" if root.error is None else f"± {numbers.percent(root.error)}",

@@ -41,7 +41,7 @@ async def study_page(request: Request, api: Api, id: str, notice: str | None = N
         notice=notice,
         sort=sort,
         where=where,
-        estimate=numbers.told({"value": float(f"{study.estimate.seconds:.2g}"), "unit": "s"}),
+        estimate=numbers.in_line({"value": float(f"{study.estimate.seconds:.2g}"), "unit": "s"}),
     )
 
 
@@ -139,9 +139,9 @@ def _line(place: str, index: Index) -> IndexLine:
         low, high = (None, None) if spread is None else (index.total - spread, index.total + spread)
         return IndexLine(place, cells, index.total, low, high)
     if index.mu_star is not None:
-        cells = [numbers.told(index.mu_star), numbers.told(index.sigma)]
+        cells = [numbers.in_line(index.mu_star), numbers.in_line(index.sigma)]
         return IndexLine(place, cells, index.mu_star.value, None, None)
-    slope = numbers.told(index.slope) if index.slope else "–"
+    slope = numbers.in_line(index.slope) if index.slope else "–"
     return IndexLine(place, [slope, _plain(index.elasticity)], index.elasticity or 0.0, None, None)
 
 
@@ -155,4 +155,4 @@ def _plain(value: float | None) -> str:
 
 def values_of(best: Best) -> list[tuple[str, str]]:
     """Where a row lies and what it gives, as texts."""
-    return [(name, numbers.told(quantity)) for name, quantity in {**best.at, **best.outputs}.items()]
+    return [(name, numbers.in_line(quantity)) for name, quantity in {**best.at, **best.outputs}.items()]

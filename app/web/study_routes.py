@@ -69,16 +69,16 @@ async def start(id: Id, request: Request, api: TheApi) -> Response:
 async def estimate(id: Id, request: Request, api: TheApi, part: bool = False) -> Response:
     """What a new study would take: the form again with it; with `part` alone, for the script of the form."""
     typed = await fields(request)
-    told, faulty, status = None, Typed(typed), 200
+    estimated, faulty, status = None, Typed(typed), 200
     try:
-        told = await api.post("/studies/estimate", StudyEstimate, Typed(typed).body(id))
+        estimated = await api.post("/studies/estimate", StudyEstimate, Typed(typed).body(id))
     except Refused as refused:
         if refused.status != ILL_NAMED:
             raise
         faulty, status = again(typed, refused), ILL_NAMED
     if part:
-        return show(request, "study_estimate.html", estimate=told, typed=faulty)
-    return await study_form(request, api, id, faulty, status, told)
+        return show(request, "study_estimate.html", estimate=estimated, typed=faulty)
+    return await study_form(request, api, id, faulty, status, estimated)
 
 
 @forms.post("/studies/{id}/choose")

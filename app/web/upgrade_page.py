@@ -129,31 +129,33 @@ async def _page(
 def _moved(preview: Preview) -> list[Moved]:
     """The outputs of both versions that are not the same."""
     both = {name: (one.old, one.new) for name, one in preview.outputs.items() if one.old and one.new}
-    told = [Moved(name, _told_like(old, new), numbers.told(new)) for name, (old, new) in both.items()]
-    return [one for one in told if one.old != one.new]
+    rows = [Moved(name, _in_unit_of(old, new), numbers.in_line(new)) for name, (old, new) in both.items()]
+    return [one for one in rows if one.old != one.new]
 
 
 def _of_one_version(preview: Preview) -> list[Moved]:
     """The outputs that only one of the versions has."""
     outputs = preview.outputs.items()
-    told = [Moved(name, numbers.told(one.old), numbers.told(one.new)) for name, one in outputs]
-    return [one for one in told if not (one.old and one.new)]
+    rows = [Moved(name, numbers.in_line(one.old), numbers.in_line(one.new)) for name, one in outputs]
+    return [one for one in rows if not (one.old and one.new)]
 
 
-def _told_like(old: Output | AnalysisOutput, new: Output | AnalysisOutput) -> str:
+def _in_unit_of(old: Output | AnalysisOutput, new: Output | AnalysisOutput) -> str:
     """A value as text, in the unit of another one where that measures the same."""
     value, given, wanted = old.value, old.unit, new.unit
     if not isinstance(value, float) or not given or not wanted or given == wanted:
-        return numbers.told(old)
+        return numbers.in_line(old)
     if not compatible(unit(given).base, unit(wanted).base):
-        return numbers.told(old)
-    return numbers.told(Quantity(value=float(unit(wanted).from_si(unit(given).to_si(value))), unit=wanted))
+        return numbers.in_line(old)
+    return numbers.in_line(Quantity(value=float(unit(wanted).from_si(unit(given).to_si(value))), unit=wanted))
 
 
 def _parameters(preview: Preview) -> list[Moved]:
     """The parameters of models that change."""
     changes = preview.model_parameters.items()
-    told = [
-        Moved(n, numbers.told(one.old), numbers.told(one.new)) for n, one in changes if one.status == "ok"
+    rows = [
+        Moved(n, numbers.in_line(one.old), numbers.in_line(one.new))
+        for n, one in changes
+        if one.status == "ok"
     ]
-    return [one for one in told if one.old != one.new]
+    return [one for one in rows if one.old != one.new]

@@ -24,7 +24,7 @@ MEMORY = 12 << 30  # bytes of addresses, for a mutant that fills all of it
 USED = "import sys, app.cli, httpx, hypothesis, pytest, scipy.integrate, scipy.optimize; print(*sys.modules)"
 """Prints the modules that the program and most tests import."""
 REWRITTEN = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
-"""Options of pytest: it may be told that Hypothesis, which is imported already, asserts as it is written."""
+"""Options of pytest: they say that Hypothesis, which is imported already, asserts as it is written."""
 
 
 def start(

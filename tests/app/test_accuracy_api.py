@@ -32,7 +32,7 @@ class TestAccuracy:
 
 
 class TestLevels:
-    def test_level_and_error_are_told(self, http):
+    def test_level_and_error_are_in_the_answer(self, http):
         body = {"inputs": dict(OilFilm.example), "tolerance": 0.05, "outputs": ["minimum_film_thickness"]}
         answer = http.post(f"{FILM}/2/evaluate", json=body).json()
         assert answer["level"] in OilFilm.levels

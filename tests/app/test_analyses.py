@@ -339,7 +339,7 @@ def test_the_server_knows_what_the_elements_tell() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_an_error_beyond_the_tolerance_is_told() -> None:
+def test_an_error_beyond_the_tolerance_is_a_warning() -> None:
     asked_for = question("torsion", Options(tolerance=0.001))
     found = {"stiffness": {"error": 0.002}, "torsional_frequency": {"error": 0.0005}}
     listed = warnings(asked_for, found)

@@ -408,7 +408,7 @@ def test_a_second_long_job_waits_for_the_first(http, log):
     assert [ended(http, place)["state"] for place in places] == ["done", "done"]
 
 
-def test_too_many_are_told_to_come_again_and_a_flood_gives_way(http, log):
+def test_too_many_are_asked_to_come_again_and_a_flood_gives_way(http, log):
     def ask(client):
         return sleep(http, "0.5 s", **{"Crankwright-Client": client})
 

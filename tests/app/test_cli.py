@@ -42,7 +42,7 @@ class TestEvaluate:
         for name in ("radial_load:", "speed:", "sped:", "bearing_diameter:"):
             assert name in result.output
 
-    def test_warnings_are_told(self):
+    def test_warnings_are_shown(self):
         result = run("evaluate", "oil_film", "--version", "1", *INPUTS, "bearing_width=48 mm")
         assert result.exit_code == 0
         assert "width_ratio" in result.stderr
@@ -57,7 +57,7 @@ class TestEvaluate:
             (["template", "show", "nothing"], "oil_film"),
         ],
     )
-    def test_mistakes_are_told_in_one_line(self, arguments, said):
+    def test_mistakes_are_reported_in_one_line(self, arguments, said):
         result = run(*arguments)
         assert result.exit_code in (1, 2)
         assert said in result.output
@@ -65,7 +65,7 @@ class TestEvaluate:
 
 
 class TestTemplates:
-    def test_a_broken_file_is_told_in_one_line(self, tmp_path, monkeypatch):
+    def test_a_broken_file_is_reported_in_one_line(self, tmp_path, monkeypatch):
         (tmp_path / "own_v1.py").write_text("a = 1\nb = nothing\n")
         monkeypatch.setenv("CRANKWRIGHT_TEMPLATE_FOLDERS", f'["{tmp_path}"]')
         result = run("template", "list")
@@ -180,7 +180,7 @@ class TestServe:
         ("value", "said"),
         [("crank.example", "'[\"crank.example\"]'"), ('["http://crank.example"]', "is not a host")],
     )
-    def test_a_wrong_setting_is_told_in_one_line(self, monkeypatch, value, said):
+    def test_a_wrong_setting_is_reported_in_one_line(self, monkeypatch, value, said):
         monkeypatch.setenv("CRANKWRIGHT_ALLOWED_HOSTS", value)
         refused = run("serve")
         assert refused.exit_code == 1

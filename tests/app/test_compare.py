@@ -31,10 +31,10 @@ def design(http):
 
 class TestRevisions:
     def test_any_two_are_compared(self, http, design):
-        told = compared(http, design["id"], revision=1, **{"with": 3})
-        assert (told["old"]["revision"], told["new"]["revision"]) == (1, 3)
-        assert (told["new"]["note"], told["new"]["design"]) == ("faster", design["id"])
-        (speed,) = told["inputs"]
+        comparison = compared(http, design["id"], revision=1, **{"with": 3})
+        assert (comparison["old"]["revision"], comparison["new"]["revision"]) == (1, 3)
+        assert (comparison["new"]["note"], comparison["new"]["design"]) == ("faster", design["id"])
+        (speed,) = comparison["inputs"]
         assert (speed["name"], speed["old"], speed["new"]) == (
             "film.speed",
             {"value": 5000, "unit": "rpm"},
@@ -42,44 +42,44 @@ class TestRevisions:
         )
         assert speed["change"] == pytest.approx(0.2)
         assert speed["difference"] == {"value": pytest.approx(1000), "unit": "rpm"}
-        outputs = by_name(told["outputs"])
+        outputs = by_name(comparison["outputs"])
         film = outputs["film.minimum_film_thickness"]
         assert film["old"]["unit"] == film["new"]["unit"] == "um"
         change = film["new"]["value"] / film["old"]["value"] - 1
         assert film["change"] == pytest.approx(change)
         assert "film.journal_diameter" not in outputs, "it is the same"
-        assert told["parameters"] == told["relations"] == told["model_parameters"] == []
-        assert told["measurements"] == []
+        assert comparison["parameters"] == comparison["relations"] == comparison["model_parameters"] == []
+        assert comparison["measurements"] == []
 
     def test_a_size_that_changed_changed_the_solid(self, http, design):
-        told = compared(http, design["id"], revision=1, **{"with": 2})
-        assert told["parameters"] == [{"name": "scale", "old": "1", "new": "1.05"}]
-        bore = by_name(told["model_parameters"])["model.inner_diameter"]
+        comparison = compared(http, design["id"], revision=1, **{"with": 2})
+        assert comparison["parameters"] == [{"name": "scale", "old": "1", "new": "1.05"}]
+        bore = by_name(comparison["model_parameters"])["model.inner_diameter"]
         assert (bore["old"]["value"], bore["new"]["value"]) == (48, pytest.approx(50.4))
-        measured = by_name(told["measurements"])
+        measured = by_name(comparison["measurements"])
         assert measured["model.mass"]["change"] > 0.05
         assert measured["model.dimensions.inner_diameter"]["new"]["value"] == pytest.approx(50.4)
         assert measured["model.bounding_box.high"]["old"]["unit"] == "mm"
 
     def test_the_newest_is_compared_with_the_one_before(self, http, design):
-        told = compared(http, design["id"])
-        assert (told["old"]["revision"], told["new"]["revision"]) == (2, 3)
-        told = compared(http, design["id"], revision=1)
-        assert (told["old"]["revision"], told["new"]["revision"]) == (1, 3)
-        told = compared(http, design["id"], **{"with": 2})
-        assert (told["old"]["revision"], told["new"]["revision"]) == (1, 2)
+        comparison = compared(http, design["id"])
+        assert (comparison["old"]["revision"], comparison["new"]["revision"]) == (2, 3)
+        comparison = compared(http, design["id"], revision=1)
+        assert (comparison["old"]["revision"], comparison["new"]["revision"]) == (1, 3)
+        comparison = compared(http, design["id"], **{"with": 2})
+        assert (comparison["old"]["revision"], comparison["new"]["revision"]) == (1, 2)
 
     def test_backwards_is_the_opposite(self, http, design):
         (speed,) = compared(http, design["id"], revision=3, **{"with": 1})["inputs"]
         assert speed["change"] == pytest.approx(-1 / 6)
 
     def test_a_revision_equals_itself(self, http, design):
-        told = compared(http, design["id"], revision=2, **{"with": 2})
-        assert all(part == [] for name, part in told.items() if name not in ("old", "new"))
+        comparison = compared(http, design["id"], revision=2, **{"with": 2})
+        assert all(part == [] for name, part in comparison.items() if name not in ("old", "new"))
 
     def test_units_of_display(self, http, design):
-        told = compared(http, design["id"], revision=1, **{"with": 2, "units": "us"})
-        bore = by_name(told["model_parameters"])["model.inner_diameter"]
+        comparison = compared(http, design["id"], revision=1, **{"with": 2, "units": "us"})
+        bore = by_name(comparison["model_parameters"])["model.inner_diameter"]
         assert bore["old"] == {"value": pytest.approx(48 / 25.4), "unit": "inch"}
         assert bore["difference"] == {"value": pytest.approx(2.4 / 25.4), "unit": "inch"}
         assert bore["change"] == pytest.approx(0.05)
@@ -106,24 +106,26 @@ class TestDesigns:
         document["steps"]["film"]["version"] = 2
         document["steps"]["film"]["inputs"]["bearing_diameter"] = "48 mm"
         other = created(http, document)
-        told = compared(http, design["id"], revision=1, design=other["id"])
-        assert (told["old"]["name"], told["new"]["name"]) == ("compared", "other")
-        assert (told["old"]["revision"], told["new"]["revision"]) == (1, 1)
-        assert {change["name"] for change in told["versions"]} == {"film", "film.level"}
-        versions = by_name(told["versions"])["film"]
+        comparison = compared(http, design["id"], revision=1, design=other["id"])
+        assert (comparison["old"]["name"], comparison["new"]["name"]) == ("compared", "other")
+        assert (comparison["old"]["revision"], comparison["new"]["revision"]) == (1, 1)
+        assert {change["name"] for change in comparison["versions"]} == {"film", "film.level"}
+        versions = by_name(comparison["versions"])["film"]
         assert versions["old"].startswith("oil_film version 1, code ")
         assert versions["new"].startswith("oil_film version 2, code ")
-        assert told["relations"] == [{"name": "film.bearing_diameter", "old": "= scale * 48 mm", "new": None}]
-        outputs = by_name(told["outputs"])
+        assert comparison["relations"] == [
+            {"name": "film.bearing_diameter", "old": "= scale * 48 mm", "new": None}
+        ]
+        outputs = by_name(comparison["outputs"])
         assert outputs["film.attitude_angle"]["old"] is None
         assert "change" not in outputs["film.attitude_angle"]
 
     def test_a_design_of_other_steps(self, http, design):
         other = created(http, moody("10 mm"))
-        told = compared(http, design["id"], design=other["id"])
-        assert all(item["new"] is None for item in told["inputs"])
-        assert by_name(told["model_parameters"])["model.size"]["old"] is None
-        assert told["old"]["revision"] == 3
+        comparison = compared(http, design["id"], design=other["id"])
+        assert all(item["new"] is None for item in comparison["inputs"])
+        assert by_name(comparison["model_parameters"])["model.size"]["old"] is None
+        assert comparison["old"]["revision"] == 3
 
 
 class TestValues:
@@ -195,8 +197,8 @@ def test_verdicts_that_are_stored_are_compared(served, http):
         old.results = {name: part for name, part in old.results.items() if name != "criteria"}
 
     database.write(store)
-    told = compared(http, before, design=id)
-    assert by_name(told["criteria"])["film.film"] == {
+    comparison = compared(http, before, design=id)
+    assert by_name(comparison["criteria"])["film.film"] == {
         "name": "film.film",
         "old": None,
         "new": {"verdict": "met", "utilisation": 0.9},

@@ -132,7 +132,7 @@ def test_allowed_methods_are_not_refused(http):
         assert response.status_code not in (404, 405), method
 
 
-def test_an_unknown_analysis_is_told_before_a_wrong_load(http):
+def test_an_unknown_analysis_is_reported_before_a_wrong_load(http):
     assert http.get(f"{API}/analyses/none", params={"load": "much"}).status_code == 404
 
 

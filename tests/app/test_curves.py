@@ -137,7 +137,7 @@ class TestCommandLine:
         assert "crankpin_load_x" in made.output
         assert "24 values" in made.output
 
-    def test_property_faults_are_told(self, tmp_path):
+    def test_property_faults_are_reported(self, tmp_path):
         (tmp_path / "d.csv").write_text("p [bar]\n1\n", encoding="utf-8")
         missing = self.run("gas_cycle=table", f"pressure=@{tmp_path}/none.csv")
         assert missing.exit_code == 1

@@ -37,7 +37,7 @@ def test_the_bore_goes_from_50_to_48_mm(shown):
     assert "re-imported" in shown[0]
 
 
-def test_the_film_and_the_changed_dimensions_are_told(shown):
+def test_the_film_and_the_changed_dimensions_are_shown(shown):
     assert row(shown[0], "minimum_film_thickness")[1] == pytest.approx(3.2449, abs=5e-5)
     changed = {line.split()[0] for line in shown[0].splitlines() if line.endswith("←")}
     assert {"inner_diameter", "outer_diameter"} <= changed

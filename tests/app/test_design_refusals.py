@@ -46,7 +46,7 @@ class TestRefusals:
             "model.colour": "unknown_name",
         }
 
-    def test_values_are_all_told_at_once(self, http):
+    def test_faults_of_all_values_are_reported_at_once(self, http):
         document = paper()
         document["steps"]["film"]["inputs"] |= {
             "radial_load": "-25 kN",
@@ -135,7 +135,7 @@ class TestUnsetParameters:
         shown = http.post(f"{DESIGNS}/{unset['id']}/preview", json={}).json()
         assert shown["model_parameters"]["model.inner_diameter"]["status"] == "missing"
 
-    def test_auto_map_proposes_with_a_reason_and_saves_when_told(self, http, unset):
+    def test_auto_map_proposes_with_a_reason_and_saves_on_request(self, http, unset):
         place = f"{DESIGNS}/{unset['id']}/auto-map"
         (proposed, width) = sorted(http.post(place).json()["proposals"], key=lambda p: p["target"])
         assert proposed["target"] == "model.inner_diameter"

@@ -117,7 +117,7 @@ class TestPreview:
         shown = self.preview(http, tied, {"steps": {"film": {"inputs": {"radial_load": "26 kN"}}}})
         assert {p["status"] for p in shown["model_parameters"].values()} == {"unchanged"}
 
-    def test_unit_mismatch_is_told_by_its_status(self, http, tied):
+    def test_unit_mismatch_has_its_own_status(self, http, tied):
         patch = {"models": {"model": {"parameters": {"inner_diameter": "= film.radial_load"}}}}
         shown = self.preview(http, tied, patch)["model_parameters"]["model.inner_diameter"]
         assert shown["status"] == "unit_mismatch"
@@ -142,7 +142,7 @@ class TestPreview:
         assert statuses["unbuilt.size"] == "ok"
         assert statuses["model.inner_diameter"] == "unchanged"
 
-    def test_warnings_are_told(self, http, tied):
+    def test_warnings_are_shown(self, http, tied):
         shown = self.preview(http, tied, {"steps": {"film": {"inputs": {"bearing_width": "48 mm"}}}})
         assert "film.width_ratio" in {warning["name"] for warning in shown["warnings"]}
 
@@ -163,7 +163,7 @@ class TestExplain:
         (scale,) = diameter["because"]
         assert (scale["name"], scale["kind"], scale["typed"]) == ("scale", "given", "1")
 
-    def test_formulas_are_told_on_paper(self, http, tied):
+    def test_formulas_are_written_as_on_paper(self, http, tied):
         patch = {"models": {"model": {"parameters": {"inner_diameter": "= film.journal_diameter"}}}}
         copy = created_by(http.post(f"{DESIGNS}/{tied['id']}/copy"))
         answer = http.get(f"{DESIGNS}/{patched(http, copy, patch)['id']}/explain/model.inner_diameter").json()

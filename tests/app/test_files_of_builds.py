@@ -1,4 +1,4 @@
-"""Files of several builds are one job; what fails for one is told once the others are there."""
+"""Files of several builds are one job; what fails for one is reported once the others are there."""
 
 from patience import until
 from serving import API

@@ -19,11 +19,13 @@ def evaluated(http, path, inputs, **body):
 
 
 def test_the_truth_of_every_level_is_served(http):
-    told = http.get(f"{STATIC}/accuracy").json()
-    truths = {level: about["truth"]["power_loss"] for level, about in told["levels"].items()}
+    accuracy = http.get(f"{STATIC}/accuracy").json()
+    truths = {level: about["truth"]["power_loss"] for level, about in accuracy["levels"].items()}
     assert truths["map"] != truths["mass_conserving"]
     assert len(set(truths.values())) == 2
-    assert all(told["truths"][name] for about in told["levels"].values() for name in about["truth"].values())
+    assert all(
+        accuracy["truths"][name] for about in accuracy["levels"].values() for name in about["truth"].values()
+    )
 
 
 def test_the_cycle_serves_costs_and_differences_but_no_errors(http):

@@ -20,7 +20,7 @@ def room(team):
 
 
 def claims(team):
-    """Headers by which services behind a proxy are told who somebody is, for the administrator."""
+    """Headers by which services behind a proxy learn who somebody is, for the administrator."""
     id, key = team.principals[ADMIN], team.keys[ADMIN]
     return {
         "X-Forwarded-User": ADMIN, "X-Remote-User": id, "Remote-User": ADMIN, "X-Principal": id, "X-User": id,

@@ -129,7 +129,7 @@ def test_the_impact_of_a_batch_is_that_of_each_design():
     assert whole.variants == 3
 
 
-def test_a_design_without_what_the_version_needs_is_told_what_to_give_and_to_remove():
+def test_the_refusal_of_a_design_names_what_to_give_and_to_remove():
     document = bearing()
     film = {**document["steps"]["film"], "limits": {"permissible_film": "2 um"}}
     found = compared(batch_of([{**document, "steps": {"film": film}}], 1))

@@ -181,10 +181,10 @@ def test_the_clients_ask_and_upgrade(http, client, served):
 
 def test_the_command_lists_the_worst_designs(bearings, served):
     asked = ["impact", "oil_film", "2", "--tag", "impact", "--limit", "2", "--url", served.url]
-    told = CliRunner().invoke(main, asked)
-    assert told.exit_code == 0, told.output
-    assert "4 designs use another version (1 archived ones are left out): 4 move" in told.stdout
-    assert sum(line.startswith(tuple(d["id"] for d in bearings)) for line in told.stdout.splitlines()) == 2
+    shown = CliRunner().invoke(main, asked)
+    assert shown.exit_code == 0, shown.output
+    assert "4 designs use another version (1 archived ones are left out): 4 move" in shown.stdout
+    assert sum(line.startswith(tuple(d["id"] for d in bearings)) for line in shown.stdout.splitlines()) == 2
     shown = json.loads(CliRunner().invoke(main, [*asked, "--json"]).stdout)
     assert (shown["moved"], len(shown["designs"])) == (4, 2)
     wrong = CliRunner().invoke(main, ["impact", "oil_film", "9", "--url", served.url])

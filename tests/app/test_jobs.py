@@ -355,7 +355,7 @@ def test_limits_of_the_settings_hold(make, database, worker, failures, victim, p
     assert len(failures) == 1
 
 
-def test_progress_is_told_and_logged(make, database, worker):
+def test_progress_is_reported_and_logged(make, database, worker):
     jobs = make(worker)
 
     def handler(job, context):

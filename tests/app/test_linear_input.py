@@ -417,7 +417,7 @@ class TestAnswers:
     def test_a_text_in_a_report(self, piece):
         assert_linear(clean, lambda n: piece * n, 20_000)
         assert_linear(text_of, lambda n: [piece] * n, 20_000)
-        assert_linear(numbers.told, lambda n: [1.0] * n, 20_000)  # the least and the largest are shown
+        assert_linear(numbers.in_line, lambda n: [1.0] * n, 20_000)  # the least and the largest are shown
 
 
 def test_the_measurement_tells_a_quadratic_function():

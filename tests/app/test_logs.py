@@ -147,7 +147,7 @@ def test_a_line_is_a_line(formatter, evil):
 
 
 @pytest.mark.parametrize("form", ["text", "json"])
-def test_an_exception_is_told_with_its_request(form):
+def test_an_exception_is_logged_with_its_request(form):
     stream, root = io.StringIO(), (logging.root.handlers, logging.root.level)
     levels = {name: logging.getLogger(name).level for name in ("app", "uvicorn")}
     flush = logs.configure("info", form, stream)

@@ -192,7 +192,7 @@ class TestVerify:
         assert origin["revisions"] == [{"design": first["id"], "revision": 1, "current": False}]
         assert origin["intact"] is True
 
-    def test_a_changed_file_is_told(self, http, design):
+    def test_a_changed_file_is_reported(self, http, design):
         step = http.get(place(design, "model.step")).content
         assert self.verify(http, step + b"\n/* edited */").json()["intact"] is False
 

@@ -56,7 +56,7 @@ def test_a_backslash_before_the_escape_is_a_text(http):
         (b'"u0000"', False),
     ],
 )
-def test_the_character_is_told_from_what_looks_like_it(text, is_there):
+def test_the_character_is_no_other_that_looks_like_it(text, is_there):
     assert nul.has(text) is is_there
 
 

@@ -76,7 +76,7 @@ def test_a_body_that_says_so(http, media):
 
 
 @pytest.mark.parametrize("path", ["designs", "verify"])
-def test_a_body_too_large_is_413_whether_its_length_is_told_or_not(http, path):
+def test_a_body_too_large_is_413_with_and_without_its_length_declared(http, path):
     media = "application/json" if path == "designs" else "model/step"
     headers = {"Content-Type": media}
     piece = b" " * 2**20

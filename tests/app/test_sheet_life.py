@@ -28,8 +28,8 @@ def test_a_draft_keeps_its_faults(http):
     assert sheet["digest"] is None
     first = sheet["faults"][0]
     assert (first["line"], first["code"]) == (8, "unit_mismatch")
-    told = problem(http.post(place(sheet["id"], "test")), 409, "tests-failed")
-    assert "line 8" in told["errors"][0]["detail"]
+    refusal = problem(http.post(place(sheet["id"], "test")), 409, "tests-failed")
+    assert "line 8" in refusal["errors"][0]["detail"]
     assert http.get(place(sheet["id"])).json()["state"] == "draft"
 
 
@@ -37,8 +37,8 @@ def test_every_step_comes_in_its_order(http):
     id = drafted(http)["id"]
     review = {"reviewer": "B. Klein", "digest": http.get(place(id)).json()["digest"]}
     for name, body in (("review", review), ("release", None), ("withdraw", {"reason": "wrong"})):
-        told = problem(http.post(place(id, name), json=body), 409, "out-of-order")
-        assert "is draft" in told["detail"]
+        refusal = problem(http.post(place(id, name), json=body), 409, "out-of-order")
+        assert "is draft" in refusal["detail"]
     tested = step(http, id, "test")
     assert tested["state"] == "tested"
     assert [(test["line"], test["passed"]) for test in tested["tests"]] == [(13, True)]
@@ -108,8 +108,8 @@ def test_an_edit_of_a_release_begins_the_next_version(http):
 
 def test_a_release_fails_if_its_tests_fail(http):
     sheet = drafted(http, BUSH.replace("21.7 MPa", "22.7 MPa"))
-    told = problem(http.post(place(sheet["id"], "test")), 409, "tests-failed")
-    assert "line 13" in told["detail"]
+    refusal = problem(http.post(place(sheet["id"], "test")), 409, "tests-failed")
+    assert "line 13" in refusal["detail"]
 
 
 @pytest.mark.parametrize(
@@ -121,8 +121,8 @@ def test_a_release_fails_if_its_tests_fail(http):
     ],
 )
 def test_what_cannot_be_used_is_not_tested(http, text, reason):
-    told = problem(http.post(place(drafted(http, text)["id"], "test")), 409, "tests-failed")
-    assert reason in told["detail"]
+    refusal = problem(http.post(place(drafted(http, text)["id"], "test")), 409, "tests-failed")
+    assert reason in refusal["detail"]
 
 
 def test_a_change_needs_the_etag_of_what_was_read(http):
@@ -156,8 +156,8 @@ def test_a_repeated_edit_makes_one_version(http):
 
 @pytest.mark.parametrize("id", ["oil_film", "ball_bearing", "double"])
 def test_files_and_worksheets_share_their_ids(http, id):
-    told = problem(http.post(f"{API}/worksheets", json={"id": id, "text": BUSH}), 409, "id-taken")
-    assert "choose another" in told["detail"]
+    refusal = problem(http.post(f"{API}/worksheets", json={"id": id, "text": BUSH}), 409, "id-taken")
+    assert "choose another" in refusal["detail"]
 
 
 def test_an_id_belongs_to_one_worksheet(http):

@@ -87,8 +87,8 @@ class TestBroken:
         sheet = restarted.get(place(id)).json()
         assert (sheet["state"], sheet["versions"][0]["state"]) == ("broken", "broken")
         assert sheet["broken"].startswith(reason)
-        told = problem(evaluated(restarted, id), 404, "quarantined")
-        assert reason in told["detail"]
+        refusal = problem(evaluated(restarted, id), 404, "quarantined")
+        assert reason in refusal["detail"]
 
     @pytest.mark.parametrize("id", ["sound", "prose", "gone"])
     def test_the_others_calculate(self, restarted, id):

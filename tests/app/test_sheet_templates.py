@@ -125,8 +125,8 @@ class TestDrafts:
         listed = {one["id"] for one in pages(http, f"{API}/templates", 50, 100)}
         assert id not in listed
         for path in (f"{API}/templates/{id}", version(id)):
-            told = problem(http.get(path), 404, "unreleased")
-            assert f"/api/v1/worksheets/{id}/test" in told["detail"]
+            refusal = problem(http.get(path), 404, "unreleased")
+            assert f"/api/v1/worksheets/{id}/test" in refusal["detail"]
 
     def test_a_draft_can_be_tried(self, http):
         sheet = drafted(http)

@@ -71,7 +71,7 @@ def corrupt(code, text="broken"):
     ],
     ids=str,
 )
-def test_damage_is_told_from_other_errors(error, damaged):
+def test_damage_is_no_other_error(error, damaged):
     assert is_damage(error) is damaged
     wrapped = OperationalError("select 1", {}, error)
     assert isinstance(wrapped, DBAPIError)

@@ -1,4 +1,4 @@
-"""Studies that vary what a relation sets: only by saying so, and told wherever the study is shown."""
+"""Studies that vary what a relation sets: only on request, and shown wherever the study is shown."""
 
 import pytest
 from serving import API, faults
@@ -89,9 +89,9 @@ def test_equal_studies_with_a_relation_set_aside_have_equal_bytes(http, twice, s
 def test_an_estimate_says_what_would_be_done_and_begins_nothing(http, twice):
     before = http.get(f"{API}/studies", params={"design": twice["id"]}).json()["items"]
     body = {"design": twice["id"], "method": "grid", "steps": 3, **ASIDE}
-    told = http.post(f"{API}/studies/estimate", json=body)
-    assert told.status_code == 200, told.text
-    assert told.json()["rows"] == 3
-    assert told.json()["set_aside"] == {INPUT: "= length"}
-    assert told.json()["estimate"]["seconds"] > 0
+    estimate = http.post(f"{API}/studies/estimate", json=body)
+    assert estimate.status_code == 200, estimate.text
+    assert estimate.json()["rows"] == 3
+    assert estimate.json()["set_aside"] == {INPUT: "= length"}
+    assert estimate.json()["estimate"]["seconds"] > 0
     assert http.get(f"{API}/studies", params={"design": twice["id"]}).json()["items"] == before

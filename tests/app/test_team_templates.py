@@ -118,8 +118,8 @@ class TestQuarantine:
 
     def test_a_quarantined_version_says_why(self, http):
         for answer in (http.get(f"{DOUBLED}/3"), doubled(http, 3)):
-            told = problem(answer, 404, "quarantined")
-            assert "own/double_v3.py has faults: line 15: " in told["detail"]
+            refusal = problem(answer, 404, "quarantined")
+            assert "own/double_v3.py has faults: line 15: " in refusal["detail"]
         listed = http.get(f"{API}/templates/double").json()["items"]
         assert [item["version"] for item in listed] == [1, 2]
         assert listed[-1]["latest"]

@@ -106,7 +106,7 @@ class TestEvaluate:
             "journal_diameter": {"value": pytest.approx(47.945 / 25.4), "unit": "inch"},
         }
 
-    def test_inputs_are_told_as_given_or_default(self, http):
+    def test_inputs_are_marked_as_given_or_default(self, http):
         inputs = evaluate(http, OIL_FILM)["inputs"]
         assert inputs["radial_load"] == {"value": 25, "unit": "kN", "from": "given"}
         assert inputs["reference_density"]["from"] == "default"

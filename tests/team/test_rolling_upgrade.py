@@ -58,7 +58,7 @@ def team(tmp_path):
 
 @pytest.fixture
 def writers(team):
-    """Clients that change designs at either server until they are told to end."""
+    """Clients that change designs at either server until they are stopped."""
     urls = [server.url for server in team.servers]
     writers = [Writer(urls, number, LATER, PAUSE) for number in range(WRITERS)]
     for writer in writers:

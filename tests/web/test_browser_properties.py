@@ -9,7 +9,7 @@ from patience import until
 from playwright.sync_api import expect
 
 from app.presentation.numbers import aligned, unit
-from app.presentation.numbers import told as python_told
+from app.presentation.numbers import in_line as python_in_line
 
 SERIOUS = ("serious", "critical")
 NARROW = {"width": 390, "height": 844}
@@ -192,4 +192,4 @@ def test_the_browser_writes_numbers_as_the_server_does(watched):
     numbers, units, quantities = watched.page.evaluate(script, [list(NUMBERS), list(UNITS), list(QUANTITIES)])
     assert numbers == [list(aligned(number)) for number in NUMBERS]
     assert units == [unit(text) for text in UNITS]
-    assert quantities == [python_told(quantity) for quantity in QUANTITIES]
+    assert quantities == [python_in_line(quantity) for quantity in QUANTITIES]

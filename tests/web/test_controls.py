@@ -88,7 +88,7 @@ def test_options_of_a_template_are_kept_apart_from_its_inputs(http):
     assert re.search(r'id="@(level|tolerance)-error"><bdi>[^<]', refused.text)
 
 
-def test_options_of_a_step_are_saved_and_their_faults_told_beside_them(http):
+def test_options_of_a_step_are_saved_and_their_faults_shown_beside_them(http):
     place = from_example(http, "oil_film/2")
     for typed in ("inf", "[1]", "small"):
         wrong = http.post(place, data={"revision": "1", "was": "{}", "oil_film@tolerance": typed})

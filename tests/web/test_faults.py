@@ -88,7 +88,7 @@ def test_results_of_before_are_marked_until_the_input_is_possible_again(watched,
         expect(value).to_have_css("color", "rgb(27, 39, 51)")
 
 
-def test_what_is_wrong_with_a_cell_of_a_model_is_told_in_words(open_design):
+def test_what_is_wrong_with_a_cell_of_a_model_is_said_in_words(open_design):
     cell = open_design.locator('[data-parameter="model.inner_diameter"] .comes-to')
     field = open_design.locator('[name="model.inner_diameter"]')
     field.fill("= film.radial_load")

@@ -108,7 +108,7 @@ def test_an_upgrade_to_nothing_is_not_found(http, query):
     assert http.get(f"/designs/{design}/upgrade", params=query).status_code == 404
 
 
-def test_a_cancelled_calculation_is_told(http):
+def test_a_cancelled_calculation_is_shown(http):
     answer = sent(http, PAGE)
     place = answer.headers["location"]
     job = place.rpartition("job=")[2]

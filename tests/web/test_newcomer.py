@@ -123,7 +123,7 @@ def test_what_is_not_saved_survives_a_reload_and_can_be_discarded(watched):
 
 
 @pytest.mark.slow
-def test_a_change_by_somebody_else_is_told_and_ours_is_kept(watched, http):
+def test_a_change_by_somebody_else_is_shown_and_ours_is_kept(watched, http):
     page = created(watched)
     place = page.url.removeprefix(watched.url)
     page.get_by_label("Radial load").fill("31 kN")

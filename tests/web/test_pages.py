@@ -8,7 +8,7 @@ from patience import until
 from sqlalchemy import text
 
 from app.api.gate.guard import PAGE_POLICY
-from app.presentation.numbers import aligned, percent, told, unit
+from app.presentation.numbers import aligned, in_line, percent, unit
 from app.presentation.typed import text_of, value_of
 from app.schemas.designs import Design
 from app.web.forms import kept, patch_of
@@ -256,12 +256,12 @@ def test_numbers_are_written_with_five_digits(value, shown):
 
 def test_units_and_quantities_are_written_once():
     assert [unit(text) for text in ("mm**2/s", "N*m", "degC", "1", None)] == ["mm²/s", "N·m", "°C", "", ""]
-    assert told({"value": 48.0, "unit": "mm", "plus": 0.1}) == "48 mm +0.1"
-    assert told({"value": list(range(9)), "unit": "deg"}) == "[0, 1, 2, 3, 4, 5, 6, 7, 8] °"
+    assert in_line({"value": 48.0, "unit": "mm", "plus": 0.1}) == "48 mm +0.1"
+    assert in_line({"value": list(range(9)), "unit": "deg"}) == "[0, 1, 2, 3, 4, 5, 6, 7, 8] °"
     wave = [float((7 * n) % 31) for n in range(31)]
-    assert told({"value": wave, "unit": "N"}) == "0 … 30 N (31 values; least no. 1, largest no. 23)"
-    assert told({"value": [[1.0] * 12, [2.0] * 12], "unit": "1"}) == "1 … 2 (2 × 12 values)"
-    assert told({"value": None, "unit": "1", "reason": "no load"}) == "no load"
+    assert in_line({"value": wave, "unit": "N"}) == "0 … 30 N (31 values; least no. 1, largest no. 23)"
+    assert in_line({"value": [[1.0] * 12, [2.0] * 12], "unit": "1"}) == "1 … 2 (2 × 12 values)"
+    assert in_line({"value": None, "unit": "1", "reason": "no load"}) == "no load"
     assert percent(0.24) == "24 %"
 
 

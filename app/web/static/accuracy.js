@@ -5,8 +5,8 @@ import { COLOURS, draw } from "./plots.js";
 const SHOWN = 5; // outputs
 
 export async function drawAccuracy(place) {
-  const { told } = await call("GET", place.dataset.accuracy);
-  const levels = Object.entries(told.levels);
+  const { payload } = await call("GET", place.dataset.accuracy);
+  const levels = Object.entries(payload.levels);
   const outputs = [...new Set(levels.flatMap(([, level]) => Object.keys(level.errors)))].slice(0, SHOWN);
   const lines = outputs.map((name, n) => {
     const points = levels.map(([level, { cost, errors }]) => ({ level, cost: cost.single * 1000, errors: sorted(errors[name]) })).filter((point) => point.errors.length);

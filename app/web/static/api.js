@@ -17,9 +17,9 @@ export async function call(method, path, body, { headers = {}, signal } = {}) {
   const sent = body === undefined ? {} : { body: JSON.stringify(body) };
   const type = body === undefined ? {} : { "Content-Type": "application/json" };
   const answer = await fetch(path, { method, signal, headers: { ...type, ...headers }, ...sent });
-  const told = answer.status === 204 ? null : await answer.json().catch(() => ({}));
-  if (!answer.ok) throw new Refused(answer.status, told ?? {});
-  return { told, status: answer.status, location: answer.headers.get("Location"), tag: answer.headers.get("ETag") };
+  const payload = answer.status === 204 ? null : await answer.json().catch(() => ({}));
+  if (!answer.ok) throw new Refused(answer.status, payload ?? {});
+  return { payload, status: answer.status, location: answer.headers.get("Location"), tag: answer.headers.get("ETag") };
 }
 
 export const units = () =>

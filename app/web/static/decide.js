@@ -32,7 +32,7 @@ export function startDecide(api, patch) {
 
 async function decision(api) {
   const answer = await call("POST", `${api}/decide?units=${units()}`, {}, { headers: { Prefer: "wait=2" } });
-  return (answer.status === 202 ? await calculated(answer.location) : answer).told;
+  return (answer.status === 202 ? await calculated(answer.location) : answer).payload;
 }
 
 function summary({ tried, undecided, stopped, seconds }) {

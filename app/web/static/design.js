@@ -42,7 +42,7 @@ let steps = {}, conflicted = false, isFollowing = false; // the bar shows the jo
 
 const preview = live(
   (signal) => previewed(signal, isFollowing),
-  ({ told: payload }) => {
+  ({ payload }) => {
     clear();
     show(payload);
     state.textContent = [draft.keep() && "previewed, not saved", waiting(payload)].filter(Boolean).join("; ");
@@ -56,7 +56,7 @@ async function previewed(signal, isQuick) {
   const answer = await call("POST", path, patch(), { signal, headers: { Prefer: "wait=1" } });
   if (answer.status !== 202) return answer;
   clear();
-  show(answer.told);
+  show(answer.payload);
   state.textContent = draft.keep() ? "not saved" : "";
   return calculated(answer.location, signal);
 }
@@ -221,7 +221,7 @@ async function start() {
   if (form.querySelector("[data-elements]")) import("./elements.js").then(({ startElements }) => startElements());
   try {
     const isPainted = designState === "current" && document.querySelector("[data-painted]"); // with results of a step
-    const { told: payload } = await previewed(undefined, isFollowing || (from === null && !isPainted));
+    const { payload } = await previewed(undefined, isFollowing || (from === null && !isPainted));
     clear();
     show(payload);
     state.textContent = [state.textContent, waiting(payload)].filter(Boolean).join("; ");

@@ -39,8 +39,8 @@ async function made(path, say) {
     }
     say(0, "The file is being made …");
     await watched(job, say);
-    const { told } = await call("GET", job);
-    if (told.state !== "done") throw new Refused(told.problem?.status ?? 409, told.problem ?? { detail: "The job was cancelled." });
+    const { payload } = await call("GET", job);
+    if (payload.state !== "done") throw new Refused(payload.problem?.status ?? 409, payload.problem ?? { detail: "The job was cancelled." });
   }
 }
 

@@ -16,7 +16,7 @@ function start(place) {
   const button = place.querySelector("[data-analyse]");
   asks.hidden = false;
   // On a design's page the panel stands in the form of the worksheet: its fields are none of that.
-  for (const event of ["input", "change"]) place.addEventListener(event, (told) => told.stopPropagation());
+  for (const event of ["input", "change"]) place.addEventListener(event, (happened) => happened.stopPropagation());
   kind.addEventListener("change", () => asDeclared(place));
   asDeclared(place);
   button.addEventListener("click", async () => {
@@ -50,12 +50,12 @@ function tell(place, words) {
 
 // Ask, and wait for the job if there is one; the answer in the units of the page, and its load in N·m.
 async function found(place) {
-  const { told: built } = await call("GET", `/api/v1/builds/${place.dataset.build}`);
+  const { payload: built } = await call("GET", `/api/v1/builds/${place.dataset.build}`);
   const path = `${place.dataset.elements}/${ask(place, "kind").value}`, body = asked(place, built.parameters);
-  const { told, status, location } = await call("POST", path, body, { headers: { Prefer: "respond-async" } });
+  const { payload: analysis, status, location } = await call("POST", path, body, { headers: { Prefer: "respond-async" } });
   if (status === 202) await finished(place, location);
-  const { told: known } = await call("GET", `/api/v1/analyses/${told.id}?units=${units()}&load=${encodeURIComponent(body.load)}`);
-  return { ...known, newtonMetres: told.load.value };
+  const { payload: answer } = await call("GET", `/api/v1/analyses/${analysis.id}?units=${units()}&load=${encodeURIComponent(body.load)}`);
+  return { ...answer, newtonMetres: analysis.load.value };
 }
 
 function asked(place, parameters) {
@@ -73,16 +73,16 @@ async function finished(place, job) {
   const progress = place.querySelector("[data-elements-progress]");
   await follow(job, progress, "The solid is being analysed …");
   progress.hidden = true;
-  const { told } = await call("GET", job);
-  if (told.problem) throw new Refused(told.problem.status, told.problem);
-  if (told.state !== "done") throw new Error(`The analysis was ${told.state}.`);
+  const { payload: ended } = await call("GET", job);
+  if (ended.problem) throw new Refused(ended.problem.status, ended.problem);
+  if (ended.state !== "done") throw new Error(`The analysis was ${ended.state}.`);
 }
 
 async function show(place, analysis) {
   showAnalysis(place.querySelector("[data-analyses]"), analysis);
-  const { told: kept } = await call("GET", `${analysis.outputs.surface.url}?units=${units()}`);
+  const { payload: stored } = await call("GET", `${analysis.outputs.surface.url}?units=${units()}`);
   const { drawDeformed, fieldsOf, under } = await import("./deformed.js");
-  const surface = under(kept, analysis.newtonMetres, written(analysis.load));
+  const surface = under(stored, analysis.newtonMetres, written(analysis.load));
   const view = place.querySelector("[data-deformed]"), colour = place.querySelector("[data-colour]");
   const names = Object.keys(fieldsOf(surface)), before = colour.value;
   colour.replaceChildren(...names.map((name) => new Option(name, name, false, name === before)));

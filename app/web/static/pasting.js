@@ -13,7 +13,7 @@ export function startPasting(dialog) {
 
   const reading = live(
     (signal) => call("POST", "/tables", asked(), { signal }),
-    ({ told: payload }) => show(payload),
+    ({ payload }) => show(payload),
     (error) => refuse([...(error.faults?.values() ?? [])].join("; ") || error.message),
   );
 

@@ -8,7 +8,7 @@ const known = new Map();
 export function pressureOf(picture, values, system = "si") {
   const asked = Object.fromEntries(Object.entries(picture.inputs).map(([name, from]) => [name, typedOf(values[from])]));
   const key = `${system} ${JSON.stringify(asked)}`;
-  if (!known.has(key)) known.set(key, call("POST", `/api/v1/film-pressure?units=${system}`, { inputs: asked }).then(({ told }) => told));
+  if (!known.has(key)) known.set(key, call("POST", `/api/v1/film-pressure?units=${system}`, { inputs: asked }).then(({ payload }) => payload));
   return known.get(key);
 }
 

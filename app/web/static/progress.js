@@ -33,6 +33,6 @@ export function watched(path, say) {
       ended();
     };
     for (const state of ENDED) events.addEventListener(state, end);
-    events.onerror = () => call("GET", path).then(({ told }) => ENDED.includes(told.state) && end(), () => {}); // it tries again
+    events.onerror = () => call("GET", path).then(({ payload }) => ENDED.includes(payload.state) && end(), () => {}); // it tries again
   });
 }

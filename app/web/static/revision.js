@@ -6,5 +6,5 @@ import { drawPictures } from "./pictures.js";
 startDownloads();
 
 const [, id, number] = location.pathname.match(/designs\/([^/]+)\/revisions\/(\d+)/);
-const { told } = await call("GET", `/api/v1/designs/${id}/revisions/${number}/worksheet?units=${units()}`);
-for (const [step, answer] of Object.entries(told.steps)) drawPictures(document, step, answer);
+const { payload } = await call("GET", `/api/v1/designs/${id}/revisions/${number}/worksheet?units=${units()}`);
+for (const [step, answer] of Object.entries(payload.steps)) drawPictures(document, step, answer);

@@ -1,4 +1,4 @@
-// The part in three dimensions: a GLB file read and drawn by Plotly, with its size told below.
+// The part in three dimensions: a GLB file read and drawn by Plotly, with its size below.
 import { units } from "./api.js";
 import { readGlb } from "./glb.js";
 import { unit } from "./numbers.js";
@@ -43,9 +43,9 @@ async function drawSolid(place, bodies) {
 }
 
 function tellSize(place) {
-  const told = Object.assign(document.createElement("p"), { className: "size muted" });
-  told.textContent = `${place.dataset.size}; drag to turn, scroll to zoom`;
-  place.append(told);
+  const caption = Object.assign(document.createElement("p"), { className: "size muted" });
+  caption.textContent = `${place.dataset.size}; drag to turn, scroll to zoom`;
+  place.append(caption);
 }
 
 // Paint the film pressure on the bore, its load towards +y; or take it away.

@@ -43,7 +43,7 @@ async function tableOf(section) {
   const columns = Object.fromEntries(names.map((name) => [name, { unit: symbols[name], values: [] }])), rows = [], verdicts = [], each = [];
   let cursor = "";
   do {
-    const { told: page } = await call("GET", `/api/v1/studies/${section.dataset.study}/rows?limit=${PAGE}&units=${units()}${cursor && `&cursor=${encodeURIComponent(cursor)}`}`);
+    const { payload: page } = await call("GET", `/api/v1/studies/${section.dataset.study}/rows?limit=${PAGE}&units=${units()}${cursor && `&cursor=${encodeURIComponent(cursor)}`}`);
     for (const row of page.items.filter(({ reason }) => !reason)) {
       rows.push(row.row);
       verdicts.push(row.verdict);

@@ -38,14 +38,14 @@ async function tried(signal) {
   return calculated(answer.location, signal);
 }
 
-function show({ told }) {
+function show({ payload }) {
   markOutdated(false);
   progress.hidden = true;
   showFaults(form, new Map());
-  showResults("", told);
-  drawPictures(document, "", told);
-  state.textContent = told.level ? `level ${told.level}` : "";
-  if (criteria) showCriteria(told);
+  showResults("", payload);
+  drawPictures(document, "", payload);
+  state.textContent = payload.level ? `level ${payload.level}` : "";
+  if (criteria) showCriteria(payload);
 }
 
 function showCriteria({ verdict, criteria: judged = [] }) {

@@ -24,8 +24,8 @@ let sound = { lines: [], texts: [] }; // the last answer without faults, and its
 
 const checking = live(
   async (signal) => {
-    const sent = area.value, { told } = await call("POST", "/api/v1/worksheets/check", { text: sent, id }, { signal });
-    return { sent, checked: told };
+    const sent = area.value, { payload } = await call("POST", "/api/v1/worksheets/check", { text: sent, id }, { signal });
+    return { sent, checked: payload };
   },
   ({ sent, checked }) => sent === area.value && show(checked), // else a newer one is about to be asked for
   (error) => (find("[data-sheet-faults]").textContent = error instanceof Refused ? error.message : "The service does not answer; the sheet is as it was."),
@@ -129,13 +129,13 @@ function tell(error, place = trouble) {
 
 // Somebody else saved: both texts are shown, and the user chooses.
 async function conflict() {
-  const { told, tag: newest } = await call("GET", api);
+  const { payload, tag: newest } = await call("GET", api);
   theirs.hidden = false;
-  drawDiff(find("[data-theirs-diff]"), area.value, told.text);
+  drawDiff(find("[data-theirs-diff]"), area.value, payload.text);
   tell(new Error("Somebody else saved this worksheet meanwhile. Your text is kept; what theirs removes and adds is shown below."));
   chosen("[data-take-theirs]", () => {
-    replace(area, told.text, 0, area.value.length); // the browser can undo it
-    keepAs(told.text, newest);
+    replace(area, payload.text, 0, area.value.length); // the browser can undo it
+    keepAs(payload.text, newest);
     refresh();
   });
   chosen("[data-keep-mine]", () => {
@@ -198,8 +198,8 @@ document.addEventListener("toggle", async (event) => {
   if (!path || !event.target.open) return;
   const place = event.target.querySelector("[data-diff-inside]");
   try {
-    const { told } = await call("GET", path);
-    drawDiff(place, told.text, area.value);
+    const { payload } = await call("GET", path);
+    drawDiff(place, payload.text, area.value);
   } catch (error) {
     place.replaceChildren(isolated(error.message));
   }

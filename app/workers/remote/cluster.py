@@ -206,20 +206,20 @@ class Cluster:
 
     def _work(self) -> None:
         """Connect, look around until the connection breaks, and connect again."""
-        is_told = False
+        is_logged = False
         while not self._closed.is_set():
             try:
                 with self._connected() as client:
                     logger.warning("connected to the scheduler %s", self.address)
-                    is_told, self._failure = False, "the connection is lost"
+                    is_logged, self._failure = False, "the connection is lost"
                     while client.status == "running" and not self._closed.is_set():
                         self._look_around(client)
                         self._closed.wait(_LOOK)
             except Exception as error:  # whatever it is, no job can be sent until it has passed
                 self._failure = str(error) or type(error).__name__
-                if not is_told:
+                if not is_logged:
                     logger.warning("no connection to the scheduler %s: %s", self.address, error)
-                is_told = True
+                is_logged = True
             self._closed.wait(_PAUSE)
 
     @contextmanager

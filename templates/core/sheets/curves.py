@@ -16,7 +16,7 @@ from templates.core.sheets.grammar import Parsed
 from templates.core.sheets.names import Call, sort_of
 from templates.core.sheets.partial import Partial
 from templates.core.units.operations import Kind
-from templates.core.units.rules import told
+from templates.core.units.rules import in_words
 from templates.core.units.sorts import Part, applied
 from templates.core.units.units import compatible, unit
 
@@ -70,7 +70,7 @@ def _called(name: str, units: tuple[str, str], operation: Partial) -> Call:
             raise FaultyText("unknown_function", f"{name} takes one value in {units[0]}")
         ((given_node, got),) = arguments
         if not compatible(got.kind.base, wanted.kind.base):
-            raise FaultyText("unit_mismatch", f"{name} takes a value in {units[0]}, not {told(got.kind)}")
+            raise FaultyText("unit_mismatch", f"{name} takes a value in {units[0]}, not {in_words(got.kind)}")
         if wanted.weight and not is_temperature(given_node, got):
             raise FaultyText("unit_mismatch", no_temperature(f"the value that {name} takes"))
         node, sort = applied(replace(operation, is_of_items=bool(got.axis)), arguments)

@@ -14,7 +14,7 @@ from templates.core.sheets.names import Names, sort_of
 from templates.core.sheets.remedies import declared_in, remedy_at
 from templates.core.units.expressions import FaultyPlace, checked
 from templates.core.units.operations import Constant
-from templates.core.units.rules import is_number, told
+from templates.core.units.rules import in_words, is_number
 from templates.core.units.sorts import Part, Sort
 from templates.core.units.units import compatible, unit
 
@@ -68,7 +68,7 @@ class Reader:
             message = f"{name} is a quantity, but this is a condition"
             raise statement.refuse("no_truth", message, at, "write if … then … else …")
         if not compatible(got.kind.base, wanted.kind.base):
-            message = f"{name} is declared in {unit_text}, but this gives {told(got.kind)}"
+            message = f"{name} is declared in {unit_text}, but this gives {in_words(got.kind)}"
             is_declared = str(statement.parts[0]).rstrip("(") == name
             remedy = declared_in(name, got.kind.base) if is_declared else _given_in(unit_text)
             raise statement.refuse("unit_mismatch", message, at, remedy)

@@ -13,7 +13,7 @@ from templates.core.sheets.grammar import Parsed
 from templates.core.sheets.names import Names, sort_of
 from templates.core.units.expressions import FaultyPlace, checked
 from templates.core.units.operations import Name
-from templates.core.units.rules import told
+from templates.core.units.rules import in_words
 from templates.core.units.sorts import Part, Sort
 from templates.core.units.units import compatible
 
@@ -43,7 +43,7 @@ class Function:
             raise FaultyText("unknown_function", detail)
         for (node, got), (own, wanted) in zip(arguments, self.parameters, strict=True):
             if got.truth or not compatible(got.kind.base, wanted.kind.base):
-                given = "a condition" if got.truth else told(got.kind)
+                given = "a condition" if got.truth else in_words(got.kind)
                 raise FaultyText("unit_mismatch", f"{self.name} takes {self.takes}, not {given}")
             if wanted.weight and not is_temperature(node, got):
                 raise FaultyText("unit_mismatch", no_temperature(f"{own} of {self.name}"))

@@ -9,7 +9,7 @@ import pint
 
 from templates.core.sheets.names import Names
 from templates.core.units.operations import FUNCTIONS
-from templates.core.units.rules import told
+from templates.core.units.rules import in_words
 from templates.core.units.units import compatible, unit
 
 MOST_NAMES = 4
@@ -98,5 +98,5 @@ def _units(at: lark.Tree[Any], names: Names) -> str:
 
 def _unit_of(name: str, names: Names) -> str:
     if name in names.parameters:
-        return told(names.parameters[name][1].kind)
+        return in_words(names.parameters[name][1].kind)
     return names.units.get(name, "")

@@ -15,7 +15,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText
 from templates.core.units.nodes import Kind, Operation
-from templates.core.units.rules import same, told
+from templates.core.units.rules import in_words, same
 from templates.core.units.units import Value, compatible
 
 _TRUE, _FALSE, _UNKNOWN = np.float64(1.0), np.float64(0.0), np.float64(np.nan)
@@ -63,7 +63,7 @@ def _condition(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> K
 def _either(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
     one, other = kinds[1:]
     if not compatible(one.base, other.base):
-        what = f"{told(one)} and {told(other)}"
+        what = f"{in_words(one)} and {in_words(other)}"
         raise FaultyText("unit_mismatch", f"then and else need equal units, not {what}")
     return Kind(one.base, one.absolute or other.absolute)
 

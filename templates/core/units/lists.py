@@ -11,7 +11,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText
 from templates.core.units.nodes import Kind, Operation
-from templates.core.units.rules import keep, relative, same, told
+from templates.core.units.rules import in_words, keep, relative, same
 from templates.core.units.units import Value
 
 
@@ -45,7 +45,7 @@ def _counted(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kin
 
 def _indexed(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
     if kinds[1] != Kind():
-        raise FaultyText("index", f"an index is a pure number, not {told(kinds[1])}")
+        raise FaultyText("index", f"an index is a pure number, not {in_words(kinds[1])}")
     return kinds[0]
 
 

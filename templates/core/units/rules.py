@@ -17,7 +17,7 @@ def same(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
     """All in units of one kind."""
     for other in kinds[1:]:
         if not compatible(kinds[0].base, other.base):
-            what = f"{told(kinds[0])} and {told(other)}"
+            what = f"{in_words(kinds[0])} and {in_words(other)}"
             raise FaultyText("unit_mismatch", f"{operation.sign} needs equal units, not {what}")
     return Kind(kinds[0].base, any(kind.absolute for kind in kinds))
 
@@ -48,7 +48,7 @@ def power(operation: Operation, kinds: list[Kind], arguments: tuple[Any, ...]) -
     relative(operation, kinds)
     base, exponent = kinds
     if not is_number(exponent):
-        raise FaultyText("unit_mismatch", f"an exponent is a pure number, not {told(exponent)}")
+        raise FaultyText("unit_mismatch", f"an exponent is a pure number, not {in_words(exponent)}")
     if is_number(base):
         return Kind()
     plain = plain_number(arguments[1])
@@ -90,7 +90,7 @@ def pure(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
     """A function of a pure number or an angle."""
     if not is_number(kinds[0]):
         raise FaultyText(
-            "unit_mismatch", f"{operation.sign} takes an angle or a pure number, not {told(kinds[0])}"
+            "unit_mismatch", f"{operation.sign} takes an angle or a pure number, not {in_words(kinds[0])}"
         )
     return Kind(RADIAN) if operation.sign in ("asin", "acos", "atan") else Kind()
 
@@ -106,7 +106,7 @@ def whole(operation: Operation, kinds: list[Kind], _: tuple[Any, ...]) -> Kind:
     if kinds[0] != Kind():
         hint = f"divide by a unit, as in {operation.sign}(d / 1 mm)"
         raise FaultyText(
-            "unit_mismatch", f"{operation.sign} takes a pure number, not {told(kinds[0])}; {hint}"
+            "unit_mismatch", f"{operation.sign} takes a pure number, not {in_words(kinds[0])}; {hint}"
         )
     return Kind()
 
@@ -116,7 +116,7 @@ def is_number(kind: Kind) -> bool:
     return bool(registry.get_dimensionality(kind.base) == registry.get_dimensionality(Kind().base))
 
 
-def told(kind: Kind) -> str:
+def in_words(kind: Kind) -> str:
     """A kind in words: by the unit that has a name, `N` for `kg·m/s²`."""
     named = (name for name, base in _named().items() if base == kind.base)
     return next(named, f"{kind.base:~P}") or "a pure number"

@@ -80,7 +80,7 @@ class Passing:
         """The same of fewer cases."""
         return Passing(self.load.of(cases), self.sleeve.of(cases), self.groove.of(cases))
 
-    def told_apart(self) -> tuple["Passing", NDArray[np.intp]]:
+    def with_distinct_rings(self) -> tuple["Passing", NDArray[np.intp]]:
         """The same at angles whose rings differ in their number of nodes; and where the old angles are.
 
         With equal steps they do. With others the angles are divided until the finest ring is the only one.
@@ -118,7 +118,7 @@ class Passing:
 class GroovedLaw:
     """The mobility beside a groove; a `MobilityLaw`.
 
-    It recognises the ring on which it is asked by the number of nodes: `Passing.told_apart`.
+    It recognises the ring on which it is asked by the number of nodes: `Passing.with_distinct_rings`.
     """
 
     def __init__(self, ratio: Array, passing: Passing) -> None:
@@ -156,7 +156,7 @@ def grooved_orbit(passing: Passing, ratio: Array) -> Orbit:
     ratio
         (C,) width over diameter B/D; it and that of the lands 0.02 … 10 [-].
     """
-    divided, own = passing.told_apart()
+    divided, own = passing.with_distinct_rings()
     orbit = periodic_orbit(divided.load, GroovedLaw(ratio, divided))
     return replace(orbit, eps=orbit.eps[..., own])
 

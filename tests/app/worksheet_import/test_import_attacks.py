@@ -108,14 +108,14 @@ def test_too_many_parts_are_refused_by_their_number(count):
 
 
 @pytest.mark.parametrize(
-    ("path", "told"),
+    ("path", "message"),
     [("../x", "leads out"), ("/etc/x", "leads out"), ("a/../../x", "leads out"), ("..\\x", "leads out"),
      ("c:\\x", "leads out"), ("x" * 300, "leads out")],
 )  # fmt: skip
-def test_a_part_whose_name_leads_out_is_refused(path, told):
+def test_a_part_whose_name_leads_out_is_refused(path, message):
     code, said = refused(packed({**SMALL, path: b""}))
     assert code == "package"
-    assert told in said
+    assert message in said
 
 
 def test_two_parts_of_one_name_are_refused():

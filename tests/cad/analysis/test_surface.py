@@ -135,7 +135,7 @@ def test_a_half_with_its_image_is_the_mirrored_mesh() -> None:
     assert off[np.abs(whole.points[:, 1]) == 15].max() < 1e-6 * whole.stress.max()
 
 
-def test_it_is_found_only_by_name_and_told_with_units() -> None:
+def test_it_is_calculated_only_by_name_and_has_units() -> None:
     """Of a level alone; by a tolerance at the level at which the stiffness meets it."""
     shaft, seen_at = Shaft(0.0, LENGTH), []
     for asked in (

@@ -16,7 +16,7 @@ OTHER_SEED = 7  # not that of the throws from which the factors were read
 
 
 @pytest.mark.slow
-def test_property_the_error_told_bounds_the_true_one_on_ten_throws() -> None:
+def test_property_the_stated_error_bounds_the_true_one_on_ten_throws() -> None:
     wrong = {}
     for number, parameters in enumerate(random_throws(10, OTHER_SEED)):
         step, shaft = shaft_of(parameters)

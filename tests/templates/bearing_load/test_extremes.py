@@ -77,7 +77,7 @@ class TestSingleExtremes:
             assert curve.min() < 0 < curve.max()
 
     @BOTH
-    def test_property_default_that_does_not_exist_is_not_told(self, cls):
+    def test_property_default_that_does_not_exist_is_not_shown(self, cls):
         """No suction, no exhaust pressure; and null for the point of an array at which there is none."""
         raw = {n: v for n, v in cls.example.items() if n not in ("suction_pressure", "exhaust_pressure")}
         reported = rendering.evaluation(evaluate(cls, {**raw, "gas_cycle": "none"}))

@@ -123,7 +123,7 @@ class TestLevels:
         assert [w.name for w in warnings] == ["width_ratio"]
         assert evaluate(OilFilm, bearing(1, 0.2), level="short_bearing").warnings == []
 
-    def test_property_level_and_boundary_are_told(self):
+    def test_property_level_and_boundary_are_in_the_answer(self):
         for level in OilFilm.levels:
             evaluation = evaluate(OilFilm, bearing(1, 0.5), outputs=["boundary_condition"], level=level)
             assert evaluation.level == level

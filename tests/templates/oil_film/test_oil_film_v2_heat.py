@@ -128,6 +128,6 @@ class TestHeatBalance:
             "oil_outlet_temperature",
         }
 
-    def test_property_overruled_temperatures_are_told(self):
+    def test_property_overruled_temperatures_are_a_warning(self):
         warnings = evaluate(OilFilm, case(supply_temperature="60 degC")).warnings
         assert {w.code for w in warnings} == {"unused_input"}

@@ -108,7 +108,7 @@ class TestBalance:
         assert (np.diff(result["minimum_film_thickness"]) < 0).all()
 
     def test_analytic_given_viscosity(self):
-        """Without a supply the film is that of the viscosity; with one the heat is told too."""
+        """Without a supply the film is that of the viscosity; with one the heat is an output too."""
         warm = outputs()
         viscosity = {"dynamic_viscosity": f"{warm['dynamic_viscosity']} mPa*s"}
         cold = answer({**viscosity, "supply_temperature": None}).outputs
