@@ -59,6 +59,7 @@ BUCKET = _histogram(
     "crankwright_bucket_request_seconds", "Time of a request to the bucket [s]", ["operation", "outcome"]
 )
 COPIES = _counter("crankwright_local_copies_total", "Reads of a bucket's files on this machine", ["found"])
+COPIED = _gauge("crankwright_database_copied", "1 if files are kept because the database has a copy")
 
 _started: dict[str, float] = {}  # job -> when this run began
 _watched: dict[str, Callable[[], Mapping[str, float]]] = {}

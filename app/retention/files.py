@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from app.retention.rows import referenced_files
 from app.storage.alone import alone
 from app.storage.artifacts import Artifacts, Stored
+from app.storage.copies_of_databases import require_only_copy
 from app.storage.database import Database
 
 GRACE = 24 * 3600.0  # s
@@ -29,9 +30,19 @@ class Sweep:
         self._seen: set[Stored] = set()  # by the last sweep, without a reference
 
     def run(self, is_stopping: Callable[[], bool] = lambda: False) -> int:
-        """Sweep once, unless another server does; return how many files were deleted."""
+        """Sweep once, unless another server does; return how many files were deleted.
+
+        Raises
+        ------
+        DatabaseCopied
+            A copy of the database uses the store as well.
+        """
         with alone(self._database, "sweep of files") as is_alone:
-            return self._swept(is_stopping) if is_alone else 0
+            if not is_alone:
+                return 0
+            if self._store.is_shared:
+                require_only_copy(self._database, self._store)
+            return self._swept(is_stopping)
 
     def _swept(self, is_stopping: Callable[[], bool]) -> int:
         files = set(self._store.list())  # before the rows: a file that is put meanwhile is not looked at

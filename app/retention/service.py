@@ -9,11 +9,13 @@ from functools import partial
 
 from sqlalchemy.orm import Session
 
+from app.observation import metrics
 from app.retention import rows
 from app.retention.files import Sweep
 from app.settings import Settings
 from app.storage.artifacts import Artifacts
 from app.storage.clock import DAY, operated
+from app.storage.copies_of_databases import DatabaseCopied
 from app.storage.database import Database
 
 logger = logging.getLogger(__name__)
@@ -95,4 +97,11 @@ class Retention:
         if self._swept is not None and present - self._swept < GRACE:
             return 0
         self._swept = present
-        return self._sweep.run(self._stopping.is_set)
+        try:
+            deleted = self._sweep.run(self._stopping.is_set)
+        except DatabaseCopied as copied:
+            metrics.COPIED.set(1)
+            logger.error("%s", copied)
+            return 0
+        metrics.COPIED.set(0)
+        return deleted

@@ -51,6 +51,11 @@ class Artifacts(Protocol):
     file.
     """
 
+    @property
+    def is_shared(self) -> bool:
+        """Whether it may be used by others than the one server of a data folder."""
+        ...
+
     def put(self, *parts: bytes | memoryview) -> str:
         """Store bytes, whole or in parts, and return their SHA-256; they are durable when it returns.
 
@@ -91,6 +96,14 @@ class Artifacts(Protocol):
         """Have the store belong to an owner, if it has none; return whose it is."""
         ...
 
+    def read_note(self, name: str) -> str | None:
+        """What the store says under a name that is no hash; None if nothing."""
+        ...
+
+    def write_note(self, name: str, text: str) -> None:
+        """Have the store say something under a name, in place of what it said."""
+        ...
+
     def probe(self) -> None:
         """Return if the store answers; raises ArtifactsUnreachable."""
         ...
@@ -106,7 +119,7 @@ class ArtifactStore:
     """
 
     def __init__(self, folder: Path, *, is_shared: bool = False, is_durable: bool = True) -> None:
-        self.folder = folder
+        self.folder, self.is_shared = folder, is_shared
         self._is_durable = is_durable
         self._verified = Verified()
         folder.mkdir(parents=True, exist_ok=True)
@@ -217,7 +230,20 @@ class ArtifactStore:
                 os.link(temporary, self.folder / OWNER)
         finally:
             os.unlink(temporary)
-        return (self.folder / OWNER).read_text(errors="replace").strip()
+        return (self.read_note(OWNER) or "").strip()
+
+    def read_note(self, name: str) -> str | None:
+        """What the folder says under a name; None if nothing."""
+        try:
+            return (self.folder / name).read_text(errors="replace")
+        except FileNotFoundError:
+            return None
+
+    def write_note(self, name: str, text: str) -> None:
+        """Have the folder say something under a name, durably."""
+        with self._changing.putting():
+            _write_whole(self.folder / name, [text.encode()], self._clear, is_durable=self._is_durable)
+        _sync_folder(self.folder)
 
     def probe(self) -> None:
         """Return if the folder is there; raises ArtifactsUnreachable."""

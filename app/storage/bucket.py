@@ -1,7 +1,8 @@
 """Artifacts in a bucket of S3, served from verified copies on this machine.
 
-In the bucket lie `<sha>`, the files; `database`, whose files they are; `quarantine/<sha>.<tag>`, copies of
-files with other bytes than their name says; `discarded/<sha>`, files that no row named, until the next sweep.
+In the bucket lie `<sha>`, the files; `database`, whose files they are; `sweeps`, who collected them last;
+`quarantine/<sha>.<tag>`, copies of files with other bytes than their name says; `discarded/<sha>`, files that
+no row named, until the next sweep.
 
 What is trusted: a copy, once its bytes were hashed, as long as inode, size and times stay (`ArtifactStore`);
 an object, once its bytes were hashed or sent by this process, as long as its tag stays, which changes with
@@ -31,6 +32,8 @@ _TRIES = 2  # at a download whose bytes are not those of the name
 
 class BucketStore:
     """Artifacts in a bucket. `on_look` is called with whether a read found its copy on this machine."""
+
+    is_shared = True
 
     def __init__(
         self, bucket: Bucket, copies: Copies, on_look: Callable[[bool], object] | None = None
@@ -151,6 +154,15 @@ class BucketStore:
             if answer := self._bucket.get(OWNER):  # nobody has deleted it meanwhile
                 return answer[0].decode(errors="replace").strip()
         return owner
+
+    def read_note(self, name: str) -> str | None:
+        """What the bucket says under a name; None if nothing."""
+        answer = self._bucket.get(name)
+        return None if answer is None else answer[0].decode(errors="replace")
+
+    def write_note(self, name: str, text: str) -> None:
+        """Have the bucket say something under a name."""
+        self._bucket.replace(name, text.encode())
 
     def probe(self) -> None:
         """Return if the bucket answers; raises ArtifactsUnreachable."""

@@ -1,0 +1,95 @@
+"""Two copies of one database that share a store must not collect each other's files.
+
+A backup and a clone keep the identity by which a store knows its database (`app.storage.ownership`), so that
+does not tell copies apart. What each collection leaves behind does: a number chosen at random, in the
+database and in the store. A database that finds a number there which is not its own has a copy that collects.
+"""
+
+from __future__ import annotations
+
+import json
+import secrets
+from dataclasses import dataclass
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.storage.artifacts import Artifacts
+from app.storage.database import Database
+from app.storage.errors import StorageError
+from app.storage.identity import now
+from app.storage.tables import CounterRow
+from app.storage.upserts import upsert
+
+NOTE = "sweeps"  # in the store: the number of the last collection, and whether there are copies
+LAST, NEXT = "sweep", "sweep_next"  # rows of `counter`; the store has one of the two, wherever a server died
+
+
+class DatabaseCopied(StorageError):
+    """Another copy of this database uses the same store, or did."""
+
+    def __init__(self, since: str) -> None:
+        super().__init__(since)
+        self.since = since
+
+    def __str__(self) -> str:
+        return (
+            "Files that nobody wants any more are kept: a copy of this database, such as a restored "
+            f"backup or a clone, has used the same file store (noticed {self.since}), and each would delete files of "
+            "the other. Give one of them a bucket, prefix or folder of its own (CRANKWRIGHT_ARTIFACTS_URL) "
+            f"with a copy of the files. Once this is the only one again, delete `{NOTE}` in the store."
+        )
+
+
+@dataclass(frozen=True)
+class _Mark:
+    """What the store says: the number of the last collection, and since when it is known to have copies."""
+
+    number: int
+    copied: str | None = None
+
+
+def require_only_copy(database: Database, store: Artifacts) -> None:
+    """Return if this database may collect files now, with a number for this collection; one server at a time.
+
+    Raises
+    ------
+    DatabaseCopied
+        Another copy has collected files since this one did, or has noticed this one. The store says so from
+        now on, so the other one stops as well.
+    ArtifactsUnreachable
+        The store does not answer.
+    """
+    mark = _mark(store)
+    if mark is not None and mark.copied:
+        raise DatabaseCopied(mark.copied)
+    number = secrets.randbits(63)
+    if not database.write(lambda session: _chosen(session, mark, number)):
+        since = now()
+        store.write_note(NOTE, json.dumps({"sweep": number, "copied": since}))
+        raise DatabaseCopied(since)
+    store.write_note(NOTE, json.dumps({"sweep": number, "copied": None}))
+
+
+def _chosen(session: Session, mark: _Mark | None, number: int) -> bool:
+    """Keep the store's number and the next one, if the store's is one that this database has chosen."""
+    if mark is not None:
+        query = select(CounterRow.value).where(CounterRow.name.in_((LAST, NEXT)))
+        if mark.number not in set(session.scalars(query)):
+            return False
+        upsert(session, CounterRow(name=LAST, value=mark.number))
+    upsert(session, CounterRow(name=NEXT, value=number))
+    return True
+
+
+def _mark(store: Artifacts) -> _Mark | None:
+    """The mark in the store, if it has one; what nobody can read counts as a copy's."""
+    text = store.read_note(NOTE)
+    if text is None:
+        return None
+    try:
+        said = json.loads(text)
+        copied = said["copied"]
+        return _Mark(int(said["sweep"]), None if copied is None else str(copied)[:40])
+    except (ValueError, KeyError, TypeError):
+        return _Mark(-1)
