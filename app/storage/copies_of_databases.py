@@ -35,9 +35,9 @@ class DatabaseCopied(StorageError):
     def __str__(self) -> str:
         return (
             "Files that nobody wants any more are kept: a copy of this database, such as a restored "
-            f"backup or a clone, has used the same file store (noticed {self.since}), and each would delete files of "
-            "the other. Give one of them a bucket, prefix or folder of its own (CRANKWRIGHT_ARTIFACTS_URL) "
-            f"with a copy of the files. Once this is the only one again, delete `{NOTE}` in the store."
+            f"backup or a clone, has used the same file store (noticed {self.since}), and each would delete "
+            "files of the other. Give one of them a bucket, prefix or folder of its own with a copy of the "
+            f"files (CRANKWRIGHT_ARTIFACTS_URL). Once it is the only one again, delete `{NOTE}` in the store."
         )
 
 
