@@ -11,7 +11,7 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
@@ -47,29 +47,71 @@ class _Line:
         return Fault(place, code, detail)
 
 
+class _Faults:
+    """The faults of a table as they are met: the first `most` are kept, the others counted."""
+
+    def __init__(self, most: int) -> None:
+        self._most, self._kept, self._more = most, list[Fault](), 0
+
+    def add(self, fault: Fault) -> None:
+        """Keep a fault, or count it."""
+        if len(self._kept) < self._most:
+            self._kept.append(fault)
+        else:
+            self._more += 1
+
+    def refuse(self) -> None:
+        """Raise InvalidInputs if there are any; the last says how many are not listed."""
+        if self._more:
+            detail = f"{self._more} further faults of this table are not listed; put these right first"
+            self._kept.append(Fault("table", "more_faults", detail))
+        if self._kept:
+            raise InvalidInputs(self._kept)
+
+
+_Unit = str | None  # as it stands in a heading; None where it is wrong
+Heading = Callable[[str, str], Fault | None]
+"""What is wrong with the name and the unit of a column, if anything is."""
+
+
 def read_table(
-    text: str, *, most_rows: int = MOST_ROWS, most_characters: int = MOST_CHARACTERS
+    text: str,
+    *,
+    most_rows: int = MOST_ROWS,
+    most_characters: int = MOST_CHARACTERS,
+    most_faults: int = MOST_FAULTS,
+    heading: Heading | None = None,
 ) -> list[TableColumn]:
     """The columns of a table. Linear in the length of the text, which is at most `most_characters`.
+
+    Parameters
+    ----------
+    heading
+        Judges the name and the unit of each column; what it finds is named by the row of the headings.
 
     Raises
     ------
     InvalidInputs
-        Naming every cell that is wrong, up to twenty.
+        Naming every cell that is wrong by its row and column, up to `most_faults`; the last fault says how
+        many more there are.
     """
     lines, is_comma = _lines(text, most_rows, most_characters)
     width = len(lines[0].cells)
     if width > MOST_COLUMNS:
         raise _wrong("table", "too_many_columns", f"a table has at most {MOST_COLUMNS} columns")
-    names, units, rest = _headings(lines)
+    faults = _Faults(most_faults)
+    names, units, rest = _headings(lines, faults)
+    for name, one in zip(names, units, strict=True):
+        if heading is not None and one is not None and (fault := heading(name, one)):
+            faults.add(lines[0].fault(fault.code, fault.detail, name))
     if not rest:
-        raise _wrong("table", "empty", "there is no row of numbers")
-    _refuse([f for line in rest for f in _ragged(line, width, is_comma)])
-    faults: list[Fault] = []
+        faults.add(Fault("table", "empty", "there is no row of numbers"))
     rows = [_numbers(line, names, is_comma, faults) for line in rest]
-    _refuse(faults)
+    faults.refuse()
     columns = zip(*rows, strict=True)
-    return [TableColumn(*parts) for parts in zip(names, units, columns, strict=True)]
+    return [
+        TableColumn(name, one or "", values) for name, one, values in zip(names, units, columns, strict=True)
+    ]
 
 
 def _lines(text: str, most_rows: int, most_characters: int) -> tuple[list[_Line], bool]:
@@ -107,18 +149,18 @@ def _cells(row: int, line: str, separator: str) -> list[str]:
     return [cell.strip() for cell in cells]
 
 
-def _headings(lines: Sequence[_Line]) -> tuple[list[str], list[str], Sequence[_Line]]:
-    """Names and units of the columns, and the lines below them."""
+def _headings(lines: Sequence[_Line], faults: _Faults) -> tuple[list[str], list[_Unit], Sequence[_Line]]:
+    """Names and units of the columns (None where a unit is wrong), and the lines below them."""
     first = lines[0]
     if not _is_words(first):
         return [f"column {n}" for n in range(1, len(first.cells) + 1)], [""] * len(first.cells), lines
     split = [_heading(cell, place) for place, cell in enumerate(first.cells, start=1)]
     names = [name for name, _ in split]
-    units = _read_units(first, names, [text for _, text in split])
+    units = _read_units(first, names, [text for _, text in split], faults)
     if len(lines) < 2 or not _is_words(lines[1]) or len(lines[1].cells) != len(names):
         return names, units, lines[1:]
-    below = _read_units(lines[1], names, [cell.strip("[]()") for cell in lines[1].cells])
-    return names, _agreed(lines[1], names, units, below), lines[2:]
+    below = _read_units(lines[1], names, [cell.strip("[]()") for cell in lines[1].cells], faults)
+    return names, _agreed(lines[1], names, units, below, faults), lines[2:]
 
 
 def _is_words(line: _Line) -> bool:
@@ -138,46 +180,49 @@ def _heading(cell: str, place: int) -> tuple[str, str]:
     return name.strip()[:LONGEST_NAME] or f"column {place}", text.strip()
 
 
-def _read_units(line: _Line, names: Sequence[str], texts: Sequence[str]) -> list[str]:
-    """The units of a row, each checked; empty where there is none."""
-    units, faults = [], []
+def _read_units(line: _Line, names: Sequence[str], texts: Sequence[str], faults: _Faults) -> list[_Unit]:
+    """The units of a row, each checked; empty where there is none, None where it is wrong."""
+    units: list[_Unit] = []
     for name, text in zip(names, texts, strict=True):
         try:
             units.append(unit("1" if text == "-" else text.strip()).text if text.strip() else "")
         except FaultyText as error:
-            faults.append(line.fault("unknown_unit", str(error.fault(name).detail), name))
-    _refuse(faults)
+            faults.add(line.fault("unknown_unit", str(error.fault(name).detail), name))
+            units.append(None)
     return units
 
 
-def _agreed(line: _Line, names: Sequence[str], above: Sequence[str], below: Sequence[str]) -> list[str]:
+def _agreed(
+    line: _Line,
+    names: Sequence[str],
+    above: Sequence[str | None],
+    below: Sequence[str | None],
+    faults: _Faults,
+) -> list[_Unit]:
     """The units of the two rows of headings, which may not contradict each other."""
-    faults = [
-        line.fault("two_units", f"the header says {one}, this row {other}; keep one of them", name)
-        for name, one, other in zip(names, above, below, strict=True)
-        if one and other and one != other
+    for name, one, other in zip(names, above, below, strict=True):
+        if one and other and one != other:
+            detail = f"the header says {one}, this row {other}; keep one of them"
+            faults.add(line.fault("two_units", detail, name))
+    return [
+        None if one is None or other is None else one or other
+        for one, other in zip(above, below, strict=True)
     ]
-    _refuse(faults)
-    return [one or other for one, other in zip(above, below, strict=True)]
 
 
-def _ragged(line: _Line, width: int, is_comma: bool) -> Iterator[Fault]:
-    """The fault of a line that is longer or shorter than the first."""
-    if len(line.cells) != width:
-        detail = f"it has {len(line.cells)} cells, the first row has {width}"
+def _numbers(line: _Line, names: Sequence[str], is_comma: bool, faults: _Faults) -> list[float]:
+    """The numbers of a line; what is none, and a line of another length, is added to the faults."""
+    if len(line.cells) != len(names):
+        detail = f"it has {len(line.cells)} cells, the first row has {len(names)}"
         hint = "; with decimal commas, separate the columns by semicolons or tabs" if is_comma else ""
-        yield line.fault("ragged", detail + hint)
-
-
-def _numbers(line: _Line, names: Sequence[str], is_comma: bool, faults: list[Fault]) -> list[float]:
-    """The numbers of a line; what is none is added to the faults."""
+        faults.add(line.fault("ragged", detail + hint))
     numbers = []
-    for name, cell in zip(names, line.cells, strict=True):
+    for name, cell in zip(names, line.cells, strict=False):
         try:
             numbers.append(_number(cell, is_comma))
         except FaultyText as error:
-            if len(faults) < MOST_FAULTS:
-                faults.append(line.fault(error.fault(name).code, error.fault(name).detail, name))
+            fault = error.fault(name)
+            faults.add(line.fault(fault.code, fault.detail, name))
     return numbers
 
 
@@ -194,7 +239,7 @@ def _number(cell: str, is_comma: bool) -> float:
     plain = cell.replace(",", ".") if not is_comma and _DECIMAL_COMMA.fullmatch(cell) else cell
     if not _NUMBER.fullmatch(plain):
         what = f"{excerpt(cell)} is no number" if cell else "there is no number"
-        raise FaultyText("not_a_number", what)
+        raise FaultyText("not_a_number", f"{what}; write one such as 0.05")
     if not math.isfinite(number := float(plain)):
         raise FaultyText("not_finite", f"{excerpt(cell)} is too large")
     return number
@@ -202,8 +247,3 @@ def _number(cell: str, is_comma: bool) -> float:
 
 def _wrong(name: str, code: str, detail: str) -> InvalidInputs:
     return InvalidInputs([Fault(name, code, detail)])
-
-
-def _refuse(faults: Sequence[Fault]) -> None:
-    if faults:
-        raise InvalidInputs(faults[:MOST_FAULTS])

@@ -215,12 +215,27 @@ class Designs:
         InvalidInputs
             With everything that is wrong with the table.
         """
-        if not document.variants:
-            return []
-        available = Available(self.catalogues, built(self.database), analysed(self.database))
-        outcomes, faults = checked(document, base, available)
+        outcomes, faults = self._checked(document, base)
         raise_if(faults)
         return outcomes
+
+    def _checked(self, document: Document, base: Calculation) -> tuple[list[Outcome], list[Fault]]:
+        if not document.variants:
+            return [], []
+        return checked(
+            document, base, Available(self.catalogues, built(self.database), analysed(self.database))
+        )
+
+    def faulty_variants(self, raw: Mapping[str, Raw]) -> list[Fault]:
+        """Everything that a save would refuse in the variants of a document.
+
+        Raises
+        ------
+        InvalidInputs
+            If the document itself is not sound.
+        """
+        document, calculation = self.prepare(raw)
+        return self._checked(document, calculation)[1]
 
     def _enqueued(
         self, session: Session, design: str, revision: int, draft: _Draft, once: Once, *, created: bool

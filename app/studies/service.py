@@ -11,8 +11,11 @@ from sqlalchemy.orm import Session
 from app.catalogue.catalogues import Catalogues
 from app.designs import repository as designs
 from app.designs.document import Document
+from app.designs.graph import build_graph
 from app.designs.schemas import LONGEST_NOTE
 from app.designs.service import Designs, Saved
+from app.designs.variant_sheets.reading import Units
+from app.designs.variant_sheets.units import units_of
 from app.identity.audit import record
 from app.identity.usage import note_bytes
 from app.jobs.errors import JobFinished, JobNotFound
@@ -91,9 +94,7 @@ class Studies:
         InvalidInputs
             The rows of a table do not fit together.
         """
-        with self.database.read() as session:
-            number = designs.design(session, body.design).head if body.revision is None else body.revision
-            document = designs.document(session, body.design, number)
+        number, document = self._revision(body.design, body.revision)
         plain = body.model_dump(mode="json", exclude_unset=True, exclude={"rows"})
         varied = columns_named(body.rows) if body.method == "table" else list(body.vary)
         measured = measured_in(self.designs, document)
@@ -102,6 +103,18 @@ class Studies:
         if any(model.get("analyses") for model in document.get("models", {}).values()):
             seconds += self.jobs.usual_seconds(ANALYSIS)
         return Draft(body.design, number, plain, body.rows, task, seconds)
+
+    def places(self, design: str, revision: int | None) -> Units:
+        """Every place that the rows of a study may set, with its unit; raises NotFound."""
+        _, document = self._revision(design, revision)
+        graph, _ = build_graph(Document.model_validate(document), self.catalogues)
+        return units_of(graph)
+
+    def _revision(self, design: str, revision: int | None) -> tuple[int, JsonObject]:
+        """The number and the document of a revision, the newest if none is named; raises NotFound."""
+        with self.database.read() as session:
+            number = designs.design(session, design).head if revision is None else revision
+            return number, designs.document(session, design, number)
 
     def begin(self, draft: Draft, plan: Plan, given: Array | None, once: Once) -> str:
         """Write a study and queue its job.

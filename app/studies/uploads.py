@@ -14,12 +14,16 @@ from typing import Literal
 from openpyxl import load_workbook  # type: ignore[import-untyped]
 
 from app.calculations.tables import read_table
+from app.designs.variant_sheets.grid import MOST_FAULTS
 from app.plain import Raw
 from app.studies.schemas import MOST_ROWS
 from app.workers.pieces import Pieces
-from templates.core.errors import Fault, InvalidInputs
+from templates.core.errors import Fault, FaultyText, InvalidInputs, excerpt, unknown_name
+from templates.core.units.units import require_same_kind
 
 FileKind = Literal["csv", "xlsx"]
+Places = Mapping[str, str | None]
+"""Every place of a design that rows may set, with its declared unit; None where it has none of its own."""
 
 MOST_CHARACTERS = 16_000_000
 MOST_UNPACKED, MOST_PARTS = 200_000_000, 500
@@ -28,23 +32,51 @@ MOST_COLUMNS = 40
 DAMAGED = "this file cannot be read as XLSX; save it again in a spreadsheet, or send CSV"
 
 
-def read_rows(content: Pieces, kind: FileKind) -> Mapping[str, Raw]:
+def read_rows(content: Pieces, kind: FileKind, places: Places) -> Mapping[str, Raw]:
     """The columns of a file by name, each with its numbers and its unit.
 
     Raises
     ------
     InvalidInputs
-        Naming every cell that is wrong, up to twenty.
+        Naming every cell that is wrong, headings included, up to `MOST_FAULTS`.
     """
     text = _of_xlsx(content.joined()) if kind == "xlsx" else _of_csv(content.joined())
-    columns = read_table(text, most_rows=MOST_ROWS["table"], most_characters=MOST_CHARACTERS)
-    names = [column.name for column in columns]
-    if twice := sorted({name for name in names if names.count(name) > 1}):
-        raise _wrong("twice", f"{', '.join(twice)[:200]} names two columns")
+    columns = read_table(
+        text,
+        most_rows=MOST_ROWS["table"],
+        most_characters=MOST_CHARACTERS,
+        most_faults=MOST_FAULTS,
+        heading=_Headings(places).fault,
+    )
     return {
         column.name: {"value": list(column.values), **({"unit": column.unit} if column.unit else {})}
         for column in columns
     }
+
+
+class _Headings:
+    """The headings of a file, judged one after the other against the places of a design."""
+
+    def __init__(self, places: Places) -> None:
+        self._places, self._seen = places, set[str]()
+
+    def fault(self, name: str, given: str) -> Fault | None:
+        """What is wrong with a column: its name, or its unit, which is empty where it has none."""
+        if name in self._seen:
+            return Fault(name, "twice", f"{excerpt(name)} names two columns; keep one of them")
+        self._seen.add(name)
+        if name not in self._places:
+            return unknown_name(name, list(self._places), "parameter or input")
+        if (declared := self._places[name]) is None:
+            return None  # a parameter that a relation sets, or a choice: the study says what it takes
+        if not given and declared != "1":
+            detail = f"the column has no unit; write one of the kind of {declared} below the heading"
+            return Fault(name, "missing_unit", detail)
+        try:
+            require_same_kind(given or "1", declared)
+        except FaultyText as error:
+            return error.fault(name)
+        return None
 
 
 def _of_csv(content: bytes) -> str:

@@ -64,8 +64,8 @@ def test_numbers_without_headings_and_pure_numbers_are_read():
 @pytest.mark.parametrize(
     ("text", "wanted"),
     [
-        ("load_x [kN]\n1\n\nabc\n", "row 4, column load_x: 'abc' is no number"),
-        ("a [deg];load_x [kN]\n1;\n", "row 2, column load_x: there is no number"),
+        ("load_x [kN]\n1\n\nabc\n", "row 4, column load_x: 'abc' is no number; write one such as 0.05"),
+        ("a [deg];load_x [kN]\n1;\n", "row 2, column load_x: there is no number; write one such as 0.05"),
         ("a [deg],b [kN]\n1,2\n1,5,2\n", "row 3: it has 3 cells, the first row has 2; with decimal commas"),
         ("a [deg];b [kN]\n1;2\n3\n", "row 3: it has 1 cells, the first row has 2"),
         ("a [deg]\n1\n=A2+1\n", "row 3, column a: '=A2+1' is a formula; paste its value instead"),
@@ -91,7 +91,7 @@ def test_what_is_wrong_is_named_by_row_and_column(text, wanted):
 def test_all_wrong_cells_are_named_up_to_twenty():
     text = "a [deg]\n" + "1\nx\n" * 50
     assert len(faults(text)) == 20
-    assert faults(text)[1] == "row 5, column a: 'x' is no number"
+    assert faults(text)[1] == "row 5, column a: 'x' is no number; write one such as 0.05"
 
 
 def test_columns_go_to_fields_by_name_and_the_repeated_last_point_is_left_out():

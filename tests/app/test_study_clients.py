@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 from openpyxl import Workbook
 from serving import API, faults
-from study_helpers import OUT, TWICE, ended, new_design, rows
+from study_helpers import OUT, TWICE, asked, ended, new_design, rows
 
 from app.cli import main
 from app.client import AsyncClient, Problem
@@ -142,9 +142,23 @@ def test_faulty_cells_of_a_file_are_named(http, twice):
     answer = http.post(f"{API}/studies", params=query, content=b"length\nmm\n1\nx\n", headers=csv_file)
     assert faults(answer) == {"row 4, column length": "not_a_number"}
     answer = http.post(f"{API}/studies", params=query, content=b"length\n1\n", headers=csv_file)
-    assert faults(answer) == {"rows.length": "missing_unit"}
-    answer = http.post(f"{API}/studies", params=query, content=b"width\nmm\n1\n", headers=csv_file)
-    assert faults(answer) == {"width": "unknown_name"}
+    assert faults(answer) == {"row 1, column length": "missing_unit"}
+    answer = http.post(f"{API}/studies", params=query, content=b"width,length\nmm,s\n1,x\n", headers=csv_file)
+    assert faults(answer) == {
+        "row 1, column width": "unknown_name",
+        "row 1, column length": "wrong_unit",
+        "row 3, column length": "not_a_number",
+    }
+
+
+def test_every_faulty_cell_of_a_list_of_rows_is_named(http, twice):
+    given = [{"length": "1 mm"}, {"length": "2"}, {"length": "3 s"}, {"length": ["1 mm", "2 mm"]}]
+    answer = asked(http, twice, method="table", rows=given, outputs=[OUT])
+    wrong = {"rows.1.length": "missing_unit", "rows.2.length": "wrong_unit", "rows.3.length": "not_a_number"}
+    assert faults(answer) == wrong
+    uneven = [{"length": "1 mm"}, {}, {"length": "1 mm", "x": "1 mm"}]
+    answer = asked(http, twice, method="table", rows=uneven, outputs=[OUT])
+    assert faults(answer) == {"rows.1": "uneven", "rows.2": "uneven"}
 
 
 def test_an_evaluation_by_an_address(http):

@@ -63,8 +63,11 @@ def test_the_front_against_comparing_all_pairs():
 CSV = "clearance [mm],film.speed\n,rpm\n0.03,5000\n0.05,6000\n"
 
 
+PLACES = {"clearance": "mm", "film.speed": "rpm", "ratio": "1", "related": None}
+
+
 def test_a_csv_file_has_names_units_and_numbers():
-    assert read_rows(Pieces.of(CSV.encode()), "csv") == {
+    assert read_rows(Pieces.of(CSV.encode()), "csv", PLACES) == {
         "clearance": {"value": [0.03, 0.05], "unit": "mm"},
         "film.speed": {"value": [5000.0, 6000.0], "unit": "rpm"},
     }
@@ -80,8 +83,8 @@ def sheet(*rows):
 
 
 def test_an_xlsx_file_has_the_same_rows():
-    content = sheet(["clearance", "speed"], ["mm", "rpm"], [0.03, 5000], [0.05, 6000])
-    assert read_rows(content, "xlsx")["clearance"] == {"value": [0.03, 0.05], "unit": "mm"}
+    content = sheet(["clearance", "film.speed"], ["mm", "rpm"], [0.03, 5000], [0.05, 6000])
+    assert read_rows(content, "xlsx", PLACES)["clearance"] == {"value": [0.03, 0.05], "unit": "mm"}
 
 
 @pytest.mark.parametrize(
@@ -97,15 +100,51 @@ def test_an_xlsx_file_has_the_same_rows():
 )
 def test_files_that_hold_no_rows(content, kind, code):
     with pytest.raises(InvalidInputs) as refused:
-        read_rows(Pieces.of(content), kind)
+        read_rows(Pieces.of(content), kind, dict.fromkeys("ab"))
     assert refused.value.faults[0].code == code
 
 
 def test_formulas_of_a_sheet_are_refused():
     with pytest.raises(InvalidInputs) as refused:
-        read_rows(sheet(["a", "b"], [1, "=A2"]), "xlsx")
+        read_rows(sheet(["a", "b"], [1, "=A2"]), "xlsx", dict.fromkeys("ab"))
     (fault,) = refused.value.faults
     assert (fault.name, fault.code) == ("row 2, column b", "formula")
+
+
+def faults_of(content, kind):
+    with pytest.raises(InvalidInputs) as refused:
+        read_rows(Pieces.of(content), kind, PLACES)
+    return {fault.name: fault.code for fault in refused.value.faults}
+
+
+def test_every_faulty_cell_of_a_file_is_named_at_once():
+    text = "clearance [kN],speed,ratio,ratio,related\n,rpmm,,,\n0.03,1,2,3,4\nx,1,,2,=3\n0.05,6000\n"
+    wrong = {
+        "row 1, column clearance": "wrong_unit",
+        "row 1, column speed": "unknown_name",
+        "row 1, column ratio": "twice",
+        "row 2, column speed": "unknown_unit",
+        "row 4, column clearance": "not_a_number",
+        "row 4, column ratio": "not_a_number",
+        "row 4, column related": "formula",
+        "row 5": "ragged",
+    }
+    assert faults_of(text.encode(), "csv") == {
+        name: code for name, code in wrong.items() if name != "row 1, column speed"
+    }  # what a column is called is judged where its unit can be read
+    assert faults_of(text.replace("rpmm", "rpm").encode(), "csv") == {
+        name: code for name, code in wrong.items() if name != "row 2, column speed"
+    }
+    assert faults_of(b"clearance\n1\n", "csv") == {"row 1, column clearance": "missing_unit"}
+
+
+def test_faults_that_are_not_listed_are_counted():
+    rows = "".join("x\n" for _ in range(100_000))
+    with pytest.raises(InvalidInputs) as refused:
+        read_rows(Pieces.of(f"ratio\n{rows}".encode()), "csv", PLACES)
+    assert len(refused.value.faults) == 501
+    assert refused.value.faults[-1].detail.startswith("99500 further faults")
+    assert "'x' is no number; write one" in refused.value.faults[0].detail
 
 
 def test_a_file_that_unpacks_to_too_much_is_refused():
@@ -114,7 +153,7 @@ def test_a_file_that_unpacks_to_too_much_is_refused():
         for _ in range(201):
             part.write(b"0" * 10**6)
     with pytest.raises(InvalidInputs) as refused:
-        read_rows(Pieces.of(stream.getvalue()), "xlsx")
+        read_rows(Pieces.of(stream.getvalue()), "xlsx", PLACES)
     assert refused.value.faults[0].code == "too_large"
 
 

@@ -112,6 +112,18 @@ def test_every_faulty_cell_is_named_and_nothing_is_saved(http, design):
     assert stored(http, design) == (1, {})
 
 
+def test_cells_that_cannot_be_read_hide_none_that_the_calculation_refuses(http, design):
+    head = "variant,film.radial_load,film.bearing_width =,film.speed\nunit,kN,,mm\n"
+    text = f"{head}a,abc,,1\nb,-24,film.nothing,5\nb,24,,\nc,24,20 kN,\nd,25,19 mm,\n"
+    answer = put(http, design, text)
+    problem(answer, 422, "invalid-inputs")
+    assert set(faults(answer)) == {"D2", "B3", "B4", "C4", "A5", "C6"}
+    details = {fault["name"]: fault["detail"] for fault in answer.json()["errors"]}
+    assert "'abc'" in details["B3"]
+    assert "-24 kN; it must be" in details["B4"]
+    assert stored(http, design) == (1, {})
+
+
 def test_what_the_calculation_refuses_is_named_by_its_cell(http, design):
     head = "variant,film.radial_load,film.bearing_width =\nunit,kN,\n"
     refused = faults(put(http, design, f"{head}a,-24,\nb,24,20 mm\nc,-1,\n"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
+from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import Headers
 from starlette.routing import Match
 from starlette.types import Scope
@@ -66,7 +67,8 @@ async def begin_study_of_file(
     """A study with method `table`: a row of names, perhaps one of units, then the numbers."""
     kind, content = _kind(request.scope) or "csv", Pieces.of(await request.body())
     pool = services_of(request).calculations
-    rows = await calculated_in_pool(pool, pool.submit(client, read_rows, content, kind))
+    places = await run_in_threadpool(studies.places, design, revision)
+    rows = await calculated_in_pool(pool, pool.submit(client, read_rows, content, kind, places))
     lists = {"outputs": outputs, "minimise": minimise, "maximise": maximise, "hold": hold}
     body = study_of(
         {

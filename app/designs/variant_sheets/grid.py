@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,6 +11,8 @@ from templates.core.errors import Fault, InvalidInputs
 LAST_ROW, MOST_COLUMNS, LONGEST_CELL = 1000, 400, 32_000
 MOST_FAULTS = 500
 """Of one table; nobody reads more."""
+
+_ADDRESS = re.compile(r"(?P<column>[A-Z]{1,4})(?P<row>[0-9]{1,7})")
 
 
 @dataclass(frozen=True)
@@ -98,3 +101,9 @@ def column_of(letters: str) -> int:
     for letter in letters:
         number = 26 * number + ord(letter) - ord("A") + 1
     return number - 1
+
+
+def cell_of(address: str) -> tuple[int, int] | None:
+    """Row and column of an address, from 0: (3, 3) for `D4`; None of what is no address."""
+    match = _ADDRESS.fullmatch(address)
+    return (int(match["row"]) - 1, column_of(match["column"])) if match else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from app.designs.variant_sheets.grid import Grid, address, column_of, refuse
@@ -34,6 +34,7 @@ class Column:
     place: str
     unit: str
     is_relation: bool
+    is_sound: bool  # whether its unit is right; else its values are read for their faults alone
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,16 @@ class SheetVariants:
         """The faults of a save, those of variants named by the addresses of their cells."""
         return InvalidInputs(self._named(fault) for fault in error.faults)
 
+    def without(self, faults: Iterable[Fault]) -> SheetVariants:
+        """The cells that have none of these faults; of a variant whose name has one, none is left."""
+        wrong = {fault.name for fault in faults}
+        variants = {
+            name: {place: v for place, v in row.items() if self.addresses[name, place] not in wrong}
+            for name, row in self.variants.items()
+            if self.addresses[name, ""] not in wrong
+        }
+        return replace(self, variants=variants)
+
     def _named(self, fault: Fault) -> Fault:
         match = _FAULT.fullmatch(fault.name)
         if match is None:
@@ -57,12 +68,28 @@ class SheetVariants:
 
 
 def read_variants(grid: Grid, units: Units, before: Variants) -> SheetVariants:
-    """The variants of a sheet. A value that means what it meant before is kept as it was typed then.
+    """The variants of a sheet, if all its cells can be read.
 
     Raises
     ------
     InvalidInputs
-        With every cell that is wrong, by its address.
+        With every cell that cannot, by its address.
+    """
+    sheet, faults = readable_variants(grid, units, before)
+    refuse(faults)
+    return sheet
+
+
+def readable_variants(grid: Grid, units: Units, before: Variants) -> tuple[SheetVariants, list[Fault]]:
+    """The cells of a sheet that can be read as variants, and the faults of all others.
+
+    A value that means what it meant before is kept as it was typed then. Rows without a name of their own are
+    left out.
+
+    Raises
+    ------
+    InvalidInputs
+        If the sheet has more variants or values than a design may have.
     """
     skipped = _skipped(grid)
     _refuse_many(grid, skipped)
@@ -74,14 +101,15 @@ def read_variants(grid: Grid, units: Units, before: Variants) -> SheetVariants:
     wrong = {fault.name for fault in faults}
     for row in range(2 if has_units else 1, len(grid.rows)):
         if any(grid.cell(row, column) for column in range(grid.width) if column not in skipped):
-            name = _name(grid, row, variants, faults)
+            name, is_sound = _name(grid, row, variants, faults)
             values = _values(grid, row, columns, units, wrong, faults)
+            if not is_sound:
+                continue
             addresses |= {(name, place): address(row, at) for place, (at, _) in values.items()}
             addresses[name, ""] = address(row, 0)
             old = before.get(name, {})
             variants[name] = {place: _kept(old.get(place), value) for place, (_, value) in values.items()}
-    refuse(faults)
-    return SheetVariants(variants, addresses)
+    return SheetVariants(variants, addresses), faults
 
 
 def _refuse_many(grid: Grid, skipped: Collection[int]) -> None:
@@ -122,8 +150,9 @@ def _columns(
             message = f"{place} has a column already: {address(0, other)}"
             faults.append(Fault(address(0, at), "named_twice", message))
         else:
-            below = grid.cell(1, at) if has_units else ""
-            yield Column(at, place, _unit(below, named, units[place], at, faults), is_relation)
+            below, count = grid.cell(1, at) if has_units else "", len(faults)
+            unit_of_all = _unit(below, named, units[place], at, faults)
+            yield Column(at, place, unit_of_all, is_relation, len(faults) == count)
     details = unknown_names((place for _, place in unknown), units, "parameter or input")
     faults += (Fault(where, d.code, d.detail) for (where, _), d in zip(unknown, details, strict=True))
 
@@ -151,8 +180,9 @@ def _unit(below: str, named: str, declared: str | None, at: int, faults: list[Fa
         return declared or ""
 
 
-def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) -> str:
-    """The name of the variant in a row; what is wrong with it is added to the faults."""
+def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) -> tuple[str, bool]:
+    """The name of the variant in a row, and whether it may have it; else the faults get one more."""
+    before = len(faults)
     name, where = joined(grid.cell(row, 0)), address(row, 0)
     if not name:
         faults.append(Fault(where, "missing_name", "this row has no name; name its variant, such as main_1"))
@@ -163,7 +193,7 @@ def _name(grid: Grid, row: int, variants: Collection[str], faults: list[Fault]) 
         faults.append(Fault(where, "reserved", RESERVED[name]))
     elif name in variants:
         faults.append(Fault(where, "named_twice", f"{plain(name)} has a row already; name this one apart"))
-    return name
+    return name, len(faults) == before
 
 
 def _values(
@@ -186,7 +216,8 @@ def _values(
             faults.append(error.fault(where))
         else:
             values[column.place] = (column.number, value)
-    return values
+    unsound = {column.number for column in columns if not column.is_sound}
+    return {place: (at, value) for place, (at, value) in values.items() if at not in unsound}
 
 
 def _given(text: str, column: Column, units: Units) -> Raw:

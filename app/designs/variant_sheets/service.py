@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import Literal
 
 from app.designs import repository
 from app.designs.graph import build_graph
 from app.designs.service import Designs, Saved, read_document, resolved
 from app.designs.variant_sheets.csv_files import read_csv, write_csv
-from app.designs.variant_sheets.grid import Grid
-from app.designs.variant_sheets.reading import read_variants
+from app.designs.variant_sheets.grid import MOST_FAULTS, Grid, cell_of
+from app.designs.variant_sheets.reading import SheetVariants, readable_variants
 from app.designs.variant_sheets.units import units_of
 from app.designs.variant_sheets.writing import rows_of, sheet_columns
 from app.designs.variant_sheets.xlsx_files import read_xlsx, write_xlsx
 from app.designs.variants.saving import replace_variants
+from app.plain import JsonObject
 from app.schemas.variants import VariantsOut
 from app.storage.idempotency import Once
-from templates.core.errors import InvalidInputs
+from templates.core.errors import Fault, InvalidInputs
 
 Kind = Literal["csv", "xlsx"]
+TRIES = 3  # to find what a save would refuse: links, values, results
 
 
 def write_sheet(out: VariantsOut, kind: Kind) -> bytes:
@@ -57,8 +60,38 @@ def save_sheet(
         _, raw = repository.newest_document(session, id)
     document = resolved(read_document(raw), designs.catalogues)
     network, _ = build_graph(document.model_copy(update={"variants": {}}), designs.catalogues)
-    sheet = read_variants(grid, units_of(network), document.variants)
-    try:
-        return replace_variants(designs, id, sheet.variants, None, expected, once)
-    except InvalidInputs as error:
-        raise sheet.named(error) from None
+    sheet, faults = readable_variants(grid, units_of(network), document.variants)
+    if not faults:
+        try:
+            return replace_variants(designs, id, sheet.variants, None, expected, once)
+        except InvalidInputs as error:
+            faults = list(sheet.named(error).faults)
+            sheet = sheet.without(faults)
+    wrong = dict.fromkeys([*faults, *_faults_of_save(designs, raw, sheet, faults)])
+    raise InvalidInputs([*wrong][:MOST_FAULTS])
+
+
+def _faults_of_save(
+    designs: Designs, raw: JsonObject, sheet: SheetVariants, known: Sequence[Fault]
+) -> Iterator[Fault]:
+    """What a save would refuse in the cells that are left.
+
+    A cell that cannot be linked keeps its variant from being calculated, and one value that is refused keeps
+    later steps from it. So what is refused is left out, and the rest is tried once more. In a row with cells
+    left out, only what is wrong with a cell by itself counts: the row as a whole may be right without them.
+    """
+    incomplete = {cell[0] for fault in known if (cell := cell_of(fault.name))}
+    for _ in range(TRIES):
+        try:
+            found = designs.faulty_variants({**raw, "variants": sheet.variants})
+        except InvalidInputs as error:
+            found = list(error.faults)
+        named = sheet.named(InvalidInputs(found)).faults
+        cells = [cell_of(fault.name) or (-1, 0) for fault in named]
+        for fault, (row, column) in zip(named, cells, strict=True):
+            if row not in incomplete or (column > 0 and not fault.also):
+                yield fault
+        if not named:
+            return
+        incomplete |= {row for row, _ in cells}
+        sheet = sheet.without(named)
