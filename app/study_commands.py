@@ -27,12 +27,18 @@ _out = click.option(
 )
 
 
+_variant = click.option("--variant", help="of the design that is studied; the design itself, if not given")
+
+
 @click.command("study")
 @click.argument("file", type=click.File("r", encoding="utf-8"))
+@_variant
 @_out
 @url_option
 @data_option
-def study_command(file: IO[str], out: Path | None, url: str | None, data: Path | None) -> None:
+def study_command(
+    file: IO[str], variant: str | None, out: Path | None, url: str | None, data: Path | None
+) -> None:
     """Carry out the study in FILE, the JSON that POST /api/v1/studies takes; print what was found.
 
     FILE may be - for the standard input.
@@ -43,6 +49,7 @@ def study_command(file: IO[str], out: Path | None, url: str | None, data: Path |
         design = str(body.pop("design"))
     except (ValueError, KeyError, AttributeError, TypeError):
         raise click.ClickException('FILE is no JSON object with a "design"') from None
+    body |= {"variant": variant} if variant else {}
     with connected(url, data) as client:
         study = client.study(design, **body)
         shown = _followed(study)
@@ -57,6 +64,7 @@ def study_command(file: IO[str], out: Path | None, url: str | None, data: Path |
 @click.option(
     "--output", "outputs", multiple=True, help="as step.output (repeatable); all single values if not given"
 )
+@_variant
 @_out
 @url_option
 @data_option
@@ -64,6 +72,7 @@ def sweep_command(
     design: str,
     vary: tuple[str, ...],
     outputs: tuple[str, ...],
+    variant: str | None,
     out: Path | None,
     url: str | None,
     data: Path | None,
@@ -76,6 +85,7 @@ def sweep_command(
     steps = {name: count for name, (_, count) in varied.items() if count}
     body: JsonObject = {"method": "grid", "vary": {name: entry for name, (entry, _) in varied.items()}}
     body |= {"steps": steps} if steps else {}
+    body |= {"variant": variant} if variant else {}
     with connected(url, data) as client:
         body["outputs"] = list(outputs) or _single_outputs(client, design)
         study = client.study(design, **body)

@@ -141,6 +141,7 @@ class Study(Units):
     id: str
     design: str
     revision: int
+    variant: str | None = Field(None, description="of the design, if the study is of one")
     method: Method
     state: StudyState
     seed: int

@@ -13,6 +13,7 @@ from app.designs.service import Designs
 from app.plain import JsonObject
 from app.schemas.studies import StudyResult
 from app.storage.idempotency import Once
+from app.studies.of_variant import document_of
 from app.studies.running import Parts, Run
 from app.studies.schemas import StudyIn
 from app.studies.setting_aside import words
@@ -34,9 +35,11 @@ class Building:
         if not rows:
             return result
         with self._parts.database.read() as session:
-            document = designs.document(session, run.row.design_id, run.row.revision)
+            whole = designs.document(session, run.row.design_id, run.row.revision)
+        document = document_of(whole, body.variant)
         once = Once(f"study-{run.row.id}", "study build", run.row.id, run.row.client)
         note = f"rows of study {run.row.id} of design {run.row.design_id}, revision {run.row.revision}"
+        note += f", variant {body.variant}" if body.variant else ""
         if run.plan.set_aside:
             note = f"{note}; its variants replace the relation of {words(run.plan.set_aside)}"[:LONGEST_NOTE]
         with calling(self._parts.steps, run.job, run.context, f"study:{run.row.id}", "jobs"):

@@ -33,6 +33,7 @@ from app.studies import repository
 from app.studies.archive import Archive
 from app.studies.chunks import Chunk, Lacking, calculated, explored
 from app.studies.finding import MOST_FRONT
+from app.studies.of_variant import document_of
 from app.studies.planning import Plan
 from app.studies.solid_making import SolidMaking, StudySolids
 from app.studies.solids_needed import MOST_SOLIDS, NEEDS_SOLIDS
@@ -303,7 +304,8 @@ def run_of(parts: Parts, id: str, job: Job, context: JobContext, kind: type[R]) 
     """A study from its row, for a job to work on."""
     with parts.database.read() as session:
         row = repository.get(session, id)
-        document = designs.document(session, row.design_id, row.revision)
+        whole = designs.document(session, row.design_id, row.revision)
+    document = document_of(whole, row.body.get("variant"))
     plan = Plan.of(row.plan)
     task = Task.of(document, row.body, plan.places, plan.measured, parts.catalogues)
     solids = parts.solids.of(Document.model_validate(document), parts.catalogues, context)

@@ -23,6 +23,7 @@ _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 _PLACE = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63}){0,2}$"
 Place = Annotated[str, StringConstraints(pattern=_PLACE)]
 """A parameter, `step.input`, `model.parameter` or `step.output`."""
+VariantName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
 Places = Annotated[list[Place], Field(max_length=MOST_OUTPUTS)]
 
 
@@ -73,6 +74,9 @@ class StudyIn(Bounded):
 
     design: str = Field(max_length=64)
     revision: int | None = Field(None, ge=1, le=10**9, description="the newest, if not given")
+    variant: VariantName | None = Field(
+        None, examples=[None], description="which variant is studied; the design itself, if not given"
+    )
     method: Method
     seed: int = Field(1, ge=0, le=MOST_SEED, description="the same seed, the same rows")
     vary: Annotated[dict[Place, Vary], Field(max_length=MOST_VARIED), at_most(MOST_VARIED)] = Field(

@@ -33,6 +33,7 @@ from app.studies import repository
 from app.studies.archive import packed
 from app.studies.given import Rows, columns_named
 from app.studies.measured import measured_in
+from app.studies.of_variant import document_of, within
 from app.studies.planning import Plan
 from app.studies.running import STUDY
 from app.studies.schemas import StudyIn
@@ -92,9 +93,10 @@ class Studies:
         NotFound
             There is no such design or revision.
         InvalidInputs
-            The rows of a table do not fit together.
+            The rows of a table do not fit together, or there is no such variant.
         """
         number, document = self._revision(body.design, body.revision)
+        document = document_of(document, body.variant)
         plain = body.model_dump(mode="json", exclude_unset=True, exclude={"rows"})
         varied = columns_named(body.rows) if body.method == "table" else list(body.vary)
         measured = measured_in(self.designs, document)
@@ -152,7 +154,7 @@ class Studies:
         Raises
         ------
         InvalidInputs
-            The row has not been calculated.
+            The row has not been calculated, or the newest revision lacks the variant that was studied.
         StaleRevision
             `expected` (an If-Match) is not the newest revision.
         """
@@ -160,7 +162,9 @@ class Studies:
             study = repository.get(session, id)
             document = designs.document(session, study.design_id, study.revision)
             newest = designs.document(session, study.design_id, designs.design(session, study.design_id).head)
-        patch = patch_of(document, Plan.of(study.plan).units, self.values(study, row))
+        variant: str | None = study.body.get("variant")
+        newest = document_of(newest, variant)
+        patch = within(patch_of(document, Plan.of(study.plan).units, self.values(study, row)), variant)
         said = note or f"row {row} of study {id}, revision {study.revision}"
         if replaced := relations_at(Document.model_validate(newest), Plan.of(study.plan).places):
             said = f"{said}; replaces the relation of {words(replaced)}"[:LONGEST_NOTE]

@@ -55,6 +55,8 @@ def study(session: Session, row: Row) -> Study:
         "created": row.created,
         "changed": row.updated,
     }
+    if (variant := row.body.get("variant")) is not None:
+        shown["variant"] = variant
     if row.result is not None:
         shown["result"] = StudyResult.model_validate(row.result)
     if row.problem is not None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from fastapi import Request, Response
 from pydantic import JsonValue
 
-from app.designs.variants.names import BASE
+from app.designs.variants.names import BASE, natural
 from app.presentation.typed import text_of, value_of
 from app.schemas.criteria import Criterion
 from app.schemas.designs import Design, Preview, RevisionWorksheet
@@ -67,6 +67,8 @@ class Typed:
         method = self.text("method", "grid")
         vary = self._vary()
         body: dict[str, JsonValue] = {"design": design, "method": method, "vary": vary}
+        if variant := self.text("variant"):
+            body["variant"] = variant
         if aside := [name for name in vary if name in self.ticked("related")]:
             body["set_aside"] = list[JsonValue](aside)
         body |= {group: list[JsonValue](names) for group in ("outputs",) if (names := self.ticked(group))}
@@ -161,6 +163,7 @@ async def study_form(
         status=status,
         design=design,
         governing=governing,
+        variants=sorted(design.variants, key=natural),
         differs={place: text_of(value) for place, value in design.variants.get(governing, {}).items()},
         places=places,
         aside=aside,
@@ -176,7 +179,7 @@ async def study_form(
 
 
 async def _governing(api: Api, design: Design) -> str:
-    """The variant that governs a design, which the study does not calculate; empty for the design itself."""
+    """The variant that governs a design, which a study of the design does not calculate; empty for itself."""
     if not design.variants:
         return ""
     worst = (await api.get(f"/designs/{design.id}/variants", VariantsOut)).governing

@@ -60,6 +60,7 @@ async def begin_study_of_file(
     maximise: Names = None,
     hold: Names = None,
     build: Annotated[str, Query(max_length=2000)] = "none",
+    variant: Annotated[str | None, Query(max_length=64)] = None,
     revision: Annotated[int | None, Query(ge=1, le=10**9)] = None,
     explore: Tolerance = None,
     confirm: Tolerance = None,
@@ -78,6 +79,7 @@ async def begin_study_of_file(
             "build": _build(build),
             **{name: _names(text) for name, text in lists.items() if text is not None},
             **({"revision": revision} if revision is not None else {}),
+            **({"variant": variant} if variant else {}),
             **({"explore": {"tolerance": explore}} if explore else {}),
             **({"confirm": {"tolerance": confirm}} if confirm else {}),
         }
