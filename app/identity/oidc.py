@@ -139,9 +139,21 @@ class Provider:
             ).validate(claims)
         except (JoseError, ValueError, KeyError, TypeError) as error:
             raise ProviderRefused(f"the provider's token is not valid: {type(error).__name__}") from None
-        if claims.get("azp", self.client) != self.client:  # OpenID Connect Core 1.0, section 3.1.3.7
-            raise ProviderRefused("the provider's token is for another service")
+        self._require_own(claims)
         return claims
+
+    def _require_own(self, claims: Mapping[str, object]) -> None:
+        """Refuse a token that another service asked for: OpenID Connect Core 1.0, section 3.1.3.7, 4 and 5.
+
+        A token for several services (`aud`) names the one that asked for it (`azp`), which must be this one.
+        """
+        audience = claims["aud"]
+        if "azp" not in claims and isinstance(audience, list) and len(audience) > 1:
+            raise ProviderRefused(
+                "the provider's token is for several services and does not say which of them asked for it"
+            )
+        if claims.get("azp", self.client) != self.client:
+            raise ProviderRefused("the provider's token is for another service")
 
     async def _about(self, http: httpx.AsyncClient) -> Mapping[str, object]:
         about = await _asked(http, "GET", self.issuer + DISCOVERY)

@@ -179,7 +179,16 @@ def test_clocks_may_differ_by_a_minute(browser, provider, change, status):
 @pytest.mark.parametrize(
     ("claims", "status"),
     [
+        ({"aud": ["crank"]}, 200),
+        ({"aud": ["crank"], "azp": "crank"}, 200),
         ({"aud": ["crank", "another"], "azp": "crank"}, 200),
+        ({"aud": ["crank", "another"]}, 403),
+        ({"aud": ["another", "crank", "third"]}, 403),
+        ({"aud": ["crank", "another"], "azp": None}, 403),
+        ({"aud": ["crank", "another"], "azp": ["crank"]}, 403),
+        ({"aud": ["crank"], "azp": "another"}, 403),
+        ({"aud": "crank", "azp": ""}, 403),
+        ({"aud": ["another", "third"], "azp": "crank"}, 403),
         ({"aud": ["crank", "another"], "azp": "another"}, 403),
         ({"aud": "crank", "azp": "another"}, 403),
         ({"aud": ["another"]}, 403),
@@ -193,6 +202,13 @@ def test_clocks_may_differ_by_a_minute(browser, provider, change, status):
 def test_the_audience_and_what_has_to_be_there(browser, provider, claims, status):
     provider.claims = claims
     assert brought_back(browser, provider).status_code == status
+
+
+def test_a_token_of_several_services_is_refused_with_the_reason(browser, provider):
+    provider.claims = {"aud": ["crank", "another"]}
+    page = brought_back(browser, provider)
+    assert "does not say which of them asked for it" in page.text
+    assert browser.get("/designs").status_code in (303, 401), "nobody has signed in"
 
 
 def test_a_sign_in_is_brought_back_once(browser, provider):
