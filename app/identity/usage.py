@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 from app.identity.acting import ACTING, BUILT_IN, client_of
 from app.identity.limits import LimitReached, Limits, limits_of, seconds_to_midnight, today
 from app.settings import Settings
-from app.storage.tables import JobRow, PrincipalRow, UsageRow
+from app.storage.tables import JobRow, PrincipalRow, StorageRow, UsageRow
 
 MIB = 2**20
 _RAISE = text(
@@ -59,9 +59,9 @@ def note_bytes(session: Session, size: int) -> None:
 def used(session: Session, principal: str) -> Used:
     """What a principal has used."""
     row = session.get(UsageRow, (principal, today()), populate_existing=True)
-    total = select(func.sum(UsageRow.bytes)).where(UsageRow.principal_id == principal)
+    total = select(StorageRow.bytes).where(StorageRow.principal_id == principal)
     waiting = select(func.count()).where(JobRow.client == client_of(principal), JobRow.state == "queued")
-    stored, queued = int(session.scalar(total) or 0), session.scalar(waiting) or 0
+    stored, queued = session.scalar(total) or 0, session.scalar(waiting) or 0
     if row is None:
         return Used(0, 0, 0.0, stored, queued)
     return Used(row.requests, row.jobs, row.seconds, stored, queued)

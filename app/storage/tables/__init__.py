@@ -4,7 +4,7 @@ from app.storage.tables.approvals import ApprovalRow, CommentRow
 from app.storage.tables.base import NAMING, Base, JsonText, NotWritten, canonical_json
 from app.storage.tables.designs import DesignRow, DesignTagRow, RevisionModelRow, RevisionRow
 from app.storage.tables.jobs import CounterRow, EventRow, JobRow
-from app.storage.tables.people import ApiKeyRow, PrincipalRow, SessionRow, UsageRow
+from app.storage.tables.people import ApiKeyRow, PrincipalRow, SessionRow, StorageRow, UsageRow
 from app.storage.tables.records import AuditRow, IdempotencyRow
 from app.storage.tables.solids import AnalysisRow, ArtifactRow, BuildRow
 from app.storage.tables.studies import StudyChunkRow, StudyRow
@@ -32,6 +32,7 @@ __all__ = [
     "RevisionModelRow",
     "RevisionRow",
     "SessionRow",
+    "StorageRow",
     "StudyChunkRow",
     "StudyRow",
     "UsageRow",

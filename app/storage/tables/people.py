@@ -63,3 +63,12 @@ class UsageRow(Base):
     jobs: Mapped[int] = mapped_column(BigInteger, default=0)
     seconds: Mapped[float] = mapped_column(Double, default=0.0)  # of calculation
     bytes: Mapped[int] = mapped_column(BigInteger, default=0)  # of files, stored for the first time
+
+
+class StorageRow(Base):
+    """What a principal has stored in all. Triggers of the database raise it with `usage.bytes`."""
+
+    __tablename__ = "storage"
+
+    principal_id: Mapped[str] = mapped_column(primary_key=True)
+    bytes: Mapped[int] = mapped_column(BigInteger)
