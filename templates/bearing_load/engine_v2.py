@@ -1,0 +1,436 @@
+"""A whole engine of any layout: pins and firing, balance by orders, torque, loads of every bearing.
+
+In line, V, boxer; shared or split pins; odd firing; two and four strokes; cylinders that need not be equal.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from templates.core.language.template import (
+    Array,
+    Truth,
+    curve,
+    formula,
+    given,
+    profile,
+    require,
+    shared,
+    text,
+)
+from templates.groups.engine_balance import EngineBalance
+from templates.groups.engine_cylinders import EACH
+from templates.physics.crankshaft.crank_frame import CrankSections
+from templates.physics.crankshaft.main_bearings import (
+    ShaftLoads,
+    Vectors,
+    along_x,
+    along_y,
+    governing,
+    greatest,
+    greatest_at,
+    mains_ascend,
+    moment_about_x,
+    moment_about_y,
+)
+from templates.physics.crankshaft.shaft_loads import (
+    change_on_supports,
+    crank_fits,
+    determinate,
+    elastic,
+    has_one_for_each_main,
+    imbalance,
+    on_the_shaft,
+    reactions_of,
+    spun,
+)
+from templates.physics.engine.engine_curves import (
+    Parts,
+    Rotors,
+    area_curve,
+    areas_in_words,
+    balancers,
+    balancers_are_whole,
+    mean_of,
+    piston_shaking,
+    roll_moment,
+    running_energy,
+    swing_of,
+    torque,
+)
+from templates.physics.engine.engine_gas import gas_force, pressures
+from templates.physics.engine.engine_sizes import is_manageable
+from templates.physics.engine.offset_crank import RodMotion, axial_force, pin_force, wall_force
+from templates.physics.engine.slider_crank import crank_angles
+from templates.physics.numerics.arrays import largest_load, spread
+
+CYCLE, MAINS, SHAFTS = "crank_angle", "mains", "balance_shafts"
+STILL = "no load, or no torque that varies"
+
+
+class Engine(EngineBalance):
+    """A whole engine of any layout: pins and firing, balance by orders, torque, loads of every bearing.
+
+    In line, V, boxer; shared or split pins; odd firing; two and four strokes; cylinders that need not be
+    equal.
+
+    Limits
+    ------
+    Constant speed, rigid bodies in the mechanism, no friction, no gravity.
+    Seen from the flywheel, which is at the end of the largest positions, x is up, y left, and the shaft turns
+    from x to y; angles count in that sense. A reference line on the shaft stands at the crank angle.
+    Pin j stands at pin_angles from that line, its cylinder at bank_angles from x; it fires where its piston
+    is highest: pin angle = bank angle - firing angle + the pin's angle from the axis at that dead centre.
+    Give firing_order (equal intervals), pin_angles with firing_order, or firing_angles. With pins and order
+    each cylinder may fire in either turn of four strokes: the order is kept, and the smallest interval is
+    largest.
+    Bank angles with their signs turned describe another crank: where throws name a shared pin this is
+    refused.
+    Positions are along the shaft, from any plane; couples are about reference_position. A couple is the sum
+    of place times force, as a vector; its moment is that vector turned by 90 deg.
+    Fork and blade rods have one position, side-by-side rods two.
+    cylinder_offset is where the cylinder's axis passes beside the shaft, positive on the side to which the
+    pin moves first; an offset of the piston pin adds to it.
+    rod_centre counts from the big end. Without rod_inertia the rod is two masses at its pins.
+    crank_unbalance is that of the throw of each cylinder, at its pin and position, without the rod; two rods
+    on one pin share what is given. Webs and their counterweights add to it at web_positions; their angles
+    count from the pin of the throw, the nearest one unless web_throws says otherwise.
+    A pressure table counts from suction as in bearing_load: combustion is at 360 deg in four strokes, at 0 in
+    two. pressure_factor multiplies the pressure of a cylinder. Valve angles count from top dead centre.
+    Orders 1 and 2 by harmonics leading are r and r²/l, as in textbooks; exact, from order 3 on and with an
+    offset they are Fourier coefficients of the exact motion. Forward parts turn with the crank. Force and
+    couple of an order are largest, forward plus backward, at its crank angle, where they point in its
+    direction; one that only turns points to x at that angle.
+    Orders are of the pistons alone; shaking force and couple are exact and of all that moves, with balance
+    shafts. Roll moment is what walls and heads put on the frame about the shaft.
+    Mean torque is that of the curve, by the trapezoidal rule. An energy area is that between torque and mean
+    torque from crossing to crossing; energy_area shows at each angle the area in which it lies.
+    Main loads act from the frame on the shaft, crankpin loads from the rod on the pin, in the engine's axes;
+    rows are bearings. oil_film_cycle asks for the sense: say load_sense sleeve_on_journal.
+    main_load: determinate, every load on the two mains of its span by the lever.
+    elastic_main_load: a crank of beams on supports of support_stiffness (rigid if not given), alike in x
+    and y, without clearance; torque leaves at the flywheel. Webs twist web_torsion_factor times as stiffly
+    as St Venant's bar: against finite elements of a shaft of four throws the reactions to a load on a pin
+    then err by 0.014 of it radially and 0.045 across; with a factor of 1 by 0.37 across. Quasi-static: no
+    resonance.
+
+    References
+    ----------
+    S. S. Rao, Singh: DYREMI, Int. J. of Engineering Education 1993/94.
+    """
+
+    precision = 1e-9
+    example = {
+        "speed": "4500 rpm",
+        "strokes": 4,
+        "crank_angle_step": "30 deg",
+        "firing_order": [1, 3, 4, 2],
+        "cylinder_positions": {"value": [47, 141, 235, 329], "unit": "mm"},
+        "stroke": "86 mm",
+        "rod_length": "145 mm",
+        "cylinder_offset": "1 mm",
+        "bore": "86 mm",
+        "rod_mass": "0.6 kg",
+        "rod_centre": "42 mm",
+        "rod_inertia": "2200 kg*mm**2",
+        "piston_mass": "0.48 kg",
+        "gas_cycle": "four_stroke",
+        "suction_pressure": "0.9 bar",
+        "exhaust_pressure": "1.1 bar",
+        "compression_ratio": 10,
+        "compression_exponent": 1.32,
+        "expansion_exponent": 1.28,
+        "combustion_pressure": "60 bar",
+        "cutoff": 1.15,
+        "inlet_opens": "705 deg",
+        "inlet_closes": "222 deg",
+        "exhaust_opens": "492 deg",
+        "exhaust_closes": "14 deg",
+        "crankcase_pressure": "1 bar",
+        "orders": [1, 2, 4],
+        "main_positions": {"value": [0, 94, 188, 282, 376], "unit": "mm"},
+        "web_positions": {"value": [22, 72, 116, 166, 210, 260, 304, 354], "unit": "mm"},
+        "web_unbalance": "12 kg*mm",
+        "counterweights": "16 kg*mm",
+        "support_stiffness": "500 kN/mm",
+        "journal_diameter": "55 mm",
+        "crankpin_diameter": "48 mm",
+        "crankpin_length": "32 mm",
+        "web_thickness": "18 mm",
+        "web_width": "80 mm",
+    }
+    criteria = {
+        "main_load": {
+            "require": "main_load_max <= permissible_main_load",
+            "words": "every main bearing is loaded within what it bears",
+            "limits": {
+                "permissible_main_load": {"unit": "N", "words": "largest load that a main bearing bears"}
+            },
+        },
+        "crankpin_load": {
+            "require": "crankpin_load_max <= permissible_crankpin_load",
+            "words": "every crankpin bearing is loaded within what it bears",
+            "limits": {
+                "permissible_crankpin_load": {
+                    "unit": "N",
+                    "words": "largest load that a crankpin bearing bears",
+                }
+            },
+        },
+        "shaking_force": {
+            "require": "shaking_force_max <= permissible_shaking_force",
+            "words": "the shaking force is within the permissible one all the way round",
+            "limits": {"permissible_shaking_force": {"unit": "N", "words": "largest shaking force"}},
+        },
+    }
+
+    z_m: Array = curve("mm", "main positions", along=MAINS, optional=True, ge=-1e6, le=1e6)
+    k_s: Array = curve(
+        "kN/mm", "support stiffness", along=MAINS, constant=True, alternative=True, gt=0, le=1e9
+    )
+    d_j: Array = given("mm", "journal diameter", optional=True, single=True, gt=0, le=1e4)
+    d_p: Array = given("mm", "crankpin diameter", optional=True, single=True, gt=0, le=1e4)
+    l_p: Array = given("mm", "crankpin length", optional=True, single=True, gt=0, le=1e4)
+    t_s: Array = given("mm", "web thickness", optional=True, single=True, gt=0, le=1e4)
+    b_s: Array = given("mm", "web width", optional=True, single=True, gt=0, le=1e4)
+    E: Array = given("GPa", "youngs modulus", default="210 GPa", single=True, gt=0, le=1000)
+    nu: Array = given("1", "poisson ratio", default="0.3", single=True, ge=0, lt=0.5)
+    f_w: Array = given("1", "web torsion factor", default="8", single=True, gt=0, le=100)
+    U_b: Array = curve("kg*mm", "balancer unbalance", along=SHAFTS, alternative=True, ge=0, le=1e8)
+    i_b: Array = curve("1", "balancer ratios", along=SHAFTS, alternative=True, integer=True, ge=-4, le=4)
+    a_b: Array = curve(
+        "deg", "balancer phases", along=SHAFTS, constant=True, default="0 deg", ge=-360, le=360
+    )
+    z_b: Array = curve("mm", "balancer positions", along=SHAFTS, alternative=True, ge=-1e6, le=1e6)
+
+    @require("crank_angle_step", remedy="take a larger step, or fewer points at once")
+    def manageable(self) -> Truth:
+        """There are at most 200 000 points times crank angles."""
+        return is_manageable(self.shape_of_points(), self.steps)
+
+    @require("main_positions", remedy="give two or more, ascending")
+    def mains_ascend(self) -> Truth:
+        """The mains stand one after the other along the shaft."""
+        return mains_ascend(self.z_m)
+
+    @require("support_stiffness", "main_positions", missing=True,
+             remedy="give one number, or one for each main")  # fmt: skip
+    def stiffness_of_each_main(self) -> Truth:
+        """Each main has its stiffness."""
+        return has_one_for_each_main(self.k_s, self.z_m)
+
+    @require("crankpin_length", "web_thickness", "main_positions", "cylinder_positions",
+             remedy="rods stand on their pin, mains outside its webs; check the unit")  # fmt: skip
+    def crank_fits(self) -> Truth:
+        """Pins and webs fit between the mains."""
+        return crank_fits(self.z_m, self.z_i, self.layout.throw, self.sections)
+
+    @require("balancer_unbalance", "balancer_ratios", "balancer_positions", missing=True,
+             remedy="give three lists, of one value for each balance shaft")  # fmt: skip
+    def balancers_are_whole(self) -> Truth:
+        """Each balance shaft has an unbalance, a ratio to the crank's speed and a position."""
+        return balancers_are_whole(self.U_b, self.i_b, self.z_b)
+
+    @shared
+    def sections(self) -> CrankSections:
+        """Sections of the crank."""
+        return CrankSections(self.d_j, self.d_p, self.l_p, self.t_s, self.b_s, self.E, self.nu, self.f_w)
+
+    @profile("deg", "crank angle", along=CYCLE, symbol=r"\theta", latex=r"k\,\Delta\theta")
+    def theta(self) -> Array:
+        return crank_angles(self.strokes, self.step)
+
+    @shared
+    def motion(self) -> RodMotion:
+        """The mechanisms at all angles."""
+        return self.crank.at(self.layout.alpha(self.theta))
+
+    @shared
+    def gas_forces(self) -> Array:
+        """Force of the gas on each piston [N], (…, N, K)."""
+        return gas_force(self.p, self.p_0, self.f_p, self.D)
+
+    @shared
+    def axial(self) -> Array:
+        """Force along each cylinder by which the crank moves the piston against the gas [N]."""
+        return axial_force(self.m_rec, self.omega[..., None], self.motion, self.gas_forces)
+
+    @shared
+    def wall(self) -> Array:
+        """Force of each piston on its wall [N]."""
+        return wall_force(self.axial, self.rods.excess, self.omega[..., None], self.motion)
+
+    @shared
+    def rod_forces(self) -> Vectors:
+        """Force of each rod on its pin in the cylinder's axes [N], complex."""
+        return pin_force(self.rods.at_crank, self.omega[..., None], self.motion, self.axial, self.wall)
+
+    @shared
+    def pins(self) -> Vectors:
+        """The same in the engine's axes."""
+        return self.rod_forces * np.exp(1j * self.layout.bank)[..., None]
+
+    @shared
+    def loads(self) -> ShaftLoads:
+        """All loads on the shaft."""
+        return on_the_shaft(
+            self.places, self.pins + spun(self.throw_unbalance, self.omega, self.theta),
+            self.web_places, spun(self.webs, self.omega, self.theta),
+        )  # fmt: skip
+
+    @shared
+    def mains(self) -> Vectors:
+        """Loads of the mains, determinate."""
+        return determinate(self.z_m, self.loads)
+
+    @shared
+    def reactions(self) -> Array:
+        """Reactions of the mains to unit loads on the elastic crank."""
+        return reactions_of(
+            self.z_m, self.places, self.web_places, self.layout.throw, self.layout.pin, self.crank.r,
+            self.sections, self.k_s,
+        )  # fmt: skip
+
+    @shared
+    def elastic_mains(self) -> Vectors:
+        """Loads of the mains on elastic supports."""
+        return elastic(self.z_m, self.loads, self.reactions, self.theta)
+
+    @shared
+    def balancers(self) -> Rotors:
+        """The balance shafts."""
+        return balancers(self.U_b, self.i_b, self.a_b, self.z_b)
+
+    @shared
+    def moving(self) -> Parts:
+        """All that moves, by the forces that it puts on the frame."""
+        return Parts(
+            piston_shaking(self.m_rec, self.omega[..., None], self.motion, self.layout.bank), self.places,
+            tuple((one.forces(self.omega, self.theta), one.place) for one in (*self.turning, self.balancers)),
+        )  # fmt: skip
+
+    @shared
+    def couple(self) -> Vectors:
+        """Sum of place times force of all that moves [N m], complex."""
+        return self.moving.couple(self.z_0)
+
+    @profile("bar", "gas pressure", along=CYCLE, axes=2, symbol="p", latex=r"p\left(\theta-\varphi\right)")
+    def p(self) -> Array:
+        return pressures(self.gas, self.layout, self.motion, self.theta)
+
+    @profile("N*m", "torque", along=CYCLE, symbol="T", latex=r"\sum r\times F")
+    def T(self) -> Array:
+        return torque(self.rod_forces, self.motion, self.theta)
+
+    @formula("N*m", "mean torque", symbol=r"\overline{T}")
+    def T_mean(self) -> Array:
+        return mean_of(self.T)
+
+    @formula("kW", "mean power", symbol="P")
+    def P(self) -> Array:
+        return self.T_mean * self.omega
+
+    @profile("J", "running energy", along=CYCLE, symbol="E_{r}",
+             latex=r"\int\left(T-\overline{T}\right)d\theta")  # fmt: skip
+    def E_r(self) -> Array:
+        return running_energy(self.theta, self.T)
+
+    @formula("J", "energy fluctuation", symbol=r"\Delta E")
+    def dE(self) -> Array:
+        return swing_of(self.E_r)
+
+    @profile("J", "energy area", along=CYCLE, symbol="A_{E}")
+    def A_E(self) -> Array:
+        return area_curve(self.theta, self.T)
+
+    @text("energy areas", absent=STILL)
+    def areas(self) -> str | Array:
+        return areas_in_words(self.theta, self.T)
+
+    @profile("N", "shaking force x", along=CYCLE, symbol="F_{x}")
+    def F_x(self) -> Array:
+        return along_x(self.moving.resultant())
+
+    @profile("N", "shaking force y", along=CYCLE, symbol="F_{y}")
+    def F_y(self) -> Array:
+        return along_y(self.moving.resultant())
+
+    @formula("N", "shaking force max", symbol=r"F_\mathrm{max}")
+    def F_max(self) -> Array:
+        return largest_load(self.F_x, self.F_y)
+
+    @profile("N*m", "shaking moment x", along=CYCLE, symbol="M_{x}")
+    def M_x(self) -> Array:
+        return moment_about_x(self.couple)
+
+    @profile("N*m", "shaking moment y", along=CYCLE, symbol="M_{y}")
+    def M_y(self) -> Array:
+        return moment_about_y(self.couple)
+
+    @profile("N*m", "roll moment", along=CYCLE, symbol="M_{z}")
+    def M_z(self) -> Array:
+        return roll_moment(self.wall, self.gas_forces, self.motion)
+
+    @profile("rad/s", "rod angular velocity", along=CYCLE, axes=2, symbol=r"\omega_{3}")
+    def omega_3(self) -> Array:
+        return -spread(np.asarray(self.omega)[..., None], self.motion.phi1)
+
+    @profile("N", "crankpin load x", along=CYCLE, axes=2, symbol="F_{px}")
+    def F_px(self) -> Array:
+        return along_x(self.pins)
+
+    @profile("N", "crankpin load y", along=CYCLE, axes=2, symbol="F_{py}")
+    def F_py(self) -> Array:
+        return along_y(self.pins)
+
+    @profile("N", "crankpin load max", along=EACH, symbol=r"F_\mathrm{p,max}")
+    def F_p_max(self) -> Array:
+        return greatest(self.pins)
+
+    @profile("N", "main load x", along=CYCLE, axes=2, symbol="F_{mx}")
+    def F_mx(self) -> Array:
+        return along_x(self.mains)
+
+    @profile("N", "main load y", along=CYCLE, axes=2, symbol="F_{my}")
+    def F_my(self) -> Array:
+        return along_y(self.mains)
+
+    @profile("N", "main load max", along=MAINS, symbol=r"F_\mathrm{m,max}")
+    def F_m_max(self) -> Array:
+        return greatest(self.mains)
+
+    @profile("deg", "main load max angle", along=MAINS, symbol=r"\theta_\mathrm{m,max}")
+    def theta_m(self) -> Array:
+        return greatest_at(self.mains, self.theta)
+
+    @formula("1", "governing main", symbol=r"i_\mathrm{m}")
+    def i_m(self) -> Array:
+        return governing(self.mains)
+
+    @profile("N", "elastic main load x", along=CYCLE, axes=2, symbol="F_{ex}")
+    def F_ex(self) -> Array:
+        return along_x(self.elastic_mains)
+
+    @profile("N", "elastic main load y", along=CYCLE, axes=2, symbol="F_{ey}")
+    def F_ey(self) -> Array:
+        return along_y(self.elastic_mains)
+
+    @profile("N", "elastic main load max", along=MAINS, symbol=r"F_\mathrm{e,max}")
+    def F_e_max(self) -> Array:
+        return greatest(self.elastic_mains)
+
+    @formula("1", "governing elastic main", symbol=r"i_\mathrm{e}")
+    def i_e(self) -> Array:
+        return governing(self.elastic_mains)
+
+    @profile("1", "elastic difference", along=MAINS, symbol=r"\Delta_{e}", absent=STILL)
+    def Delta_e(self) -> Array:
+        return change_on_supports(self.z_m, self.elastic_mains, self.mains)
+
+    @formula("1", "equilibrium residual", symbol=r"\epsilon_\mathrm{R}")
+    def residual(self) -> Array:
+        return imbalance(self.mains, self.loads, self.z_m)
+
+    @formula("1", "elastic equilibrium residual", symbol=r"\epsilon_\mathrm{e}")
+    def elastic_residual(self) -> Array:
+        return imbalance(self.elastic_mains, self.loads, self.z_m)

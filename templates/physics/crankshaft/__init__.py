@@ -1,0 +1,1 @@
+"""Bearings of a whole crankshaft: their loads, determinate and on elastic supports."""

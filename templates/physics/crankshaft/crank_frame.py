@@ -1,0 +1,191 @@
+r"""An elastic crankshaft as a frame of Timoshenko beams: journals, webs and pins, six unknowns a node.
+
+Measured against finite elements of a whole shaft of four throws (journal 55, pin 48, throw 42, web 18 × 80
+mm) on rigid mains, the reactions to a unit load on a pin err by up to 0.014 of it radially; across, by 0.37
+with St Venant's torsion of the webs and by 0.045 with eight times that, for that throw.
+
+References
+----------
+Timoshenko, Young, Weaver: Vibration Problems in Engineering, for the beam with shear.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.crankshaft.crank_supports import Flexibility
+
+_SHEAR_ROUND, _SHEAR_FLAT = 0.886, 5 / 6
+
+
+@dataclass(frozen=True)
+class CrankSections:
+    """Sections of a shaft [m], elastic constants [Pa], [1], and how stiffly webs twist over St Venant."""
+
+    journal: float
+    pin: float
+    pin_length: float
+    web_thickness: float
+    web_width: float
+    E: float
+    nu: float
+    web_torsion: float
+
+    @property
+    def half(self) -> float:
+        """From the middle of a pin to the middle of its web [m]."""
+        return (self.pin_length + self.web_thickness) / 2
+
+
+@dataclass
+class Frame:
+    """Nodes and members of a frame; a member: two nodes, area, two inertias, torsion constant, shear area."""
+
+    sections: CrankSections
+    nodes: list[tuple[float, float, float]] = field(default_factory=list)
+    members: list[tuple[int, int, float, float, float, float, float]] = field(default_factory=list)
+
+    def node(self, across: complex, z: float) -> int:
+        """A new node; its number."""
+        self.nodes.append((across.real, across.imag, z))
+        return len(self.nodes) - 1
+
+    def bar(self, i: int, j: int, diameter: float) -> None:
+        """A round member."""
+        area, inertia = np.pi * diameter**2 / 4, np.pi * diameter**4 / 64
+        self.members.append((i, j, area, inertia, inertia, 2 * inertia, _SHEAR_ROUND * area))
+
+    def web(self, i: int, j: int) -> None:
+        """A flat member across the shaft."""
+        t, b = self.sections.web_thickness, self.sections.web_width
+        thin, wide = min(t, b), max(t, b)
+        twist = wide * thin**3 / 3 * (1 - 0.63 * thin / wide) * self.sections.web_torsion
+        self.members.append((i, j, t * b, b * t**3 / 12, t * b**3 / 12, twist, _SHEAR_FLAT * t * b))
+
+    def stiffness(self) -> Array:
+        """The stiffness of all nodes, six unknowns each."""
+        places, size = np.array(self.nodes), 6 * len(self.nodes)
+        K = np.zeros((size, size))
+        E, G = self.sections.E, self.sections.E / (2 * (1 + self.sections.nu))
+        for i, j, *section in self.members:
+            at = np.r_[6 * i : 6 * i + 6, 6 * j : 6 * j + 6]
+            K[np.ix_(at, at)] += _beam(places[j] - places[i], E, G, *section)
+        return K
+
+
+def _beam(way: Array, E: float, G: float, A: float, I_n: float, I_b: float, J: float, A_s: float) -> Array:
+    """Stiffness of a beam along `way`, (12, 12); I_n resists bending along the shaft, I_b across."""
+    length = float(np.linalg.norm(way))
+    t = way / length
+    n = np.array([0, 0, 1.0]) if abs(t[2]) < 0.9 else np.array([1.0, 0, 0])
+    n = n - t * (n @ t)
+    n /= np.linalg.norm(n)
+    K, pair = np.zeros((12, 12)), np.array([[1.0, -1], [-1, 1]])
+    K[np.ix_([0, 6], [0, 6])] = E * A / length * pair
+    K[np.ix_([3, 9], [3, 9])] = G * J / length * pair
+    for inertia, at, sign in ((I_n, [1, 5, 7, 11], 1.0), (I_b, [2, 4, 8, 10], -1.0)):
+        q, L, s = 12 * E * inertia / (G * A_s * length**2), length, sign
+        k = np.array(
+            [
+                [12, 6 * L * s, -12, 6 * L * s],
+                [6 * L * s, (4 + q) * L**2, -6 * L * s, (2 - q) * L**2],
+                [-12, -6 * L * s, 12, -6 * L * s],
+                [6 * L * s, (2 - q) * L**2, -6 * L * s, (4 + q) * L**2],
+            ]
+        )
+        K[np.ix_(at, at)] = E * inertia / (L**3 * (1 + q)) * k
+    turn = np.kron(np.eye(4), np.array([t, n, np.cross(t, n)]))
+    return turn.T @ K @ turn
+
+
+@dataclass(frozen=True)
+class Throw:
+    """A throw: its middle [m], and the place [m], pin vector [m] and number of each load on it, by place."""
+
+    middle: float
+    loads: tuple[tuple[float, complex, int], ...]
+
+
+class CrankFrame:
+    """The frame of a whole shaft with the nodes at which its mains and loads stand.
+
+    Parameters
+    ----------
+    sections
+        Of all journals, webs and pins.
+    mains
+        Places of the mains [m], ascending.
+    throws
+        In any order; each with the loads of the rods on it.
+    """
+
+    def __init__(self, sections: CrankSections, mains: Array, throws: list[Throw]) -> None:
+        self.frame = Frame(sections)
+        self.at_main = [self.frame.node(0j, float(z)) for z in mains]
+        self.at_load: dict[int, int] = {}
+        self.axis = [(float(z), node) for z, node in zip(mains, self.at_main, strict=True)]
+        inside: list[tuple[float, float]] = []
+        for throw in throws:
+            inside.append(self._throw(throw))
+        self.axis.sort()
+        for (z, i), (w, j) in zip(self.axis[:-1], self.axis[1:], strict=True):
+            if (z, w) not in inside:
+                self.frame.bar(i, j, sections.journal)
+
+    def _throw(self, throw: Throw) -> tuple[float, float]:
+        """Add webs and pin; the ends of the webs on the axis."""
+        frame, s = self.frame, self.frame.sections
+        ends = throw.middle - s.half, throw.middle + s.half
+        first, last = (frame.node(0j, z) for z in ends)
+        at, pin = frame.node(throw.loads[0][1], ends[0]), throw.loads[0][1]
+        frame.web(first, at)
+        before = ends[0]
+        for place, vector, load in throw.loads:
+            if abs(vector - pin) > 1e-9 * abs(pin):  # a split pin: joined half-way between the rods
+                step = (before + place) / 2
+                end, begin = frame.node(pin, step), frame.node(vector, step)
+                frame.bar(at, end, s.pin)
+                frame.web(end, begin)
+                at, pin, before = begin, vector, step
+            if place - before > 1e-9:
+                node = frame.node(vector, place)
+                frame.bar(at, node, s.pin)
+                at, before = node, place
+            self.at_load[load] = at
+        end = frame.node(pin, ends[1])
+        frame.bar(at, end, s.pin)
+        frame.web(end, last)
+        self.axis += [(ends[0], first), (ends[1], last)]
+        return ends
+
+    def flexibility(self, count: int, webs: Array) -> Flexibility:
+        """Of the mains to forces on themselves, and on `count` rods and then the webs at these places [m]."""
+        size = 6 * len(self.frame.nodes)
+        drive = self.axis[-1][1]
+        held = [6 * node + d for node in (self.at_main[0], self.at_main[-1]) for d in (0, 1)]
+        held += [6 * drive + 2, 6 * drive + 5]
+        free = np.setdiff1d(np.arange(size), held)
+        mains = np.zeros((size, 2 * len(self.at_main)))
+        loads = np.zeros((size, 2 * (count + webs.size)))
+        for d in (0, 1):
+            mains[[6 * node + d for node in self.at_main], np.arange(d, mains.shape[1], 2)] = 1
+            for load in range(count):
+                loads[6 * self.at_load[load] + d, 2 * load + d] = 1
+            for k, place in enumerate(webs):
+                for node, share in self._shares(float(place)):
+                    loads[6 * node + d, 2 * (count + k) + d] += share
+        solved = np.zeros((size, mains.shape[1] + loads.shape[1]))
+        stiff = self.frame.stiffness()[np.ix_(free, free)]
+        solved[free] = np.linalg.solve(stiff, np.hstack([mains, loads])[free])
+        moved = mains.T @ solved
+        return Flexibility(moved[:, : mains.shape[1]], moved[:, mains.shape[1] :])
+
+    def _shares(self, place: float) -> tuple[tuple[int, float], tuple[int, float]]:
+        """A load at a place on the axis as loads on the two nodes next to it, by the lever."""
+        places = np.array([z for z, _ in self.axis])
+        left = int(np.clip(np.searchsorted(places, place) - 1, 0, places.size - 2))
+        share = (place - places[left]) / (places[left + 1] - places[left])
+        return (self.axis[left][1], 1 - share), (self.axis[left + 1][1], share)

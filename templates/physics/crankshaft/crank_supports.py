@@ -1,0 +1,52 @@
+r"""Main bearings of an elastic crankshaft on elastic supports: the force method (three-moment equations).
+
+Reactions R = R0 + N λ: R0 balances the loads by the lever, the columns of N balance themselves, one for
+each main between the two outermost, across x and y. The displacements of the supports, −R/k, and those of
+the shaft, C R + C_l F + a rigid motion, agree: Nᵀ((C + 1/k)(R0 + N λ) + C_l F) = 0. So force and moment
+balance to rounding whatever the stiffness, from soft supports (a rigid shaft) to rigid ones.
+
+All is in axes that turn with the shaft, in which its flexibility is constant; supports are alike in x and y.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.crankshaft.main_bearings import lever_shares
+
+
+@dataclass(frozen=True)
+class Flexibility:
+    """Displacements of the mains [m/N] to unit forces on mains, (2 n, 2 n), and loads, (2 n, 2 L).
+
+    The first and the last main are held; torque and thrust are held at the drive end. Order x, y of each
+    place.
+    """
+
+    mains: Array
+    loads: Array
+
+
+def self_balancing(mains: Array) -> Array:
+    """Reactions without resultant, (n, n − 2): one at a main between, the lever's answer at the outermost."""
+    n = mains.size
+    share = (mains[1:-1] - mains[0]) / (mains[-1] - mains[0])
+    basis = np.zeros((n, n - 2))
+    basis[np.arange(1, n - 1), np.arange(n - 2)] = 1
+    basis[0], basis[-1] = share - 1, -share
+    return basis
+
+
+def support_reactions(mains: Array, places: Array, shaft: Flexibility, stiffness: Array) -> Array:
+    """Reactions to unit forces at the loads, (2 n, 2 L); `stiffness` [N/m], (n,), may be infinite."""
+    plane = np.eye(2)
+    start = -np.kron(lever_shares(mains, places), plane)
+    if mains.size == 2:
+        return start
+    basis = np.kron(self_balancing(mains), plane)
+    give = shaft.mains + np.diag(np.repeat(1 / stiffness, 2))
+    gap = basis.T @ (give @ start + shaft.loads)
+    return np.asarray(start - basis @ np.linalg.solve(basis.T @ give @ basis, gap))

@@ -1,0 +1,123 @@
+r"""Loads of every main bearing from all loads on the crankshaft, and what balances them.
+
+Each load is a complex force, x + i y, at a place along the shaft. *Determinate*: every load goes by the
+lever to the two mains of its span, an overhung one to those of the end span. On elastic supports see
+`crank_supports`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array, Truth
+from templates.core.language.declare import units
+
+Vectors = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class ShaftLoads:
+    """Loads on the shaft: places [m], (L,), and forces [N] in the frame's axes over the cycle, (…, L, K)."""
+
+    places: Array
+    forces: Vectors
+
+
+def lever_shares(mains: Array, places: Array) -> Array:
+    """The share of each load that each main takes, (n, L), for mains [m] that ascend; shares sum to 1."""
+    span = np.clip(np.searchsorted(mains, places) - 1, 0, mains.size - 2)
+    share = (places - mains[span]) / (mains[span + 1] - mains[span])
+    shares = np.zeros((mains.size, places.size))
+    loads = np.arange(places.size)
+    shares[span, loads], shares[span + 1, loads] = 1 - share, share
+    return shares
+
+
+def determinate_loads(mains: Array, loads: ShaftLoads) -> Vectors:
+    """Force of the frame on the shaft at each main [N], (…, n, K)."""
+    return -(lever_shares(mains, loads.places) @ loads.forces)
+
+
+def elastic_loads(reactions: Array, loads: ShaftLoads, theta: Array) -> Vectors:
+    """The same on elastic supports, by the matrix `reactions`, (…, 2 n, 2 L), in axes that turn."""
+    turn = np.exp(1j * theta)
+    turned = loads.forces * np.conj(turn)
+    pairs = np.stack([turned.real, turned.imag], axis=-2)  # (…, L, 2, K)
+    flat = pairs.reshape(*pairs.shape[:-3], -1, pairs.shape[-1])
+    found = np.asarray(reactions @ flat)
+    split = found.reshape(*found.shape[:-2], -1, 2, found.shape[-1])
+    return (split[..., 0, :] + 1j * split[..., 1, :]) * turn
+
+
+@units("m", returns="1")
+def mains_ascend(mains: Array) -> Truth:
+    """Whether there are two mains or more, one after the other along the shaft, if any are given."""
+    if np.ndim(mains) == 0:
+        return True
+    return np.ndim(mains) == 1 and np.size(mains) > 1 and bool(np.all(np.diff(mains) > 1e-6))
+
+
+@units(None, returns="N")
+def along_x(forces: Vectors) -> Array:
+    """The part of forces along x [N]."""
+    return np.asarray(forces.real)
+
+
+@units(None, returns="N")
+def along_y(forces: Vectors) -> Array:
+    """The part of forces along y [N]."""
+    return np.asarray(forces.imag)
+
+
+@units(None, returns="N*m")
+def moment_about_x(couple: Vectors) -> Array:
+    """The moment about x [N m] of forces that give ΣzF: that is −Σz F_y."""
+    return np.asarray(-couple.imag)
+
+
+@units(None, returns="N*m")
+def moment_about_y(couple: Vectors) -> Array:
+    """The moment about y [N m] of forces that give ΣzF: that is Σz F_x."""
+    return np.asarray(couple.real)
+
+
+@units(None, returns="N")
+def greatest(forces: Vectors) -> Array:
+    """The greatest size over the cycle [N], one for each bearing."""
+    return np.asarray(np.abs(forces).max(axis=-1))
+
+
+@units(None, "rad", returns="rad")
+def greatest_at(forces: Vectors, theta: Array) -> Array:
+    """The crank angle at which each load is greatest [rad]."""
+    return np.asarray(theta[np.argmax(np.abs(forces), axis=-1)])
+
+
+@units(None, returns="1")
+def governing(forces: Vectors) -> Array:
+    """The bearing with the greatest load of all, counted from 1; of equal ones the first."""
+    most = np.abs(forces).max(axis=-1)
+    near = most >= most.max(axis=-1, keepdims=True) * (1 - 1e-9)
+    return np.asarray(np.argmax(near, axis=-1) + 1.0)[()]
+
+
+@units(None, None, returns="1")
+def relative_change(elastic: Vectors, determinate: Vectors) -> Array:
+    """By how much the greatest load of each main differs on elastic supports from the determinate one."""
+    plain = np.abs(determinate).max(axis=-1)
+    return np.asarray(np.abs(elastic).max(axis=-1) / np.where(plain > 0, plain, np.nan) - 1)
+
+
+@units(None, None, "m", returns="1")
+def left_over(reactions: Vectors, loads: ShaftLoads, mains: Array) -> Array:
+    """The largest force or moment left over at any angle, over the sum of the sizes of what balances."""
+    size = np.abs(loads.forces).sum(axis=-2)
+    size = np.where(size > 0, size, 1.0)
+    force = np.abs(reactions.sum(axis=-2) + loads.forces.sum(axis=-2)) / size
+    middle, half = mains.mean(), np.ptp(mains) / 2
+    arms = (loads.places - middle)[:, None]
+    moment = ((mains - middle)[:, None] * reactions).sum(axis=-2) + (arms * loads.forces).sum(axis=-2)
+    return np.asarray(np.maximum(force, np.abs(moment) / (size * half)).max(axis=-1))[()]

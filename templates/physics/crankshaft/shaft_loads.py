@@ -1,0 +1,149 @@
+"""Loads on a whole crankshaft: rods, unbalances of throws and webs; rules about its inputs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from templates.core.arrays import Array, Truth
+from templates.core.language.declare import units
+from templates.physics.crankshaft.crank_frame import CrankFrame, CrankSections, Throw
+from templates.physics.crankshaft.crank_supports import support_reactions
+from templates.physics.crankshaft.main_bearings import (
+    ShaftLoads,
+    Vectors,
+    determinate_loads,
+    elastic_loads,
+    left_over,
+    relative_change,
+)
+from templates.physics.numerics.arrays import spread
+
+_NONE = np.float64(np.nan)
+
+
+def throw_places(places: Array, throw: Array) -> Array:
+    """The middle of each throw [m]: midway between the outermost of its cylinders."""
+    return np.array([_middle(places[throw == t]) for t in range(int(throw.max()) + 1)])
+
+
+def _middle(places: Array) -> float:
+    return float((places.min() + places.max()) / 2)
+
+
+def throw_of_web(places: Array, named: Array, middles: Array) -> Array:
+    """The throw from 0 of each web: as named from 1, else the nearest."""
+    if np.ndim(named):
+        return np.clip(np.rint(named).astype(int) - 1, 0, middles.size - 1)
+    return np.argmin(np.abs(places[:, None] - middles), axis=1)
+
+
+def web_unbalance(
+    U: Array, angle: Array, counterweight: Array, its_angle: Array, places: Array, named: Array,
+    middles: Array, pins: Array,
+) -> Vectors:  # fmt: skip
+    """Unbalance of webs with their counterweights [kg m], complex at crank angle 0, (…, W).
+
+    Angles [rad] count from the web's throw, whose pin stands at `pins`, (…, T).
+    """
+    vector = U * np.exp(1j * angle) + counterweight * np.exp(1j * its_angle)
+    throw = throw_of_web(places, named, middles)
+    return np.asarray(vector * np.exp(1j * pins[..., throw]) + np.zeros(places.shape))
+
+
+def determinate(mains: Array, loads: ShaftLoads) -> Vectors:
+    """Loads of the mains, determinate; none without mains."""
+    return determinate_loads(mains, loads) if np.ndim(mains) else np.asarray(_NONE)
+
+
+def elastic(mains: Array, loads: ShaftLoads, reactions: Array, theta: Array) -> Vectors:
+    """Loads of the mains on elastic supports; none where the crank's sections are not given."""
+    return elastic_loads(reactions, loads, theta) if np.ndim(reactions) else np.asarray(_NONE)
+
+
+def reactions_of(
+    mains: Array, cylinders: Array, webs: Array, throw: Array, pins: Array, radius: Array,
+    sections: CrankSections, stiffness: Array,
+) -> Array:  # fmt: skip
+    """Reactions to unit loads on rods and webs, (…, 2 n, 2 L); rigid supports where no stiffness is given.
+
+    `pins` [rad] and `radius` [m] are (…, N): each point with a crank of its own is solved on its own.
+    """
+    if not np.ndim(mains) or np.isnan([vars(sections)[n] for n in vars(sections)]).any():
+        return np.asarray(_NONE)
+    if not np.isfinite(pins).all() or not fits(mains, cylinders, throw, sections):
+        return np.asarray(_NONE)
+    vectors = radius * np.exp(1j * pins)
+    flat = vectors.reshape(-1, vectors.shape[-1])
+    order, middles = np.argsort(cylinders, kind="stable"), throw_places(cylinders, throw)
+    places = np.concatenate([cylinders, webs])
+    k = np.where(np.isnan(stiffness), np.inf, stiffness) + np.zeros(mains.size)
+    found = []
+    for one in flat:
+        throws = [
+            Throw(z, tuple((float(cylinders[j]), complex(one[j]), int(j)) for j in order if throw[j] == t))
+            for t, z in enumerate(middles)
+        ]
+        flexibility = CrankFrame(sections, mains, throws).flexibility(cylinders.size, webs)
+        found.append(support_reactions(mains, places, flexibility, k))
+    return np.array(found).reshape(*vectors.shape[:-1], *found[0].shape)
+
+
+def fits(mains: Array, cylinders: Array, throw: Array, sections: CrankSections) -> bool:
+    """Whether rods stand on their pins, throws do not overlap, and no main stands within a throw."""
+    middles = throw_places(cylinders, throw)
+    on_pins = np.abs(cylinders - middles[throw]) < sections.pin_length / 2
+    length = sections.pin_length + 2 * sections.web_thickness
+    apart = np.diff(np.sort(middles)) > length * (1 - 1e-9)
+    clear = np.abs(mains[:, None] - middles) > length / 2 * (1 - 1e-9)
+    return bool(on_pins.all() and apart.all() and clear.all())
+
+
+@units("m", "m", None, None, returns="1")
+def crank_fits(mains: Array, cylinders: Array, throw: Array, sections: CrankSections) -> Truth:
+    """Whether the sections, if given, fit between mains and cylinders."""
+    if not np.ndim(mains) or np.size(cylinders) != throw.size:
+        return True
+    if np.isnan([vars(sections)[n] for n in vars(sections)]).any():
+        return True
+    return fits(mains, np.atleast_1d(cylinders), throw, sections)
+
+
+@units("N/m", "m", returns="1")
+def has_one_for_each_main(stiffness: Array, mains: Array) -> Truth:
+    """Whether the supports' stiffness is one number, or a list with one for each main."""
+    return np.ndim(stiffness) == 0 or np.ndim(mains) == 0 or np.shape(stiffness) == np.shape(mains)
+
+
+@units("m", "kg*m", "kg*m", "1", None, returns="1")
+def webs_are_whole(places: Array, unbalance: Array, counterweight: Array, throws: Array, count: int) -> Truth:
+    """Whether webs with an unbalance have places and, if named, a throw that exists."""
+    if np.ndim(places) == 0:
+        return bool(np.all(unbalance == 0) and np.all(counterweight == 0))
+    named = np.ndim(throws) == 0 or bool(np.all(throws <= count))
+    return np.ndim(places) == 1 and named
+
+
+@units("m", None, "m", returns="1")
+def change_on_supports(mains: Array, elastic_forces: Vectors, determinate_forces: Vectors) -> Array:
+    """By how much each main's greatest load differs from the determinate one, over that."""
+    if not np.ndim(elastic_forces):
+        return _NONE
+    return relative_change(elastic_forces, determinate_forces)
+
+
+@units(None, None, "m", returns="1")
+def imbalance(forces: Vectors, loads: ShaftLoads, mains: Array) -> Array:
+    """The largest force or moment that reactions leave over, relative to the loads."""
+    return left_over(forces, loads, mains) if np.ndim(forces) else _NONE
+
+
+def on_the_shaft(places: Array, pins: Vectors, webs: Array, spinning: Vectors) -> ShaftLoads:
+    """Rods and webs together, broadcast over the points."""
+    shape = np.broadcast_shapes(pins.shape[:-2], spinning.shape[:-2])
+    parts = [np.broadcast_to(one, shape + one.shape[-2:]) for one in (pins, spinning)]
+    return ShaftLoads(np.concatenate([places, webs]), np.concatenate(parts, axis=-2))
+
+
+def spun(unbalance: Vectors, omega: Array, theta: Array) -> Vectors:
+    """Forces of unbalances [kg m] that turn with the crank [N], (…, L, K)."""
+    return np.asarray(spread(unbalance * np.asarray(omega)[..., None] ** 2, np.exp(1j * theta)))

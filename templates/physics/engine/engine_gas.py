@@ -1,0 +1,107 @@
+"""Gas pressure in cylinders that may differ: the cycles of `gas_cycle` for offset cranks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import cached_property
+
+import numpy as np
+
+from templates.core.arrays import Array, Truth
+from templates.core.language.declare import units
+from templates.physics.engine.engine_layout import Layout
+from templates.physics.engine.gas_checks import burns_before_exhaust, pressure_rises
+from templates.physics.engine.gas_cycle import AT_DEAD_CENTRES, Charge, Polytropic, Valves, ideal, wrapped
+from templates.physics.engine.gas_pressure import GasCycle, NoGas, Tabulated, one_cycle
+from templates.physics.engine.offset_crank import OffsetCrank, RodMotion
+
+_HALVINGS = 60
+_FINE = 3600  # steps of the work of a cycle
+
+
+@dataclass(frozen=True)
+class OffsetPolytropic(Polytropic):
+    """The chain of events with the volumes of an offset crank; angles count from top dead centre."""
+
+    crank: OffsetCrank
+
+    def volume(self, angle: Array | float) -> Array:
+        """Volume at an angle for each cylinder, over the swept volume."""
+        turned = np.asarray(angle + self.crank.top)[..., None]
+        return self.v_dead + self.crank.travel(turned)[..., 0]
+
+    @cached_property
+    def cut(self) -> Array:
+        """Crank angle at which combustion ends, by halving between dead centres."""
+        wanted = self.v_cut
+        low, high = 0 * wanted, 0 * wanted + np.pi
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            reached = self.volume(middle) >= wanted
+            low, high = np.where(reached, low, middle), np.where(reached, middle, high)
+        return self.firing + high
+
+    def mean_effective(self) -> Array:
+        """The work of a cycle over the swept volume [Pa], by the trapezoidal rule."""
+        angle = np.linspace(0, self.cycle, _FINE + 1)
+        travel = self.crank.travel(angle + self.crank.top[..., None])
+        p = self.pressure(angle + 0 * travel, travel)
+        return np.sum((p[..., 1:] + p[..., :-1]) / 2 * np.diff(travel), axis=-1)
+
+
+def _for_each(record: Charge | Valves) -> list[Array]:
+    """The numbers of a record with an axis for the cylinders."""
+    return [np.asarray(getattr(record, field.name))[..., None] for field in fields(record)]
+
+
+def engine_gas(
+    name: str, strokes: Array, crank: OffsetCrank, charge: Charge, valves: Valves, angle: Array, p: Array,
+    p_c: Array,
+) -> GasCycle:  # fmt: skip
+    """The gas cycle of a name for each cylinder, (…, N); `angle` [rad] and `p` [Pa] are the table.
+
+    `p_c` [Pa] is the crankcase's pressure.
+    """
+    cycle = float(np.pi * strokes)
+    if name == "none":
+        return NoGas(np.asarray(p_c)[..., None])
+    if name == "table":
+        return Tabulated(*one_cycle(angle, p, cycle), crank.l / crank.r, cycle)
+    if name != "four_stroke":
+        charge, valves = ideal(name, charge), AT_DEAD_CENTRES
+    each = Charge(*_for_each(charge))
+    io, closes, opens, ec = _for_each(valves)
+    if strokes == 2:
+        begins, ends, closes, opens = (np.asarray([turns * np.pi]) for turns in (1, 1, 1, 3))
+    else:
+        begins, ends = np.minimum(wrapped(io), wrapped(ec)), np.maximum(wrapped(io), wrapped(ec))
+    return OffsetPolytropic(
+        each, crank.l / crank.r, cycle, 2 * np.pi, begins, ends, closes, opens, 3 * np.pi, crank
+    )
+
+
+def pressures(gas: GasCycle, layout: Layout, motion: RodMotion, theta: Array) -> Array:
+    """The pressure in each cylinder [Pa], (…, N, K), at crank angles theta [rad], (K,)."""
+    zero = 2 * np.pi if layout.strokes == 4 else 0.0
+    return gas.pressure(theta - layout.firing[..., None] + zero, motion.crank.travel(motion.alpha))
+
+
+def gas_force(p: Array, p_c: Array, factor: Array, bore: Array) -> Array:
+    """Force of the gas on each piston towards the crank [N], (…, N, K); `factor` multiplies its pressure."""
+    area = np.atleast_1d(np.pi * bore**2 / 4)[..., None]
+    return area * (np.atleast_1d(factor)[..., None] * p - np.asarray(p_c)[..., None, None])
+
+
+@units(None, None, returns="1")
+def burns_in_time(name: str, gas: Callable[[], GasCycle]) -> Truth:
+    """Whether combustion ends before the exhaust opens in every cylinder."""
+    holds = np.asarray(burns_before_exhaust(name, gas))
+    return np.all(holds, axis=-1) if holds.ndim else bool(holds)
+
+
+@units(None, returns="1")
+def combustion_raises(gas: GasCycle) -> Truth:
+    """Whether combustion does not begin below the pressure of the compression's end in any cylinder."""
+    holds = np.asarray(pressure_rises(gas))
+    return np.all(holds, axis=-1) if holds.ndim else bool(holds)

@@ -1,0 +1,262 @@
+r"""Where the pins of a crankshaft stand and when its cylinders fire: from either, for any layout.
+
+Seen from the flywheel, x is up, y left, and the shaft turns from x to y; a reference line on the shaft stands
+at theta. Cylinder j stands at its bank angle beta_j from x, its pin at psi_j from the line, and it fires at
+theta = phi_j. Its crank angle is alpha_j = theta + psi_j − beta_j, and at top dead centre that of its own
+mechanism, so psi_j = beta_j − phi_j + top_j (mod 360°).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations_with_replacement
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array, Truth
+from templates.core.language.declare import units
+
+TURN = 2 * np.pi
+SAME = np.radians(1e-6)
+"""Angles this near [rad] are one: input contradicts itself beyond."""
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Bank, pin and firing angles [rad], (…, N), and on which throw each cylinder works, from 0, (N,)."""
+
+    strokes: int
+    bank: Array
+    pin: Array
+    firing: Array
+    throw: NDArray[np.intp]
+
+    @cached_property
+    def cycle(self) -> float:
+        """360° or 720° [rad]."""
+        return float(np.pi * self.strokes)
+
+    @cached_property
+    def throws(self) -> int:
+        """How many throws there are."""
+        return int(self.throw.max()) + 1
+
+    @cached_property
+    def throw_pin(self) -> Array:
+        """The pin of the first cylinder of each throw, (…, T)."""
+        return self.pin[..., [int(np.argmax(self.throw == t)) for t in range(self.throws)]]
+
+    @cached_property
+    def order(self) -> NDArray[np.intp]:
+        """The cylinders from 0 in the order in which they fire."""
+        return np.argsort(np.round(self.first_firing % self.cycle, 9), kind="stable")
+
+    @cached_property
+    def first_firing(self) -> Array:
+        """The firing angles of the first point, (N,)."""
+        return self.firing.reshape(-1, self.firing.shape[-1])[0]
+
+    def alpha(self, theta: Array) -> Array:
+        """The crank angle of each cylinder's own mechanism [rad], (…, N, K)."""
+        return theta + (self.pin - self.bank)[..., None]
+
+
+def listed(value: Array) -> bool:
+    """Whether an input that may be missing is a list."""
+    return np.ndim(value) > 0
+
+
+def count_of(*lists: Array) -> int:
+    """The number of cylinders by the lists that are given."""
+    return max((np.shape(one)[-1] for one in lists if listed(one)), default=1)
+
+
+def arranged(
+    strokes: Array, order: Array, pins: Array, firing: Array, banks: Array, throws: Array, top: Array
+) -> Layout:
+    """The layout by the lists that are given; NaN where there is none, which the rules here refuse."""
+    count = count_of(order, pins, firing)
+    cycle, bank, top = float(np.pi * strokes), np.atleast_1d(banks), np.atleast_1d(top)
+    none = np.full(count, np.nan)
+    if listed(firing):
+        phi = firing + np.zeros(count)
+    elif listed(pins):
+        base = (bank - pins + top) % TURN
+        phi = _timed(order, base, cycle) if base.ndim == 1 and base.size == count else none
+    elif listed(order) and is_order(order, pins, firing):
+        phi = np.argsort(order) * (cycle / count)
+    else:
+        phi = none
+    psi = pins + 0 * phi if listed(pins) else (bank - phi + top) % TURN
+    throw = np.rint(np.atleast_1d(throws)).astype(np.intp) - 1 if listed(throws) else np.arange(count)
+    return Layout(round(float(strokes)), bank + 0 * phi, psi, phi, throw)
+
+
+def _timed(order: Array, base: Array, cycle: float) -> Array:
+    """Firing angles [rad] in this order, each `base` or a turn later; the smallest interval is largest."""
+    if cycle < 1.5 * TURN:
+        return base
+    if not listed(order) or np.ndim(order) > 1:
+        return np.full(base.size, np.nan)
+    places = np.rint(order).astype(int) - 1
+    if sorted(places) != list(range(base.size)):
+        return np.full(base.size, np.nan)
+    gaps = np.diff(base[places], append=base[places[:1]]) % TURN
+    gaps = np.where(TURN - gaps < _ROUNDING, 0.0, gaps)
+    turns = round((cycle - float(gaps.sum())) / TURN)
+    if turns < 0:
+        return np.full(base.size, np.nan)
+    best = max(_with_turns(gaps, turns), key=lambda tried: sorted(np.round(tried, 9)))
+    phi = np.empty(base.size)
+    phi[places] = base[places[0]] + np.concatenate([[0.0], np.cumsum(best[:-1])])
+    return phi
+
+
+def _with_turns(gaps: Array, turns: int) -> Iterator[Array]:
+    for chosen in combinations_with_replacement(range(gaps.size - 1, -1, -1), turns):
+        yield gaps + TURN * np.bincount(np.array(chosen, dtype=np.intp), minlength=gaps.size)
+
+
+@units("1", "rad", "rad", returns="1")
+def says_layout(order: Array, pins: Array, firing: Array) -> Truth:
+    """Whether any of the lists is given that say how the engine is laid out."""
+    return listed(order) or listed(pins) or listed(firing)
+
+
+@units("1", "rad", "rad", returns="1")
+def is_one_layout(order: Array, pins: Array, firing: Array) -> Truth:
+    """Whether these are lists of one length and no tables of several engines."""
+    lists = [one for one in (order, pins, firing) if listed(one)]
+    return all(np.ndim(one) == 1 for one in lists) and len({np.shape(one) for one in lists}) <= 1
+
+
+@units("1", "rad", "rad", returns="1")
+def is_order(order: Array, pins: Array, firing: Array) -> Truth:
+    """Whether every cylinder from 1 on is named once, if an order is given."""
+    if not listed(order):
+        return True
+    count = count_of(order, pins, firing)
+    return bool(np.array_equal(np.sort(order, axis=-1).ravel(), np.arange(1, count + 1)))
+
+
+@units("1", "1", "rad", "rad", returns="1")
+def times_are_said(strokes: Array, order: Array, pins: Array, firing: Array) -> Truth:
+    """Whether it is said when cylinders fire: in four strokes pins alone leave two turns to choose from."""
+    return listed(order) or listed(firing) or bool(strokes == 2)
+
+
+def _is_near(one: Array, other: Array, period: float) -> bool:
+    apart = (one - other + period / 2) % period - period / 2
+    return bool(np.all(np.abs(apart) <= SAME))
+
+
+@units(None, returns="1")
+def has_times(layout: Layout) -> Truth:
+    """Whether some firing angles within one cycle keep the order with these pins."""
+    return bool(np.isfinite(layout.firing).all())
+
+
+@units(None, "rad", returns="1")
+def pins_agree(layout: Layout, top: Array) -> Truth:
+    """Whether pins and firing angles agree to 1e-6°."""
+    if not np.isfinite(layout.firing).all():
+        return True  # another rule reports it
+    expected = layout.bank - layout.firing + np.atleast_1d(top)
+    return _is_near(layout.pin, expected, TURN)
+
+
+@units(None, "1", returns="1")
+def order_agrees(layout: Layout, order: Array) -> Truth:
+    """Whether the firing angles keep the firing order, if one is given."""
+    if not listed(order) or not is_order(order, order, order) or not np.isfinite(layout.firing).all():
+        return True
+    places = np.rint(order).astype(int) - 1
+    if places.size != layout.first_firing.size:
+        return True
+    after = (layout.first_firing[places] - layout.first_firing[places[0]]) % layout.cycle
+    after = np.where(layout.cycle - after < _ROUNDING, 0.0, after)
+    return bool(np.all(np.diff(after) >= -_ROUNDING))
+
+
+@units("1", "1", "rad", "rad", returns="1")
+def throws_are_named(throws: Array, order: Array, pins: Array, firing: Array) -> Truth:
+    """Whether there is a throw for each cylinder, numbered from 1 without a gap, if throws are given."""
+    if not listed(throws):
+        return True
+    named = np.unique(throws)
+    return np.shape(throws) == (count_of(order, pins, firing),) and bool(
+        np.array_equal(named, np.arange(1, named.size + 1))
+    )
+
+
+@units(None, None, returns="1")
+def pins_are_shared(layout: Layout, pins_of_a_throw: str) -> Truth:
+    """Whether the pins of each throw stand at one angle, unless they are named split."""
+    if pins_of_a_throw == "split" or layout.throw.size != layout.pin.shape[-1]:
+        return True
+    if not np.isfinite(layout.pin).all():
+        return True
+    return _is_near(layout.pin, layout.throw_pin[..., layout.throw], TURN)
+
+
+@units(None, returns="rad")
+def pin_angles(layout: Layout) -> Array:
+    """Where the pin of each cylinder stands from the reference line, from 0° to 360° [rad]."""
+    around = layout.pin % TURN
+    return np.where(TURN - around < _ROUNDING, 0.0, around)
+
+
+@units(None, returns="rad")
+def firing_angles(layout: Layout) -> Array:
+    """Where each cylinder fires, within one cycle [rad]."""
+    around = layout.firing % layout.cycle
+    return np.where(layout.cycle - around < _ROUNDING, 0.0, around)
+
+
+@units(None, returns="rad")
+def firing_intervals(layout: Layout) -> Array:
+    """From each firing to the next, in the firing order; the last to the first of the next cycle [rad]."""
+    in_order = firing_angles(layout)[..., layout.order]
+    return np.diff(in_order, append=in_order[..., :1] + layout.cycle)
+
+
+@units(None, returns="rad")
+def pin_splits(layout: Layout) -> Array:
+    """The largest angle between pins of a throw, (…, T) [rad]."""
+    apart = (layout.pin - layout.throw_pin[..., layout.throw] + np.pi) % TURN - np.pi
+    apart = np.where(np.abs(apart) < _ROUNDING, 0.0, apart)
+    throws = [apart[..., layout.throw == t] for t in range(layout.throws)]
+    return np.stack([np.ptp(pins, axis=-1) for pins in throws], axis=-1)
+
+
+@units(None, returns="1")
+def layout_in_words(layout: Layout) -> str:
+    """The layout in words: `V-8 of 90 deg, four strokes, fires 1-8-4-3-6-5-7-2 every 90 deg`."""
+    intervals = np.degrees(firing_intervals(layout).reshape(-1, layout.throw.size)[0])
+    even = bool(np.ptp(intervals) < 1e-6)
+    steps = f"every {intervals[0]:.6g}" if even else "after " + " ".join(f"{gap:.6g}" for gap in intervals)
+    order = "-".join(str(place + 1) for place in layout.order)
+    strokes = "two" if layout.strokes == 2 else "four"
+    return f"{_kind(layout)}, {strokes} strokes, fires {order} {steps} deg"
+
+
+def _kind(layout: Layout) -> str:
+    count = layout.throw.size
+    banks = layout.bank.reshape(-1, layout.bank.shape[-1])[0] % TURN
+    standing = np.unique(np.round(np.degrees(banks), 6) % 360)
+    if count == 1:
+        return "one cylinder"
+    if standing.size == 1:
+        return f"in-line {count}"
+    if standing.size > 2:
+        return f"{count} cylinders in {standing.size} banks"
+    apart = float(np.diff(standing)[0])
+    apart = min(apart, 360 - apart)
+    shares = layout.throws < count
+    if abs(apart - 180) < 1e-6 and not shares:
+        return f"boxer-{count}"
+    return f"V-{count} of {apart:.6g} deg"

@@ -1,0 +1,82 @@
+"""Sizes of an engine's cylinders, one number for all or one for each, and rules about them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array, Truth
+from templates.core.language.declare import units
+from templates.physics.engine.offset_crank import OffsetCrank, RodMasses, radius_of_stroke, rod_masses
+
+
+def each(value: Array) -> Array:
+    """An input with an axis for the cylinders."""
+    return np.atleast_1d(value)
+
+
+def crank_of(stroke: Array, radius: Array, rod: Array, offset: Array) -> OffsetCrank:
+    """The mechanisms, by stroke or crank radius [m], whichever is given."""
+    s, r, l, e = (each(value) for value in (stroke, radius, rod, offset))  # noqa: E741
+    with np.errstate(invalid="ignore"):
+        known = np.where(np.isnan(r), radius_of_stroke(s, l, e), r)
+    return OffsetCrank(known, l, e)
+
+
+def masses_of(mass: Array, centre: Array, inertia: Array, rod: Array) -> RodMasses:
+    """The rods as two masses each."""
+    return rod_masses(each(mass), each(centre), each(inertia), each(rod))
+
+
+def _at_all(holds: NDArray[np.bool_]) -> Truth:
+    whole = np.all(np.atleast_1d(holds), axis=-1)
+    return bool(whole) if whole.ndim == 0 else whole
+
+
+@units("m", "m", returns="1")
+def is_either(one: Array, other: Array) -> Truth:
+    """Whether exactly one of two inputs is given."""
+    return bool(np.isnan(one).all()) != bool(np.isnan(other).all())
+
+
+@units("m", "m", returns="1")
+def is_within(place: Array, length: Array) -> Truth:
+    """Whether places lie within lengths."""
+    return _at_all(place <= length)
+
+
+@units(None, "1", "rad", "rad", returns="1")
+def has_one_each(values: tuple[Array, ...], order: Array, pins: Array, firing: Array) -> Truth:
+    """Whether each of these is one number, or has one for each cylinder."""
+    count = max((np.shape(one)[-1] for one in (order, pins, firing) if np.ndim(one)), default=1)
+    return all(np.ndim(value) == 0 or np.shape(value)[-1] in (1, count) for value in values)
+
+
+@units("m", "1", "rad", "rad", returns="1")
+def has_a_place_each(places: Array, order: Array, pins: Array, firing: Array) -> Truth:
+    """Whether there is one place for each cylinder."""
+    count = max((np.shape(one)[-1] for one in (order, pins, firing) if np.ndim(one)), default=1)
+    return np.ndim(places) <= 1 and each(places).size == count
+
+
+@units("rad", returns="1")
+def is_one_list(values: Array) -> Truth:
+    """Whether this is one number or one list, and no table of several engines."""
+    return np.ndim(values) <= 1
+
+
+@units(None, "1", returns="1")
+def is_manageable(points: tuple[int, ...], steps: Array) -> Truth:
+    """Whether curves of so many steps for up to 32 cylinders at points of this shape fit into memory."""
+    return bool(np.prod(points, dtype=float) * steps <= 200_000)
+
+
+def or_none(value: Array) -> Array:
+    """A list that may be missing, as an empty one."""
+    return np.atleast_1d(value) if np.ndim(value) else np.zeros(0)
+
+
+@units("1", returns="1")
+def orders_are_whole(orders: Array) -> Truth:
+    """Whether orders are one list without points of their own."""
+    return np.ndim(orders) <= 1

@@ -1,0 +1,160 @@
+r"""Unbalance of any engine, order by order: what turns with the crank and what turns against it.
+
+The force of order h on the frame is f e^{ihθ} + b e^{−ihθ}, complex, x + i y. With w the amplitude of the
+force of a cylinder's piston, f = ½ Σ w e^{i(β+h(ψ−β))} and b = ½ Σ w* e^{i(β−h(ψ−β))}; couples are the same
+sums, each cylinder times its arm. The largest size on the way round is |f| + |b|, at hθ = (arg b − arg
+f)/2, where it points to (arg f + arg b)/2; the smallest is ||f| − |b||.
+
+References
+----------
+S. S. Rao, Singh: DYREMI, Int. J. of Engineering Education 1993/94, for orders 1 and 2 in line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array
+from templates.core.language.declare import units
+from templates.physics.engine.engine_layout import Layout
+from templates.physics.engine.offset_crank import OffsetCrank
+
+Phasor = NDArray[np.complex128]
+_VANISHES = 1e-12  # of the sum of all sizes; what is left is rounding
+_SAMPLES = 360  # of a turn, for orders up to 90
+
+
+@dataclass(frozen=True)
+class Harmonics:
+    """Phasors that turn with the crank and against it, (…, H), at orders h, (H,)."""
+
+    orders: Array
+    forward: Phasor
+    backward: Phasor
+
+    @cached_property
+    def largest_at(self) -> Array:
+        """hθ [rad] from 0 to π at which the size is largest; one that only turns points to x there."""
+        f, b = np.angle(self.forward), np.angle(self.backward)
+        both = (self.forward != 0) & (self.backward != 0)
+        at = np.where(both, (b - f) / 2, b - f)
+        return np.where(np.pi - at % np.pi < 1e-12, 0.0, at % np.pi)
+
+    @cached_property
+    def there(self) -> Phasor:
+        """The vector where it is largest."""
+        turn = np.exp(1j * self.largest_at)
+        return self.forward * turn + self.backward / turn
+
+
+def _sum(weight: Phasor, angle: Array) -> Phasor:
+    """Sum over the cylinders, (…, H); exactly none where only rounding is left."""
+    total = np.sum(weight * np.exp(1j * angle), axis=-2)
+    vanishes = np.abs(total) <= _VANISHES * np.sum(np.abs(weight), axis=-2)
+    return np.where(vanishes, 0, total)
+
+
+def _with_axis(value: Array) -> Array:
+    return np.asarray(value)[..., None]
+
+
+def piston_harmonics(crank: OffsetCrank, orders: Array, exact: bool) -> Phasor:
+    """Amplitudes of −x″ [m] at integer orders, (…, N, H), complex: Re Σ c e^{ihα}.
+
+    The leading terms r (r/l)^(h−1) for orders 1 and 2 of a centred crank, as textbooks take them; else the
+    Fourier coefficients of the exact motion.
+    """
+    whole = np.rint(np.atleast_1d(orders)).astype(int)
+    alpha = np.arange(_SAMPLES) * (2 * np.pi / _SAMPLES)
+    spectrum = np.fft.rfft(-crank.at(alpha).x2, axis=-1) * (2 / _SAMPLES)
+    amplitudes = spectrum[..., whole]
+    centred = _with_axis(crank.e == 0)
+    amplitudes = np.where(centred & (whole % 2 == 1) & (whole > 1), 0, amplitudes)
+    if exact:
+        return amplitudes
+    leading = _with_axis(crank.r) * _with_axis(crank.r / crank.l) ** (whole - 1)
+    return np.where(centred & (whole <= 2), leading, amplitudes)
+
+
+def harmonics(layout: Layout, orders: Array, weight: Phasor, arm: Array | float = 1.0) -> Harmonics:
+    """The unbalance at the orders by the pistons' forces `weight`, (…, N, H), each times its arm."""
+    h = np.atleast_1d(orders)
+    bank, turn = _with_axis(layout.bank), _with_axis(layout.pin - layout.bank)
+    half = weight / 2 * _with_axis(np.asarray(arm, dtype=float))
+    forward = _sum(half, bank + h * turn)
+    backward = _sum(np.conj(half), bank - h * turn)
+    return Harmonics(h, forward, backward)
+
+
+@units(None, returns="N")
+def forward_force(parts: Harmonics) -> Array:
+    """Size of what turns with the crank [N]."""
+    return np.abs(parts.forward)
+
+
+@units(None, returns="N")
+def backward_force(parts: Harmonics) -> Array:
+    """Size of what turns against the crank [N]."""
+    return np.abs(parts.backward)
+
+
+@units(None, returns="N*m")
+def forward_couple(parts: Harmonics) -> Array:
+    """Size of the couple that turns with the crank [N m]."""
+    return np.abs(parts.forward)
+
+
+@units(None, returns="N*m")
+def backward_couple(parts: Harmonics) -> Array:
+    """Size of the couple that turns against the crank [N m]."""
+    return np.abs(parts.backward)
+
+
+@units(None, returns="rad")
+def largest_at(parts: Harmonics) -> Array:
+    """The crank angle at which force or couple is largest [rad], from 0 to a half of its period."""
+    return parts.largest_at / parts.orders
+
+
+@units(None, returns="rad")
+def largest_towards(parts: Harmonics) -> Array:
+    """Where it points to there [rad], from x in the sense of rotation, from 0 to 2π."""
+    angle = np.angle(parts.there) % (2 * np.pi)
+    return np.where(2 * np.pi - angle < 1e-9, 0.0, angle)
+
+
+@units(None, returns="N")
+def force_size(phasor: Phasor) -> Array:
+    """Size of a force [N]."""
+    return np.abs(phasor)[()]
+
+
+@units(None, returns="N*m")
+def couple_size(phasor: Phasor) -> Array:
+    """Size of a couple [N m]."""
+    return np.abs(phasor)[()]
+
+
+@units(None, returns="rad")
+def direction(phasor: Phasor) -> Array:
+    """Where a vector points to [rad], from 0 to 2π; 0 if it vanishes."""
+    angle = np.angle(phasor) % (2 * np.pi)
+    return np.where(2 * np.pi - angle < 1e-9, 0.0, angle)[()]
+
+
+def rotating_sum(parts: Sequence[tuple[Phasor, Array]], omega: Array, reference: Array | None) -> Phasor:
+    """Force [N] of unbalances [kg m], (…, L), at places [m], (L,); their couple [N m] about a reference.
+
+    Exactly none where only rounding is left.
+    """
+    total, size = np.zeros((), complex), np.zeros(())
+    for unbalance, places in parts:
+        arm = 1.0 if reference is None else places - np.asarray(reference)[..., None]
+        total = total + np.sum(unbalance * arm, axis=-1)
+        size = size + np.sum(np.abs(unbalance * arm), axis=-1)
+    return np.where(np.abs(total) <= _VANISHES * size, 0, total) * np.asarray(omega) ** 2

@@ -1,0 +1,174 @@
+r"""Slider-crank whose cylinder axis may pass beside the crankshaft: motion, and the forces of rod and piston.
+
+Vectors across the shaft are complex, x + i y: x along the axis of the cylinder to its head, y to where the
+crankpin moves first. The axis passes at `e` on the side of y; an offset piston pin adds to it. The crank
+angle alpha counts from x, and the rod's angle phi has sin(phi) = (r sin(alpha) − e)/l. Primes are
+derivatives by alpha.
+
+References
+----------
+Formulas by geometry; their check is the energy: torque + dE/d(alpha) = 0 with E of the rigid bodies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from templates.core.arrays import Array, Truth
+from templates.core.language.declare import units
+
+
+@dataclass(frozen=True)
+class OffsetCrank:
+    """Crank radius, rod length and offset of the cylinder's axis [m], (…, N) or (…, 1)."""
+
+    r: Array
+    l: Array  # noqa: E741
+    e: Array
+
+    @cached_property
+    def top(self) -> Array:
+        """The crank angle [rad] at which the piston is highest."""
+        return np.arcsin(self.e / (self.l + self.r))
+
+    @cached_property
+    def highest(self) -> Array:
+        """The largest distance of the piston pin from the crankshaft along the axis [m]."""
+        return np.sqrt((self.l + self.r - self.e) * (self.l + self.r + self.e))
+
+    @cached_property
+    def lowest(self) -> Array:
+        """The smallest distance [m]."""
+        return np.sqrt((self.l - self.r - self.e) * (self.l - self.r + self.e))
+
+    @cached_property
+    def stroke(self) -> Array:
+        """From the lowest to the highest place of the piston [m]."""
+        return self.highest - self.lowest
+
+    def at(self, alpha: Array) -> RodMotion:
+        """The motion at crank angles [rad], (…, N, K)."""
+        return RodMotion(self, alpha)
+
+    def travel(self, alpha: Array) -> Array:
+        """Way of the piston from its highest place, over the stroke, at crank angles (…, N, K)."""
+        return (self.highest[..., None] - self.at(alpha).x) / self.stroke[..., None]
+
+
+@dataclass(frozen=True)
+class RodMotion:
+    """Where rod and piston are, and their derivatives by the crank angle `alpha` [rad], (…, N, K)."""
+
+    crank: OffsetCrank
+    alpha: Array
+
+    @cached_property
+    def sin(self) -> Array:
+        """Sine of the crank angle."""
+        return np.sin(self.alpha)
+
+    @cached_property
+    def cos(self) -> Array:
+        """Cosine of the crank angle."""
+        return np.cos(self.alpha)
+
+    @cached_property
+    def _share(self) -> Array:
+        return (self.crank.r / self.crank.l)[..., None]
+
+    @cached_property
+    def sin_phi(self) -> Array:
+        """Sine of the rod's angle from the axis."""
+        return self._share * self.sin - (self.crank.e / self.crank.l)[..., None]
+
+    @cached_property
+    def cos_phi(self) -> Array:
+        """Cosine of the rod's angle."""
+        return np.sqrt((1 - self.sin_phi) * (1 + self.sin_phi))
+
+    @cached_property
+    def tan_phi(self) -> Array:
+        """Tangent of the rod's angle."""
+        return self.sin_phi / self.cos_phi
+
+    @cached_property
+    def phi1(self) -> Array:
+        """phi′ [1]; the rod turns at −phi′ times the speed of the crank."""
+        return self._share * self.cos / self.cos_phi
+
+    @cached_property
+    def phi2(self) -> Array:
+        """phi″ [1]."""
+        return -self._share * self.sin / self.cos_phi + self.tan_phi * self.phi1**2
+
+    @cached_property
+    def x(self) -> Array:
+        """Distance of the piston pin from the crankshaft along the axis [m]."""
+        return self.crank.r[..., None] * self.cos + self.crank.l[..., None] * self.cos_phi
+
+    @cached_property
+    def x1(self) -> Array:
+        """x′ [m]."""
+        return -self.crank.r[..., None] * (self.sin + self.cos * self.tan_phi)
+
+    @cached_property
+    def x2(self) -> Array:
+        """x″ [m]."""
+        swing = self.cos * self.phi1 / self.cos_phi**2
+        return -self.crank.r[..., None] * (self.cos - self.sin * self.tan_phi + swing)
+
+
+@dataclass(frozen=True)
+class RodMasses:
+    """A rod as two masses at its pins [kg] and the inertia that these have too much of [kg m²], (…, N)."""
+
+    at_crank: Array
+    at_piston: Array
+    excess: Array
+
+
+@units("m", "m", "m", returns="m", latex=r"\frac{{{0}}}{{2}}\sqrt{{1-\frac{{4 {2}^2}}{{4 {1}^2-{0}^2}}}}")
+def radius_of_stroke(stroke: Array, rod: Array, offset: Array) -> Array:
+    """The crank radius [m] that gives a stroke, whose axis passes at `offset` from the crankshaft."""
+    return stroke / 2 * np.sqrt(1 - 4 * offset**2 / (4 * rod**2 - stroke**2))
+
+
+@units("m", "m", "m", "m", returns="1")
+def turns_through(stroke: Array, radius: Array, rod: Array, offset: Array) -> Truth:
+    """Whether the mechanism turns all the way round: the rod exceeds crank radius and offset together."""
+    by_stroke = np.where(np.isnan(stroke), 2 * radius, stroke) / 2
+    reach = np.where(np.isnan(radius), by_stroke, radius)
+    return _at_all_cylinders(rod > 1.000001 * (reach + np.abs(offset)))
+
+
+def _at_all_cylinders(holds: Array) -> Truth:
+    whole = np.all(np.atleast_1d(holds), axis=-1)
+    return bool(whole) if whole.ndim == 0 else whole
+
+
+def rod_masses(mass: Array, centre: Array, inertia: Array, rod: Array) -> RodMasses:
+    """The rod as two masses; `centre` from the big end [m]; without its inertia there is no excess."""
+    excess = mass * centre * (rod - centre) - inertia
+    return RodMasses(
+        mass * (rod - centre) / rod, mass * centre / rod, np.where(np.isnan(excess), 0.0, excess)
+    )
+
+
+def axial_force(reciprocating: Array, omega: Array, motion: RodMotion, gas: Array) -> Array:
+    """K = m x″ω² + gas [N], by which the crank moves the reciprocating mass against the gas, (…, N, K)."""
+    return (reciprocating * omega**2)[..., None] * motion.x2 + gas
+
+
+def wall_force(axial: Array, excess: Array, omega: Array, motion: RodMotion) -> Array:
+    """Force of the piston on the wall along y [N]; the rigid rod's share is −ΔI φ̈/(l cos φ)."""
+    arm = motion.crank.l[..., None] * motion.cos_phi
+    return -axial * motion.tan_phi - (excess * omega**2)[..., None] * motion.phi2 / arm
+
+
+def pin_force(at_crank: Array, omega: Array, motion: RodMotion, axial: Array, wall: Array) -> Array:
+    """Force of the rod on the crankpin in the cylinder's axes [N], complex, (…, N, K)."""
+    turning = (at_crank * omega**2 * motion.crank.r)[..., None]
+    return (turning * motion.cos - axial) + 1j * (turning * motion.sin - wall)
