@@ -5,8 +5,6 @@ In line, V, boxer; shared or split pins; odd firing; two and four strokes; cylin
 
 from __future__ import annotations
 
-import numpy as np
-
 from templates.core.language.template import (
     Array,
     Truth,
@@ -16,10 +14,9 @@ from templates.core.language.template import (
     profile,
     require,
     shared,
-    text,
 )
-from templates.groups.engine_balance import EngineBalance
 from templates.groups.engine_cylinders import EACH
+from templates.groups.engine_motion import CYCLE, EngineMotion
 from templates.physics.crankshaft.crank_frame import CrankSections
 from templates.physics.crankshaft.main_bearings import (
     ShaftLoads,
@@ -30,8 +27,6 @@ from templates.physics.crankshaft.main_bearings import (
     greatest,
     greatest_at,
     mains_ascend,
-    moment_about_x,
-    moment_about_y,
 )
 from templates.physics.crankshaft.shaft_loads import (
     change_on_supports,
@@ -42,33 +37,15 @@ from templates.physics.crankshaft.shaft_loads import (
     imbalance,
     on_the_shaft,
     reactions_of,
+    sections_of,
     spun,
 )
-from templates.physics.engine.engine_curves import (
-    Parts,
-    Rotors,
-    area_curve,
-    areas_in_words,
-    balancers,
-    balancers_are_whole,
-    mean_of,
-    piston_shaking,
-    roll_moment,
-    running_energy,
-    swing_of,
-    torque,
-)
-from templates.physics.engine.engine_gas import gas_force, pressures
-from templates.physics.engine.engine_sizes import is_manageable
-from templates.physics.engine.offset_crank import RodMotion, axial_force, pin_force, wall_force
-from templates.physics.engine.slider_crank import crank_angles
-from templates.physics.numerics.arrays import largest_load, spread
 
-CYCLE, MAINS, SHAFTS = "crank_angle", "mains", "balance_shafts"
-STILL = "no load, or no torque that varies"
+MAINS = "mains"
+UNLOADED = "no load, or no mains, or no crank"
 
 
-class Engine(EngineBalance):
+class Engine(EngineMotion):
     """A whole engine of any layout: pins and firing, balance by orders, torque, loads of every bearing.
 
     In line, V, boxer; shared or split pins; odd firing; two and four strokes; cylinders that need not be
@@ -123,7 +100,7 @@ class Engine(EngineBalance):
     example = {
         "speed": "4500 rpm",
         "strokes": 4,
-        "crank_angle_step": "30 deg",
+        "crank_angle_step": "60 deg",
         "firing_order": [1, 3, 4, 2],
         "cylinder_positions": {"value": [47, 141, 235, 329], "unit": "mm"},
         "stroke": "86 mm",
@@ -196,17 +173,6 @@ class Engine(EngineBalance):
     E: Array = given("GPa", "youngs modulus", default="210 GPa", single=True, gt=0, le=1000)
     nu: Array = given("1", "poisson ratio", default="0.3", single=True, ge=0, lt=0.5)
     f_w: Array = given("1", "web torsion factor", default="8", single=True, gt=0, le=100)
-    U_b: Array = curve("kg*mm", "balancer unbalance", along=SHAFTS, alternative=True, ge=0, le=1e8)
-    i_b: Array = curve("1", "balancer ratios", along=SHAFTS, alternative=True, integer=True, ge=-4, le=4)
-    a_b: Array = curve(
-        "deg", "balancer phases", along=SHAFTS, constant=True, default="0 deg", ge=-360, le=360
-    )
-    z_b: Array = curve("mm", "balancer positions", along=SHAFTS, alternative=True, ge=-1e6, le=1e6)
-
-    @require("crank_angle_step", remedy="take a larger step, or fewer points at once")
-    def manageable(self) -> Truth:
-        """There are at most 200 000 points times crank angles."""
-        return is_manageable(self.shape_of_points(), self.steps)
 
     @require("main_positions", remedy="give two or more, ascending")
     def mains_ascend(self) -> Truth:
@@ -225,50 +191,10 @@ class Engine(EngineBalance):
         """Pins and webs fit between the mains."""
         return crank_fits(self.z_m, self.z_i, self.layout.throw, self.sections)
 
-    @require("balancer_unbalance", "balancer_ratios", "balancer_positions", missing=True,
-             remedy="give three lists, of one value for each balance shaft")  # fmt: skip
-    def balancers_are_whole(self) -> Truth:
-        """Each balance shaft has an unbalance, a ratio to the crank's speed and a position."""
-        return balancers_are_whole(self.U_b, self.i_b, self.z_b)
-
     @shared
     def sections(self) -> CrankSections:
         """Sections of the crank."""
-        return CrankSections(self.d_j, self.d_p, self.l_p, self.t_s, self.b_s, self.E, self.nu, self.f_w)
-
-    @profile("deg", "crank angle", along=CYCLE, symbol=r"\theta", latex=r"k\,\Delta\theta")
-    def theta(self) -> Array:
-        return crank_angles(self.strokes, self.step)
-
-    @shared
-    def motion(self) -> RodMotion:
-        """The mechanisms at all angles."""
-        return self.crank.at(self.layout.alpha(self.theta))
-
-    @shared
-    def gas_forces(self) -> Array:
-        """Force of the gas on each piston [N], (…, N, K)."""
-        return gas_force(self.p, self.p_0, self.f_p, self.D)
-
-    @shared
-    def axial(self) -> Array:
-        """Force along each cylinder by which the crank moves the piston against the gas [N]."""
-        return axial_force(self.m_rec, self.omega[..., None], self.motion, self.gas_forces)
-
-    @shared
-    def wall(self) -> Array:
-        """Force of each piston on its wall [N]."""
-        return wall_force(self.axial, self.rods.excess, self.omega[..., None], self.motion)
-
-    @shared
-    def rod_forces(self) -> Vectors:
-        """Force of each rod on its pin in the cylinder's axes [N], complex."""
-        return pin_force(self.rods.at_crank, self.omega[..., None], self.motion, self.axial, self.wall)
-
-    @shared
-    def pins(self) -> Vectors:
-        """The same in the engine's axes."""
-        return self.rod_forces * np.exp(1j * self.layout.bank)[..., None]
+        return sections_of(self.d_j, self.d_p, self.l_p, self.t_s, self.b_s, self.E, self.nu, self.f_w)
 
     @shared
     def loads(self) -> ShaftLoads:
@@ -295,85 +221,6 @@ class Engine(EngineBalance):
     def elastic_mains(self) -> Vectors:
         """Loads of the mains on elastic supports."""
         return elastic(self.z_m, self.loads, self.reactions, self.theta)
-
-    @shared
-    def balancers(self) -> Rotors:
-        """The balance shafts."""
-        return balancers(self.U_b, self.i_b, self.a_b, self.z_b)
-
-    @shared
-    def moving(self) -> Parts:
-        """All that moves, by the forces that it puts on the frame."""
-        return Parts(
-            piston_shaking(self.m_rec, self.omega[..., None], self.motion, self.layout.bank), self.places,
-            tuple((one.forces(self.omega, self.theta), one.place) for one in (*self.turning, self.balancers)),
-        )  # fmt: skip
-
-    @shared
-    def couple(self) -> Vectors:
-        """Sum of place times force of all that moves [N m], complex."""
-        return self.moving.couple(self.z_0)
-
-    @profile("bar", "gas pressure", along=CYCLE, axes=2, symbol="p", latex=r"p\left(\theta-\varphi\right)")
-    def p(self) -> Array:
-        return pressures(self.gas, self.layout, self.motion, self.theta)
-
-    @profile("N*m", "torque", along=CYCLE, symbol="T", latex=r"\sum r\times F")
-    def T(self) -> Array:
-        return torque(self.rod_forces, self.motion, self.theta)
-
-    @formula("N*m", "mean torque", symbol=r"\overline{T}")
-    def T_mean(self) -> Array:
-        return mean_of(self.T)
-
-    @formula("kW", "mean power", symbol="P")
-    def P(self) -> Array:
-        return self.T_mean * self.omega
-
-    @profile("J", "running energy", along=CYCLE, symbol="E_{r}",
-             latex=r"\int\left(T-\overline{T}\right)d\theta")  # fmt: skip
-    def E_r(self) -> Array:
-        return running_energy(self.theta, self.T)
-
-    @formula("J", "energy fluctuation", symbol=r"\Delta E")
-    def dE(self) -> Array:
-        return swing_of(self.E_r)
-
-    @profile("J", "energy area", along=CYCLE, symbol="A_{E}")
-    def A_E(self) -> Array:
-        return area_curve(self.theta, self.T)
-
-    @text("energy areas", absent=STILL)
-    def areas(self) -> str | Array:
-        return areas_in_words(self.theta, self.T)
-
-    @profile("N", "shaking force x", along=CYCLE, symbol="F_{x}")
-    def F_x(self) -> Array:
-        return along_x(self.moving.resultant())
-
-    @profile("N", "shaking force y", along=CYCLE, symbol="F_{y}")
-    def F_y(self) -> Array:
-        return along_y(self.moving.resultant())
-
-    @formula("N", "shaking force max", symbol=r"F_\mathrm{max}")
-    def F_max(self) -> Array:
-        return largest_load(self.F_x, self.F_y)
-
-    @profile("N*m", "shaking moment x", along=CYCLE, symbol="M_{x}")
-    def M_x(self) -> Array:
-        return moment_about_x(self.couple)
-
-    @profile("N*m", "shaking moment y", along=CYCLE, symbol="M_{y}")
-    def M_y(self) -> Array:
-        return moment_about_y(self.couple)
-
-    @profile("N*m", "roll moment", along=CYCLE, symbol="M_{z}")
-    def M_z(self) -> Array:
-        return roll_moment(self.wall, self.gas_forces, self.motion)
-
-    @profile("rad/s", "rod angular velocity", along=CYCLE, axes=2, symbol=r"\omega_{3}")
-    def omega_3(self) -> Array:
-        return -spread(np.asarray(self.omega)[..., None], self.motion.phi1)
 
     @profile("N", "crankpin load x", along=CYCLE, axes=2, symbol="F_{px}")
     def F_px(self) -> Array:
@@ -423,9 +270,9 @@ class Engine(EngineBalance):
     def i_e(self) -> Array:
         return governing(self.elastic_mains)
 
-    @profile("1", "elastic difference", along=MAINS, symbol=r"\Delta_{e}", absent=STILL)
+    @profile("1", "elastic difference", along=MAINS, symbol=r"\Delta_{e}", absent=UNLOADED)
     def Delta_e(self) -> Array:
-        return change_on_supports(self.z_m, self.elastic_mains, self.mains)
+        return change_on_supports(self.elastic_mains, self.mains)
 
     @formula("1", "equilibrium residual", symbol=r"\epsilon_\mathrm{R}")
     def residual(self) -> Array:

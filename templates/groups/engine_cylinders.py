@@ -42,7 +42,7 @@ class EngineCylinders(Template):
     omega: Array = given("rpm", "speed", ge=-1e6, le=1e6)
     strokes: Array = given("1", "strokes", symbol="z", integer=True, single=True, ge=2, le=4)
     step: Array = given("deg", "crank angle step", symbol=r"\Delta\theta", default="2 deg", single=True,
-                        ge=0.1, le=30)  # fmt: skip
+                        ge=0.1, le=60)  # fmt: skip
     s: Array = curve("mm", "stroke", along=EACH, constant=True, alternative=True, gt=0, le=1e5)
     r_g: Array = curve("mm", "crank radius", along=EACH, constant=True, alternative=True, gt=0, le=1e5,
                        symbol=r"r_{c}")  # fmt: skip

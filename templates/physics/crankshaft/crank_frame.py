@@ -11,7 +11,7 @@ Timoshenko, Young, Weaver: Vibration Problems in Engineering, for the beam with 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -40,13 +40,13 @@ class CrankSections:
         return (self.pin_length + self.web_thickness) / 2
 
 
-@dataclass
 class Frame:
     """Nodes and members of a frame; a member: two nodes, area, two inertias, torsion constant, shear area."""
 
-    sections: CrankSections
-    nodes: list[tuple[float, float, float]] = field(default_factory=list)
-    members: list[tuple[int, int, float, float, float, float, float]] = field(default_factory=list)
+    def __init__(self, sections: CrankSections) -> None:
+        self.sections = sections
+        self.nodes: list[tuple[float, float, float]] = []
+        self.members: list[tuple[int, int, float, float, float, float, float]] = []
 
     def node(self, across: complex, z: float) -> int:
         """A new node; its number."""
@@ -68,37 +68,44 @@ class Frame:
     def stiffness(self) -> Array:
         """The stiffness of all nodes, six unknowns each."""
         places, size = np.array(self.nodes), 6 * len(self.nodes)
-        K = np.zeros((size, size))
+        ends = np.array([member[:2] for member in self.members])
+        section = np.array([member[2:] for member in self.members]).T
         E, G = self.sections.E, self.sections.E / (2 * (1 + self.sections.nu))
-        for i, j, *section in self.members:
-            at = np.r_[6 * i : 6 * i + 6, 6 * j : 6 * j + 6]
-            K[np.ix_(at, at)] += _beam(places[j] - places[i], E, G, *section)
+        each = _beams(places[ends[:, 1]] - places[ends[:, 0]], E, G, section)
+        at = (6 * ends[:, :, None] + np.arange(6)).reshape(-1, 12)
+        K = np.zeros((size, size))
+        np.add.at(K, (at[:, :, None], at[:, None, :]), each)
         return K
 
 
-def _beam(way: Array, E: float, G: float, A: float, I_n: float, I_b: float, J: float, A_s: float) -> Array:
-    """Stiffness of a beam along `way`, (12, 12); I_n resists bending along the shaft, I_b across."""
-    length = float(np.linalg.norm(way))
-    t = way / length
-    n = np.array([0, 0, 1.0]) if abs(t[2]) < 0.9 else np.array([1.0, 0, 0])
-    n = n - t * (n @ t)
-    n /= np.linalg.norm(n)
-    K, pair = np.zeros((12, 12)), np.array([[1.0, -1], [-1, 1]])
-    K[np.ix_([0, 6], [0, 6])] = E * A / length * pair
-    K[np.ix_([3, 9], [3, 9])] = G * J / length * pair
-    for inertia, at, sign in ((I_n, [1, 5, 7, 11], 1.0), (I_b, [2, 4, 8, 10], -1.0)):
-        q, L, s = 12 * E * inertia / (G * A_s * length**2), length, sign
-        k = np.array(
-            [
-                [12, 6 * L * s, -12, 6 * L * s],
-                [6 * L * s, (4 + q) * L**2, -6 * L * s, (2 - q) * L**2],
-                [-12, -6 * L * s, 12, -6 * L * s],
-                [6 * L * s, (2 - q) * L**2, -6 * L * s, (4 + q) * L**2],
-            ]
-        )
-        K[np.ix_(at, at)] = E * inertia / (L**3 * (1 + q)) * k
-    turn = np.kron(np.eye(4), np.array([t, n, np.cross(t, n)]))
-    return turn.T @ K @ turn
+def _beams(way: Array, E: float, G: float, section: Array) -> Array:
+    """Stiffness of beams along `way`, (B, 3), as (B, 12, 12).
+
+    `section`, (5, B): area, inertia against bending along the shaft and across, torsion constant, shear area.
+    """
+    A, I_n, I_b, J, A_s = section
+    L = np.linalg.norm(way, axis=1)
+    t = way / L[:, None]
+    n = np.where(np.abs(t[:, 2:]) < 0.9, [0.0, 0, 1], [1.0, 0, 0])
+    n = n - t * np.sum(t * n, axis=1, keepdims=True)
+    n /= np.linalg.norm(n, axis=1, keepdims=True)
+    K = np.zeros((len(L), 12, 12))
+    for at, k in ((0, E * A / L), (3, G * J / L)):
+        K[:, at, at] = K[:, at + 6, at + 6] = k
+        K[:, at, at + 6] = K[:, at + 6, at] = -k
+    for inertia, bent, sign in ((I_n, (1, 5, 7, 11), 1.0), (I_b, (2, 4, 8, 10), -1.0)):
+        q = 12 * E * inertia / (G * A_s * L**2)
+        e = E * inertia / (L**3 * (1 + q))
+        shift, turn = 12 * e, 6 * e * L * sign
+        near, far = (4 + q) * e * L**2, (2 - q) * e * L**2
+        block = [[shift, turn, -shift, turn], [turn, near, -turn, far]]
+        block += [[-shift, -turn, shift, -turn], [turn, far, -turn, near]]
+        K[:, np.array(bent)[:, None], np.array(bent)] = np.array(block).transpose(2, 0, 1)
+    axes = np.stack([t, n, np.cross(t, n)], axis=1)
+    turned = np.zeros_like(K)
+    for k in range(0, 12, 3):
+        turned[:, k : k + 3, k : k + 3] = axes
+    return turned.transpose(0, 2, 1) @ K @ turned
 
 
 @dataclass(frozen=True)

@@ -43,10 +43,10 @@ def self_balancing(mains: Array) -> Array:
 def support_reactions(mains: Array, places: Array, shaft: Flexibility, stiffness: Array) -> Array:
     """Reactions to unit forces at the loads, (2 n, 2 L); `stiffness` [N/m], (n,), may be infinite."""
     plane = np.eye(2)
-    start = -np.kron(lever_shares(mains, places), plane)
+    start: Array = np.asarray(-np.kron(lever_shares(mains, places), plane), dtype=float)
     if mains.size == 2:
         return start
     basis = np.kron(self_balancing(mains), plane)
     give = shaft.mains + np.diag(np.repeat(1 / stiffness, 2))
     gap = basis.T @ (give @ start + shaft.loads)
-    return np.asarray(start - basis @ np.linalg.solve(basis.T @ give @ basis, gap))
+    return np.asarray(start - basis @ np.linalg.solve(basis.T @ give @ basis, gap), dtype=float)

@@ -52,6 +52,11 @@ def elastic_loads(reactions: Array, loads: ShaftLoads, theta: Array) -> Vectors:
     return (split[..., 0, :] + 1j * split[..., 1, :]) * turn
 
 
+def in_engine_axes(forces: Vectors, banks: Array) -> Vectors:
+    """Forces in the axes of their cylinders, (…, N, K), in those of the engine."""
+    return np.asarray(forces * np.exp(1j * banks)[..., None])
+
+
 @units("m", returns="1")
 def mains_ascend(mains: Array) -> Truth:
     """Whether there are two mains or more, one after the other along the shaft, if any are given."""
@@ -87,18 +92,22 @@ def moment_about_y(couple: Vectors) -> Array:
 @units(None, returns="N")
 def greatest(forces: Vectors) -> Array:
     """The greatest size over the cycle [N], one for each bearing."""
-    return np.asarray(np.abs(forces).max(axis=-1))
+    return np.asarray(np.abs(forces).max(axis=-1)) if np.ndim(forces) else np.array(np.nan)
 
 
 @units(None, "rad", returns="rad")
 def greatest_at(forces: Vectors, theta: Array) -> Array:
     """The crank angle at which each load is greatest [rad]."""
+    if not np.ndim(forces):
+        return np.array(np.nan)
     return np.asarray(theta[np.argmax(np.abs(forces), axis=-1)])
 
 
 @units(None, returns="1")
 def governing(forces: Vectors) -> Array:
     """The bearing with the greatest load of all, counted from 1; of equal ones the first."""
+    if not np.ndim(forces):
+        return np.array(np.nan)
     most = np.abs(forces).max(axis=-1)
     near = most >= most.max(axis=-1, keepdims=True) * (1 - 1e-9)
     return np.asarray(np.argmax(near, axis=-1) + 1.0)[()]

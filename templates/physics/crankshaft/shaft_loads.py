@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
@@ -16,12 +17,12 @@ from templates.physics.crankshaft.main_bearings import (
     left_over,
     relative_change,
 )
-from templates.physics.numerics.arrays import spread
 
-_NONE = np.float64(np.nan)
+_NONE = np.array(np.nan)
+Places = NDArray[np.intp]
 
 
-def throw_places(places: Array, throw: Array) -> Array:
+def throw_places(places: Array, throw: Places) -> Array:
     """The middle of each throw [m]: midway between the outermost of its cylinders."""
     return np.array([_middle(places[throw == t]) for t in range(int(throw.max()) + 1)])
 
@@ -30,7 +31,7 @@ def _middle(places: Array) -> float:
     return float((places.min() + places.max()) / 2)
 
 
-def throw_of_web(places: Array, named: Array, middles: Array) -> Array:
+def throw_of_web(places: Array, named: Array, middles: Array) -> Places:
     """The throw from 0 of each web: as named from 1, else the nearest."""
     if np.ndim(named):
         return np.clip(np.rint(named).astype(int) - 1, 0, middles.size - 1)
@@ -52,16 +53,16 @@ def web_unbalance(
 
 def determinate(mains: Array, loads: ShaftLoads) -> Vectors:
     """Loads of the mains, determinate; none without mains."""
-    return determinate_loads(mains, loads) if np.ndim(mains) else np.asarray(_NONE)
+    return determinate_loads(mains, loads) if np.ndim(mains) else _NONE + 0j
 
 
 def elastic(mains: Array, loads: ShaftLoads, reactions: Array, theta: Array) -> Vectors:
     """Loads of the mains on elastic supports; none where the crank's sections are not given."""
-    return elastic_loads(reactions, loads, theta) if np.ndim(reactions) else np.asarray(_NONE)
+    return elastic_loads(reactions, loads, theta) if np.ndim(reactions) else _NONE + 0j
 
 
 def reactions_of(
-    mains: Array, cylinders: Array, webs: Array, throw: Array, pins: Array, radius: Array,
+    mains: Array, cylinders: Array, webs: Array, throw: Places, pins: Array, radius: Array,
     sections: CrankSections, stiffness: Array,
 ) -> Array:  # fmt: skip
     """Reactions to unit loads on rods and webs, (…, 2 n, 2 L); rigid supports where no stiffness is given.
@@ -69,9 +70,9 @@ def reactions_of(
     `pins` [rad] and `radius` [m] are (…, N): each point with a crank of its own is solved on its own.
     """
     if not np.ndim(mains) or np.isnan([vars(sections)[n] for n in vars(sections)]).any():
-        return np.asarray(_NONE)
+        return _NONE
     if not np.isfinite(pins).all() or not fits(mains, cylinders, throw, sections):
-        return np.asarray(_NONE)
+        return _NONE
     vectors = radius * np.exp(1j * pins)
     flat = vectors.reshape(-1, vectors.shape[-1])
     order, middles = np.argsort(cylinders, kind="stable"), throw_places(cylinders, throw)
@@ -88,7 +89,7 @@ def reactions_of(
     return np.array(found).reshape(*vectors.shape[:-1], *found[0].shape)
 
 
-def fits(mains: Array, cylinders: Array, throw: Array, sections: CrankSections) -> bool:
+def fits(mains: Array, cylinders: Array, throw: Places, sections: CrankSections) -> bool:
     """Whether rods stand on their pins, throws do not overlap, and no main stands within a throw."""
     middles = throw_places(cylinders, throw)
     on_pins = np.abs(cylinders - middles[throw]) < sections.pin_length / 2
@@ -99,7 +100,7 @@ def fits(mains: Array, cylinders: Array, throw: Array, sections: CrankSections) 
 
 
 @units("m", "m", None, None, returns="1")
-def crank_fits(mains: Array, cylinders: Array, throw: Array, sections: CrankSections) -> Truth:
+def crank_fits(mains: Array, cylinders: Array, throw: Places, sections: CrankSections) -> Truth:
     """Whether the sections, if given, fit between mains and cylinders."""
     if not np.ndim(mains) or np.size(cylinders) != throw.size:
         return True
@@ -123,8 +124,8 @@ def webs_are_whole(places: Array, unbalance: Array, counterweight: Array, throws
     return np.ndim(places) == 1 and named
 
 
-@units("m", None, "m", returns="1")
-def change_on_supports(mains: Array, elastic_forces: Vectors, determinate_forces: Vectors) -> Array:
+@units(None, None, returns="1")
+def change_on_supports(elastic_forces: Vectors, determinate_forces: Vectors) -> Array:
     """By how much each main's greatest load differs from the determinate one, over that."""
     if not np.ndim(elastic_forces):
         return _NONE
@@ -146,4 +147,13 @@ def on_the_shaft(places: Array, pins: Vectors, webs: Array, spinning: Vectors) -
 
 def spun(unbalance: Vectors, omega: Array, theta: Array) -> Vectors:
     """Forces of unbalances [kg m] that turn with the crank [N], (…, L, K)."""
-    return np.asarray(spread(unbalance * np.asarray(omega)[..., None] ** 2, np.exp(1j * theta)))
+    return np.asarray((unbalance * np.asarray(omega)[..., None] ** 2)[..., None] * np.exp(1j * theta))
+
+
+def sections_of(
+    journal: Array, pin: Array, pin_length: Array, thickness: Array, width: Array, E: Array, nu: Array,
+    torsion: Array,
+) -> CrankSections:  # fmt: skip
+    """The sections of a shaft as plain numbers; NaN where they are not given."""
+    sizes = (journal, pin, pin_length, thickness, width, E, nu, torsion)
+    return CrankSections(*(float(size) for size in sizes))

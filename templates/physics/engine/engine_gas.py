@@ -81,6 +81,7 @@ def engine_gas(
     )
 
 
+@units(None, None, None, "rad", returns="Pa")
 def pressures(gas: GasCycle, layout: Layout, motion: RodMotion, theta: Array) -> Array:
     """The pressure in each cylinder [Pa], (…, N, K), at crank angles theta [rad], (K,)."""
     zero = 2 * np.pi if layout.strokes == 4 else 0.0

@@ -88,11 +88,12 @@ def arranged(
         base = (bank - pins + top) % TURN
         phi = _timed(order, base, cycle) if base.ndim == 1 and base.size == count else none
     elif listed(order) and is_order(order, pins, firing):
-        phi = np.argsort(order) * (cycle / count)
+        phi = np.asarray(np.argsort(order) * (cycle / count), dtype=float)
     else:
         phi = none
     psi = pins + 0 * phi if listed(pins) else (bank - phi + top) % TURN
-    throw = np.rint(np.atleast_1d(throws)).astype(np.intp) - 1 if listed(throws) else np.arange(count)
+    named = listed(throws) and throws_are_named(throws, order, pins, firing)
+    throw = np.rint(throws).astype(np.intp) - 1 if named else np.arange(count)
     return Layout(round(float(strokes)), bank + 0 * phi, psi, phi, throw)
 
 
@@ -110,10 +111,15 @@ def _timed(order: Array, base: Array, cycle: float) -> Array:
     turns = round((cycle - float(gaps.sum())) / TURN)
     if turns < 0:
         return np.full(base.size, np.nan)
-    best = max(_with_turns(gaps, turns), key=lambda tried: sorted(np.round(tried, 9)))
+    best = max(_with_turns(gaps, turns), key=_evenness)
     phi = np.empty(base.size)
     phi[places] = base[places[0]] + np.concatenate([[0.0], np.cumsum(best[:-1])])
     return phi
+
+
+def _evenness(intervals: Array) -> list[float]:
+    """By which sets of intervals compare: the smallest first."""
+    return [float(gap) for gap in np.sort(np.round(intervals, 9))]
 
 
 def _with_turns(gaps: Array, turns: int) -> Iterator[Array]:

@@ -70,10 +70,10 @@ def piston_harmonics(crank: OffsetCrank, orders: Array, exact: bool) -> Phasor:
     Fourier coefficients of the exact motion.
     """
     whole = np.rint(np.atleast_1d(orders)).astype(int)
-    alpha = np.arange(_SAMPLES) * (2 * np.pi / _SAMPLES)
+    alpha = np.linspace(0, 2 * np.pi, _SAMPLES, endpoint=False)
     spectrum = np.fft.rfft(-crank.at(alpha).x2, axis=-1) * (2 / _SAMPLES)
     amplitudes = spectrum[..., whole]
-    centred = _with_axis(crank.e == 0)
+    centred = (crank.e == 0)[..., None]
     amplitudes = np.where(centred & (whole % 2 == 1) & (whole > 1), 0, amplitudes)
     if exact:
         return amplitudes
@@ -157,4 +157,5 @@ def rotating_sum(parts: Sequence[tuple[Phasor, Array]], omega: Array, reference:
         arm = 1.0 if reference is None else places - np.asarray(reference)[..., None]
         total = total + np.sum(unbalance * arm, axis=-1)
         size = size + np.sum(np.abs(unbalance * arm), axis=-1)
-    return np.where(np.abs(total) <= _VANISHES * size, 0, total) * np.asarray(omega) ** 2
+    left = np.asarray(np.where(np.abs(total) <= _VANISHES * size, 0, total), dtype=complex)
+    return np.asarray(left * np.asarray(omega) ** 2)

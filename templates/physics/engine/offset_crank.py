@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
@@ -144,7 +145,7 @@ def turns_through(stroke: Array, radius: Array, rod: Array, offset: Array) -> Tr
     return _at_all_cylinders(rod > 1.000001 * (reach + np.abs(offset)))
 
 
-def _at_all_cylinders(holds: Array) -> Truth:
+def _at_all_cylinders(holds: NDArray[np.bool_]) -> Truth:
     whole = np.all(np.atleast_1d(holds), axis=-1)
     return bool(whole) if whole.ndim == 0 else whole
 
@@ -168,7 +169,15 @@ def wall_force(axial: Array, excess: Array, omega: Array, motion: RodMotion) -> 
     return -axial * motion.tan_phi - (excess * omega**2)[..., None] * motion.phi2 / arm
 
 
-def pin_force(at_crank: Array, omega: Array, motion: RodMotion, axial: Array, wall: Array) -> Array:
+def pin_force(
+    at_crank: Array, omega: Array, motion: RodMotion, axial: Array, wall: Array
+) -> NDArray[np.complex128]:
     """Force of the rod on the crankpin in the cylinder's axes [N], complex, (…, N, K)."""
     turning = (at_crank * omega**2 * motion.crank.r)[..., None]
     return (turning * motion.cos - axial) + 1j * (turning * motion.sin - wall)
+
+
+@units("rad/s", None, returns="rad/s")
+def rod_speed(omega: Array, motion: RodMotion) -> Array:
+    """Speed at which each rod turns [rad/s], (…, N, K)."""
+    return -np.asarray(omega)[..., None, None] * motion.phi1

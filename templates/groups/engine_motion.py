@@ -1,0 +1,192 @@
+"""Group: what an engine does over its cycle: forces of rods and walls, torque, energy, shaking."""
+
+from __future__ import annotations
+
+from templates.core.language.template import Array, Truth, curve, formula, profile, require, shared, text
+from templates.groups.engine_balance import EngineBalance
+from templates.physics.crankshaft.main_bearings import (
+    Vectors,
+    along_x,
+    along_y,
+    in_engine_axes,
+    moment_about_x,
+    moment_about_y,
+)
+from templates.physics.engine.engine_curves import (
+    Parts,
+    Rotors,
+    area_curve,
+    areas_in_words,
+    balancers,
+    balancers_are_whole,
+    mean_of,
+    piston_shaking,
+    roll_moment,
+    running_energy,
+    swing_of,
+    torque,
+)
+from templates.physics.engine.engine_gas import gas_force, pressures
+from templates.physics.engine.engine_sizes import is_manageable
+from templates.physics.engine.offset_crank import RodMotion, axial_force, pin_force, rod_speed, wall_force
+from templates.physics.engine.slider_crank import crank_angles
+from templates.physics.numerics.arrays import largest_load
+
+CYCLE, SHAFTS = "crank_angle", "balance_shafts"
+STILL = "no torque that varies"
+
+
+class EngineMotion(EngineBalance):
+    """What an engine does over its cycle: forces of rods and walls, torque, energy, shaking."""
+
+    U_b: Array = curve("kg*mm", "balancer unbalance", along=SHAFTS, alternative=True, ge=0, le=1e8)
+    i_b: Array = curve("1", "balancer ratios", along=SHAFTS, alternative=True, integer=True, ge=-4, le=4)
+    a_b: Array = curve(
+        "deg", "balancer phases", along=SHAFTS, constant=True, default="0 deg", ge=-360, le=360
+    )
+    z_b: Array = curve("mm", "balancer positions", along=SHAFTS, alternative=True, ge=-1e6, le=1e6)
+
+    @require("crank_angle_step", remedy="take a larger step, or fewer points at once")
+    def manageable(self) -> Truth:
+        """There are at most 200 000 points times crank angles."""
+        return is_manageable(self.shape_of_points(), self.steps)
+
+    @require("balancer_unbalance", "balancer_ratios", "balancer_positions", missing=True,
+             remedy="give three lists, of one value for each balance shaft")  # fmt: skip
+    def balancers_are_whole(self) -> Truth:
+        """Each balance shaft has an unbalance, a ratio to the crank's speed and a position."""
+        return balancers_are_whole(self.U_b, self.i_b, self.z_b)
+
+    @profile("deg", "crank angle", along=CYCLE, symbol=r"\theta", latex=r"k\,\Delta\theta")
+    def theta(self) -> Array:
+        """Of one cycle."""
+        return crank_angles(self.strokes, self.step)
+
+    @shared
+    def motion(self) -> RodMotion:
+        """The mechanisms at all angles."""
+        return self.crank.at(self.layout.alpha(self.theta))
+
+    @shared
+    def gas_forces(self) -> Array:
+        """Force of the gas on each piston [N], (…, N, K)."""
+        return gas_force(self.p, self.p_0, self.f_p, self.D)
+
+    @shared
+    def axial(self) -> Array:
+        """Force along each cylinder by which the crank moves the piston against the gas [N]."""
+        return axial_force(self.m_rec, self.omega[..., None], self.motion, self.gas_forces)
+
+    @shared
+    def wall(self) -> Array:
+        """Force of each piston on its wall [N]."""
+        return wall_force(self.axial, self.rods.excess, self.omega[..., None], self.motion)
+
+    @shared
+    def rod_forces(self) -> Vectors:
+        """Force of each rod on its pin in the cylinder's axes [N], complex."""
+        return pin_force(self.rods.at_crank, self.omega[..., None], self.motion, self.axial, self.wall)
+
+    @shared
+    def pins(self) -> Vectors:
+        """The same in the engine's axes."""
+        return in_engine_axes(self.rod_forces, self.layout.bank)
+
+    @shared
+    def balancers(self) -> Rotors:
+        """The balance shafts."""
+        return balancers(self.U_b, self.i_b, self.a_b, self.z_b)
+
+    @shared
+    def moving(self) -> Parts:
+        """All that moves, by the forces that it puts on the frame."""
+        return Parts(
+            piston_shaking(self.m_rec, self.omega[..., None], self.motion, self.layout.bank), self.places,
+            tuple((one.forces(self.omega, self.theta), one.place) for one in (*self.turning, self.balancers)),
+        )  # fmt: skip
+
+    @shared
+    def shaking(self) -> Vectors:
+        """Force of all that moves on the frame [N], complex."""
+        return self.moving.resultant()
+
+    @shared
+    def couple(self) -> Vectors:
+        """Sum of place times force of all that moves [N m], complex."""
+        return self.moving.couple(self.z_0)
+
+    @profile("bar", "gas pressure", along=CYCLE, axes=2, symbol="p", latex=r"p\left(\theta-\varphi\right)")
+    def p(self) -> Array:
+        """In each cylinder."""
+        return pressures(self.gas, self.layout, self.motion, self.theta)
+
+    @profile("N*m", "torque", along=CYCLE, symbol="T", latex=r"\sum r\times F")
+    def T(self) -> Array:
+        """Of all rods on the crank."""
+        return torque(self.rod_forces, self.motion, self.theta)
+
+    @formula("N*m", "mean torque", symbol=r"\overline{T}")
+    def T_mean(self) -> Array:
+        """That of the curve."""
+        return mean_of(self.T)
+
+    @formula("kW", "mean power", symbol="P")
+    def P(self) -> Array:
+        """Mean torque times speed."""
+        return self.T_mean * self.omega
+
+    @profile("J", "running energy", along=CYCLE, symbol="E_{r}",
+             latex=r"\int\left(T-\overline{T}\right)d\theta")  # fmt: skip
+    def E_r(self) -> Array:
+        """From the first angle on."""
+        return running_energy(self.theta, self.T)
+
+    @formula("J", "energy fluctuation", symbol=r"\Delta E")
+    def dE(self) -> Array:
+        """Largest less smallest running energy."""
+        return swing_of(self.E_r)
+
+    @profile("J", "energy area", along=CYCLE, symbol="A_{E}")
+    def A_E(self) -> Array:
+        """The whole area in which each angle lies."""
+        return area_curve(self.theta, self.T)
+
+    @text("energy areas", absent=STILL)
+    def areas(self) -> str | Array:
+        """All of them."""
+        return areas_in_words(self.theta, self.T)
+
+    @profile("N", "shaking force x", along=CYCLE, symbol="F_{x}")
+    def F_x(self) -> Array:
+        """Of all that moves, on the frame."""
+        return along_x(self.shaking)
+
+    @profile("N", "shaking force y", along=CYCLE, symbol="F_{y}")
+    def F_y(self) -> Array:
+        """Of all that moves, on the frame."""
+        return along_y(self.shaking)
+
+    @formula("N", "shaking force max", symbol=r"F_\mathrm{max}")
+    def F_max(self) -> Array:
+        """On the way round."""
+        return largest_load(self.F_x, self.F_y)
+
+    @profile("N*m", "shaking moment x", along=CYCLE, symbol="M_{x}")
+    def M_x(self) -> Array:
+        """Of all that moves, about the reference position."""
+        return moment_about_x(self.couple)
+
+    @profile("N*m", "shaking moment y", along=CYCLE, symbol="M_{y}")
+    def M_y(self) -> Array:
+        """Of all that moves, about the reference position."""
+        return moment_about_y(self.couple)
+
+    @profile("N*m", "roll moment", along=CYCLE, symbol="M_{z}")
+    def M_z(self) -> Array:
+        """What walls and heads put on the frame."""
+        return roll_moment(self.wall, self.gas_forces, self.motion)
+
+    @profile("rad/s", "rod angular velocity", along=CYCLE, axes=2, symbol=r"\omega_{3}")
+    def omega_3(self) -> Array:
+        """Of each rod."""
+        return rod_speed(self.omega, self.motion)
