@@ -1,4 +1,4 @@
-"""Cases of the criteria of pads, collars and mixed friction, for `test_criteria_of_families`.
+"""Cases of the criteria of pads, collars, mixed friction and elastic films, for `test_criteria_of_families`.
 
 Each: template, criterion, what differs from the example, limits given, verdict, value and limit.
 """
@@ -7,6 +7,8 @@ from math import pi
 
 HYDROSTATIC, THRUST, MIXED = ("hydrostatic_pad", 1), ("thrust_bearing", 1), ("mixed_friction", 1)
 GIVEN_OIL = {"supply_temperature": None, "dynamic_viscosity": "1 mPa*s"}
+ELASTIC = ("elastic_film", 1)
+LIGHT = {"radial_load": "10 N", "liner_thickness": "0.01 mm"}
 THICK = {**GIVEN_OIL, "taper": "200 um", "load": "20 N"}
 THIN = {**GIVEN_OIL, "dynamic_viscosity": "0.001 mPa*s", "taper": "0.2 um", "load": "200 kN"}
 BEARS = 20e3 / (0.8 * pi / 4 * (200**2 - 110**2))  # MPa
@@ -35,6 +37,15 @@ CASES = [
     (THRUST, "laminar", {}, {}, "met", 24.681966, 1000),
     # rho U h_i/eta at the mean radius
     (THRUST, "laminar", THICK, {}, "not_met", 875 * 50 * pi * 0.0775 * 383.073604e-6 / 1e-3, 1000),
+    # the estimate of what gives way, against a tenth of the film
+    (ELASTIC, "elasticity", LIGHT, {}, "met", 7.908289e-3, 2.7293480),
+    (ELASTIC, "elasticity", {}, {}, "not_met", 16.230576, 0.46219009),
+    (ELASTIC, "own_film", {}, {"permissible_film": "4 um"}, "met", 4.6219009, 4),
+    (ELASTIC, "own_film", {}, {"permissible_film": "5 um"}, "not_met", 4.6219009, 5),
+    (ELASTIC, "film_exists", {}, {}, "met", 4.6219009, 0.05),
+    (ELASTIC, "film_exists", {"radial_load": "1e9 N"}, {}, "not_met", 2.1155237e-4, 0.05),
+    (ELASTIC, "pressure", {}, {"permissible_pressure": "50 MPa"}, "met", 48.114488, 50),
+    (ELASTIC, "pressure", {}, BABBITT, "not_met", 48.114488, 20.6),
     (MIXED, "full_film", {"speed": "600 rpm"}, {}, "met", 4.9008874, 3),
     (MIXED, "full_film", {}, {}, "not_met", 2.9660099, 3),
     (MIXED, "above_transition", {"speed": "600 rpm"}, {}, "met", 600, 304.596723),

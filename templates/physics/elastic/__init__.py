@@ -1,0 +1,1 @@
+"""Films whose bearing gives way: liner, housing, and oil that thickens under pressure."""
