@@ -47,21 +47,21 @@ def impact_command(
             bar.update(max(0, int(1000 * fraction) - done))
             done = max(done, int(1000 * fraction))
 
-        found = client.impact(template, version, name=name, tags=tags, limit=limit, on_progress=update)
+        impact = client.impact(template, version, name=name, tags=tags, limit=limit, on_progress=update)
         bar.update(1000 - done)
     if as_json:
-        click.echo(json.dumps(found.plain(), indent=2, ensure_ascii=False))
+        click.echo(json.dumps(impact.plain(), indent=2, ensure_ascii=False))
     else:
-        _print(found)
+        _print(impact)
 
 
-def _print(found: Impact) -> None:
+def _print(impact: Impact) -> None:
     """The counts, then a line for each design."""
-    known = f"{found.moved} move, {found.refused} refuse it, {found.unchanged} stay as they are"
-    solids = f", {found.needs_solids} need solids" if found.needs_solids else ""
-    archived = f" ({found.archived} archived ones are left out)" if found.archived else ""
-    click.echo(f"{found.concerned} designs use another version{archived}: {known}{solids}")
-    for one in found.designs:
+    counts = f"{impact.moved} move, {impact.refused} refuse it, {impact.unchanged} stay as they are"
+    solids = f", {impact.needs_solids} need solids" if impact.needs_solids else ""
+    archived = f" ({impact.archived} archived ones are left out)" if impact.archived else ""
+    click.echo(f"{impact.concerned} designs use another version{archived}: {counts}{solids}")
+    for one in impact.designs:
         click.echo(f"{one.design}  {one.name}, revision {one.revision}: {_line(one)}")
 
 

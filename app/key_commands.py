@@ -75,9 +75,9 @@ def add_command(
                 f"{name} has the roles {', '.join(row.roles)}; leave --role away for another key, or change "
                 f"them: POST /api/v1/principals/{row.id}"
             )
-        made, _ = identity.add_key(row.id, scopes=scopes, expires=until)
+        key, _ = identity.add_key(row.id, scopes=scopes, expires=until)
     click.echo(f"a key of {name} ({', '.join(scopes or row.roles)}), shown this once:", err=True)
-    click.echo(made.text)
+    click.echo(key.text)
 
 
 @keys_command.command("list")
@@ -143,8 +143,8 @@ def _named_key(key: ApiKeyRow) -> str:
 
 
 def _described(key: ApiKeyRow) -> str:
-    made_by = f"  made by {key.made_by}" if key.made_by else ""
-    return f"{key.prefix}  {', '.join(key.scopes) or 'all roles'}  {_state(key)}{made_by}"
+    origin = f"  made by {key.made_by}" if key.made_by else ""
+    return f"{key.prefix}  {', '.join(key.scopes) or 'all roles'}  {_state(key)}{origin}"
 
 
 def _state(key: ApiKeyRow) -> str:

@@ -67,12 +67,12 @@ def import_command(files: tuple[Path, ...], author: str | None, url: str | None,
     """
     named = sorted((_named(file), file) for file in files)
     with connected(url, data) as client:
-        known = {one.id for one in client.worksheets()}
+        ids = {one.id for one in client.worksheets()}
         for (id, number), file in named:
-            sheet = client.read_worksheet(id) if id in known else None
+            sheet = client.read_worksheet(id) if id in ids else None
             _require_next(file, number, sheet)
             sheet = _saved(client, id, _text(file), author, sheet)
-            known.add(id)
+            ids.add(id)
             faults = f", {len(sheet.faults)} faults" if sheet.faults else ""
             click.echo(f"{sheet.id} version {sheet.version}: {sheet.state}{faults}")
 

@@ -265,20 +265,20 @@ def _fault(fault: templates.Fault) -> JsonObject:
 
 
 def _validation(error: RequestValidationError | InvalidBody) -> JsonObject:
-    listed = [_located(found) for found in error.errors()]
+    listed = [_located(fault) for fault in error.errors()]
     return {"errors": listed, "detail": _short(listed)}
 
 
-def _located(found: ErrorDetails) -> JsonObject:
-    place = [str(part)[:LONGEST_PLACE] for part in found["loc"]]
-    if found["type"] == "json_invalid":
+def _located(fault: ErrorDetails) -> JsonObject:
+    place = [str(part)[:LONGEST_PLACE] for part in fault["loc"]]
+    if fault["type"] == "json_invalid":
         place = ["body"]
     inside = place[1:] if place[0] in ("body", "query", "path", "header") else place
-    reason = found.get("ctx", {}).get("error", "") if found["type"] == "json_invalid" else ""
-    detail = f"{found['msg']}: {reason}" if reason else found["msg"]
+    reason = fault.get("ctx", {}).get("error", "") if fault["type"] == "json_invalid" else ""
+    detail = f"{fault['msg']}: {reason}" if reason else fault["msg"]
     return {
         "name": templates.plain(".".join(inside) or place[0], LONGEST_PLACE),
-        "code": found["type"],
+        "code": fault["type"],
         "detail": detail,
     }
 

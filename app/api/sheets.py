@@ -42,10 +42,10 @@ class SheetRoute(StrictRoute):
 
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
         """Whether path, method and media type fit."""
-        match, found = super().matches(scope)
+        match, child_scope = super().matches(scope)
         if match is Match.FULL and sheet_kind(Request(scope)) is None:
             return Match.NONE, {}
-        return match, found
+        return match, child_scope
 
 
 def sheet_kind(request: Request) -> Kind | None:

@@ -40,13 +40,13 @@ async def lost(
     """
     if await to_thread.run_sync(healing.is_good, sha):
         return None
-    if answer := await _made_again(sha, healing, jobs, prefer):
+    if answer := await _unless_healed(sha, healing, jobs, prefer):
         return answer
     if await to_thread.run_sync(healing.is_good, sha):
         return None
     # A job that was under way already may have passed the file before that was lost: the next one has not.
     try:
-        if answer := await _made_again(sha, healing, jobs, prefer):
+        if answer := await _unless_healed(sha, healing, jobs, prefer):
             return answer
     except ArtifactMissing:
         pass  # the row names other bytes by now
@@ -55,7 +55,7 @@ async def lost(
     return None
 
 
-async def _made_again(sha: str, healing: Healing, jobs: Jobs, prefer: str | None) -> Response | None:
+async def _unless_healed(sha: str, healing: Healing, jobs: Jobs, prefer: str | None) -> Response | None:
     """None once the job that makes an artifact again has ended well, else what to answer."""
     if refused := healing.refused(sha):
         return problems.answer(refused)

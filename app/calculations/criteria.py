@@ -48,9 +48,9 @@ def criterion(judgement: Judgement) -> JsonObject:
         "unverified": judgement.unverified,
         "waived": judgement.waived,
     }
-    known = {name: part for name, part in parts.items() if part is not None}
+    present = {name: part for name, part in parts.items() if part is not None}
     names = {"name": judgement.name, "words": judgement.words, "require": judgement.require}
-    return {**names, "verdict": judgement.verdict, **known}
+    return {**names, "verdict": judgement.verdict, **present}
 
 
 def _quantity(value: float, unit: str) -> JsonObject | None:

@@ -47,8 +47,10 @@ def source_of(cls: type[Template]) -> Source:
     if cls.sheet is not None:
         return SheetSource(cls.id, cls.version, cls.sheet.text, cls.withdrawn)
     module, path = inspect.getmodule(cls), inspect.getfile(cls)
-    made = origin(module) if module else None
-    return FileSource(path, made[1], made[0]) if made else FileSource(path.removeprefix(f"{_PROGRAM}/"))
+    code = origin(module) if module else None
+    if code is None:
+        return FileSource(path.removeprefix(f"{_PROGRAM}/"))
+    return FileSource(path, code[1], code[0])
 
 
 @lru_cache(maxsize=1024)

@@ -15,5 +15,5 @@ BUILT_IN = tuple(Path(folder) for folder in templates.__path__)
 
 def find_templates(folders: Iterable[Path]) -> Catalogue[Template]:
     """All templates that calculate; one with a shape is a model, and found by `cad.catalogue.models`."""
-    found = find((*BUILT_IN, *folders), Template)
-    return Catalogue({key: cls for key, cls in found.versions.items() if not issubclass(cls, CadModel)})
+    catalogue = find((*BUILT_IN, *folders), Template)
+    return Catalogue({key: cls for key, cls in catalogue.versions.items() if not issubclass(cls, CadModel)})

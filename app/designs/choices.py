@@ -65,8 +65,8 @@ class Choices:
             return _class(self.catalogues.models, model.id, model.version), model.parameters
         if block in self.document.parameters:
             return None, {}
-        known = [*self.document.steps, *self.document.models]
-        raise FaultyText("unknown_name", unknown_name(name, known, "choice").detail)
+        blocks = [*self.document.steps, *self.document.models]
+        raise FaultyText("unknown_name", unknown_name(name, blocks, "choice").detail)
 
 
 def _class(catalogue: Catalogue[T], id: str, version: Version) -> type[T]:

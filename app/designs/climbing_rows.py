@@ -232,15 +232,15 @@ class _Climb:
                 valued &= np.isfinite(value).all(axis=1)
         return valued
 
-    def _expect(self, step: Block, found: StepRows, rows: NDArray[np.intp]) -> None:
+    def _expect(self, step: Block, step_rows: StepRows, rows: NDArray[np.intp]) -> None:
         """What each level states for rows where these lie now; nothing is calculated for it."""
         measured, outputs = accuracy(step.cls), self._outputs(step)
         for level in self.ladders[step.name] if measured and outputs else ():
             errors = self.expected.setdefault((step.name, level), np.full(self.count, np.inf))
-            for part in found.parts:
+            for part in step_rows.parts:
                 stated = measured.expected(part.template, level, outputs) if measured else {}
                 worst = np.max(np.broadcast_arrays(*(stated[name] for name in outputs)), axis=0)
-                there = rows[part.rows] if found.has_rows else rows
+                there = rows[part.rows] if step_rows.has_rows else rows
                 errors[there] = np.nan_to_num(worst, nan=np.inf)
 
     def _climbed(self) -> NDArray[np.intp]:

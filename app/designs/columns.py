@@ -99,9 +99,9 @@ def scattered(count: int, parts: Iterable[tuple[Indices | slice, Column]]) -> Co
     ValueError
         If the parts have curves of different lengths.
     """
-    found = list(parts)
-    places: tuple[int, ...] = reduce(np.broadcast_shapes, (column.places for _, column in found), ())
+    pieces = list(parts)
+    places: tuple[int, ...] = reduce(np.broadcast_shapes, (column.places for _, column in pieces), ())
     whole = np.full((count, *places), np.nan)
-    for rows, column in found:
+    for rows, column in pieces:
         whole[rows] = column.padded(len(places))
     return Column(whole, is_row=True)

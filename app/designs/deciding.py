@@ -88,15 +88,15 @@ class Deciding:
         """Climb until there is nothing more to do."""
         start = time.monotonic()
         judging = Judging(self.calculation)
-        found = {judgement.name: judgement for judgement in judging.all()}
-        asked = tuple(n for n, j in found.items() if j.verdict == "undecided" and self._is_wanted(n))
+        judgements = {judgement.name: judgement for judgement in judging.all()}
+        asked = tuple(n for n, j in judgements.items() if j.verdict == "undecided" and self._is_wanted(n))
         stopped: Stop | None = None
         while stopped is None:
-            open_now = [name for name in asked if found[name].verdict == "undecided"]
+            open_now = [name for name in asked if judgements[name].verdict == "undecided"]
             stopped = self._next(open_now, self.budget - (time.monotonic() - start))
             if stopped is None:
-                found |= self._judged(open_now)
-        ordered = worst_first(found.values())
+                judgements |= self._judged(open_now)
+        ordered = worst_first(judgements.values())
         return Decision(ordered, asked, tuple(self.trials), tuple(self.skipped.values()), stopped)
 
     def _is_wanted(self, name: str) -> bool:
@@ -198,5 +198,5 @@ class Deciding:
 
 def _largest(error: object) -> float:
     """The largest error of several points; infinite where it is not stated."""
-    known = np.asarray(error if error is not None else np.nan, dtype=float)
-    return float(np.nanmax(known)) if np.isfinite(known).any() else math.inf
+    errors = np.asarray(error if error is not None else np.nan, dtype=float)
+    return float(np.nanmax(errors)) if np.isfinite(errors).any() else math.inf

@@ -90,9 +90,9 @@ class Decisions(LongAnswers):
 
     def _decided(self, asked: Asked) -> Decision:
         number, calculation = self._calculated(asked)
-        known = Judging(calculation).names()
-        unknown = (name for name in asked.criteria or () if name not in known)
-        raise_if([fault.within("criteria") for fault in unknown_names(unknown, known, "criterion")])
+        names = Judging(calculation).names()
+        unknown = (name for name in asked.criteria or () if name not in names)
+        raise_if([fault.within("criteria") for fault in unknown_names(unknown, names, "criterion")])
         if calculation.deferred:
             return _shown(number, asked, _pending(calculation))
         return _shown(number, asked, Deciding(calculation, asked.criteria, asked.budget).decide())

@@ -112,13 +112,13 @@ def _parameters(network: Network, demand: Demand) -> set[str]:
 
 
 def _checked(network: Network, kinds: Mapping[str, Kind], demand: Demand) -> Checked:
-    known = {name: _known(network, kinds, name, reference) for name, reference in demand.uses.items()}
+    meanings = {name: _meaning(network, kinds, name, reference) for name, reference in demand.uses.items()}
     written = demand.written
     parts = {"require": written.require, "words": written.words, "source": written.source}
-    return read_criterion(demand.name, {key: part for key, part in parts.items() if part}, known)
+    return read_criterion(demand.name, {key: part for key, part in parts.items() if part}, meanings)
 
 
-def _known(network: Network, kinds: Mapping[str, Kind], name: str, reference: Reference) -> Known:
+def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: Reference) -> Known:
     """The unit in which a value is shown, and its words."""
     if cell := network.parameters.get(name):
         typed = None if cell.relations else read_any(cell.raw).unit

@@ -26,6 +26,6 @@ def explained(
     """
     chain = Explanation.model_validate(explain_any(document, calculation, name))
     subject = Judging(calculation).subject(chain.name) if chain.kind == "criterion" else None
-    found = sensitivities(document, calculation, catalogues, Asked(chain.name, subject, system))
-    reason = {} if found.reason is None else {"reason": found.reason}
-    return chain.in_units(system).model_copy(update={"sensitivities": list(found.items), **reason})
+    slopes = sensitivities(document, calculation, catalogues, Asked(chain.name, subject, system))
+    reason = {} if slopes.reason is None else {"reason": slopes.reason}
+    return chain.in_units(system).model_copy(update={"sensitivities": list(slopes.items), **reason})

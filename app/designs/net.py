@@ -106,16 +106,18 @@ class Net:
         raise_if(list(place_faults(written, varied, set_aside)))
         graph, faults = build_graph(with_places(document, written, varied), catalogues)
         raise_if(faults)
-        known = dict(measured or {})
-        design = RowDesign(graph, frozenset(varied), known)
+        constants = dict(measured or {})
+        design = RowDesign(graph, frozenset(varied), constants)
         judged = [subject for name, subject in subjects(graph).items() if name in criteria]
         due = design.needs(Wanted.of(wanted if wanted is not None else _all_used(graph), judged))
-        measures = {reference for reference in due.waiting | known.keys() if reference not in design.varied}
+        measures = {
+            reference for reference in due.waiting | constants.keys() if reference not in design.varied
+        }
         raise_if([] if pending else solids_in_the_way(graph, measures, design.moving))
         steps = [name for name, block in graph.blocks.items() if not block.is_model]
         checked = [name for name in steps if wanted is None or name in due.members]
         raise_if(list(Ranks(graph, design.moving).faults(checked)))
-        return cls(design, RowDesign(written, frozenset(), known))
+        return cls(design, RowDesign(written, frozenset(), constants))
 
     def __call__(
         self,
@@ -260,10 +262,10 @@ class Net:
         InvalidInputs
             If the design has no criterion of a name.
         """
-        known = subjects(self.graph)
-        unknown = (name for name in criteria if name not in known)
-        raise_if([fault.within("criteria") for fault in unknown_names(unknown, known, "criterion")])
-        return {name: known[name] for name in criteria}
+        by_name = subjects(self.graph)
+        unknown = (name for name in criteria if name not in by_name)
+        raise_if([fault.within("criteria") for fault in unknown_names(unknown, by_name, "criterion")])
+        return {name: by_name[name] for name in criteria}
 
     def _wanted(self, wanted: Collection[Reference], criteria: Collection[str]) -> Wanted:
         return Wanted.of(wanted, self.subjects(criteria).values())

@@ -66,13 +66,13 @@ def through_solids(graph: Graph, wanted: Wanted) -> Mapping[Reference, Block]:
 
 def measures_behind(calculation: Calculation, wanted: Wanted) -> dict[Reference, float]:
     """The measures of solids [SI] that values follow from, as far as they are known."""
-    known: dict[Reference, float] = {}
+    measures: dict[Reference, float] = {}
     for reference in _needs(calculation.graph, wanted).waiting:
         try:
-            known[reference] = float(calculation.value(reference))
+            measures[reference] = float(calculation.value(reference))
         except (FaultyText, KeyError):  # not built, or not analysed
             continue
-    return known
+    return measures
 
 
 def _needs(graph: Graph, wanted: Wanted) -> Needs:

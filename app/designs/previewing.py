@@ -27,7 +27,7 @@ class Previews(LongAnswers):
 
     kind = PREVIEW
 
-    def known(self, change: Change) -> Preview:
+    def quick(self, change: Change) -> Preview:
         """The preview as far as its caller waits for it."""
         return preview(self.database, self.catalogues, **vars(change)).content
 

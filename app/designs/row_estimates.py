@@ -61,13 +61,13 @@ class RowEstimate:
 
     def bounds(self) -> tuple[Column, Column]:
         """Both ends of the band; the value itself where its error is not known."""
-        known = Column(np.nan_to_num(self.error.value, nan=0.0), self.error.is_row)
-        estimate = RowEstimate(self.value, known, self.is_stated, self.axes, self._known_scale()).padded(0)
-        is_row = self.value.is_row or known.is_row
+        error = Column(np.nan_to_num(self.error.value, nan=0.0), self.error.is_row)
+        estimate = RowEstimate(self.value, error, self.is_stated, self.axes, self._finite_scale()).padded(0)
+        is_row = self.value.is_row or error.is_row
         low, high = estimate.bounds()
         return Column(low, is_row), Column(high, is_row)
 
-    def _known_scale(self) -> Column | None:
+    def _finite_scale(self) -> Column | None:
         if self.scale is None:
             return None
         return Column(np.nan_to_num(self.scale.value, nan=0.0), self.scale.is_row)
@@ -92,8 +92,8 @@ def estimate_rows(rows: RowPass, reference: Reference, *, inside: bool = False) 
 
 
 def _of_step(step: StepRows, member: str) -> RowEstimate:
-    found = [(part, estimate_of(_evaluated(step, part), member)) for part in step.parts]
-    present = [(part, one) for part, one in found if isinstance(one, Estimate)]
+    estimates = [(part, estimate_of(_evaluated(step, part), member)) for part in step.parts]
+    present = [(part, one) for part, one in estimates if isinstance(one, Estimate)]
     if not present:
         return RowEstimate(Column(np.nan))
     axes = max(one.axes for _, one in present)

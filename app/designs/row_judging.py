@@ -122,14 +122,14 @@ class RowJudging:
 
     def _estimates(self, subject: Subject) -> dict[str, RowEstimate]:
         """The values that a criterion names, as far as there are any."""
-        found = {
+        estimates = {
             n: estimate_rows(self.rows, r, inside=subject.block is not None and r.analysis != LIMITS)
             for n, r in subject.references.items()
         }
         for limit in subject.criterion.limits:
-            if limit.name not in found and (given := self._limit(subject, limit, found)) is not None:
-                found[limit.name] = given
-        return found
+            if limit.name not in estimates and (given := self._limit(subject, limit, estimates)) is not None:
+                estimates[limit.name] = given
+        return estimates
 
     def _limit(self, subject: Subject, limit: Limit, others: Mapping[str, RowEstimate]) -> RowEstimate | None:
         """A limit of the user: one for all rows, or a curve beside a curve."""

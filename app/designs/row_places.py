@@ -102,20 +102,20 @@ class Ranks:
 
     graph: Graph
     moving: Varying
-    _known: dict[Cell, int] = field(default_factory=dict)
+    _ranks: dict[Cell, int] = field(default_factory=dict)
 
     def faults(self, blocks: Collection[str]) -> Iterator[Fault]:
         """Lists of single values among the inputs of steps that differ from row to row."""
         for node in self.graph.order:
             if isinstance(node, Cell):
-                self._known[node] = self._of_cell(node)
+                self._ranks[node] = self._of_cell(node)
             elif isinstance(node, Block) and node in self.moving and node.name in blocks:
                 yield from self._of_step(node)
 
     def _of_step(self, block: Block) -> Iterator[Fault]:
         for name, cell in block.cells.items():
             declared = block.cls.inputs[name]
-            if not isinstance(declared, Table) and self._known[cell] > int(isinstance(declared, Curve)):
+            if not isinstance(declared, Table) and self._ranks[cell] > int(isinstance(declared, Curve)):
                 detail = "this is a list of its own; where rows vary, an input has one value in each row"
                 yield Fault(cell.name, "shape", f"{detail}: give one value, or vary it too")
 
@@ -133,7 +133,7 @@ class Ranks:
 
     def _of_reference(self, reference: Reference) -> int:
         if cell := self.graph.cell(reference):
-            return self._known[cell]
+            return self._ranks[cell]
         block = self.graph.blocks[reference.block]
         formula = block.cls.formulas.get(reference.member)
         own = formula.axes if isinstance(formula, Profile) else 0
@@ -141,7 +141,7 @@ class Ranks:
 
     def _points(self, block: Block) -> int:
         """How many axes the points of a step have that is one for all rows."""
-        inputs = ((self._known[cell], block.cls.inputs[name]) for name, cell in block.cells.items())
+        inputs = ((self._ranks[cell], block.cls.inputs[name]) for name, cell in block.cells.items())
         return max((n - isinstance(d, Curve) for n, d in inputs if not isinstance(d, Table)), default=0)
 
 

@@ -73,8 +73,8 @@ class RowShifting:
         if not self._beneath:
             for node in self.rows.question.graph.order:  # in order, so that no chain is too long to follow
                 if isinstance(node, Cell) and node in self.rows.cells:
-                    self._known(node.reference)
-        return self._known(reference)
+                    self._origins(node.reference)
+        return self._origins(reference)
 
     def unknown(self, origins: Origins) -> Mask:
         """The rows in which the error of any of the outputs is not known."""
@@ -105,13 +105,13 @@ class RowShifting:
             shifts.append((low, high))
         return shifts, len(carried) == len(uncertain)
 
-    def _known(self, reference: Reference) -> Origins:
+    def _origins(self, reference: Reference) -> Origins:
         if reference not in self._beneath:
             self._beneath[reference] = NONE  # an iteration comes back to where it began
-            self._beneath[reference] = self._origins(reference)
+            self._beneath[reference] = self._followed(reference)
         return self._beneath[reference]
 
-    def _origins(self, reference: Reference) -> Origins:
+    def _followed(self, reference: Reference) -> Origins:
         graph = self.rows.question.graph
         if reference in self.rows.given:
             return NONE
@@ -121,12 +121,12 @@ class RowShifting:
         if block is None:
             return NONE
         if not is_member(graph, reference):
-            return _joined(self._known(cell.reference) for cell in block.cells.values()).without()
+            return _joined(self._origins(cell.reference) for cell in block.cells.values()).without()
         return self._of_block(block, reference.member)
 
     def _behind(self, reference: Reference) -> Origins:
         own = Origins(frozenset({reference})) if self._is_calculated(reference) else NONE
-        return self._known(reference) | own
+        return self._origins(reference) | own
 
     def _is_calculated(self, reference: Reference) -> bool:
         """Whether a name is an output of a step that is calculated, and so may be off."""
@@ -145,7 +145,7 @@ class RowShifting:
         beneath = step.parts[0].template.depends_on(declared.attribute)
         related = [cell for cell in block.cells.values() if cell.relations and cell.declared]
         used = [cell for cell in related if cell.declared and cell.declared.attribute in beneath]
-        origins = _joined(self._known(cell.reference) for cell in used)
+        origins = _joined(self._origins(cell.reference) for cell in used)
         is_expensive = origins != NONE and not block.is_model and self._of_one_row(block) > EXPENSIVE
         return origins.without() if is_expensive else origins
 

@@ -40,7 +40,7 @@ class Needs:
 def needs(
     graph: Graph,
     wanted: Iterable[Reference],
-    known: Collection[Reference],
+    measured: Collection[Reference],
     inside: Iterable[Reference] = (),
 ) -> Needs:
     """All that some values follow from; what lies behind `known` values is not needed.
@@ -54,19 +54,19 @@ def needs(
         if reference in seen:
             continue
         seen.add(reference)
-        left += _before(graph, reference, known, result)
+        left += _before(graph, reference, measured, result)
     return result
 
 
 def _before(
-    graph: Graph, reference: Reference, known: Collection[Reference], result: Needs
+    graph: Graph, reference: Reference, measured: Collection[Reference], result: Needs
 ) -> Iterator[Reference]:
     """The values that are used for one value, which is noted as needed."""
     if cell := graph.cell(reference):
         result.cells.add(cell)
-        if reference not in known:
+        if reference not in measured:
             yield from cell.uses.values()
-    elif reference in known:
+    elif reference in measured:
         return
     elif is_member(graph, reference):
         yield from _of_member(graph, reference, result)

@@ -89,8 +89,8 @@ class Shifting:
         if not self._beneath:
             for node in self.calculation.graph.order:  # in order, so that no chain is too long to follow
                 if isinstance(node, Cell):
-                    self._known(node.reference)
-        return self._known(reference)
+                    self._upstream(node.reference)
+        return self._upstream(reference)
 
     @cached_property
     def _is_carried_on(self) -> bool:
@@ -98,10 +98,10 @@ class Shifting:
         graph = self.calculation.graph
         return any(graph.cell(used) is None for cell in graph.cells() for used in cell.uses.values())
 
-    def _known(self, reference: Reference) -> Upstream:
+    def _upstream(self, reference: Reference) -> Upstream:
         if reference not in self._beneath:
             self._beneath[reference] = NOTHING  # an iteration comes back to where it began
-            self._beneath[reference] = self._upstream(reference)
+            self._beneath[reference] = self._followed(reference)
         return self._beneath[reference]
 
     def shifts(
@@ -118,7 +118,7 @@ class Shifting:
         ]
         return shifts, upstream.uncertain.difference(carried)
 
-    def _upstream(self, reference: Reference) -> Upstream:
+    def _followed(self, reference: Reference) -> Upstream:
         graph = self.calculation.graph
         if reference in graph.assumed:
             return self._of_model(reference.block)
@@ -138,7 +138,7 @@ class Shifting:
         return self.beneath(reference) | self._own(reference)
 
     def _behind(self, reference: Reference) -> Upstream:
-        return self._known(reference) | self._own(reference)
+        return self._upstream(reference) | self._own(reference)
 
     def _own(self, reference: Reference) -> Upstream:
         estimate = self.estimate(reference)
@@ -160,13 +160,13 @@ class Shifting:
             return NOTHING  # it waits
         related = [cell for cell in block.cells.values() if cell.relations and cell.declared]
         used = [cell for cell in related if cell.declared and cell.declared.attribute in beneath]
-        upstream = _joined(self._known(cell.reference) for cell in used) if used else NOTHING
+        upstream = _joined(self._upstream(cell.reference) for cell in used) if used else NOTHING
         return upstream.stopped() if upstream != NOTHING and self._is_expensive(block) else upstream
 
     def _of_model(self, name: str) -> Upstream:
         """What is measured on a solid follows from all its parameters; no error is carried through it."""
         cells = self.calculation.graph.blocks[name].cells.values()
-        return _joined(self._known(cell.reference) for cell in cells).stopped()
+        return _joined(self._upstream(cell.reference) for cell in cells).stopped()
 
     def _is_expensive(self, block: Block) -> bool:
         """Whether a step takes too long to be calculated again and again; by its estimate, not by a clock."""

@@ -95,8 +95,8 @@ def solved(task: DesignTask, revision: int, body: str) -> DesignSolution:
         detail = "the first bound must be below the second"
         raise InvalidInputs([Fault("between", "not_ascending", detail)])
     value = _single(raw, net.unit(target), f"target.{name}")
-    found = roots_of_design(net, Wanted(unknown, (low, high), target, value, question.tolerance))
-    return _Written(found, document, catalogues).answer(revision)
+    solution = roots_of_design(net, Wanted(unknown, (low, high), target, value, question.tolerance))
+    return _Written(solution, document, catalogues).answer(revision)
 
 
 def _single(raw: object, unit: str, name: str) -> float:
@@ -111,15 +111,15 @@ def _single(raw: object, unit: str, name: str) -> float:
 
 
 class _Written:
-    """What was found, as the interface writes it."""
+    """The roots of a design, as the interface writes them."""
 
-    def __init__(self, found: DesignRoots, document: Document, catalogues: Catalogues) -> None:
-        self.found, self.document, self.catalogues = found, document, catalogues
-        self.curve = found.scanned
+    def __init__(self, solution: DesignRoots, document: Document, catalogues: Catalogues) -> None:
+        self.solution, self.document, self.catalogues = solution, document, catalogues
+        self.curve = solution.scanned
         self.x, self.y = self.curve.x.unit, self.curve.y.unit
 
     def answer(self, revision: int) -> DesignSolution:
-        roots, curve = self.found.found, self.found.found.curve
+        roots, curve = self.solution.roots, self.solution.roots.curve
         left = MOST_JUDGED - len(roots.roots)
         return DesignSolution(
             revision=revision,

@@ -95,7 +95,7 @@ class DesignCurve(SampledCurve):
 class DesignRoots:
     """All roots, and the curves on which they were sought and confirmed."""
 
-    found: Roots
+    roots: Roots
     scanned: DesignCurve
     requested: DesignCurve
 
@@ -131,8 +131,8 @@ def _levels(net: Net, wanted: Wanted) -> tuple[dict[str, str | None], dict[str, 
 def _coarser(net: Net, step: str, one: str | None, other: str | None) -> str | None:
     """The cheaper of two levels of a step."""
     ladder = list(net.graph.blocks[step].cls.levels)
-    known = [level for level in (one, other) if level in ladder]
-    return min(known, key=ladder.index) if known else one
+    levels = [level for level in (one, other) if level in ladder]
+    return min(levels, key=ladder.index) if levels else one
 
 
 def _meaning(net: Net, reference: Reference) -> Meaning:

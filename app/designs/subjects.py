@@ -45,12 +45,12 @@ class Subject:
 
 def subjects(graph: Graph) -> dict[str, Subject]:
     """All criteria by their names; one that the design writes again replaces that of a template."""
-    found: dict[str, Subject] = {}
+    by_name: dict[str, Subject] = {}
     for block in graph.blocks.values():
         for criterion in block.cls.declared_criteria:
             name = f"{block.name}.{criterion.name}"
-            found[name] = Subject(criterion, block, graph.demands.get(name))
+            by_name[name] = Subject(criterion, block, graph.demands.get(name))
     for name, demand in graph.demands.items():
         if demand.criterion is not None:
-            found[name] = Subject(demand.criterion, None, demand)
-    return found
+            by_name[name] = Subject(demand.criterion, None, demand)
+    return by_name

@@ -13,10 +13,10 @@ from templates.core.language.tolerances import unused
 
 def warnings(document: JsonObject) -> list[Warning]:
     """A warning for every parameter of a design's document that has `plus` or `minus`."""
-    found = list(map(_warning, unused(document["parameters"])))
+    listed = list(map(_warning, unused(document["parameters"])))
     for name, model in document["models"].items():
-        found += (_warning(notice, f"{name}.") for notice in unused(model["parameters"]))
-    return found
+        listed += (_warning(notice, f"{name}.") for notice in unused(model["parameters"]))
+    return listed
 
 
 def _warning(notice: Notice, prefix: str = "") -> Warning:

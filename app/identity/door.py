@@ -39,7 +39,7 @@ class Door:
 
     def forget(self) -> None:
         """Verify again whatever comes: something has changed."""
-        self._known: TTLCache[str, Guest] = TTLCache(_MOST, FRESH)
+        self._by_key: TTLCache[str, Guest] = TTLCache(_MOST, FRESH)
         self._asked_at = -FRESH
 
     async def is_open(self) -> bool:
@@ -79,14 +79,14 @@ class Door:
 
     async def _guest(self, hash: str, find: Callable[[], Guest | None]) -> Guest | None:
         """What is known by this hash, or what is found; it is kept in the cache that there was before."""
-        cache = self._known
-        if (known := cache.get(hash)) is not None:
-            return known
-        found = await asyncio.to_thread(find)
-        if found is not None:
-            cache[hash] = found
+        cache = self._by_key
+        if (guest := cache.get(hash)) is not None:
+            return guest
+        guest = await asyncio.to_thread(find)
+        if guest is not None:
+            cache[hash] = guest
             await self._keep_counts()
-        return found
+        return guest
 
     async def _keep_counts(self) -> None:
         """Write now and then how many requests there were."""

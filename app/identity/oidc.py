@@ -171,16 +171,16 @@ async def _asked(
     """What the provider answers; nothing of it is quoted."""
     try:
         answer = await http.request(method, place, data=sent)
-        found: object = answer.json() if answer.is_success else None
+        content: object = answer.json() if answer.is_success else None
     except (httpx.HTTPError, httpx.InvalidURL, ValueError):
-        found = None
-    if not isinstance(found, dict):
+        content = None
+    if not isinstance(content, dict):
         raise ProviderRefused("the provider does not answer, or refuses")
-    return found
+    return content
 
 
 def _text(about: Mapping[str, object], name: str) -> str:
-    found = about.get(name)
-    if not isinstance(found, str) or not found:
+    text = about.get(name)
+    if not isinstance(text, str) or not text:
         raise ProviderRefused(f"the provider does not say its {name}")
-    return found
+    return text

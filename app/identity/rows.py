@@ -35,10 +35,10 @@ def holder(session: Session, prefix: str, key: str) -> Guest | None:
 
     Whether there is such a prefix makes no difference in what is done.
     """
-    found = session.execute(
+    pair = session.execute(
         select(ApiKeyRow, PrincipalRow).join(PrincipalRow).where(ApiKeyRow.prefix == prefix)
     ).one_or_none()
-    row, owner = found if found else (None, None)
+    row, owner = pair if pair else (None, None)
     fits = is_same(key, row.hash if row else NO_HASH)
     if not fits or row is None or owner is None or owner.disabled or row.revoked or is_over(row.expires):
         return None
@@ -51,9 +51,9 @@ def signed_in(session: Session, hash: str) -> Guest | None:
         PrincipalRow, SessionRow.principal_id == PrincipalRow.id
     )
     query = query.outerjoin(ApiKeyRow, SessionRow.key == ApiKeyRow.prefix).where(SessionRow.hash == hash)
-    if (found := session.execute(query).one_or_none()) is None:
+    if (line := session.execute(query).one_or_none()) is None:
         return None
-    row, owner, key = found
+    row, owner, key = line
     if owner.disabled or is_over(row.expires) or (key and (key.revoked or is_over(key.expires))):
         return None
     return Guest(_by_key(owner, key) if key else principal(owner), owner.limits, row.csrf)
@@ -133,13 +133,13 @@ def find_key(session: Session, prefix: str, principal: str | None = None) -> Api
     return row
 
 
-def made_by(session: Session, prefix: str, spared: str | None) -> list[ApiKeyRow]:
+def keys_of_key(session: Session, prefix: str, spared: str | None) -> list[ApiKeyRow]:
     """A key, and those made by it or by one of these; without a spared one and those that it has made."""
-    found = [session.get_one(ApiKeyRow, prefix)]
-    for row in found:  # grows meanwhile
-        made = select(ApiKeyRow).where(ApiKeyRow.made_by == row.prefix)
-        found.extend(key for key in session.scalars(made) if key.prefix != spared)
-    return found
+    keys = [session.get_one(ApiKeyRow, prefix)]
+    for row in keys:  # grows meanwhile
+        below = select(ApiKeyRow).where(ApiKeyRow.made_by == row.prefix)
+        keys.extend(key for key in session.scalars(below) if key.prefix != spared)
+    return keys
 
 
 def end_sessions(session: Session, principal: str) -> None:
@@ -166,10 +166,10 @@ def asked_by(session: Session, id: str) -> Principal:
 def names(session: Session, ids: Collection[str]) -> dict[str, str]:
     """The names of principals by their ids; one without a row has none."""
     wanted = set(ids) - BUILT_IN
-    known = {LOCAL.id: LOCAL.name, SYSTEM.id: SYSTEM.name}
+    by_id = {LOCAL.id: LOCAL.name, SYSTEM.id: SYSTEM.name}
     if not wanted:
-        return known
-    found = select(PrincipalRow.id, PrincipalRow.name).where(PrincipalRow.id.in_(wanted))
-    for id, name in session.execute(found):
-        known[id] = name
-    return known
+        return by_id
+    query = select(PrincipalRow.id, PrincipalRow.name).where(PrincipalRow.id.in_(wanted))
+    for id, name in session.execute(query):
+        by_id[id] = name
+    return by_id

@@ -143,7 +143,7 @@ class Identity:
             There is no such principal; it is another; a scope is no role that the key may have; it would be
             valid for longer than it may.
         """
-        made = new_key()
+        new = new_key()
 
         def unit(session: Session) -> ApiKeyRow:
             _require_own(principal)
@@ -152,15 +152,15 @@ class Identity:
                 raise TooManyKeys(f"{owner.name} has {MOST_KEYS} keys, which is the most; revoked ones count")
             maker = _maker(session, owner)
             row = ApiKeyRow(
-                prefix=made.prefix, hash=made.hash, principal_id=principal, name=name,
+                prefix=new.prefix, hash=new.hash, principal_id=principal, name=name,
                 scopes=_scopes(owner, list(scopes), maker), expires=_expires(expires, maker), revoked=None,
                 made_by=maker and maker.prefix, created=now(),
             )  # fmt: skip
             session.add(row)
-            audit.record(session, "key.add", f"keys/{made.prefix}")
+            audit.record(session, "key.add", f"keys/{new.prefix}")
             return row
 
-        return made, self._write(unit)
+        return new, self._write(unit)
 
     def keys(self, principal: str) -> list[ApiKeyRow]:
         """The keys of a principal, for itself or an administrator; oldest first.
@@ -209,8 +209,8 @@ class Identity:
             _require_own(row.principal_id)
             if row.revoked is not None:
                 return [row]
-            made = rows.made_by(session, prefix, spared=acting().key)
-            ended = [one for one in made if one.revoked is None]
+            below = rows.keys_of_key(session, prefix, spared=acting().key)
+            ended = [one for one in below if one.revoked is None]
             for one in ended:
                 _end(session, one)
             return ended
@@ -249,8 +249,8 @@ class Identity:
         """The principal whom a provider names by a subject; a new one has no roles yet."""
 
         def unit(session: Session) -> str:
-            if (known := rows.of_subject(session, subject)) is not None:
-                return known.id
+            if (principal := rows.of_subject(session, subject)) is not None:
+                return principal.id
             free = name if rows.named(session, name) is None else f"{name} {secrets.token_hex(3)}"
             return _added(session, free, (), "person", subject).id
 

@@ -74,14 +74,14 @@ def _moved(differences: list[Difference]) -> dict[str, object]:
 
 def _refusals(pairs: Pairs) -> Iterator[UpgradeRefused]:
     """Why a save of the upgrade is refused; each reason once, at the first variant that has it."""
-    known = set[tuple[str, str, str]]()
+    listed = set[tuple[str, str, str]]()
     for variant, (before, after) in pairs.items():
         if before.faults and not after.faults:
             continue  # the version corrects what is wrong now
         for fault in after.faults:
             key = fault.name, fault.code, fault.detail
-            if key not in known:
-                known.add(key)
+            if key not in listed:
+                listed.add(key)
                 place = {} if variant is None else {"variant": variant}
                 shown = {"name": fault.name, "code": fault.code, "detail": fault.detail, **place}
                 yield UpgradeRefused.model_validate(shown)
@@ -101,8 +101,8 @@ def _left_over(name: str, step: Step, cls: type[Template]) -> Iterator[str]:
     """The inputs and limits of a step that a version does not have."""
     yield from (f"{name}.{given}" for given in step.inputs if given not in cls.inputs)
     limits = limits_of(cls)
-    known = limits.keys() | {limit.library for limit in limits.values()}
-    yield from (f"{name}.{LIMITS}.{given}" for given in step.limits if given not in known)
+    names = limits.keys() | {limit.library for limit in limits.values()}
+    yield from (f"{name}.{LIMITS}.{given}" for given in step.limits if given not in names)
 
 
 def _is_missing(fault: Fault) -> bool:

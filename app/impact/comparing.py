@@ -56,14 +56,14 @@ def difference(before: Outcome, after: Outcome, variant: str | None) -> Differen
     """What moves between two outcomes without faults."""
     moved = sorted(_outputs(before, after), key=lambda one: (-one[1], one[0]))
     output = _shown(before, after, moved[0][0], variant) if moved else None
-    known = after.values.keys() | {name for name in before.values if _is_of_waiting(name, after)}
+    names = after.values.keys() | {name for name in before.values if _is_of_waiting(name, after)}
     return Difference(
         verdicts=tuple(_verdicts(before, after, variant)),
         margin=_margin(before, after, variant),
         output=output,
         outputs=len(moved),
         size=moved[0][1] if moved else 0.0,
-        gone=tuple(name for name in before.values if name not in known),
+        gone=tuple(name for name in before.values if name not in names),
         parameters=tuple(_parameters(before, after, variant)),
         waiting=after.waiting,
     )

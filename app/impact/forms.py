@@ -46,14 +46,14 @@ def form_of(document: Document, catalogues: Catalogues) -> Form:
     for name, model in document.models.items():
         shape = catalogues.models.versions.get((model.id, int(model.version or 0)))
         plain["models"][name]["parameters"] = opening.inputs(name, model.parameters, shape)
-    return Form(canonical_json(plain), opening.found)
+    return Form(canonical_json(plain), opening.values)
 
 
 @dataclass(frozen=True)
 class _Opening:
     """Leaves places open, and notes the values that stood there."""
 
-    found: dict[Reference, float]
+    values: dict[Reference, float]
 
     def parameter(self, name: str, raw: Raw) -> Raw:
         """A parameter of the design: its kind is that of its own unit."""
@@ -65,7 +65,7 @@ class _Opening:
             return raw
         if not isinstance(typed.si, float):
             return raw
-        self.found[Reference(name)] = typed.si
+        self.values[Reference(name)] = typed.si
         return {"open": f"{unit(typed.unit).base:~C}"}
 
     def inputs(self, block: str, values: Mapping[str, Raw], cls: type[Template] | None) -> dict[str, Raw]:
@@ -82,7 +82,7 @@ class _Opening:
             return raw
         if not isinstance(typed.si, float):
             return raw
-        self.found[Reference(block, None, name)] = typed.si
+        self.values[Reference(block, None, name)] = typed.si
         return {"open": True}
 
 

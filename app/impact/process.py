@@ -74,11 +74,11 @@ def _outcomes(cases: Sequence[Case], catalogues: Catalogues, solids: Solids) -> 
     for number, case in enumerate(cases):
         forms = form_of(case.before, catalogues), form_of(case.after, catalogues)
         groups.setdefault((forms[0].text, forms[1].text), []).append(_Member(number, case, forms))
-    found: dict[int, Pair] = {}
+    outcomes: dict[int, Pair] = {}
     for members in groups.values():
-        report(len(found) / len(cases), f"{len(found)} of {len(cases)} designs and variants")
-        found |= _of_group(members, catalogues, solids)
-    return found
+        report(len(outcomes) / len(cases), f"{len(outcomes)} of {len(cases)} designs and variants")
+        outcomes |= _of_group(members, catalogues, solids)
+    return outcomes
 
 
 @dataclass(frozen=True)

@@ -22,13 +22,13 @@ PAGE = 500  # designs of which the ids are read at once
 
 def ids_of(session: Session, wanted: DesignFilter, chosen: Collection[str] | None) -> list[str]:
     """The designs that a filter selects, newest first; of those chosen, if any are."""
-    found: list[str] = []
+    ids: list[str] = []
     cursor: str | None = None
     while page := designs.designs(session, PAGE, cursor, wanted)[:PAGE]:
-        found += [row.id for row in page if chosen is None or row.id in chosen]
+        ids += [row.id for row in page if chosen is None or row.id in chosen]
         cursor = page[-1].id
         session.expunge_all()
-    return found
+    return ids
 
 
 def newest(session: Session, ids: Sequence[str]) -> Iterator[tuple[DesignAt, Document]]:
@@ -36,10 +36,10 @@ def newest(session: Session, ids: Sequence[str]) -> Iterator[tuple[DesignAt, Doc
     heads = {row.id: row.head for row in designs.of_ids(session, ids)}
     query = select(RevisionRow.design_id, RevisionRow.number, RevisionRow.document)
     at = tuple_(RevisionRow.design_id, RevisionRow.number).in_(list(heads.items()))
-    found = {id: (number, plain) for id, number, plain in session.execute(query.where(at))}
+    by_id = {id: (number, plain) for id, number, plain in session.execute(query.where(at))}
     for id in ids:
-        if id in found:
-            number, plain = found[id]
+        if id in by_id:
+            number, plain = by_id[id]
             document = Document.model_validate(plain)
             ended = _settled(session, id, number) if document.iterations else ()
             yield DesignAt(id, number, canonical_json(plain), ended), document
@@ -51,11 +51,11 @@ def _settled(session: Session, id: str, number: int) -> tuple[tuple[str, float],
     return tuple((str(reference), value) for reference, value in settled(results).items())
 
 
-def solids_of(session: Session, found: Collection[tuple[DesignAt, Document]]) -> Solids:
+def solids_of(session: Session, batch: Collection[tuple[DesignAt, Document]]) -> Solids:
     """What is known of the solids of some designs and of their variants."""
-    with_models = [(design.id, design.revision) for design, document in found if document.models]
+    with_models = [(design.id, design.revision) for design, document in batch if document.models]
     at = tuple_(RevisionModelRow.design_id, RevisionModelRow.number).in_(with_models)
     keys = {key for key in session.scalars(select(RevisionModelRow.build_key).where(at)) if key}
     measured = {key: row.measurements["measures"] for key, row in builds.builds(session, keys).items()}
-    analysed = any(model.analyses for _, document in found for model in document.models.values())
+    analysed = any(model.analyses for _, document in batch for model in document.models.values())
     return Solids(measured, analysis_rows.outputs_of_builds(session, keys) if analysed else {})

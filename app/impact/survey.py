@@ -54,14 +54,14 @@ class _Tally:
     unchanged: int = 0
     variants: int = 0
 
-    def add(self, found: Found) -> None:
+    def add(self, batch: Found) -> None:
         """Take over the designs of a batch; no more than the limit are kept."""
-        for impact in found.designs:
+        for impact in batch.designs:
             self.counts[impact.effect] = self.counts.get(impact.effect, 0) + 1
-        self.worst = sorted([*self.worst, *found.designs], key=rank)[: self.limit]
-        self.concerned += len(found.designs) + found.unchanged
-        self.unchanged += found.unchanged
-        self.variants += found.variants
+        self.worst = sorted([*self.worst, *batch.designs], key=rank)[: self.limit]
+        self.concerned += len(batch.designs) + batch.unchanged
+        self.unchanged += batch.unchanged
+        self.variants += batch.variants
 
 
 @dataclass(frozen=True)
@@ -83,8 +83,8 @@ class Survey:
             archived = repository.ids_of(session, replace(wanted, archived="true"), chosen)
         tally, seen = _Tally(asked.body.limit), 0
         for page in _pages(ids):
-            for found in self._of_page(page, seen, len(ids)):
-                tally.add(found)
+            for batch in self._of_page(page, seen, len(ids)):
+                tally.add(batch)
             seen += len(page)
         return Impact(
             template=Version(id=asked.template, version=asked.version),
@@ -101,10 +101,10 @@ class Survey:
     def _concerned(self, ids: Sequence[str]) -> list[At]:
         """Those of some designs of which a step uses another version."""
         with self.database.read() as session:
-            found = list(repository.newest(session, ids))
+            newest = list(repository.newest(session, ids))
         return [
             (design, document)
-            for design, document in found
+            for design, document in newest
             if used_steps(document, self.asked.template, self.asked.version)
         ]
 
@@ -178,11 +178,11 @@ def _pages(ids: Sequence[str]) -> Iterator[Sequence[str]]:
         yield ids[start : start + MOST_TOGETHER]
 
 
-def _batches(found: Sequence[At]) -> Iterator[list[At]]:
+def _batches(designs: Sequence[At]) -> Iterator[list[At]]:
     """Designs in batches of at most so many designs and variants; one design at least."""
     batch: list[At] = []
     count = 0
-    for at in found:
+    for at in designs:
         rows = 1 + len(at[1].variants)
         if batch and count + rows > MOST_TOGETHER:
             yield batch

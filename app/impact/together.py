@@ -69,7 +69,7 @@ class Together:
 
     def outcomes(self, rows: Rows, count: int) -> list[Outcome] | None:
         """The outcome of each row; None if they are calculated alone."""
-        found: list[Outcome] = []
+        listed: list[Outcome] = []
         try:
             with np.errstate(all="ignore"):
                 for start, part in self.design.passes(rows, count, self._wanted, {}):
@@ -77,10 +77,10 @@ class Together:
                     ended = self._of_chunk(chunk, part)
                     if ended is None:
                         return None
-                    found += ended
+                    listed += ended
         except (LevelMoved, TemplateError):
             return None
-        return found
+        return listed
 
     @property
     def _wanted(self) -> Wanted:
@@ -96,9 +96,9 @@ class Together:
         apart: dict[int, Outcome] = {}
         for indices in groups:
             some = {place: column[indices] for place, column in rows.items()}
-            if (found := self.outcomes(some, indices.size)) is None:
+            if (outcomes := self.outcomes(some, indices.size)) is None:
                 return None
-            apart |= dict(zip(indices.tolist(), found, strict=True))
+            apart |= dict(zip(indices.tolist(), outcomes, strict=True))
         return [apart[row] for row in range(part.count)]
 
     def _read(self, part: RowPass) -> Iterator[Outcome]:

@@ -193,8 +193,8 @@ class Dispatcher:
 
     def _claim(self, session: Session, *, lane: str) -> Job | None:
         """Claim a job and register it still in the writer: who sees it running can interrupt it."""
-        known = self.kinds if self._database.is_shared else None
-        job = repository.claim(session, self._lane(lane), self.owner, self._lease, known)
+        kinds = self.kinds if self._database.is_shared else None
+        job = repository.claim(session, self._lane(lane), self.owner, self._lease, kinds)
         if job is not None:
             after_commit(session, partial(self._register, job))
             note(session, self._events, job, "running")

@@ -90,7 +90,7 @@ def claim(
     lane: Lane = ALL_KINDS,
     owner: str | None = None,
     lease: float = 0.0,
-    known: Collection[str] | None = None,
+    kinds: Collection[str] | None = None,
 ) -> Job | None:
     """Make the queued job of a lane whose turn it is a running one for some time [s], and return it.
 
@@ -99,8 +99,8 @@ def claim(
     """
     repeatable(session)  # a claim that nobody knows of is reaped
     queue = select(JobRow.id).where(JobRow.state == "queued", lane.holds()).order_by(JobRow.turn, JobRow.id)
-    if known is not None:
-        queue = queue.where(JobRow.kind.in_(known))
+    if kinds is not None:
+        queue = queue.where(JobRow.kind.in_(kinds))
     first = queue.limit(1).with_for_update(skip_locked=True)
     values = {"state": "running", "attempt": JobRow.attempt + 1, "progress": 0.0, "log": [], "updated": now(),
               "owner": owner, "lease_until": present() + lease}  # fmt: skip

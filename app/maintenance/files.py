@@ -81,14 +81,14 @@ class FolderFiles:
 
     def ages(self) -> dict[str, float]:
         """When each file was put [s since 1970], by hash."""
-        found = {}
+        seconds = {}
         for path in self.folder.glob("[0-9a-f][0-9a-f]/*"):
             if SHA256.fullmatch(path.name):
                 try:
-                    found[path.name] = path.stat().st_mtime
+                    seconds[path.name] = path.stat().st_mtime
                 except FileNotFoundError:  # deleted meanwhile
                     continue
-        return found
+        return seconds
 
     def fault(self, row: Named) -> str | None:
         """What is wrong with the file of a row, if anything is."""
@@ -148,7 +148,7 @@ class BucketFiles:
     @cached_property
     def _listed(self) -> dict[str, float]:
         try:
-            return {key: found.modified for key, found in self._bucket.list()}
+            return {key: stored.modified for key, stored in self._bucket.list()}
         except ArtifactsUnreachable as error:
             raise CannotRun(f"{self._url}: {error}") from None
 

@@ -100,9 +100,9 @@ def broken_worksheets(connection: sqlite3.Connection) -> Iterator[str]:
         return
     for id, number, text, withdrawn, digest, record in connection.execute(RELEASES):
         golden = json.loads(record) if record else None
-        found = as_released(SheetSource(id, number, text, withdrawn), digest, golden)
-        if isinstance(found, str):
-            yield f"{id} version {number} is broken: {found}"
+        released = as_released(SheetSource(id, number, text, withdrawn), digest, golden)
+        if isinstance(released, str):
+            yield f"{id} version {number} is broken: {released}"
 
 
 def broken_references(connection: sqlite3.Connection) -> Iterator[str]:

@@ -133,8 +133,8 @@ def counted(values: list[object]) -> str:
 
 def extremes(values: list[object]) -> tuple[int, int] | None:
     """The places of the least and the largest number of a list; None without any number."""
-    known = [(value, place) for place, value in enumerate(_flat(values)) if isinstance(value, int | float)]
-    return (min(known)[1], max(known, key=lambda one: (one[0], -one[1]))[1]) if known else None
+    placed = [(value, place) for place, value in enumerate(_flat(values)) if isinstance(value, int | float)]
+    return (min(placed)[1], max(placed, key=lambda one: (one[0], -one[1]))[1]) if placed else None
 
 
 def _flat(values: object) -> Iterator[object]:

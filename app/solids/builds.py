@@ -15,7 +15,7 @@ from sqlalchemy.orm import Session
 from app.calculations.sources import Source, loaded, source_of
 from app.solids import measures, rows
 from app.solids.ages import is_fresh, renew
-from app.solids.shapes import made_otherwise, shape_of
+from app.solids.shapes import built_by_another, shape_of
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import CannotRebuild
@@ -86,7 +86,7 @@ class Builds:
         with self.database.read() as session:
             shape = shape_of(session, catalogue, key)
             if build_key(shape) != key:
-                raise made_otherwise(session, key, shape)
+                raise built_by_another(session, key, shape)
         self.make(shape, context)
 
     def derive(self, key: str, kind: str, context: Runner) -> None:

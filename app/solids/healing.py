@@ -12,7 +12,7 @@ from app.solids import analysis_rows as analyses
 from app.solids import rows
 from app.solids.analyses import Analyses
 from app.solids.models import Models
-from app.solids.shapes import made_otherwise, shape_of
+from app.solids.shapes import built_by_another, shape_of
 from app.storage.artifacts import Artifacts
 from app.storage.database import Database
 from app.storage.errors import ArtifactMissing, CannotRebuild
@@ -69,7 +69,7 @@ class Healing:
             if not self._needs_another(session, key):
                 return self.models.request_file(key, kind)
             shape = shape_of(session, self.models.catalogue, key)
-            error = made_otherwise(session, key, shape)
+            error = built_by_another(session, key, shape)
         if job := self.models.request(shape, ("step",)):
             error.links["job"] = f"/api/v1/jobs/{job}"
         raise error

@@ -44,10 +44,10 @@ def builds(session: Session, keys: Collection[str]) -> dict[str, BuildRow]:
 
 def artifacts_of(session: Session, keys: Collection[str]) -> dict[str, dict[str, str]]:
     """The SHA-256 of every artifact of several builds, by key and kind."""
-    found: dict[str, dict[str, str]] = {}
+    artifacts: dict[str, dict[str, str]] = {}
     for row in session.scalars(select(ArtifactRow).where(ArtifactRow.build_key.in_(keys))):
-        found.setdefault(row.build_key, {})[row.kind] = row.sha256
-    return found
+        artifacts.setdefault(row.build_key, {})[row.kind] = row.sha256
+    return artifacts
 
 
 def add_build(
@@ -57,7 +57,7 @@ def add_build(
     version: int,
     parameters: JsonObject,
     measured: JsonObject,
-    made_by: str,
+    maker: str,
 ) -> None:
     """Record a build; the same build made twice is one."""
     row = BuildRow(
@@ -68,7 +68,7 @@ def add_build(
         measurements=measured,
         created=now(),
         operated=operated(session),
-        made_by=made_by,
+        made_by=maker,
     )
     upsert(session, row)
 

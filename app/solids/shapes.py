@@ -39,7 +39,7 @@ def shape_of(session: Session, catalogue: Catalogue[CadModel], key: str) -> CadM
         raise CannotRebuild("model_changed", detail) from None
 
 
-def made_otherwise(session: Session, key: str, shape: CadModel) -> CannotRebuild:
+def built_by_another(session: Session, key: str, shape: CadModel) -> CannotRebuild:
     """Why a build cannot be made again by this program; the link leads to the build that it makes instead."""
     row = rows.build(session, key)
     maker, now = (row.made_by if row else "") or OLDER, made_by(type(shape))

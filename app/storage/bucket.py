@@ -143,10 +143,10 @@ class BucketStore:
 
     def list(self) -> Iterator[Stored]:
         """Every object, verified or not, and the discarded ones, without those that were set aside."""
-        for key, found in self._bucket.list():
+        for key, entry in self._bucket.list():
             sha = key.removeprefix(DISCARDED)
             if SHA256.fullmatch(sha):
-                yield Stored(sha, found.size, found.modified, is_discarded=sha != key)
+                yield Stored(sha, entry.size, entry.modified, is_discarded=sha != key)
 
     def claim(self, owner: str) -> str:
         """Have the bucket belong to an owner, if it has none; return whose it is."""
@@ -175,13 +175,13 @@ class BucketStore:
             if answer is None:
                 self._tags.forget(sha)
                 raise ArtifactMissing(sha)
-            data, found = answer
+            data, entry = answer
             if hashed([data]) == sha:
-                self._note(sha, found.tag)
+                self._note(sha, entry.tag)
                 return data
         self._tags.forget(sha)
         logger.error("object %s in the bucket has other bytes than its name says; it is set aside", sha)
-        self._bucket.copy(sha, f"{QUARANTINE}/{sha}.{(found.tag or '').strip(chr(34))}")
+        self._bucket.copy(sha, f"{QUARANTINE}/{sha}.{(entry.tag or '').strip(chr(34))}")
         raise ArtifactDamaged(sha, f"its {len(data)} bytes in the bucket have another hash")
 
     def _brought_back(self, sha: str) -> tuple[bytes, Found] | None:
@@ -190,8 +190,8 @@ class BucketStore:
 
     def _is_good(self, sha: str) -> bool:
         """Whether the object has the tag that it had when its bytes were right, or right bytes now."""
-        found = self._bucket.head(sha)
-        if self._is_known_good(sha, found):
+        entry = self._bucket.head(sha)
+        if self._is_known_good(sha, entry):
             return True
         try:
             self._keep(self._download(sha))
@@ -209,12 +209,12 @@ class BucketStore:
         return True
 
     def _is_good_and_young(self, sha: str) -> bool:
-        found = self._bucket.head(sha) if self._tags.knows(sha) else None
-        return found is not None and self._is_known_good(sha, found) and time.time() - found.modified < YOUNG
+        entry = self._bucket.head(sha) if self._tags.knows(sha) else None
+        return entry is not None and self._is_known_good(sha, entry) and time.time() - entry.modified < YOUNG
 
-    def _is_known_good(self, sha: str, found: Found | None) -> bool:
+    def _is_known_good(self, sha: str, entry: Found | None) -> bool:
         """Whether an object has the tag that it had when its bytes were right."""
-        return found is not None and found.tag is not None and self._tags.has(sha, found.tag)
+        return entry is not None and entry.tag is not None and self._tags.has(sha, entry.tag)
 
     def _note(self, sha: str, tag: str | None) -> None:
         """Remember the tag of an object whose bytes are right; a server that gives none is asked again."""
@@ -235,5 +235,5 @@ class BucketStore:
             logger.warning("a copy of a file of the bucket cannot be kept: %s", error.strerror)
 
 
-def _is_same(found: Found | None, seen: Stored) -> bool:
-    return found is not None and found.modified == seen.modified
+def _is_same(entry: Found | None, seen: Stored) -> bool:
+    return entry is not None and entry.modified == seen.modified

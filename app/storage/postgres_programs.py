@@ -14,8 +14,8 @@ def postgres_program(name: str) -> Path | None:
     for version in reversed(versions):
         if (program := version / "bin" / name).is_file():
             return program
-    found = shutil.which(name)
-    return Path(found) if found else None
+    on_path = shutil.which(name)
+    return Path(on_path) if on_path else None
 
 
 def _number(folder: Path) -> int:

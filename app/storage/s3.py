@@ -89,8 +89,8 @@ class Bucket:
         with self._asked("get"):
             answer = obstore.get(self._downloads, key)
             seen = answer.meta
-            found = Found(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
-            return bytes(answer.bytes()), found
+            entry = Found(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
+            return bytes(answer.bytes()), entry
         return None
 
     def create(self, key: str, data: bytes) -> str | None:
@@ -194,7 +194,7 @@ def _retries(seconds: float) -> RetryConfig:
 def _reason(error: Exception) -> str:
     """Why a bucket cannot be used, without any address or key."""
     text = str(error)
-    code = found[1] if (found := _CODE.search(text)) else None
+    code = match[1] if (match := _CODE.search(text)) else None
     if code == "NoSuchBucket":
         return NO_BUCKET
     if _METADATA_SERVICE in text:

@@ -112,7 +112,7 @@ class Analysis:
         """Rows of each sample for the shares."""
         return (self.question.points or USUAL_POINTS) // SCRAMBLINGS
 
-    def found(self) -> Found:
+    def carried_out(self) -> Found:
         """Calculate everything.
 
         Raises
@@ -208,8 +208,8 @@ def _faults(graph: Graph, question: Question, every: Mapping[str, Demanded]) -> 
     unknown = [name for name in question.criteria or () if name not in every]
     yield from (fault.within("criteria") for fault in unknown_names(unknown, every, "criterion"))
     wanted = [name for name in question.outputs or () if not _is_quantity(graph, Reference.parse(name))]
-    known = [n for n in graph.names() if _is_quantity(graph, Reference.parse(n))]
-    yield from (fault.within("outputs") for fault in unknown_names(wanted, known, "output"))
+    quantities = [n for n in graph.names() if _is_quantity(graph, Reference.parse(n))]
+    yield from (fault.within("outputs") for fault in unknown_names(wanted, quantities, "output"))
     if ABOUT in (question.outputs or ()):
         detail = f"{ABOUT} is where the answer says what was analysed; give this parameter another name"
         yield Fault(f"outputs.{ABOUT}", "reserved", detail)

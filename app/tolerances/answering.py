@@ -23,15 +23,15 @@ REFUSED = "the design refuses some products, so there are no shares; see analysi
 STEADY = "no tolerance changes it"
 
 
-def answer(analysis: Analysis, found: Found, revision: int) -> answers.ToleranceAnalysis:
+def answer(analysis: Analysis, findings: Found, revision: int) -> answers.ToleranceAnalysis:
     """The whole answer."""
-    return _Answering(analysis, found).whole(revision)
+    return _Answering(analysis, findings).whole(revision)
 
 
 @dataclass(frozen=True)
 class _Answering:
     analysis: Analysis
-    found: Found
+    findings: Found
 
     def whole(self, revision: int) -> answers.ToleranceAnalysis:
         """About the analysis, and every output by its name."""
@@ -42,20 +42,20 @@ class _Answering:
         return answers.ToleranceAnalysis.model_validate({"analysis": self._about(revision), **outputs})
 
     def _about(self, revision: int) -> answers.About:
-        analysis, found = self.analysis, self.found
+        analysis, findings = self.analysis, self.findings
         question = analysis.question
         parts = {
             "revision": revision,
-            "points": found.scatter.rows,
+            "points": findings.scatter.rows,
             "seed": question.seed,
-            "rows": 1 + found.worst.rows + found.scatter.rows + found.shares.rows,
+            "rows": 1 + findings.worst.rows + findings.scatter.rows + findings.shares.rows,
             "toleranced": {
                 one.factor.name: self._toleranced(place) for place, one in enumerate(analysis.varied)
             },
             "levels": analysis.levels,
             "criteria": {name: one for name in analysis.demands if (one := self._yield(name, None))},
             "not_judged": {
-                name: self._why(name) for name in analysis.demands if not found.scatter.yields[name]
+                name: self._why(name) for name in analysis.demands if not findings.scatter.yields[name]
             },
             "refused": self._refused(),
             "warnings": analysis.warnings,
@@ -81,8 +81,8 @@ class _Answering:
         return {f.name: self._quantity(place, float(row[place])) for place, f in enumerate(factors)}
 
     def _refused(self) -> answers.RefusedProducts | None:
-        worst, refusal = self.found.worst, self.analysis.first_refusal
-        rows = worst.refused + self.found.scatter.refused
+        worst, refusal = self.findings.worst, self.analysis.first_refusal
+        rows = worst.refused + self.findings.scatter.refused
         if not rows or refusal is None:
             return None
         at = {} if worst.first_refused is None else self._at(worst.first_refused)
@@ -95,7 +95,7 @@ class _Answering:
 
     def _output(self, column: int, reference: Reference) -> answers.OutputScatter:
         scale = unit(self.analysis.net.unit(reference))
-        nominal = float(self.found.nominal.columns[reference][0])
+        nominal = float(self.findings.nominal.columns[reference][0])
         yields = [
             one for name in self._criteria_of(reference) if (one := self._yield(name, scale, reference))
         ]
@@ -103,9 +103,9 @@ class _Answering:
             "unit": scale.text,
             "nominal": None if np.isnan(nominal) else _short(scale.from_si(nominal)),
             "worst": self._worst(column, scale),
-            **_spread(self.found.scatter.spreads[column], scale),
+            **_spread(self.findings.scatter.spreads[column], scale),
             **self._shares(column),
-            "relative_error": self.found.errors.get(reference),
+            "relative_error": self.findings.errors.get(reference),
             "yield": min(yields, key=lambda one: one.value, default=None),
             "yields": yields,
         }
@@ -119,7 +119,7 @@ class _Answering:
         return [name for name, demand in self.analysis.demands.items() if reference in demand.judged]
 
     def _worst(self, column: int, scale: Unit) -> answers.Worst | None:
-        ends = self.found.worst.ends[column]
+        ends = self.findings.worst.ends[column]
         if ends is None:
             return None
         low, high = (self._extreme(end, scale) for end in ends)
@@ -129,7 +129,7 @@ class _Answering:
         return answers.Extreme(value=_short(scale.from_si(end.value)), at=self._at(end.at))
 
     def _shares(self, column: int) -> dict[str, object]:
-        parts = self.found.shares.outputs[column]
+        parts = self.findings.shares.outputs[column]
         if parts is None:
             return {"reason": self._no_shares(column)}
         named = zip(self.analysis.factors, parts.shares, strict=True)
@@ -138,14 +138,14 @@ class _Answering:
         return {"shares": {factor.name: _share(one) for factor, one in ordered}, "shares_sum": total}
 
     def _no_shares(self, column: int) -> str:
-        if self.found.scatter.spreads[column] is None:
+        if self.findings.scatter.spreads[column] is None:
             reference = self.analysis.outputs[column]
-            absent = self.found.nominal.absent.get(reference)
+            absent = self.findings.nominal.absent.get(reference)
             return absent or "it has no value in any product"
-        return REFUSED if self.found.worst.refused or self.found.scatter.refused else STEADY
+        return REFUSED if self.findings.worst.refused or self.findings.scatter.refused else STEADY
 
     def _yield(self, name: str, scale: Unit | None, of: Reference | None = None) -> answers.Yield | None:
-        one, demand = self.found.scatter.yields[name], self.analysis.demands[name]
+        one, demand = self.findings.scatter.yields[name], self.analysis.demands[name]
         if one is None:
             return None
         limit = self._limit(name, demand) if scale is not None and demand.alone == of else None
@@ -157,7 +157,7 @@ class _Answering:
             "error_stated": self.analysis.stated.get(name, True),
             "limit": None if limit is None or scale is None else _short(scale.from_si(limit)),
             "sign": demand.criterion.sign,
-            "points_needed": _needed(one, self.found.scatter.rows),
+            "points_needed": _needed(one, self.findings.scatter.rows),
         }
         return answers.Yield.model_validate({n: part for n, part in parts.items() if part is not None})
 
@@ -165,7 +165,7 @@ class _Answering:
         """The limit [SI], where it is one for all products."""
         if not demand.has_one_limit:
             return None
-        limit = float(self.found.nominal.judged[name].limit[0])
+        limit = float(self.findings.nominal.judged[name].limit[0])
         return None if np.isnan(limit) else limit
 
 

@@ -19,4 +19,4 @@ def analysed(task: DesignTask, revision: int, body: str) -> ToleranceAnalysis:
     """
     document, catalogues = task.read()
     analysis = Analysis.of(document, catalogues, ToleranceIn.model_validate_json(body).question())
-    return answer(analysis, analysis.found(), revision)
+    return answer(analysis, analysis.carried_out(), revision)

@@ -60,8 +60,8 @@ def shares(factors: Sequence[Factor], outputs: Outputs, base: int, seed: int) ->
     each = base // SCRAMBLINGS
     samples = [_samples(factors, outputs, each, (seed, 3, number)) for number in range(SCRAMBLINGS)]
     stacked = np.stack(samples)  # scramblings, samples (A, B, AB...), rows, outputs
-    found = [_of_output(stacked[..., column]) for column in range(stacked.shape[-1])]
-    return Shares(found, base * (len(factors) + 2))
+    by_output = [_of_output(stacked[..., column]) for column in range(stacked.shape[-1])]
+    return Shares(by_output, base * (len(factors) + 2))
 
 
 def _samples(factors: Sequence[Factor], outputs: Outputs, count: int, seed: Sequence[int]) -> Array:

@@ -98,14 +98,14 @@ class _Search:
     def _end(self, positions: Array, values: Array, column: int, sign: float) -> Extreme:
         """The least value, or for the sign −1 the largest."""
         best = int(np.nanargmin(sign * values))
-        found = values[best], positions[best]
+        best_end = values[best], positions[best]
         scale = float(np.nanmax(values) - np.nanmin(values))
         if scale > 0:
             for start in _starts(positions, sign * values):
                 end = self._climb(positions[start], column, sign / scale)
-                if sign * end[0] < sign * found[0]:
-                    found = end
-        return Extreme(float(found[0]), placed(self.factors, found[1][np.newaxis])[0])
+                if sign * end[0] < sign * best_end[0]:
+                    best_end = end
+        return Extreme(float(best_end[0]), placed(self.factors, best_end[1][np.newaxis])[0])
 
     def _climb(self, start: Array, column: int, factor: float) -> tuple[float, Array]:
         """A local extreme from a start; the best point that was met."""

@@ -80,15 +80,15 @@ async def impact_page(
     id: Id, version: Number, request: Request, api: TheApi, job: Text = "", name: Text = "", tag: Text = ""
 ) -> Response:
     """The form; with a job, how far that is, or what it found."""
-    found, refusal = None, None
+    impact, refusal = None, None
     if job:
         try:
             response = await api.send("GET", f"/evaluations/{quote(job, safe='')}")
         except Refused as refused:
             refusal = refused
         else:
-            found = None if response.status_code == ACCEPTED else read(response, Impact)
-    return await _page(request, api, id, version, {"job": job, "name": name, "tag": tag}, found, refusal)
+            impact = None if response.status_code == ACCEPTED else read(response, Impact)
+    return await _page(request, api, id, version, {"job": job, "name": name, "tag": tag}, impact, refusal)
 
 
 @forms.post("/templates/{id}/{version}/impact")
@@ -135,7 +135,7 @@ async def _page(
     id: str,
     version: int,
     typed: Mapping[str, str],
-    found: Impact | None,
+    impact: Impact | None,
     refusal: Refused | None,
     status: int = 200,
 ) -> Response:
@@ -150,8 +150,8 @@ async def _page(
         is_released=template is not None,
         withdrawn=template.withdrawn if template else None,
         typed=typed,
-        job=job if job and found is None and refusal is None else "",
-        found=found,
-        lines=[Line(impact) for impact in found.designs] if found else [],
+        job=job if job and impact is None and refusal is None else "",
+        impact=impact,
+        lines=[Line(impact) for impact in impact.designs] if impact else [],
         refusal=refusal.problem if refusal else None,
     )

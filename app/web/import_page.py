@@ -29,12 +29,12 @@ async def import_form(request: Request, api: TheApi, job: Text = "", id: Text = 
     """Where a file is chosen; while its job runs, the wait; once it has ended, the regions or the refusal."""
     if not _JOB.fullmatch(job):
         return _form(request, id)
-    found = await api.get(f"/jobs/{job}", Job)
-    if found.state == "done" and found.result:
-        return go(f"{found.result.removeprefix('/api/v1')}/import")
-    if found.problem is not None:
-        return _form(request, id, found.problem.detail, found.problem.status)
-    answer = show(request, "import.html", typed_id=id, notice="", waiting=found)
+    work = await api.get(f"/jobs/{job}", Job)
+    if work.state == "done" and work.result:
+        return go(f"{work.result.removeprefix('/api/v1')}/import")
+    if work.problem is not None:
+        return _form(request, id, work.problem.detail, work.problem.status)
+    answer = show(request, "import.html", typed_id=id, notice="", waiting=work)
     answer.headers["Refresh"] = "1"  # the page needs no script to wait
     return answer
 

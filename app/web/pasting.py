@@ -109,17 +109,17 @@ def _faults(
     columns: Sequence[TableColumn], chosen: Sequence[ChosenColumn], fields: Sequence[TableField]
 ) -> Iterator[str]:
     """What is wrong with the choice: a unit that does not fit, a field that takes two columns."""
-    known = {field.name: field for field in fields}
+    by_name = {field.name: field for field in fields}
     taken = [choice.field for choice in chosen if choice.field]
     if not taken:
         yield "choose a field for at least one column"
     for name in sorted({name for name in taken if taken.count(name) > 1}):
         yield f"two columns go to {_said(name)}; choose one of them"
     for column, choice in zip(columns, chosen, strict=True):
-        if choice.field and choice.field not in known:
+        if choice.field and choice.field not in by_name:
             yield f"column {column.name}: this form has no field {_said(choice.field)}"
         elif choice.field:
-            yield from _unit_fault(column, known[choice.field])
+            yield from _unit_fault(column, by_name[choice.field])
 
 
 def _unit_fault(column: TableColumn, field: TableField) -> Iterator[str]:

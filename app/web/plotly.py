@@ -33,7 +33,7 @@ def tag() -> str:
 @cache
 def ids_of_styles() -> tuple[str, ...]:
     """The ids under which the file looks for styles of maps before it adds them."""
-    return tuple(sorted({found.decode() for found in ROOM_OF_MAPS.findall(_plain())}))
+    return tuple(sorted({id.decode() for id in ROOM_OF_MAPS.findall(_plain())}))
 
 
 def _plain() -> bytes:

@@ -80,8 +80,8 @@ async def add_key(request: Request, api: TheApi) -> Response:
     me = await api.get("/me", Me)
     days = typed.get("days", "").strip()
     body = {"name": typed.get("name", "").strip(), "expires_days": days or None}
-    made = await api.post(f"/principals/{me.id}/keys", NewKey, body)
-    return await _account(request, api, made)
+    key = await api.post(f"/principals/{me.id}/keys", NewKey, body)
+    return await _account(request, api, key)
 
 
 @forms.post("/account/keys/{prefix}/revoke", dependencies=[needs()])
@@ -92,12 +92,12 @@ async def revoke_key(prefix: Prefix, api: TheApi) -> Response:
     return go("/account")
 
 
-async def _account(request: Request, api: Api, made: NewKey | None = None) -> Response:
+async def _account(request: Request, api: Api, new_key: NewKey | None = None) -> Response:
     me = await api.get("/me", Me)
     keys: list[Key] = []
     if me.usage.limits is not None:
         keys = (await api.get(f"/principals/{me.id}/keys", KeyList, limit=500)).items
-    return show(request, "account.html", me=me, keys=keys, made=made)
+    return show(request, "account.html", me=me, keys=keys, new_key=new_key)
 
 
 def _page(request: Request, back: str, *, status: int = 200, wrong: str = "") -> Response:

@@ -115,8 +115,8 @@ class IndexTable:
 
 
 def _indices(study: Study) -> list[IndexTable]:
-    found = (study.result.indices if study.result else None) or {}
-    return [_table(output, places) for output, places in found.items()]
+    indices = (study.result.indices if study.result else None) or {}
+    return [_table(output, places) for output, places in indices.items()]
 
 
 def _table(output: str, places: dict[str, Index]) -> IndexTable:

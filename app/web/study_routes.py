@@ -99,9 +99,9 @@ async def choose(id: Id, request: Request, api: TheApi) -> Response:
 @forms.post("/studies/{id}/cancel")
 async def cancel(id: Id, api: TheApi) -> Response:
     """Stop a study; one that has ended meanwhile stays as it is."""
-    found = await api.get(f"/studies/{id}", Study)
-    if found.job is not None:
-        await _stop(api, found.job)
+    study = await api.get(f"/studies/{id}", Study)
+    if study.job is not None:
+        await _stop(api, study.job)
     return go(f"/studies/{id}")
 
 

@@ -39,13 +39,13 @@ async def list_page(request: Request, api: Api, wanted: str) -> Response:
 
 async def _all(api: Api) -> list[SheetSummary]:
     """Every worksheet, as far as the pages show them."""
-    found = await api.get("/worksheets", SheetList, limit=PAGE)
-    sheets = found.items
+    page = await api.get("/worksheets", SheetList, limit=PAGE)
+    sheets = page.items
     for _ in range(MOST_PAGES - 1):
-        if found.next is None:
+        if page.next is None:
             break
-        found = await api.get("/worksheets", SheetList, limit=PAGE, cursor=found.next)
-        sheets = [*sheets, *found.items]
+        page = await api.get("/worksheets", SheetList, limit=PAGE, cursor=page.next)
+        sheets = [*sheets, *page.items]
     return sheets
 
 
@@ -131,12 +131,12 @@ def rows(checked: SheetCheck) -> list[Row]:
     wrong: dict[int, list[SheetFault]] = {}
     for fault in checked.faults:
         wrong.setdefault(starts.get(fault.line, fault.line), []).append(fault)
-    found = []
+    lines = []
     for number in sorted({*at, *wrong}):
         line, test = at.get(number), tests.get(number)
         message = test.message if test and not test.passed else (line.message if line else None)
-        found.append(Row(line, wrong.get(number, []), test.passed if test else None, message))
-    return found
+        lines.append(Row(line, wrong.get(number, []), test.passed if test else None, message))
+    return lines
 
 
 @dataclass(frozen=True)

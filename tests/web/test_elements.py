@@ -60,13 +60,13 @@ def test_a_throw_is_analysed_and_painted_in_its_page(watched, http):
     watched.open(PAGE)
     panel = analysed(page)
     torsion = asked(http)["outputs"]
-    row = panel.locator('[data-found="stiffness"]')
+    row = panel.locator('[data-analysis-output="stiffness"]')
     expect(row.locator(".number")).to_have_text(plain_number(torsion["stiffness"]["value"]))
     expect(row).to_contain_text("N·m/rad")
     expect(row.locator(".band")).to_contain_text(re.compile(r"^± .* %$"))
     mesh = torsion["stiffness"]["mesh"]
     expect(row.locator(".count")).to_have_text(f"{mesh['elements']} / {mesh['degrees_of_freedom']}")
-    expect(panel.locator('[data-found="torsional_frequency"]')).to_contain_text("Hz")
+    expect(panel.locator('[data-analysis-output="torsional_frequency"]')).to_contain_text("Hz")
 
     expect(panel.locator(".colours")).to_contain_text("MPa")
     expect(panel.locator(".size")).to_contain_text(
@@ -109,10 +109,10 @@ def test_nothing_is_found_twice_and_what_is_known_is_shown_without_a_script(watc
     analysed(watched.page)
     assert analyses(http) == jobs
     plain.open(PAGE)
-    row = plain.page.locator(f'[data-analysis="{answer["id"]}"] [data-found="stiffness"]')
+    row = plain.page.locator(f'[data-analysis="{answer["id"]}"] [data-analysis-output="stiffness"]')
     expect(row).to_contain_text(plain_number(answer["outputs"]["stiffness"]["value"]))
     expect(plain.page.get_by_role("button", name="Analyse")).to_be_hidden()
-    assert plain.page.locator('[data-found="surface"]').count() == 0
+    assert plain.page.locator('[data-analysis-output="surface"]').count() == 0
 
 
 @pytest.mark.slow
@@ -179,16 +179,16 @@ def test_a_design_is_analysed_as_it_declares(watched, http):
     page = watched.page
     watched.open(place)
     panel = page.locator("[data-elements]")
-    expect(panel.locator('[data-found="stiffness"]')).to_contain_text("N·m/rad")
-    expect(panel.locator('[data-found="torsional_frequency"]')).to_have_count(0)
+    expect(panel.locator('[data-analysis-output="stiffness"]')).to_contain_text("N·m/rad")
+    expect(panel.locator('[data-analysis-output="torsional_frequency"]')).to_have_count(0)
     expect(panel.locator('[data-ask="boundary"]')).to_have_value("guided_end")
     expect(panel.locator('[data-ask="level"]')).to_have_value("0.05")
     expect(panel.locator('[data-ask="load"]')).to_have_value("500 N*m")
     expect(panel.locator("caption").first).to_contain_text("under 500 N·m")
-    stiffness = panel.locator('[data-found="stiffness"] .number').inner_text()
+    stiffness = panel.locator('[data-analysis-output="stiffness"] .number').inner_text()
     panel = analysed(page, level="0.05")
-    expect(panel.locator('[data-found="torsional_frequency"]')).to_contain_text("Hz")
-    assert panel.locator('[data-found="stiffness"] .number').inner_text() == stiffness
+    expect(panel.locator('[data-analysis-output="torsional_frequency"]')).to_contain_text("Hz")
+    assert panel.locator('[data-analysis-output="stiffness"] .number').inner_text() == stiffness
     expect(panel.locator("[data-analysis]")).to_have_count(1)
     expect(page.locator("[data-draft]")).to_be_hidden()  # its fields are none of the worksheet
     ids = page.evaluate("Array.from(document.querySelectorAll('[id]'), (place) => place.id)")
@@ -196,7 +196,7 @@ def test_a_design_is_analysed_as_it_declares(watched, http):
     assert serious(page) == []
     assert watched.faults() == []
     watched.open(f"{place}/revisions/1")
-    expect(page.locator('[data-found="stiffness"] .number')).to_have_text(stiffness)
+    expect(page.locator('[data-analysis-output="stiffness"] .number')).to_have_text(stiffness)
 
 
 def test_a_ball_bearing_has_neither_elements_nor_an_oil_film_to_paint(http, paper):

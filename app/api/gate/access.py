@@ -97,8 +97,8 @@ class Access:
                 return await door.by_key(sent[1].decode()) if sent else None
             if name == b"cookie":
                 cookies = value
-        found = _IN_COOKIES.search(cookies[:_MOST_COOKIES])
-        return await door.by_session(found[1].decode()) if found else None
+        match = _IN_COOKIES.search(cookies[:_MOST_COOKIES])
+        return await door.by_session(match[1].decode()) if match else None
 
 
 def _has_key_in_address(scope: Scope) -> bool:

@@ -69,9 +69,9 @@ def public() -> params.Depends:
 def needs_of(route: BaseRoute) -> Needs:
     """What a route needs."""
     declared = [one.dependency for one in getattr(route, "dependencies", ())]
-    found = [one for one in declared if isinstance(one, Needs)]
-    if found:
-        return found[-1]
+    needed = [one for one in declared if isinstance(one, Needs)]
+    if needed:
+        return needed[-1]
     if isinstance(route, Mount) and route.path in OPEN_FOLDERS:
         return PUBLIC
     return VIEWER if isinstance(route, Route) and _only_reads(route.methods or ()) else AUTHOR

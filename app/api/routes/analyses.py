@@ -145,15 +145,15 @@ def _converted(read: Callable[[str], bytes], sha256: str, units: System, headers
 def _checked(cls: type[CadModel], kind: str, body: AnalysisIn) -> tuple[str, ...]:
     """The outputs to find, if nothing in the body is wrong beside its parameters."""
     asked = [name for name in KINDS[kind] if name not in ON_REQUEST] if body.outputs is None else body.outputs
-    known = ", ".join(offered(kind))
+    names = ", ".join(offered(kind))
     wrong = faults(body)
     wrong += [
-        Fault("outputs", "unknown_name", f"{name[:40]!r} is none of {known}")
+        Fault("outputs", "unknown_name", f"{name[:40]!r} is none of {names}")
         for name in asked
         if name not in offered(kind)
     ]
     if not asked:
-        wrong.append(Fault("outputs", "empty", f"name at least one of {known}"))
+        wrong.append(Fault("outputs", "empty", f"name at least one of {names}"))
     if reason := no_shaft(cls):
         wrong.append(Fault("model", "no_shaft", reason))
     if wrong:

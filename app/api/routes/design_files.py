@@ -122,7 +122,7 @@ async def model_file(
     key, stamp, old = await run_in_threadpool(find)
     answer = await lost(old.sha256, healing, jobs, prefer) if old else None
     if answer is None and (old is None or await run_in_threadpool(_is_outdated, models, key, wanted)):
-        answer = await _made(models, jobs, key, wanted, client, prefer, has_older=bool(old))
+        answer = await _unless_ready(models, jobs, key, wanted, client, prefer, has_older=bool(old))
     if answer:
         return answer
     file = await run_in_threadpool(lambda: models.file(key, wanted))
@@ -136,7 +136,7 @@ def _is_outdated(models: Models, key: str, kind: str) -> bool:
     return file is not None and not takes_stamp(models.store.read(file.sha256), kind)
 
 
-async def _made(
+async def _unless_ready(
     models: Models, jobs: Jobs, key: str, kind: str, client: str, prefer: str, *, has_older: bool
 ) -> Response | None:
     """None once a file is made; 202 if the client does not wait so long, or why it cannot be made."""
@@ -172,5 +172,5 @@ def _accepted(accept: str | None) -> str:
 
 
 def _weight(parameters: str) -> float:
-    found = re.search(r"\bq=([01](?:\.[0-9]{0,3})?)", parameters)
-    return float(found[1]) if found else 1.0
+    match = re.search(r"\bq=([01](?:\.[0-9]{0,3})?)", parameters)
+    return float(match[1]) if match else 1.0

@@ -206,7 +206,7 @@ async def preview_design(
     """What a change would do to outputs and model parameters; nothing is saved."""
     change = Change(id, _noted(body)[0], worksheet, units)
     if within is not None:
-        return written(await threads.run_within(within, request, previews.known, change))
+        return written(await threads.run_within(within, request, previews.quick, change))
     answer, job = await threads.run_within(seconds_waited(prefer), request, previews.answer, change, client)
     return accepted(job, answer) if job else written(answer)
 

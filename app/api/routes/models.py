@@ -143,9 +143,9 @@ async def build_model(
     """Build a model, check it, measure it on the finished STEP file. Equal parameters are built once."""
     unknown = [kind for kind in body.artifacts if kind not in MEDIA_TYPES]
     if unknown:
-        known = ", ".join(MEDIA_TYPES)
+        offered = ", ".join(MEDIA_TYPES)
         raise InvalidInputs(
-            Fault("artifacts", "unknown_name", f"{k[:40]!r} is none of {known}") for k in unknown
+            Fault("artifacts", "unknown_name", f"{k[:40]!r} is none of {offered}") for k in unknown
         )
     shape = catalogues.models.get(id, number).from_quantities(body.parameters)
     kinds = tuple(dict.fromkeys(("step", *body.artifacts)))

@@ -84,8 +84,8 @@ def add_key(id: Id, body: KeyIn, identity: TheIdentity) -> NewKey:
     """A new key, which only this answer has; for oneself no stronger and no longer valid than the present."""
     days = body.expires_days
     expires = None if days is None else datetime.now(UTC) + timedelta(days=days)
-    made, row = identity.add_key(id, body.name, body.scopes, expires)
-    return NewKey(**views.key(row).model_dump(), key=made.text)
+    new, row = identity.add_key(id, body.name, body.scopes, expires)
+    return NewKey(**views.key(row).model_dump(), key=new.text)
 
 
 @router.delete("/principals/{id}/keys/{prefix}", responses=refusals(403, 404))

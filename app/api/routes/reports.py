@@ -213,5 +213,5 @@ def _wanted(what: str, kind: str | None, accept: str | None, kinds: Mapping[str,
 
 
 def _weight(parameters: str) -> float:
-    found = WEIGHT.search(parameters)
-    return float(found[1]) if found else 1.0
+    match = WEIGHT.search(parameters)
+    return float(match[1]) if match else 1.0

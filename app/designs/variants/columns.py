@@ -37,8 +37,8 @@ def _column(place: str, graph: Graph) -> VariantColumn:
     words = declared.meaning.words if declared else place.replace("_", " ")
     heading = words if reference.output is None else f"{reference.block}: {words}"
     more = {"unit": _unit(place, cell, declared, graph), "nominal": _nominal(cell)}
-    known = {name: part for name, part in more.items() if part is not None}
-    return VariantColumn.model_validate({"place": place, "words": heading, **known})
+    present = {name: part for name, part in more.items() if part is not None}
+    return VariantColumn.model_validate({"place": place, "words": heading, **present})
 
 
 def _unit(place: str, cell: Cell | None, declared: Input | None, graph: Graph) -> str | None:

@@ -91,14 +91,13 @@ class VariantDetails(LongAnswers):
 
 def _alone(document: Document, wanted: WantedVariant) -> Document:
     """The document with one of its variants only."""
-    known = {BASE: {}, **document.variants}
-    if wanted.variant not in known:
-        raise NotFound(
-            f"design {wanted.design}: no variant is called {wanted.variant!r}; there are {', '.join(known)}"
-        )
+    variants = {BASE: {}, **document.variants}
+    if wanted.variant not in variants:
+        there = f"there are {', '.join(variants)}"
+        raise NotFound(f"design {wanted.design}: no variant is called {wanted.variant!r}; {there}")
     if document.iterations:
         raise InvalidInputs([Fault("iterations", "iterated", ITERATED)])
-    return document.model_copy(update={"variants": {wanted.variant: known[wanted.variant]}})
+    return document.model_copy(update={"variants": {wanted.variant: variants[wanted.variant]}})
 
 
 def _shown(wanted: WantedVariant, number: int, outcome: Outcome) -> VariantDetail:

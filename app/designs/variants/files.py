@@ -47,8 +47,8 @@ def variant_model(
         there = f"there are {', '.join(names[:20])}" if names else "it has no variants"
         raise NotFound(f"design {id}: there is no variant {variant[:64]!r}; {there}")
     wanted = _model_named(row, id, variant, model)
-    if found := _good(session, row, variant, wanted, number):
-        return found
+    if built := _good(session, row, variant, wanted, number):
+        return built
     raise NotFound(f"design {id}: {variant}.{wanted} has no finished solid; {_why(row, variant, wanted)}")
 
 
@@ -63,9 +63,9 @@ def entries(session: Session, id: str, number: int | None) -> tuple[int, list[En
     row = _revision(session, id, number)
     names = sorted(row.document.get("variants", {}), key=natural)
     pairs = [(variant, model) for variant in names for model in row.document["models"]]
-    found = [(pair, _good(session, row, *pair, number)) for pair in pairs]
-    missing = [dotted(*pair) for pair, model in found if model is None]
-    ready = list(_entries(session, (model for _, model in found if model is not None)))
+    models = [(pair, _good(session, row, *pair, number)) for pair in pairs]
+    missing = [dotted(*pair) for pair, model in models if model is None]
+    ready = list(_entries(session, (model for _, model in models if model is not None)))
     if not ready:
         why = _why(row, *pairs[0]) if pairs else "it has no variants with models"
         raise NotFound(f"design {id}: no variant has a finished solid; {why}")
@@ -101,8 +101,8 @@ def _good(
     name = dotted(variant, model)
     if number is None:
         return repository.newest_good(session, row.design_id, name, row.number)
-    found = session.get(RevisionModelRow, (row.design_id, number, name))
-    return found if found and rows.build(session, found.build_key or "") else None
+    stored = session.get(RevisionModelRow, (row.design_id, number, name))
+    return stored if stored and rows.build(session, stored.build_key or "") else None
 
 
 def _why(row: RevisionRow, variant: str, model: str) -> str:

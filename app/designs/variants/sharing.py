@@ -70,8 +70,8 @@ def evaluations(asked: Sequence[Asking]) -> list[Prepared | None]:
             groups.setdefault(form, []).append(place)
     for places in groups.values():
         for chunk in _chunks(asked[places[0]].block, places):
-            found = _shared([asked[place] for place in chunk])
-            for place, evaluation in zip(chunk, found, strict=True):
+            shared = _shared([asked[place] for place in chunk])
+            for place, evaluation in zip(chunk, shared, strict=True):
                 results[place] = evaluation
     return results
 

@@ -45,7 +45,7 @@ def variants(
     design = repository.design(session, id) if number is None else None
     row = repository.revision(session, id, design.head if design else number or 0)
     table = _Table.of(session, row)
-    _require_known(outputs, table.stored)
+    _require_outputs(outputs, table.stored)
     names = sorted(row.document.get("variants", {}), key=natural)
     results = [table.row(name, outputs) for name in names]
     base = table.row(BASE, outputs) if BASE in table.stored else None
@@ -66,11 +66,11 @@ def variants(
     )
 
 
-def _require_known(outputs: Collection[str], stored: Mapping[str, JsonObject]) -> None:
-    known = dict.fromkeys(name for one in stored.values() for name in one.get("outputs", {}))
-    unknown = [name for name in outputs if name not in known] if stored else []
+def _require_outputs(outputs: Collection[str], stored: Mapping[str, JsonObject]) -> None:
+    names = dict.fromkeys(name for one in stored.values() for name in one.get("outputs", {}))
+    unknown = [name for name in outputs if name not in names] if stored else []
     if unknown:
-        raise InvalidInputs(fault.within("outputs") for fault in unknown_names(unknown, known, "output"))
+        raise InvalidInputs(fault.within("outputs") for fault in unknown_names(unknown, names, "output"))
 
 
 @dataclass(frozen=True)
@@ -155,8 +155,8 @@ def _governing(results: Collection[VariantResult]) -> dict[str, Governing]:
         for criterion in result.criteria:
             more = {} if criterion.utilisation is None else {"utilisation": criterion.utilisation}
             one = Governing(variant=result.name, criterion=criterion.name, verdict=criterion.verdict, **more)
-            known = worst.get(criterion.name)
-            if known is None or _rank_of_governing(one) < _rank_of_governing(known):
+            worse = worst.get(criterion.name)
+            if worse is None or _rank_of_governing(one) < _rank_of_governing(worse):
                 worst[criterion.name] = one
     return worst
 

@@ -6,9 +6,9 @@ const HEADS = ["Quantity", "Value", "Unit", "Error, estimated", "Elements / degr
 
 // Put an analysis into a list of them: in the place of its own table, else first. A surface alone has none.
 export function showAnalysis(list, analysis) {
-  const made = table(analysis), old = list.querySelector(`[data-analysis="${analysis.id}"]`);
-  if (old) old.replaceWith(made);
-  else if (made.querySelector("tbody tr")) list.prepend(made);
+  const node = table(analysis), old = list.querySelector(`[data-analysis="${analysis.id}"]`);
+  if (old) old.replaceWith(node);
+  else if (node.querySelector("tbody tr")) list.prepend(node);
 }
 
 function table(analysis) {
@@ -24,18 +24,18 @@ function table(analysis) {
   return place;
 }
 
-function row([name, found]) {
-  const mesh = element("td", { className: "count" }, `${found.mesh.elements} / ${found.mesh.degrees_of_freedom}`);
-  const band = typeof found.error === "number" ? `± ${percent(found.error)}` : "";
-  const made = element("tr", {}, element("th", { scope: "row" }, capital(words(name))), ...cells(found), element("td", { className: "band" }, band), mesh);
-  made.dataset.found = name;
-  return made;
+function row([name, output]) {
+  const mesh = element("td", { className: "count" }, `${output.mesh.elements} / ${output.mesh.degrees_of_freedom}`);
+  const band = typeof output.error === "number" ? `± ${percent(output.error)}` : "";
+  const node = element("tr", {}, element("th", { scope: "row" }, capital(words(name))), ...cells(output), element("td", { className: "band" }, band), mesh);
+  node.dataset.analysisOutput = name;
+  return node;
 }
 
 function element(tag, properties, ...inside) {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...inside);
-  return made;
+  const node = Object.assign(document.createElement(tag), properties);
+  node.append(...inside);
+  return node;
 }
 
 const words = (name) => name.replaceAll("_", " ");

@@ -23,15 +23,15 @@ function place(end, axis, count) {
 }
 
 function line(values, [least, largest]) {
-  const made = document.createElementNS(SVG, "svg"), path = document.createElementNS(SVG, "path");
-  made.setAttribute("class", "spark");
-  made.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
-  made.setAttribute("preserveAspectRatio", "none");
-  made.setAttribute("role", "img");
-  made.setAttribute("aria-label", "course");
+  const svg = document.createElementNS(SVG, "svg"), path = document.createElementNS(SVG, "path");
+  svg.setAttribute("class", "spark");
+  svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
+  svg.setAttribute("preserveAspectRatio", "none");
+  svg.setAttribute("role", "img");
+  svg.setAttribute("aria-label", "course");
   path.setAttribute("d", course(values, values[least], values[largest]));
-  made.append(path);
-  return made;
+  svg.append(path);
+  return svg;
 }
 
 function course(values, low, high) {

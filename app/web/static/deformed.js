@@ -33,7 +33,7 @@ export async function drawDeformed(place, surface, name) {
   };
   const lines = edges.flatMap((ends) => [...ends.map((point) => surface.points.value[point]), [null, null, null]]);
   const before = { type: "scatter3d", mode: "lines", ...axes(lines), line: LINE, hoverinfo: "skip" };
-  if (!place.querySelector(".figure")) place.replaceChildren(made("div", "figure"), made("p", "size muted"));
+  if (!place.querySelector(".figure")) place.replaceChildren(node("div", "figure"), node("p", "size muted"));
   showColours(place, { low, high, unit: shown });
   place.querySelector(".size").textContent = `under ${surface.load}; deformation × ${plain(factor)}; lines: undeformed; drag to turn`;
   await drawScene(place.querySelector(".figure"), [solid, before]);
@@ -58,4 +58,4 @@ function width(values) {
 }
 
 const axes = (points) => ({ x: points.map(([x]) => x), y: points.map(([, y]) => y), z: points.map(([, , z]) => z) });
-const made = (tag, className) => Object.assign(document.createElement(tag), { className });
+const node = (tag, className) => Object.assign(document.createElement(tag), { className });

@@ -18,7 +18,7 @@ async function download(link) {
   link.ariaBusy = "true";
   const status = statusOf(link);
   try {
-    const answer = await made(link.href, (progress, text) => status.replaceChildren(bar(progress), isolated(text)));
+    const answer = await fileOf(link.href, (progress, text) => status.replaceChildren(bar(progress), isolated(text)));
     save(await answer.blob(), nameIn(answer) ?? (link.download || link.pathname.split("/").pop()));
     status.textContent = "";
   } catch (error) {
@@ -29,7 +29,7 @@ async function download(link) {
 }
 
 // The answer with the file, once no job has to make it first.
-async function made(path, say) {
+async function fileOf(path, say) {
   for (;;) {
     const answer = await fetch(path, { headers: { Prefer: "respond-async" } });
     const job = [202, 503].includes(answer.status) && answer.headers.get("Location");
@@ -37,7 +37,7 @@ async function made(path, say) {
       if (!answer.ok) throw new Refused(answer.status, await answer.json().catch(() => ({})));
       return answer;
     }
-    say(0, "The file is being made …");
+    say(0, "The file is being written …");
     await watched(job, say);
     const { payload } = await call("GET", job);
     if (payload.state !== "done") throw new Refused(payload.problem?.status ?? 409, payload.problem ?? { detail: "The job was cancelled." });
@@ -58,8 +58,8 @@ function nameIn(answer) {
 
 // Where it says how far a download is: behind the links.
 function statusOf(link) {
-  const found = link.parentElement.querySelector("[data-download-status]");
-  if (found) return found;
+  const shown = link.parentElement.querySelector("[data-download-status]");
+  if (shown) return shown;
   const status = document.createElement("span");
   status.setAttribute("role", "status");
   status.dataset.downloadStatus = "";

@@ -5,7 +5,7 @@ import { isolated } from "./isolated.js";
 import { quantityText as written } from "./numbers.js";
 import { follow } from "./progress.js";
 
-const EXTRA = "maximum_stress"; // found only if its box is ticked
+const EXTRA = "maximum_stress"; // calculated only if its box is ticked
 
 export function startElements(root = document) {
   for (const place of root.querySelectorAll("[data-elements]")) start(place);
@@ -23,7 +23,7 @@ function start(place) {
     button.disabled = true;
     tell(place, "");
     try {
-      await show(place, await found(place));
+      await show(place, await analysed(place));
     } catch (error) {
       tell(place, error.message);
     } finally {
@@ -34,7 +34,7 @@ function start(place) {
 
 const ask = (place, name) => place.querySelector(`[data-ask="${name}"]`);
 
-// The choices with which the design itself analyses this kind, so that nothing is found twice.
+// The choices with which the design itself analyses this kind, so that nothing is calculated twice.
 function asDeclared(place) {
   const { boundary, level, load } = ask(place, "kind").selectedOptions[0].dataset;
   if (boundary) ask(place, "boundary").value = boundary;
@@ -49,7 +49,7 @@ function tell(place, words) {
 }
 
 // Ask, and wait for the job if there is one; the answer in the units of the page, and its load in N·m.
-async function found(place) {
+async function analysed(place) {
   const { payload: built } = await call("GET", `/api/v1/builds/${place.dataset.build}`);
   const path = `${place.dataset.elements}/${ask(place, "kind").value}`, body = asked(place, built.parameters);
   const { payload: analysis, status, location } = await call("POST", path, body, { headers: { Prefer: "respond-async" } });

@@ -14,13 +14,13 @@ export function facets(points, triangles) {
 }
 
 function sharp(triangles, normals) {
-  const known = new Map(), found = [];
+  const first = new Map(), edges = [];
   triangles.forEach((triangle, t) => triangle.forEach((start, n) => {
     const end = triangle[(n + 1) % 3], key = start < end ? `${start} ${end}` : `${end} ${start}`;
-    if (!known.has(key)) known.set(key, t);
-    else if (dot(normals[known.get(key)], normals[t]) < EDGE) found.push([start, end]);
+    if (!first.has(key)) first.set(key, t);
+    else if (dot(normals[first.get(key)], normals[t]) < EDGE) edges.push([start, end]);
   }));
-  return found;
+  return edges;
 }
 
 function normal(a, b, c) {

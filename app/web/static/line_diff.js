@@ -50,21 +50,21 @@ export function drawDiff(place, old, now) {
   const rows = [];
   for (const [at, [sign, text]] of lines.entries()) {
     if (!shown.has(at)) {
-      if (rows.at(-1)?.className !== "left-out") rows.push(made("li", "left-out", "…"));
+      if (rows.at(-1)?.className !== "left-out") rows.push(node("li", "left-out", "…"));
       continue;
     }
-    const row = made("li", { "-": "removed", "+": "added", " ": "" }[sign], "");
-    row.append(made("span", "hidden-words", SAID[sign]), made("code", "", `${sign} ${text}`));
+    const row = node("li", { "-": "removed", "+": "added", " ": "" }[sign], "");
+    row.append(node("span", "hidden-words", SAID[sign]), node("code", "", `${sign} ${text}`));
     rows.push(row);
   }
   const isEqual = lines.every(([sign]) => sign === " ");
-  place.replaceChildren(isEqual ? made("p", "muted", "Nothing differs.") : listOf(rows));
+  place.replaceChildren(isEqual ? node("p", "muted", "Nothing differs.") : listOf(rows));
 }
 
 function listOf(rows) {
-  const list = made("ol", "diff", "");
+  const list = node("ol", "diff", "");
   list.append(...rows);
   return list;
 }
 
-const made = (tag, className, textContent) => Object.assign(document.createElement(tag), { className, textContent });
+const node = (tag, className, textContent) => Object.assign(document.createElement(tag), { className, textContent });

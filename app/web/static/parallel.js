@@ -1,6 +1,6 @@
 // Parallel coordinates of a study: one line a row over upright axes. A drag along an axis keeps its rows only.
 //
-// Plotly's own needs code that is made while it runs, which the pages' policy forbids.
+// Plotly's own needs code that is node while it runs, which the pages' policy forbids.
 import { plain, unit } from "./numbers.js";
 
 const SVG = "http://www.w3.org/2000/svg", WIDTH = 900, HEIGHT = 320, TOP = 46, BOTTOM = 26, SIDE = 60, MOST_LINES = 2000;
@@ -82,13 +82,13 @@ function drawnAxis(axis, drawing, filter) {
 const end = (value, { symbol }) => (Number.isFinite(value) ? `${plain(value)} ${unit(symbol)}`.trim() : "none");
 
 function label(text, x, y, kind) {
-  const made = element("text", { x, y, class: kind, "text-anchor": "middle" });
-  made.textContent = text;
-  return made;
+  const node = element("text", { x, y, class: kind, "text-anchor": "middle" });
+  node.textContent = text;
+  return node;
 }
 
 function element(name, attributes) {
-  const made = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  return made;
+  const node = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  return node;
 }

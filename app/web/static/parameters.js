@@ -39,15 +39,15 @@ function shown(old, now) {
 
 function tag(status, detail) {
   if (status === "ok" || status === "unchanged") return [];
-  const made = span(`tag status ${status === "missing" || status === "unit_mismatch" ? "failed" : "pending"}`, status.replaceAll("_", " "));
+  const node = span(`tag status ${status === "missing" || status === "unit_mismatch" ? "failed" : "pending"}`, status.replaceAll("_", " "));
   const words = status === "missing" ? TO_DO : detail;
-  return words ? [" ", made, " ", explained(words)] : [" ", made];
+  return words ? [" ", node, " ", explained(words)] : [" ", node];
 }
 
 function explained(words) {
-  const made = span("field-error", "");
-  made.append(isolated(words));
-  return made;
+  const node = span("field-error", "");
+  node.append(isolated(words));
+  return node;
 }
 
 const span = (className, textContent) => Object.assign(document.createElement("span"), { className, textContent });

@@ -121,9 +121,9 @@ export function startPasting(dialog) {
 function line(kind, cells) {
   const row = document.createElement("tr");
   for (const cell of cells) {
-    const made = Object.assign(document.createElement(kind), kind === "th" ? { scope: "col" } : {});
-    made.append(cell);
-    row.append(made);
+    const field = Object.assign(document.createElement(kind), kind === "th" ? { scope: "col" } : {});
+    field.append(cell);
+    row.append(field);
   }
   return row;
 }

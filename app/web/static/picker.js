@@ -107,7 +107,7 @@ function line(item) {
 }
 
 function element(tag, properties, ...inside) {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...inside);
-  return made;
+  const node = Object.assign(document.createElement(tag), properties);
+  node.append(...inside);
+  return node;
 }

@@ -34,9 +34,9 @@ export function layout(more = {}) {
 
 // A scale of colours with its ends, in the place of Plotly's own, which sets style attributes.
 export function scale(low, high, unit) {
-  const made = Object.assign(document.createElement("p"), { className: "colours" });
-  for (const text of [plain(low), "", `${plain(high)} ${unit}`]) made.append(Object.assign(document.createElement("span"), { textContent: text }));
-  return made;
+  const bar = Object.assign(document.createElement("p"), { className: "colours" });
+  for (const text of [plain(low), "", `${plain(high)} ${unit}`]) bar.append(Object.assign(document.createElement("span"), { textContent: text }));
+  return bar;
 }
 
 export async function draw(place, traces, more) {

@@ -3,13 +3,13 @@ import { call, units } from "./api.js";
 import { unit } from "./numbers.js";
 import { draw, scale } from "./plots.js";
 
-const known = new Map();
+const answers = new Map();
 
 export function pressureOf(picture, values, system = "si") {
   const asked = Object.fromEntries(Object.entries(picture.inputs).map(([name, from]) => [name, typedOf(values[from])]));
   const key = `${system} ${JSON.stringify(asked)}`;
-  if (!known.has(key)) known.set(key, call("POST", `/api/v1/film-pressure?units=${system}`, { inputs: asked }).then(({ payload }) => payload));
-  return known.get(key);
+  if (!answers.has(key)) answers.set(key, call("POST", `/api/v1/film-pressure?units=${system}`, { inputs: asked }).then(({ payload }) => payload));
+  return answers.get(key);
 }
 
 const typedOf = ({ value, unit }) => ({ value, unit });

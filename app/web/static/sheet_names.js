@@ -34,7 +34,7 @@ export class SheetNames {
 const DECLARATION = /^(?:(?:given|choice|curve|solve)\s+)?([\p{L}_][\p{L}\p{N}_]*)(?:\s*\[([^\]]*)\]|\s*[(=])[^"\n]*(?:"([^"\n]*)")?/gmu;
 
 // Names that the service has not read yet, because the text is not whole.
-function declared(text, known, { start }) {
-  const found = [...text.matchAll(DECLARATION)].filter(({ index, 1: name }) => !known.has(name) && (index > start || index + name.length < start));
-  return found.map(([, name, unit = "", words = ""]) => ({ name, unit, words }));
+function declared(text, listed, { start }) {
+  const matches = [...text.matchAll(DECLARATION)].filter(({ index, 1: name }) => !listed.has(name) && (index > start || index + name.length < start));
+  return matches.map(([, name, unit = "", words = ""]) => ({ name, unit, words }));
 }

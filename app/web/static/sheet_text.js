@@ -3,7 +3,7 @@ import { tokens } from "./sheet_tokens.js";
 
 const MOST_FAULTS = 50; // shown at once
 
-const made = (tag, className, textContent = "") => Object.assign(document.createElement(tag), { className, textContent });
+const node = (tag, className, textContent = "") => Object.assign(document.createElement(tag), { className, textContent });
 
 export class SheetText {
   constructor(area, lines) {
@@ -52,10 +52,10 @@ export class SheetText {
     for (const { fault, box } of marks) {
       const line = this.lines.children[fault.line - 1];
       line.classList.add("faulty");
-      line.append(placed(made("span", "underline"), { left: box.left - frame.left, top: box.bottom - frame.top, width: Math.max(box.width, 8) }));
+      line.append(placed(node("span", "underline"), { left: box.left - frame.left, top: box.bottom - frame.top, width: Math.max(box.width, 8) }));
       if (noted.has(fault.line)) continue; // the others stand beside, in the typeset sheet
       noted.add(fault.line);
-      const note = made("span", "note", [fault.message, fault.remedy].filter(Boolean).join(" — "));
+      const note = node("span", "note", [fault.message, fault.remedy].filter(Boolean).join(" — "));
       note.title = note.textContent;
       line.append(placed(note, { top: box.bottom - frame.top }));
       notes.push({ note, wanted: box.left - frame.left });
@@ -128,9 +128,9 @@ export function replace(area, text, start, end) {
 }
 
 function lineOf(text) {
-  const line = made("div", "line"), code = made("span", "code");
-  code.append(...tokens(text).map(({ kind, text: part }) => made("span", kind && `of-${kind}`, part)));
-  if (!text) code.append(made("span", "", "​"));
+  const line = node("div", "line"), code = node("span", "code");
+  code.append(...tokens(text).map(({ kind, text: part }) => node("span", kind && `of-${kind}`, part)));
+  if (!text) code.append(node("span", "", "​"));
   line.append(code);
   return line;
 }

@@ -3,9 +3,9 @@ import { isolated } from "./isolated.js";
 import { plain, quantityText, unit } from "./numbers.js";
 
 function element(tag, className, ...inside) {
-  const made = Object.assign(document.createElement(tag), { className });
-  made.append(...inside);
-  return made;
+  const node = Object.assign(document.createElement(tag), { className });
+  node.append(...inside);
+  return node;
 }
 
 const EQUALS = "<mo>&#x0003D;</mo>"; // as the service writes it
@@ -23,9 +23,9 @@ export class Typeset {
     const keys = rows.map((row) => JSON.stringify(row));
     for (const [place, row] of rows.entries()) {
       if (this.keys[place] === keys[place]) continue;
-      const made = drawn(row);
-      if (places[place]) places[place].replaceWith(made);
-      else this.list.append(made);
+      const node = drawn(row);
+      if (places[place]) places[place].replaceWith(node);
+      else this.list.append(node);
     }
     while (places.length > rows.length) places[rows.length].remove();
     this.keys = keys;
@@ -76,16 +76,16 @@ export function rowsOf(lines, faults, tests) {
 }
 
 function drawn(row) {
-  const made = element("li", `typeset-line ${row.kind}${row.is_before ? " before" : ""}`, ...(row.kind === "prose" ? [prose(row)] : statement(row)));
-  made.dataset.line = row.line;
-  made.append(...row.faults.map(faultOf));
-  return made;
+  const node = element("li", `typeset-line ${row.kind}${row.is_before ? " before" : ""}`, ...(row.kind === "prose" ? [prose(row)] : statement(row)));
+  node.dataset.line = row.line;
+  node.append(...row.faults.map(faultOf));
+  return node;
 }
 
 function prose(row) {
-  const made = element("div", "prose");
-  made.innerHTML = row.html; // the service escaped it
-  return made;
+  const node = element("div", "prose");
+  node.innerHTML = row.html; // the service escaped it
+  return node;
 }
 
 function statement(row) {
@@ -118,7 +118,7 @@ export function valueOf({ value, unit: symbol, text }) {
 }
 
 function faultOf(fault) {
-  const made = element("p", "field-error", element("b", "", `Line ${fault.line}, column ${fault.column}: `), isolated(fault.message));
-  if (fault.remedy) made.append(": ", element("span", "remedy", isolated(fault.remedy)));
-  return made;
+  const node = element("p", "field-error", element("b", "", `Line ${fault.line}, column ${fault.column}: `), isolated(fault.message));
+  if (fault.remedy) node.append(": ", element("span", "remedy", isolated(fault.remedy)));
+  return node;
 }

@@ -13,9 +13,9 @@ const place = document.querySelector("[data-verdict]");
 const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 function element(tag, properties, ...inside) {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...inside);
-  return made;
+  const node = Object.assign(document.createElement(tag), properties);
+  node.append(...inside);
+  return node;
 }
 
 // Show a verdict and its criteria; of a design without criteria nothing changes.
@@ -52,26 +52,26 @@ function banner(verdict, criteria, isOpen) {
 }
 
 function governs(criterion) {
-  const made = element("p", { className: "governing" }, tag(criterion), " governing: ", element("strong", {}, link(criterion)), ` ${compared(criterion)}`);
+  const node = element("p", { className: "governing" }, tag(criterion), " governing: ", element("strong", {}, link(criterion)), ` ${compared(criterion)}`);
   const used = share(criterion.utilisation), left = margin(criterion), off = error(criterion);
-  if (used) made.append(" ", element("span", { className: "used" }, bar(criterion), ` ${used} used`));
-  made.append(left && `; margin ${left}`, off && `; error ${off}`, criterion.unverified ? "; the limit is unverified" : "", ...why(criterion));
-  return made;
+  if (used) node.append(" ", element("span", { className: "used" }, bar(criterion), ` ${used} used`));
+  node.append(left && `; margin ${left}`, off && `; error ${off}`, criterion.unverified ? "; the limit is unverified" : "", ...why(criterion));
+  return node;
 }
 
 function notChecked(unchecked) {
-  const made = element("p", { className: "unchecked" }, "Not checked: ");
-  unchecked.slice(0, MOST_UNCHECKED).forEach((criterion, place) => made.append(place ? "; " : "", link(criterion), " (", ...give(criterion), ")"));
-  if (unchecked.length > MOST_UNCHECKED) made.append(` and ${unchecked.length - MOST_UNCHECKED} more`);
-  return made;
+  const node = element("p", { className: "unchecked" }, "Not checked: ");
+  unchecked.slice(0, MOST_UNCHECKED).forEach((criterion, place) => node.append(place ? "; " : "", link(criterion), " (", ...give(criterion), ")"));
+  if (unchecked.length > MOST_UNCHECKED) node.append(` and ${unchecked.length - MOST_UNCHECKED} more`);
+  return node;
 }
 
 function give(criterion) {
   if (!criterion.give?.length) return [isolated(missing(criterion))];
   const links = criterion.give.flatMap((name, place) => {
-    const made = element("a", { href: "#sheet" }, name.split(".").at(-1).replaceAll("_", " "));
-    made.dataset.give = name;
-    return place ? [", ", made] : [made];
+    const node = element("a", { href: "#sheet" }, name.split(".").at(-1).replaceAll("_", " "));
+    node.dataset.give = name;
+    return place ? [", ", node] : [node];
   });
   return ["give ", ...links];
 }
@@ -79,9 +79,9 @@ function give(criterion) {
 function link(criterion) {
   const step = stepOf(criterion);
   if (!step) return capital(title(criterion));
-  const made = element("a", { href: `#step-${step}` }, `${step}: ${title(criterion)}`);
-  made.dataset.reveal = "";
-  return made;
+  const node = element("a", { href: `#step-${step}` }, `${step}: ${title(criterion)}`);
+  node.dataset.reveal = "";
+  return node;
 }
 
 // Where the verdict of a saved design comes from; a template's page has no such address.
@@ -95,8 +95,8 @@ const tag = ({ verdict }) => element("span", { className: `tag ${verdict}` }, WO
 
 export function criteriaTable(criteria) {
   const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
-  const made = element("table", { className: "criteria" }, head, element("tbody", {}, ...criteria.map(row)));
-  return element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "All criteria" }, made);
+  const node = element("table", { className: "criteria" }, head, element("tbody", {}, ...criteria.map(row)));
+  return element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "All criteria" }, node);
 }
 
 function row(criterion) {
@@ -107,24 +107,24 @@ function row(criterion) {
     element("td", { className: "used" }, share(criterion.utilisation), ...[bar(criterion)].filter(Boolean)),
     element("td", {}, margin(criterion)), element("td", {}, error(criterion)),
   ];
-  const made = element("tr", {}, ...cells);
-  made.dataset.criterion = criterion.name;
-  return made;
+  const node = element("tr", {}, ...cells);
+  node.dataset.criterion = criterion.name;
+  return node;
 }
 
 // The mark is the limit; the whole bar is 150 % of it.
 function bar({ utilisation, verdict }) {
   if (typeof utilisation !== "number") return "";
-  const made = drawn("svg", { class: `bar ${verdict}`, viewBox: "0 0 150 10", preserveAspectRatio: "none", role: "img", "aria-label": `${share(utilisation)} of the limit` });
+  const node = drawn("svg", { class: `bar ${verdict}`, viewBox: "0 0 150 10", preserveAspectRatio: "none", role: "img", "aria-label": `${share(utilisation)} of the limit` });
   const used = Math.min(150, Math.max(0, utilisation * 100));
-  made.append(drawn("rect", { class: "track", width: 150, height: 10 }), drawn("rect", { class: "used", width: used, height: 10 }), drawn("path", { class: "mark", d: "M100,0V10" }));
-  return made;
+  node.append(drawn("rect", { class: "track", width: 150, height: 10 }), drawn("rect", { class: "used", width: used, height: 10 }), drawn("path", { class: "mark", d: "M100,0V10" }));
+  return node;
 }
 
 function drawn(name, attributes) {
-  const made = document.createElementNS(SVG, name);
-  for (const [attribute, value] of Object.entries(attributes)) made.setAttribute(attribute, value);
-  return made;
+  const node = document.createElementNS(SVG, name);
+  for (const [attribute, value] of Object.entries(attributes)) node.setAttribute(attribute, value);
+  return node;
 }
 
 // A link of the verdict opens what it leads to; the page leaves room for the verdict above it, and for the part.

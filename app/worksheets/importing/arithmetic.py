@@ -46,14 +46,14 @@ class Arithmetic(Writer):
 
     def product(self, left: Term, right: Term) -> Term:
         """A product, which of two vectors is their scalar product."""
-        made = binary(left, "*", right, PRODUCT)
+        result = binary(left, "*", right, PRODUCT)
         if left.is_vector and right.is_vector and not self.is_vectorised:
             if left.is_row == right.is_row and left.is_row:
                 raise Untranslatable("matrix product", "write it as a sum of products")
             if right.is_row and not left.is_row:
                 raise Untranslatable("matrix product", "write it as a sum of products")
-            return reduced("sum", made)
-        return made
+            return reduced("sum", result)
+        return result
 
     def quotient(self, left: Term, right: Term) -> Term:
         """A quotient."""

@@ -25,10 +25,10 @@ class Conditions(Writer):
 
     def value(self, node: Node) -> Term:
         """A quantity; a condition counts 1 where it holds and 0 where not."""
-        made = self.term(node)
-        if not made.is_truth:
-            return made
-        return Term(f"if {made.text} then 1 else 0", LOOSE).shaped(made)
+        term = self.term(node)
+        if not term.is_truth:
+            return term
+        return Term(f"if {term.text} then 1 else 0", LOOSE).shaped(term)
 
     def condition(self, node: Node) -> Term:
         """A tree as a condition; of a number, whether it is not 0."""
@@ -42,10 +42,10 @@ class Conditions(Writer):
             parts = [self.condition(side) for side in sides]
             text = _JOINED[sign].format(*(part.bound(ATOM) for part in parts))
             return Term(text, LOOSE, is_truth=True).shaped(*parts)
-        made = self.term(node)
-        if made.is_truth:
-            return made
-        return Term(f"{made.bound(SUM)} != 0", LOOSE, is_truth=True).shaped(made)
+        term = self.term(node)
+        if term.is_truth:
+            return term
+        return Term(f"{term.bound(SUM)} != 0", LOOSE, is_truth=True).shaped(term)
 
     def _compared(self, sign: str, left: Node, right: Node) -> Term:
         if word := self._tested(left, right) or self._tested(right, left):
@@ -105,9 +105,9 @@ class Conditions(Writer):
         raise Untranslatable("condition without otherwise", remedy)
 
     def _cases(self, branches: list[tuple[Node, Node]], last: Node) -> Term:
-        made = self.value(last)
+        otherwise = self.value(last)
         for test, then in reversed(branches):
             held, value = self.condition(test), self.value(then)
-            text = f"if {held.text} then {value.bound(SUM)} else {made.text}"
-            made = Term(text, LOOSE).shaped(held, value, made)
-        return made
+            text = f"if {held.text} then {value.bound(SUM)} else {otherwise.text}"
+            otherwise = Term(text, LOOSE).shaped(held, value, otherwise)
+        return otherwise

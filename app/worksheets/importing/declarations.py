@@ -55,7 +55,7 @@ class Declarations:
         """
         before, self.bound = self.bound, bound or {}
         try:
-            made: Sort = checked(_parser().parse(text), self)[1]
+            result: Sort = checked(_parser().parse(text), self)[1]
         except FaultyText as error:
             raise Untranslatable(
                 f"formula that the language refuses ({error})", _remedy(error.code)
@@ -64,7 +64,7 @@ class Declarations:
             raise Untranslatable("formula that is not understood", "write it by hand") from None
         finally:
             self.bound = before
-        return made
+        return result
 
     def name(self, text: str) -> Part:
         """What a name gives."""
@@ -122,9 +122,9 @@ def unit_for(sort: Sort, wanted: Sequence[str]) -> str:
     """
     if sort.kind.base == registry.Unit("radian"):
         return next((text for text in wanted if fits(text, sort) and text != "1"), "rad")
-    found = next((text for text in (*wanted, *_USUAL) if fits(text, sort)), None)
-    if found:
-        return found
+    unit = next((text for text in (*wanted, *_USUAL) if fits(text, sort)), None)
+    if unit:
+        return unit
     powers = tuple(
         (_SHORT.get(name, name), Fraction(str(power)).limit_denominator(100))
         for name, power in registry.Quantity(1.0, sort.kind.base).unit_items()

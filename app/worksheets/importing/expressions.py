@@ -74,9 +74,9 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         if not math.isfinite(value) or abs(value) >= 1e300:
             raise Untranslatable("infinity", "give a number")
         text = node.text.strip().lstrip("+")
-        made = number(value)
-        plain = text if text.replace(".", "", 1).isdigit() and len(text) < 25 else made.text
-        return replace(made, text=plain)
+        term = number(value)
+        plain = text if text.replace(".", "", 1).isdigit() and len(text) < 25 else term.text
+        return replace(term, text=plain)
 
     def named(self, node: Node) -> Term:
         """What a name stands for."""
@@ -97,10 +97,10 @@ class Expressions(Arithmetic, Lists, Calls, Conditions):
         raise Unnamed(key)
 
     def _unit(self, key: str) -> Term:
-        made = unit_named(key)
-        if made is None:
+        unit = unit_named(key)
+        if unit is None:
             raise Untranslatable(f"unit {look(key)[:30]}", "write the quantity in another unit")
-        return Term(f"{number(made.number).text} {made.unit}", POWER)
+        return Term(f"{number(unit.number).text} {unit.unit}", POWER)
 
     def applied(self, node: Node) -> Term:
         """An operator or a function, applied to what it takes."""

@@ -35,9 +35,9 @@ class ListDefinitions(Statements):
         first, last = node.parts
         ends = list(first.parts) if first.tag == "sequence" else [first]
         at = Expressions(self, self.scope)
-        known = [at.term(end).number for end in (*ends, last)]
-        numbers = [n for n in known if n is not None]
-        if len(numbers) != len(known):
+        constants = [at.term(end).number for end in (*ends, last)]
+        numbers = [n for n in constants if n is not None]
+        if len(numbers) != len(constants):
             raise Untranslatable("range with calculated ends", "give its values as a list")
         start, end = numbers[0], numbers[-1]
         step = numbers[1] - start if len(numbers) == 3 else 1.0 if end >= start else -1.0

@@ -28,9 +28,9 @@ class Lists(Writer):
         items = tuple(self.quantity(part) or self.term(part) for part in parts)
         if any(item.axis for item in items):
             raise Untranslatable("list of lists", "write each as a list of its own")
-        made = listed(items, self.sheet.axis(len(items)))
-        made = replace(made, is_row=columns != "1")
-        return made if self.keep is None else self.keep(made)
+        term = listed(items, self.sheet.axis(len(items)))
+        term = replace(term, is_row=columns != "1")
+        return term if self.keep is None else self.keep(term)
 
     def transposed(self, part: Term) -> Term:
         """A vector as a row, or a row as a vector."""
@@ -42,30 +42,30 @@ class Lists(Writer):
         """An item of a list, or its items along a range."""
         if index.tag == "sequence":
             raise Untranslatable("item of a matrix", "write its rows or columns as lists")
-        made, at = self.term(whole), self.term(index)
-        if made.axis is None:
+        term, at = self.term(whole), self.term(index)
+        if term.axis is None:
             raise Untranslatable("item of what is no list", "define the list above")
         if at.axis is not None:
-            return self._along(made, at)
+            return self._along(term, at)
         if at.number is None or at.number != int(at.number):
             raise Untranslatable("index that is calculated", "write the index as a number")
-        place = int(at.number) + 1 - made.axis.start
-        if not 1 <= place <= made.axis.length:
+        place = int(at.number) + 1 - term.axis.start
+        if not 1 <= place <= term.axis.length:
             raise Untranslatable("item that the list does not have", "write an index within the list")
-        if not made.text.replace("_", "").isalnum() and not made.text.startswith("["):
+        if not term.text.replace("_", "").isalnum() and not term.text.startswith("["):
             raise Untranslatable("item of an expression", "give the list a name of its own")
-        return Term(f"{made.text}[{place}]")
+        return Term(f"{term.text}[{place}]")
 
-    def _along(self, made: Term, at: Term) -> Term:
+    def _along(self, term: Term, at: Term) -> Term:
         """The items of a list along a range that names each of them."""
-        assert made.axis is not None
+        assert term.axis is not None
         assert at.axis is not None
         numbers = at.axis.numbers
-        wanted = tuple(float(made.axis.start + n) for n in range(made.axis.length))
+        wanted = tuple(float(term.axis.start + n) for n in range(term.axis.length))
         is_index = self.is_counting or at.text.replace("_", "").isalnum()
         if not is_index or numbers != wanted:
             raise Untranslatable("part of a list", "give the part as a list of its own")
-        return replace(made, is_vector=False, is_row=False, axis=replace(at.axis, start=made.axis.start))
+        return replace(term, is_vector=False, is_row=False, axis=replace(at.axis, start=term.axis.start))
 
     def summed(self, parts: list[Node]) -> Term:
         """A sum over an index, or of a list."""
@@ -75,23 +75,23 @@ class Lists(Writer):
             raise Untranslatable("sum without a term", "write it out")
         variable, body = function.parts[0].parts[0], function.parts[1]
         if variable.tag != "id":
-            made = self.value(body)
-            if not made.is_vector:
+            term = self.value(body)
+            if not term.is_vector:
                 raise Untranslatable("sum over what is no list", "write it out")
-            return reduced("sum", made)
+            return reduced("sum", term)
         if "lowerBound" not in bounds or "upperBound" not in bounds:
             raise Untranslatable("sum over a range variable", "give its bounds, or sum the list")
         numbers = self._counted(self.term(bounds["lowerBound"]), self.term(bounds["upperBound"]))
         axis = replace(self.sheet.axis(len(numbers)), numbers=numbers)
         literal = f"[{', '.join(number(n).text for n in numbers)}]"
         inner: Scope = {**self.scope, key_of(variable): Written(Term("index", axis=axis))}
-        made = self.within(inner).value(body)
-        if "index" in made.text.replace("(", " ").replace(")", " ").split():
+        term = self.within(inner).value(body)
+        if "index" in term.text.replace("(", " ").replace(")", " ").split():
             inner[key_of(variable)] = Written(Term(literal, axis=axis))
-            made = replace(self, scope=inner, is_counting=True).value(body)
-        if made.axis is None:
-            return binary(number(len(numbers)), "*", made, PRODUCT)
-        return reduced("sum", made)
+            term = replace(self, scope=inner, is_counting=True).value(body)
+        if term.axis is None:
+            return binary(number(len(numbers)), "*", term, PRODUCT)
+        return reduced("sum", term)
 
     def _counted(self, first: Term, last: Term) -> tuple[float, ...]:
         if first.number is None or last.number is None:

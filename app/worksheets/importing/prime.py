@@ -51,8 +51,8 @@ def _part(package: Package, name: str) -> Node | None:
 
 def _results(package: Package) -> dict[str, Node]:
     part = _part(package, RESULTS)
-    found = part.all("resultData") if part else ()
-    return {node.attributes.get("result-id", ""): node for node in found}
+    nodes = part.all("resultData") if part else ()
+    return {node.attributes.get("result-id", ""): node for node in nodes}
 
 
 def _tags(package: Package) -> tuple[dict[str, Tag], dict[str, str]]:
@@ -67,8 +67,8 @@ def _tags(package: Package) -> tuple[dict[str, Tag], dict[str, str]]:
 
 def _targets(package: Package) -> dict[str, str]:
     part = _part(package, RELATIONS)
-    found = part.all("Relationship") if part else ()
-    return {node.attributes.get("Id", ""): node.attributes.get("Target", "").lstrip("/") for node in found}
+    nodes = part.all("Relationship") if part else ()
+    return {node.attributes.get("Id", ""): node.attributes.get("Target", "").lstrip("/") for node in nodes}
 
 
 def _origin(package: Package) -> int:

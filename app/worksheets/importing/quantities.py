@@ -138,14 +138,14 @@ def _combined(sign: str, left: Scaled | None, right: Scaled | None) -> Scaled | 
         return None
     try:
         if sign != "pow":
-            made = left.times(right, -1 if sign == "div" else 1)
+            combined = left.times(right, -1 if sign == "div" else 1)
         elif right.powers or abs(right.number) > (12 if left.powers else 300):
             return None
         else:
-            made = left.raised(Fraction(right.number).limit_denominator(100))
+            combined = left.raised(Fraction(right.number).limit_denominator(100))
     except (ArithmeticError, TypeError, ValueError):
         return None
-    return made if isinstance(made.number, float) and math.isfinite(made.number) else None
+    return combined if isinstance(combined.number, float) and math.isfinite(combined.number) else None
 
 
 def _number(text: str) -> Scaled | None:
@@ -214,15 +214,15 @@ def _size(node: Node, name: str) -> int:
 
 
 def _monomial(node: Node) -> Scaled:
-    made = Scaled()
+    product = Scaled()
     for part in node.parts:
         named = unit_named(part.attributes.get("unit", ""))
         if named is None:
             raise ValueError("a unit that there is not here")
         over = int(part.attributes.get("power-numerator", "1"))
         under = int(part.attributes.get("power-denominator", "1")) or 1
-        made = made.times(named.raised(Fraction(over, under)))
-    return made
+        product = product.times(named.raised(Fraction(over, under)))
+    return product
 
 
 def is_infinite(text: str) -> bool:

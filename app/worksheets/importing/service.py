@@ -90,11 +90,11 @@ class Imports:
         try:
             content = self.store.read(sha)
             context.progress(0.1, "reading the sheet")
-            made = context.run(imported, content, name or id.replace("_", " ").capitalize(), limits=LIMITS)
+            sheet = context.run(imported, content, name or id.replace("_", " ").capitalize(), limits=LIMITS)
             context.progress(0.9, "saving the draft")
             once = Once(f"import {job.id}", IMPORT, sha, payload["client"])
-            body = SheetIn(id=id, text=made.text)
-            record: ImportRecord = {**made.record, "file": name}
+            body = SheetIn(id=id, text=sheet.text)
+            record: ImportRecord = {**sheet.record, "file": name}
             self.worksheets.create(body, once, (sha, record))
         except (SheetNotRead, WorksheetError, TemplateError, ArtifactMissing, ArtifactDamaged) as error:
             raise JobFailed(error) from error

@@ -143,17 +143,17 @@ class Statements:
         outcome.lines.append(line)
         outcome.name = name
         self.declared.sorts[name] = sort_of(unit, axis.name if axis else "")
-        known = None if is_given else term.number
+        constant = None if is_given else term.number
         value = Value(
-            name, axis, term.is_vector or axis is not None, term.is_row, known, outcome.original.number
+            name, axis, term.is_vector or axis is not None, term.is_row, constant, outcome.original.number
         )
         self.scope[key] = value
         return value
 
     def _symbol(self, key: str, name: str) -> str:
         """A clause where the name has lost the look that it had."""
-        made = symbol(key)
-        return f' (symbol "{made}")' if made and (name != look(key)) else ""
+        text = symbol(key)
+        return f' (symbol "{text}")' if text and (name != look(key)) else ""
 
     def words_for(self, name: str) -> str:
         """Words that no other quantity has; they make its name in the interface."""
@@ -167,12 +167,12 @@ class Statements:
     def asked(self, value: Node, literal: Scaled | None = None) -> list[str]:
         """Units to declare a value in: that which the region asks for, that in which it is typed."""
         asked = value.first("unitOverride") if value.tag == "eval" else None
-        found = [scaled(asked.parts[0], is_unit=True)] if asked is not None and asked.parts else []
+        scales = [scaled(asked.parts[0], is_unit=True)] if asked is not None and asked.parts else []
         units = []
-        for made in (*found, literal):
-            if made is not None and made.powers:
+        for scale in (*scales, literal):
+            if scale is not None and scale.powers:
                 try:
-                    units.append(made.unit)
+                    units.append(scale.unit)
                 except Untranslatable:
                     continue
         return units

@@ -104,8 +104,8 @@ def _block_followers(owners: Mapping[int, Outcome], gone: dict[str, str]) -> Non
 
 def _declared(outcome: Outcome) -> list[str]:
     """The names that the lines of a region declare."""
-    found = (_NAME.search(_KIND.sub("", line)) for line in outcome.lines if not line.startswith((">", "/")))
-    return [match[0] for match in found if match]
+    matches = (_NAME.search(_KIND.sub("", line)) for line in outcome.lines if not line.startswith((">", "/")))
+    return [match[0] for match in matches if match]
 
 
 def _used(outcome: Outcome) -> Iterator[str]:

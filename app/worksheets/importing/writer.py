@@ -77,11 +77,11 @@ class Writer:
 
     def quantity(self, node: Node) -> Term | None:
         """A tree of numbers and units alone as one quantity."""
-        made = scaled(node)
-        if made is None or not made.powers:
+        scale = scaled(node)
+        if scale is None or not scale.powers:
             return None
-        unit = made.unit
-        sign = number(made.number)
+        unit = scale.unit
+        sign = number(scale.number)
         return Term(sign.text if unit == "1" else f"{sign.text} {unit}", min(sign.tight, POWER))
 
     def argument(self, node: Node) -> Term:
