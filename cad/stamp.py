@@ -176,7 +176,7 @@ def _behind_comma(text: str, place: int) -> int:
 
 def _stamped_svg(text: str, stamp: Stamp) -> str:
     lines = {name: escape(line) for name, line in _lines(stamp).items()}
-    return _SVG_LINE.sub(lambda found: found[1] + lines.get(found[2], ""), text)
+    return _SVG_LINE.sub(lambda line: line[1] + lines.get(line[2], ""), text)
 
 
 def _stamped_dxf(text: str, stamp: Stamp) -> str:

@@ -125,8 +125,10 @@ class Version:
         raw = {name: _written(value) for name, value in inputs.items()}
         if tolerance is None:
             _refuse_names(self.template, level, outputs)
-            made = self.template.from_quantities(raw)
-            return Calculation(at_level(made, level or made.starting_level()) if made.levels else made)
+            instance = self.template.from_quantities(raw)
+            return Calculation(
+                at_level(instance, level or instance.starting_level()) if instance.levels else instance
+            )
         done = evaluate(
             self.template, raw, outputs=outputs, level=level, tolerance=tolerance, per_point=per_point
         )
@@ -204,9 +206,9 @@ class Errors(dict[str, Any]):
     It holds the outputs computed so far; another one is computed when it is asked for.
     """
 
-    def __init__(self, calculation: Calculation, known: Mapping[str, Any]) -> None:
+    def __init__(self, calculation: Calculation, errors: Mapping[str, Any]) -> None:
         self._calculation = calculation
-        super().__init__({name: _plain(error) for name, error in known.items()})
+        super().__init__({name: _plain(error) for name, error in errors.items()})
 
     def __missing__(self, name: str) -> Any:
         self._calculation.answer(name)

@@ -15,7 +15,7 @@ from app.designs.network import Block, Demand, Network
 from app.designs.reference import Reference
 from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
 from templates.core.judging.criterion import Criterion as Checked
-from templates.core.judging.criterion import Known, read_comparison, read_criterion
+from templates.core.judging.criterion import Described, read_comparison, read_criterion
 from templates.core.language.spec import Table, Text
 from templates.core.units.operations import Kind
 from templates.core.units.quantity import read_any
@@ -118,14 +118,14 @@ def _checked(network: Network, kinds: Mapping[str, Kind], demand: Demand) -> Che
     return read_criterion(demand.name, {key: part for key, part in parts.items() if part}, meanings)
 
 
-def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: Reference) -> Known:
+def _meaning(network: Network, kinds: Mapping[str, Kind], name: str, reference: Reference) -> Described:
     """The unit in which a value is shown, and its words."""
     if cell := network.parameters.get(name):
         typed = None if cell.relations else read_any(cell.raw).unit
-        return Known(typed or f"{kinds[name].base:~C}" or "1", name.replace("_", " "))
+        return Described(typed or f"{kinds[name].base:~C}" or "1", name.replace("_", " "))
     block = network.blocks[reference.block]
     declared = block.cls.inputs.get(reference.member) or block.cls.formulas.get(reference.member)
-    return Known(network.unit_of(reference), declared.meaning.words if declared else name)
+    return Described(network.unit_of(reference), declared.meaning.words if declared else name)
 
 
 def fault_of(name: str, error: FaultyText) -> Fault:

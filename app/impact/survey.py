@@ -14,7 +14,7 @@ from app.designs.labels import key_of
 from app.designs.tasks import CatalogueTask
 from app.impact import repository
 from app.impact.answering import described, unfinished, unusable, used_steps
-from app.impact.process import Found, compared
+from app.impact.process import Compared, compared
 from app.impact.ranking import rank
 from app.impact.schemas import ImpactIn
 from app.impact.task import Batch, DesignAt, missing, uses
@@ -54,7 +54,7 @@ class _Tally:
     unchanged: int = 0
     variants: int = 0
 
-    def add(self, batch: Found) -> None:
+    def add(self, batch: Compared) -> None:
         """Take over the designs of a batch; no more than the limit are kept."""
         for impact in batch.designs:
             self.counts[impact.effect] = self.counts.get(impact.effect, 0) + 1
@@ -108,20 +108,20 @@ class Survey:
             if used_steps(document, self.asked.template, self.asked.version)
         ]
 
-    def _of_page(self, ids: Sequence[str], seen: int, total: int) -> Iterator[Found]:
+    def _of_page(self, ids: Sequence[str], seen: int, total: int) -> Iterator[Compared]:
         """What is found of some designs, batch by batch."""
         concerned = self._concerned(ids)
         usable: list[At] = []
         for design, document in concerned:
             if absent := missing(document, self.catalogues):
                 about = described(design, document, self.asked.template, self.asked.version)
-                yield Found((unusable(about, absent),), 0, 0)
+                yield Compared((unusable(about, absent),), 0, 0)
             else:
                 usable.append((design, document))
         for batch in _batches(usable):
             yield from self._of_batch(batch, _Share(seen / total, len(ids) / total, total))
 
-    def _of_batch(self, batch: Sequence[At], share: _Share) -> Iterator[Found]:
+    def _of_batch(self, batch: Sequence[At], share: _Share) -> Iterator[Compared]:
         """What is found of a batch; where its process ends, of smaller ones, down to one design."""
         try:
             yield self._compared(batch, share)
@@ -129,13 +129,13 @@ class Survey:
             if len(batch) == 1:
                 design, document = batch[0]
                 about = described(design, document, self.asked.template, self.asked.version)
-                yield Found((unfinished(about, error),), 0, 0)
+                yield Compared((unfinished(about, error),), 0, 0)
                 return
             half = len(batch) // 2
             yield from self._of_batch(batch[:half], share)
             yield from self._of_batch(batch[half:], share)
 
-    def _compared(self, batch: Sequence[At], share: _Share) -> Found:
+    def _compared(self, batch: Sequence[At], share: _Share) -> Compared:
         """A batch, calculated in the pool for the job that asks."""
         templates, models = uses(document for _, document in batch)
         parts = CatalogueTask.of(

@@ -20,7 +20,7 @@ from pathlib import Path
 from app.storage.artifacts import OWNER, QUARANTINE, SHA256, Stored, hashed, require_name
 from app.storage.copies import Copies
 from app.storage.errors import ArtifactDamaged, ArtifactMissing, ArtifactsUnreachable
-from app.storage.s3 import Bucket, Found
+from app.storage.s3 import Bucket, Entry
 from app.storage.verified import Newest, Opened
 
 logger = logging.getLogger(__name__)
@@ -184,7 +184,7 @@ class BucketStore:
         self._bucket.copy(sha, f"{QUARANTINE}/{sha}.{(entry.tag or '').strip(chr(34))}")
         raise ArtifactDamaged(sha, f"its {len(data)} bytes in the bucket have another hash")
 
-    def _brought_back(self, sha: str) -> tuple[bytes, Found] | None:
+    def _brought_back(self, sha: str) -> tuple[bytes, Entry] | None:
         """An object that a sweep has discarded, in its place again."""
         return self._bucket.get(sha) if self._bucket.copy(DISCARDED + sha, sha) else None
 
@@ -212,7 +212,7 @@ class BucketStore:
         entry = self._bucket.head(sha) if self._tags.knows(sha) else None
         return entry is not None and self._is_known_good(sha, entry) and time.time() - entry.modified < YOUNG
 
-    def _is_known_good(self, sha: str, entry: Found | None) -> bool:
+    def _is_known_good(self, sha: str, entry: Entry | None) -> bool:
         """Whether an object has the tag that it had when its bytes were right."""
         return entry is not None and entry.tag is not None and self._tags.has(sha, entry.tag)
 
@@ -235,5 +235,5 @@ class BucketStore:
             logger.warning("a copy of a file of the bucket cannot be kept: %s", error.strerror)
 
 
-def _is_same(entry: Found | None, seen: Stored) -> bool:
+def _is_same(entry: Entry | None, seen: Stored) -> bool:
     return entry is not None and entry.modified == seen.modified

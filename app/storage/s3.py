@@ -38,7 +38,7 @@ Asked = Callable[[str, str, float], object]
 
 
 @dataclass(frozen=True)
-class Found:
+class Entry:
     """What a bucket says of an object: its tag, its size [bytes], when it was put [s since 1970]."""
 
     tag: str | None
@@ -76,20 +76,20 @@ class Bucket:
         """Whether the bucket has just not answered."""
         return time.monotonic() < self._silent_until
 
-    def head(self, key: str) -> Found | None:
+    def head(self, key: str) -> Entry | None:
         """What is there under a key; None if nothing is."""
         with self._asked("head"):
             seen = obstore.head(self._questions, key)
-            return Found(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
+            return Entry(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
         self.probe()  # to HEAD, S3 does not say whether it misses the object or the whole bucket
         return None
 
-    def get(self, key: str) -> tuple[bytes, Found] | None:
+    def get(self, key: str) -> tuple[bytes, Entry] | None:
         """The bytes under a key; None if there are none."""
         with self._asked("get"):
             answer = obstore.get(self._downloads, key)
             seen = answer.meta
-            entry = Found(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
+            entry = Entry(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
             return bytes(answer.bytes()), entry
         return None
 
@@ -113,7 +113,7 @@ class Bucket:
         with self._asked("delete"):
             obstore.delete(self._questions, key)
 
-    def list(self) -> Iterator[tuple[str, Found]]:
+    def list(self) -> Iterator[tuple[str, Entry]]:
         """All objects with their keys."""
         pages = iter(obstore.list(self._downloads))
         while True:
@@ -123,7 +123,7 @@ class Bucket:
             if page is None:
                 return
             for seen in page:
-                yield seen["path"], Found(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
+                yield seen["path"], Entry(seen["e_tag"], seen["size"], seen["last_modified"].timestamp())
 
     def probe(self) -> None:
         """Return if the bucket is there and can be read: it says that it has no object of a certain name."""

@@ -40,7 +40,7 @@ LONGEST = 600.0
 
 
 @dataclass(frozen=True)
-class Found:
+class Findings:
     """What an analysis found, in SI."""
 
     nominal: Table
@@ -112,7 +112,7 @@ class Analysis:
         """Rows of each sample for the shares."""
         return (self.question.points or USUAL_POINTS) // SCRAMBLINGS
 
-    def carried_out(self) -> Found:
+    def carried_out(self) -> Findings:
         """Calculate everything.
 
         Raises
@@ -131,7 +131,7 @@ class Analysis:
         spread = scatter(self.factors, self._judged, question.points or USUAL_POINTS, question.seed, most)
         report(0.7, "shares are estimated")
         causes = shares(self.factors, self._outputs, self.base, self.question.seed)
-        return Found(nominal, ends, spread, causes, self._errors)
+        return Findings(nominal, ends, spread, causes, self._errors)
 
     def _nominal(self) -> Table:
         """The values of the design itself, at the levels that all rows have from here on."""

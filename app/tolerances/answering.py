@@ -11,7 +11,7 @@ from app.designs.reference import Reference
 from app.schemas import tolerances as answers
 from app.schemas.answers import Quantity
 from app.tolerances import shares as indices
-from app.tolerances.analysis import Analysis, Found
+from app.tolerances.analysis import Analysis, Findings
 from app.tolerances.criteria import Demanded
 from app.tolerances.scatter import AIM, Spread, Yield
 from app.tolerances.worst import Extreme
@@ -23,7 +23,7 @@ REFUSED = "the design refuses some products, so there are no shares; see analysi
 STEADY = "no tolerance changes it"
 
 
-def answer(analysis: Analysis, findings: Found, revision: int) -> answers.ToleranceAnalysis:
+def answer(analysis: Analysis, findings: Findings, revision: int) -> answers.ToleranceAnalysis:
     """The whole answer."""
     return _Answering(analysis, findings).whole(revision)
 
@@ -31,7 +31,7 @@ def answer(analysis: Analysis, findings: Found, revision: int) -> answers.Tolera
 @dataclass(frozen=True)
 class _Answering:
     analysis: Analysis
-    findings: Found
+    findings: Findings
 
     def whole(self, revision: int) -> answers.ToleranceAnalysis:
         """About the analysis, and every output by its name."""

@@ -76,7 +76,7 @@ def origin(module: ModuleType) -> tuple[bytes, str] | None:
 
 def text_of(module: ModuleType) -> str | None:
     """The text from which a module was made, if `load` made it."""
-    return decode_source(made[0]) if (made := origin(module)) else None
+    return decode_source(source[0]) if (source := origin(module)) else None
 
 
 def is_outside(cls: type) -> bool:

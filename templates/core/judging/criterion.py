@@ -32,7 +32,7 @@ _RADIAN = registry.Unit("radian")
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class Described:
     """What a name in a criterion measures: its declared unit, and its words."""
 
     unit: str
@@ -122,7 +122,7 @@ def is_angle(name: str) -> bool:
     return bool(unit(name).base == _RADIAN)
 
 
-def read_criterion(name: str, raw: Any, known: Mapping[str, Known]) -> Criterion:
+def read_criterion(name: str, raw: Any, meanings: Mapping[str, Described]) -> Criterion:
     """Read a criterion as it is declared: its `require` alone, or an object that holds it.
 
     Parameters
@@ -131,7 +131,7 @@ def read_criterion(name: str, raw: Any, known: Mapping[str, Known]) -> Criterion
         The name of the criterion.
     raw
         The text of the comparison, or a mapping with `require` and further keys.
-    known
+    meanings
         What the names that it may use measure; limits that it declares are added to these.
 
     Raises
@@ -141,8 +141,8 @@ def read_criterion(name: str, raw: Any, known: Mapping[str, Known]) -> Criterion
     """
     parts = {"require": raw} if isinstance(raw, str) else raw
     _check_keys(parts, _KEYS, "require")
-    limits = tuple(_limit(n, part, known) for n, part in _mapping(parts.get("limits", {})).items())
-    names = {**known, **{limit.name: Known(limit.unit, limit.words) for limit in limits}}
+    limits = tuple(_limit(n, part, meanings) for n, part in _mapping(parts.get("limits", {})).items())
+    names = {**meanings, **{limit.name: Described(limit.unit, limit.words) for limit in limits}}
     value, sign, limit_side = read_comparison(parts["require"])
     used = _ordered(parts["require"], value.names | limit_side.names)
     for used_name in used:
@@ -164,7 +164,9 @@ def read_criterion(name: str, raw: Any, known: Mapping[str, Known]) -> Criterion
         source=parts.get("source"),
         unverified=parts.get("unverified"),
         warning=parts.get("warning"),
-        absent={n: _missing(n, part, used, known) for n, part in _mapping(parts.get("absent", {})).items()},
+        absent={
+            n: _missing(n, part, used, meanings) for n, part in _mapping(parts.get("absent", {})).items()
+        },
     )
 
 
@@ -214,31 +216,31 @@ def _mapping(raw: Any) -> Mapping[str, Any]:
     return raw
 
 
-def _limit(name: str, raw: Any, known: Mapping[str, Known]) -> Limit:
-    if name in known:
+def _limit(name: str, raw: Any, meanings: Mapping[str, Described]) -> Limit:
+    if name in meanings:
         raise FaultyText("twice", f"{name} is an input or output already; name the limit otherwise")
     _check_keys(raw, _LIMIT_KEYS, "unit")
     unit(raw["unit"])
-    default = _default(raw["default"], known, raw["unit"]) if "default" in raw else None
+    default = _default(raw["default"], meanings, raw["unit"]) if "default" in raw else None
     return Limit(name, raw["unit"], raw.get("words") or name.replace("_", " "), raw.get("from"), default)
 
 
-def _default(text: str, known: Mapping[str, Known], wanted: str) -> tuple[str, str]:
+def _default(text: str, meanings: Mapping[str, Described], wanted: str) -> tuple[str, str]:
     """Of `min(speed_range)` the function and the name."""
     match = _DEFAULT.fullmatch(text)
-    if match is None or match[2] not in known:
+    if match is None or match[2] not in meanings:
         raise FaultyText("syntax", f"a default is min(NAME) or max(NAME) of an input, not {excerpt(text)}")
-    require_same_kind(known[match[2]].unit, wanted)
+    require_same_kind(meanings[match[2]].unit, wanted)
     return match[1], match[2]
 
 
-def _missing(name: str, raw: Any, used: tuple[str, ...], known: Mapping[str, Known]) -> Missing:
+def _missing(name: str, raw: Any, used: tuple[str, ...], meanings: Mapping[str, Described]) -> Missing:
     _check_keys(raw, _ABSENT_KEYS, "reason")
     beside = raw.get("with", "")
-    for candidate, candidates in ((name, used), (beside, known)):
+    for candidate, candidates in ((name, used), (beside, meanings)):
         if candidate not in candidates:
             raise FaultyText("unknown_name", unknown_name(candidate, candidates, "name").detail)
-    instead = read_criterion(name, raw["instead"], known) if "instead" in raw else None
+    instead = read_criterion(name, raw["instead"], meanings) if "instead" in raw else None
     return Missing(beside, raw["reason"], instead)
 
 
@@ -248,7 +250,7 @@ def _ordered(text: str, names: frozenset[str]) -> tuple[str, ...]:
 
 
 def _shared_kind(
-    value: Relation, limit: Relation, kinds: Mapping[str, Kind], names: Mapping[str, Known]
+    value: Relation, limit: Relation, kinds: Mapping[str, Kind], names: Mapping[str, Described]
 ) -> Kind:
     """What both sides measure."""
     one, other = value.kind(kinds), limit.kind(kinds)
@@ -267,10 +269,10 @@ def _shown_unit(kind: Kind, declared: list[str]) -> str:
     return next(fitting, None) or f"{kind.base:~C}" or "1"
 
 
-def _in_words(value: Relation, sign: Sign, limit: Relation, names: Mapping[str, Known]) -> str:
+def _in_words(value: Relation, sign: Sign, limit: Relation, names: Mapping[str, Described]) -> str:
     return f"{_side(value, names)} {_SIGNS[sign]} {_side(limit, names)}"
 
 
-def _side(relation: Relation, names: Mapping[str, Known]) -> str:
+def _side(relation: Relation, names: Mapping[str, Described]) -> str:
     name = relation.only_name
     return names[name].words if name else relation.text

@@ -43,8 +43,8 @@ def confirmed(
     """The solutions at the level requested; one of the scan where that has none near, or after so many."""
     most = CONFIRMED if requested.chooses or _is_finer(requested, scanned) else len(places)
     near = [_at_requested(requested, scanned, place, bounds) for place in places[:most]]
-    found = [*near, *(None for _ in places[most:])]
-    roots = [root or _unconfirmed(scanned, place) for root, place in zip(found, places, strict=True)]
+    checked = [*near, *(None for _ in places[most:])]
+    roots = [root or _unconfirmed(scanned, place) for root, place in zip(checked, places, strict=True)]
     return _distinct(sorted(roots, key=lambda root: root.value), _shown(scanned, bounds))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from templates.core.errors import FaultyText
 from templates.core.judging.bands import Estimate
-from templates.core.judging.criterion import Criterion, Known, Limit, Missing, is_angle, read_criterion
+from templates.core.judging.criterion import Criterion, Described, Limit, Missing, is_angle, read_criterion
 from templates.core.judging.judgement import Judgement, not_judged, sentence
 from templates.core.judging.judging import Absent, Along, Instead, judge
 from templates.core.judging.limits import GivenLimit
@@ -46,11 +46,11 @@ def declared_criteria(
         return ()
     if not isinstance(raw, Mapping):
         raise TypeError(f"{name}: criteria is a dict by name")
-    known = known_names(inputs, formulas)
+    meanings = meanings_of(inputs, formulas)
     criteria = []
     for called, text in raw.items():
         try:
-            criteria.append(read_criterion(called, text, known))
+            criteria.append(read_criterion(called, text, meanings))
             _check_defaults(criteria[-1], inputs)
         except FaultyText as error:
             raise TypeError(f"{name}: criterion {called!r}: {error}") from None
@@ -64,11 +64,11 @@ def _check_defaults(criterion: Criterion, inputs: Mapping[str, Input]) -> None:
             raise FaultyText("syntax", f"the default of {limit.name} is of an input that is a list")
 
 
-def known_names(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]) -> dict[str, Known]:
+def meanings_of(inputs: Mapping[str, Input], formulas: Mapping[str, Formula[Any]]) -> dict[str, Described]:
     """What the names measure that a criterion may use: neither words nor tables."""
     declared = {**inputs, **formulas}
     return {
-        name: Known(one.meaning.unit, one.meaning.words)
+        name: Described(one.meaning.unit, one.meaning.words)
         for name, one in declared.items()
         if not isinstance(one, (Choice, Table, Text))
     }
@@ -187,7 +187,7 @@ def estimates_of(evaluated: Evaluated, criterion: Criterion) -> tuple[dict[str, 
             one = estimate_of(evaluated, name)
         if isinstance(one, Absent):
             missing = criterion.absent.get(name)
-            absent[name] = (missing and _known_reason(evaluated, missing)) or one
+            absent[name] = (missing and _stated_reason(evaluated, missing)) or one
         else:
             estimates[name] = one
     return estimates, absent
@@ -240,7 +240,7 @@ def _default(evaluated: Evaluated, limit: Limit) -> Estimate | Absent:
     return Absent((limit.name,), limit.remedy)
 
 
-def _known_reason(evaluated: Evaluated, missing: Missing) -> Absent | None:
+def _stated_reason(evaluated: Evaluated, missing: Missing) -> Absent | None:
     """Why an output has no value, where the criterion says so and the output beside it has one."""
     beside = evaluated.answers.get(missing.beside)
     return Absent((), missing.reason) if beside and beside.value is not None else None

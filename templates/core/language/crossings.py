@@ -48,23 +48,23 @@ class Meetings:
 
 def meetings(curve: SampledCurve, samples: Samples) -> Meetings:
     """Where the curve meets its target."""
-    found = Meetings()
+    result = Meetings()
     if np.isnan(samples.miss).all():
-        return found
+        return result
     for place in _exact(samples):
-        (found.touching if place.touches else found.roots).append(place)
-    found.touching += _touching(curve, samples)
+        (result.touching if place.touches else result.roots).append(place)
+    result.touching += _touching(curve, samples)
     crossings = samples.crossings()
-    found.more = max(0, crossings.size - MOST_ROOTS)
+    result.more = max(0, crossings.size - MOST_ROOTS)
     for i in crossings[:MOST_ROOTS]:
         closed = _closed(curve, samples, i)
         if isinstance(closed, Leap):
-            found.leaps.append(closed)
+            result.leaps.append(closed)
         else:
-            found.roots.append(closed)
-    found.roots.sort(key=lambda place: place.x)
-    found.touching.sort(key=lambda place: place.x)
-    return found
+            result.roots.append(closed)
+    result.roots.sort(key=lambda place: place.x)
+    result.touching.sort(key=lambda place: place.x)
+    return result
 
 
 def _exact(samples: Samples) -> Iterator[Place]:

@@ -222,8 +222,8 @@ class _Rows:
 
 def _largest(errors: Mapping[str, Any], outputs: list[str], rows: NDArray[np.intp]) -> Array:
     """The largest error of some outputs at each row; infinite where it is not stated."""
-    known = [np.nan_to_num(np.asarray(errors[name], dtype=float), nan=np.inf) for name in outputs]
-    return np.max(np.broadcast_arrays(*known, np.zeros(rows.shape)), axis=0)
+    stated = [np.nan_to_num(np.asarray(errors[name], dtype=float), nan=np.inf) for name in outputs]
+    return np.max(np.broadcast_arrays(*stated, np.zeros(rows.shape)), axis=0)
 
 
 def _picked(given: GivenLimit, rows: NDArray[np.intp], count: int) -> GivenLimit:

@@ -70,8 +70,8 @@ def roots_of(requested: SampledCurve, cheap: SampledCurve, bounds: tuple[float, 
         If no value between the bounds gives the target, with the range that is reachable.
     """
     scanned, even, samples = cheap.scan(*bounds)
-    found = meetings(scanned, samples)
-    places = sorted([*found.roots, *found.touching], key=lambda place: place.x)
+    met = meetings(scanned, samples)
+    places = sorted([*met.roots, *met.touching], key=lambda place: place.x)
     if not places:
         raise scanned.unreachable(samples)
     roots = confirmed(requested, scanned, places, bounds)
@@ -83,18 +83,18 @@ def roots_of(requested: SampledCurve, cheap: SampledCurve, bounds: tuple[float, 
         lowest,
         [root for root in roots if not root.touches],
         [root for root in roots if root.touches],
-        [_jump(scanned, leap) for leap in found.leaps],
+        [_jump(scanned, leap) for leap in met.leaps],
         _traced(scanned, even),
-        _warnings(scanned, samples, found, roots, lowest),
+        _warnings(scanned, samples, met, roots, lowest),
     )
 
 
 def _warnings(
-    curve: SampledCurve, samples: Samples, found: Meetings, roots: list[Root], lowest: Root
+    curve: SampledCurve, samples: Samples, met: Meetings, roots: list[Root], lowest: Root
 ) -> list[Notice]:
     return [
         *_not_monotone(curve, samples.miss),
-        *_others(curve, lowest, roots, found.more),
+        *_others(curve, lowest, roots, met.more),
         *_unsettled(curve, roots),
     ]
 

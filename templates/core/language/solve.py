@@ -69,17 +69,17 @@ def solve(
     requested = TargetCurve(
         declared.meaning, formula.meaning, wanted, cls, dict(raw), declared, formula, fidelity
     )
-    found = roots_of(requested, replace(requested, fidelity=_cheap(cls, fidelity)), bounds_si)
-    given = {**raw, unknown: {"value": found.lowest.value, "unit": declared.meaning.unit}}
+    roots = roots_of(requested, replace(requested, fidelity=_cheap(cls, fidelity)), bounds_si)
+    given = {**raw, unknown: {"value": roots.lowest.value, "unit": declared.meaning.unit}}
     return Solution(
-        found.lowest.value,
+        roots.lowest.value,
         declared.meaning.unit,
         evaluate(cls, given, **options),
-        found.warnings,
-        found.roots,
-        found.touching,
-        found.jumps,
-        found.curve,
+        roots.warnings,
+        roots.roots,
+        roots.touching,
+        roots.jumps,
+        roots.curve,
         formula.meaning.unit,
     )
 

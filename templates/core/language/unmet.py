@@ -29,9 +29,9 @@ def unmet(
         detail = f"the error of {cls.id} version {cls.version} is not measured; no level is known to meet it"
         return [Notice(CODE, "tolerance", detail)]
     numbers = [name for name in values if not isinstance(cls.formulas[name], Text)]
-    found = {name: _of_values(cls.formulas[name], values[name], errors[name]) for name in numbers}
-    unknown = [name for name, error in found.items() if np.isnan(error).any()]
-    large = {n: float(np.nanmax(e)) for n, e in found.items() if np.any(e > tolerance)}
+    by_output = {name: _of_values(cls.formulas[name], values[name], errors[name]) for name in numbers}
+    unknown = [name for name, error in by_output.items() if np.isnan(error).any()]
+    large = {n: float(np.nanmax(e)) for n, e in by_output.items() if np.any(e > tolerance)}
     return [*_unstated(unknown, level), *(Notice(CODE, n, _beyond(n, error)) for n, error in large.items())]
 
 

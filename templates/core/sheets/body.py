@@ -35,8 +35,8 @@ def operations_seconds(operations: int, points: int) -> float:
 
 def unequal_lengths(body: Body, template: Any) -> InvalidInputs:
     """The refusal where lists of different lengths meet: it names the result, or the inputs of a rule."""
-    made = getattr(template, "declarations", {}).get(body.name)
-    names = body.inputs or (made.name if made else f"line {body.line}",)
+    declared = getattr(template, "declarations", {}).get(body.name)
+    names = body.inputs or (declared.name if declared else f"line {body.line}",)
     detail = "lists of different lengths meet here; give lists of one length"
     return InvalidInputs([Fault(names[0], "shape", detail, names[1:])])
 

@@ -155,11 +155,11 @@ class Builder:
         self._make(statement, str(name), Choice(meant, names, str(default) if default else None), None)
 
     def _choose(
-        self, statement: Parsed, clause: Any, options: tuple[str, ...], found: dict[str, Any]
+        self, statement: Parsed, clause: Any, options: tuple[str, ...], parts: dict[str, Any]
     ) -> None:
         """Sort a clause of a choice: an option as its example, or words."""
         if clause.data != "example":
-            found.setdefault("said", []).append(clause)
+            parts.setdefault("said", []).append(clause)
             return
         tree = clause.children[0]
         word = str(tree.children[0]) if tree.data == "name" else ""
@@ -167,7 +167,7 @@ class Builder:
             raise statement.refuse(
                 "choice", "the example is no option", tree, f"write one of {', '.join(options)}"
             )
-        found["example"] = word
+        parts["example"] = word
 
     def _given(self, statement: Parsed) -> None:
         name, unit_text, axis, tree, words, clauses = statement.parts
@@ -180,16 +180,16 @@ class Builder:
                 self._make(statement, str(name), Derived(body, meant), node)
                 return
             default = self.reader.number(statement, node, tree, meant.unit, f"the default of {name}")
-        made = Given(meant, default) if axis is None else Curve(meant, default, along=str(axis))
-        self._make(statement, str(name), made, node)
+        declaration = Given(meant, default) if axis is None else Curve(meant, default, along=str(axis))
+        self._make(statement, str(name), declaration, node)
 
     def _formula(self, statement: Parsed) -> None:
         name, unit_text, axis, tree, words, clauses = statement.parts
         meant = self._meant(statement, self.reader.declared_unit(statement, unit_text), words, clauses)
         node = self._node(statement, str(name), meant, str(axis or ""), tree)
         body = TreeBody(node, statement.chunk.line, str(name))
-        made = Formula(body, meant) if axis is None else Profile(body, meant, None, str(axis), 1)
-        self._make(statement, str(name), made, node)
+        declaration = Formula(body, meant) if axis is None else Profile(body, meant, None, str(axis), 1)
+        self._make(statement, str(name), declaration, node)
 
     def _solve(self, statement: Parsed) -> None:
         name, unit_text, low, high, tree, words, clauses = statement.parts
@@ -231,21 +231,21 @@ class Builder:
             advice = "compare a given with something"
             raise statement.refuse("no_truth", "the rule is about no input", tree, advice)
         rule = Requirement(body, blamed, remedy or f"change {' or '.join(blamed)}", False, "")
-        self.built.made[f"{RULE} {statement.chunk.line}"] = rule
+        self.built.parts[f"{RULE} {statement.chunk.line}"] = rule
         self.built.note(statement, f"{RULE} {statement.chunk.line}", "", rule.sentence, node)
 
     def _check(self, statement: Parsed) -> None:
         tree, words, clauses = statement.parts
         node, _ = self._condition(statement, tree)
         said, text = said_in(statement, clauses, self.reader), words_of(statement, words)
-        name, criterion = criterion_of(statement, node, text, said, self.built.made)
+        name, criterion = criterion_of(statement, node, text, said, self.built.parts)
         if name in self.built.criteria:
             raise statement.refuse("name", f"another check is named {name}", words, "say it in other words")
         self.built.criteria[name] = criterion
         self.built.note(statement, name, "", text, node)
 
     def _test(self, statement: Parsed) -> None:
-        test = test_of(statement, self.reader, self.built.made)
+        test = test_of(statement, self.reader, self.built.parts)
         self.built.tests.append(test)
         self.built.note(statement, "", "", test.words)
 
@@ -274,6 +274,6 @@ class Builder:
             self.built.example[meant.name] = said.example
         return meant
 
-    def _make(self, statement: Parsed, name: str, made: Declaration, node: Any) -> None:
-        self.built.made[name] = made
-        self.built.note(statement, name, made.meaning.unit, made.meaning.words, node)
+    def _make(self, statement: Parsed, name: str, declaration: Declaration, node: Any) -> None:
+        self.built.parts[name] = declaration
+        self.built.note(statement, name, declaration.meaning.unit, declaration.meaning.words, node)

@@ -12,7 +12,7 @@ from templates.core.sheets.grammar import Parsed
 from templates.core.sheets.names import Named
 from templates.core.sheets.testing import SheetTest
 
-Made = Declaration | Requirement
+Part = Declaration | Requirement
 RULE = "line"
 """A rule stands in the class under its line, `line 14`: a name that no user can write."""
 
@@ -23,7 +23,7 @@ class Built:
 
     Attributes
     ----------
-    made
+    parts
         Declarations and rules by attribute.
     criteria
         As a template declares them, by name.
@@ -39,7 +39,7 @@ class Built:
 
     statements: list[Parsed] = field(default_factory=list)
     faults: list[SheetFault] = field(default_factory=list)
-    made: dict[str, Made] = field(default_factory=dict)
+    parts: dict[str, Part] = field(default_factory=dict)
     criteria: dict[str, dict[str, str]] = field(default_factory=dict)
     example: dict[str, Any] = field(default_factory=dict)
     tests: list[SheetTest] = field(default_factory=list)
@@ -60,20 +60,20 @@ class Built:
         if statement.kind not in ("require", "check", "test"):
             self.named[name] = Named(name, unit, words, statement.kind)
 
-    def declarations(self) -> dict[str, Made]:
+    def declarations(self) -> dict[str, Part]:
         """Declarations and rules for another class; each learns its attribute from the class it is in."""
-        return {name: copy(made) for name, made in self.made.items()}
+        return {name: copy(part) for name, part in self.parts.items()}
 
     def inputs_beneath(self, names: tuple[str, ...]) -> tuple[str, ...]:
         """The API names of inputs from which names follow, those nearest first."""
         inputs: dict[str, None] = {}
         waiting, seen = list(names), set(names)
         for name in waiting:
-            made = self.made.get(name)
-            if isinstance(made, (Given, Choice, Derived)):
-                inputs[made.name] = None
-            elif isinstance(made, Formula):
-                new = [used for used in made.uses if used not in seen]
+            part = self.parts.get(name)
+            if isinstance(part, (Given, Choice, Derived)):
+                inputs[part.name] = None
+            elif isinstance(part, Formula):
+                new = [used for used in part.uses if used not in seen]
                 seen.update(new)
                 waiting += new
         return tuple(inputs)

@@ -15,7 +15,7 @@ class SheetClass(type):
     """The type of classes made from worksheets, by which pickle knows them."""
 
 
-def made(sheet: Any, id: str, version: int, parts: Mapping[str, Any]) -> type[Template]:
+def class_of(sheet: Any, id: str, version: int, parts: Mapping[str, Any]) -> type[Template]:
     """The class of a worksheet; its module says which one it is, and exists nowhere."""
     space = {**parts, "__module__": f"{WORKSHEETS}.{id}_v{version}", "sheet": sheet}
     name = "".join(word.capitalize() for word in id.split("_"))

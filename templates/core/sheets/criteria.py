@@ -7,7 +7,7 @@ from typing import Any
 
 from templates.core.errors import FaultyText
 from templates.core.judging.criterion import read_criterion
-from templates.core.language.criteria import known_names
+from templates.core.language.criteria import meanings_of
 from templates.core.language.meaning import api_name
 from templates.core.language.spec import Choice, Declaration, Derived, Formula, Given
 from templates.core.sheets.clauses import Said
@@ -20,7 +20,7 @@ _OPERATORS = frozenset({"+", "-", "*", "/", "**"})
 
 
 def criterion_of(
-    statement: Parsed, node: Any, words: str, said: Said, made: Mapping[str, Any]
+    statement: Parsed, node: Any, words: str, said: Said, declared: Mapping[str, Any]
 ) -> tuple[str, dict[str, str]]:
     """Name and content of a criterion, as templates declare them.
 
@@ -33,15 +33,15 @@ def criterion_of(
     remedy = "write p <= 30 MPa; several conditions are several checks"
     if not (isinstance(node, Apply) and node.operation.sign in ("<=", ">=")):
         raise statement.refuse("check", "a check compares two sides by one <= or >=", at, remedy)
-    names = {n: d.name for n, d in made.items() if isinstance(d, Declaration)}
+    names = {n: d.name for n, d in declared.items() if isinstance(d, Declaration)}
     try:
         left, right = (relation_text(side, names) for side in node.arguments)
         content = {"require": f"{left} {node.operation.sign} {right}", "words": words, "warning": WARNING}
         if source := said.keywords.get("source"):
             content["source"] = source
-        inputs = {d.name: d for d in made.values() if isinstance(d, (Given, Choice, Derived))}
-        formulas = {d.name: d for d in made.values() if isinstance(d, Formula) and d.name not in inputs}
-        read_criterion(api_name(words) or "check", content, known_names(inputs, formulas))
+        inputs = {d.name: d for d in declared.values() if isinstance(d, (Given, Choice, Derived))}
+        formulas = {d.name: d for d in declared.values() if isinstance(d, Formula) and d.name not in inputs}
+        read_criterion(api_name(words) or "check", content, meanings_of(inputs, formulas))
     except FaultyText as error:
         raise statement.refuse("check", str(error), at, remedy) from None
     return api_name(words) or f"check_{statement.chunk.line}", content

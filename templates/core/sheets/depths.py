@@ -23,7 +23,7 @@ _CALLS = 3  # of a formula, beside those within its expression
 def set_order(built: Built) -> Iterator[SheetFault]:
     """Set what each formula of a worksheet without loops asks first; a fault for defaults nested too deep."""
     bodies: dict[str, Any] = {
-        n: m.function for n, m in built.made.items() if isinstance(m, (Formula, Derived, Requirement))
+        n: m.function for n, m in built.parts.items() if isinstance(m, (Formula, Derived, Requirement))
     }
     uses = {name: [used for used in body.uses if used in bodies] for name, body in bodies.items()}
     nested: dict[str, int] = {}
@@ -32,7 +32,7 @@ def set_order(built: Built) -> Iterator[SheetFault]:
         depth = _CALLS + _height(bodies[name]) + max((nested[used] for used in uses[name]), default=0)
         before = {one: None for used in uses[name] for one in first[used]}
         bodies[name].first = tuple(before)
-        is_default = isinstance(built.made[name], Derived)
+        is_default = isinstance(built.parts[name], Derived)
         if is_default and depth > 2 * MOST_NESTED:
             message = f"the default of {name} follows from too many others in a row"
             yield SheetFault(

@@ -18,10 +18,10 @@ from templates.core.sheets.grammar import Parsed
 from templates.core.sheets.testing import Expected, SheetTest
 from templates.core.units.rules import is_number
 
-Made = Mapping[str, Any]
+Parts = Mapping[str, Any]
 
 
-def test_of(statement: Parsed, reader: Reader, made: Made) -> SheetTest:
+def test_of(statement: Parsed, reader: Reader, every: Parts) -> SheetTest:
     """The test that a statement describes.
 
     Raises
@@ -34,22 +34,22 @@ def test_of(statement: Parsed, reader: Reader, made: Made) -> SheetTest:
     for part in (part for part in parts if part is not None):
         name, tree = part.children
         if part.data == "setting":
-            declared = _declared(statement, reader, made, name, (Given, Choice, Derived), "an input")
+            declared = _declared(statement, reader, every, name, (Given, Choice, Derived), "an input")
             given[declared.name] = _set(statement, reader, declared, tree, str(name))
         else:
-            declared = _declared(statement, reader, made, name, (Formula,), "a result")
+            declared = _declared(statement, reader, every, name, (Formula,), "a result")
             expected.append(_expected(statement, reader, declared, tree, tolerance, str(name)))
     return SheetTest(statement.chunk.line, words_of(statement, words), given, tuple(expected))
 
 
 def _declared(
-    statement: Parsed, reader: Reader, made: Made, name: lark.Token, kinds: tuple[type, ...], wanted: str
+    statement: Parsed, reader: Reader, every: Parts, name: lark.Token, kinds: tuple[type, ...], wanted: str
 ) -> Any:
-    declared = made.get(str(name))
+    declared = every.get(str(name))
     if declared is None and (str(name) in reader.names.broken or str(name) in reader.names.sorts):
         raise FollowsFromFault(str(name))
     if not isinstance(declared, kinds) or isinstance(declared, Text):
-        fitting = (own for own, one in made.items() if isinstance(one, kinds) and not isinstance(one, Text))
+        fitting = (own for own, one in every.items() if isinstance(one, kinds) and not isinstance(one, Text))
         fault = unknown_name(str(name), fitting, wanted)
         message, remedy = (
             f"{fault.name[:60]} is not {wanted} of this worksheet",

@@ -130,8 +130,8 @@ def solved(matrices: NDArray[Any], right: NDArray[Any]) -> tuple[NDArray[Any], N
     usable = np.where(finite[..., None, None], scaled, np.eye(matrices.shape[-1]))
     singular = finite & ~(np.linalg.cond(usable) < WORST_CONDITION)
     usable = np.where(singular[..., None, None], np.eye(matrices.shape[-1]), usable)
-    found = np.linalg.solve(usable, sides[..., None])[..., 0] / columns[..., 0, :]
-    return np.where((finite & ~singular)[..., None], found, np.nan), singular
+    solution = np.linalg.solve(usable, sides[..., None])[..., 0] / columns[..., 0, :]
+    return np.where((finite & ~singular)[..., None], solution, np.nan), singular
 
 
 def _sizes(matrices: NDArray[Any], axis: int) -> NDArray[Any]:

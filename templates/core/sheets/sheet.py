@@ -12,7 +12,7 @@ from typing import Any
 from templates.core.language.template import Template
 from templates.core.sheets.building import Builder
 from templates.core.sheets.built import Built
-from templates.core.sheets.classes import made
+from templates.core.sheets.classes import class_of
 from templates.core.sheets.depths import set_order
 from templates.core.sheets.faults import SheetRefused
 from templates.core.sheets.grammar import LANGUAGE
@@ -115,7 +115,7 @@ class Sheet:
             "criteria": self.built.criteria,
             **self.built.declarations(),
         }
-        return made(self, id, version, parts)
+        return class_of(self, id, version, parts)
 
 
 def read(text: str) -> Sheet:

@@ -53,8 +53,8 @@ class SolveBody(Body):
         self._sides = [closure(side) for side in equation.arguments]
         self._bounds = [closure(bound) for bound in bounds]
         inside = dict.fromkeys(names_in(equation))
-        self._known = tuple(known for known in inside if known != name)
-        self.uses = tuple(dict.fromkeys([*self._known, *(n for bound in bounds for n in names_in(bound))]))
+        self._others = tuple(other for other in inside if other != name)
+        self.uses = tuple(dict.fromkeys([*self._others, *(n for bound in bounds for n in names_in(bound))]))
         self.__doc__ = None
         self.__qualname__ = f"line {line}"
 
@@ -62,7 +62,7 @@ class SolveBody(Body):
         """The root [SI]; NaN where there is none, and the ledger says why."""
         for name in self.first:
             getattr(template, name)
-        values = {name: attrgetter(name)(template) for name in self._known}
+        values = {name: attrgetter(name)(template) for name in self._others}
         low, high = (np.asarray(bound(template), dtype=float) for bound in self._bounds)
         singles = [value for name, value in values.items() if _is_number(value) and name not in self._lists]
         firsts = [np.asarray(values[name])[..., 0] for name in self._lists & values.keys()]
@@ -100,11 +100,11 @@ class SolveBody(Body):
             return np.broadcast_to(np.subtract(left, right), unknown.shape).copy()
 
         with np.errstate(all="ignore"):
-            found = elementwise.find_root(residual, ends, args=(places,))
+            search = elementwise.find_root(residual, ends, args=(places,))
             scale = reduce(np.maximum, (np.abs(residual(end, places)) for end in ends))
-            near = np.abs(residual(found.x, places)) <= NEAR * scale
+            near = np.abs(residual(search.x, places)) <= NEAR * scale
         several = (scale == 0) & (ends[0] < ends[1])
-        roots = np.where(found.success & near & ~several, found.x, np.nan)
+        roots = np.where(search.success & near & ~several, search.x, np.nan)
         return roots.reshape(low.shape), several.reshape(low.shape)
 
     def _flat(self, name: str, value: Any, shape: tuple[int, ...]) -> Callable[[NDArray[Any]], Any]:

@@ -171,8 +171,8 @@ class _Builder:
         first, second = (OVER_LISTS, FUNCTIONS) if len(arguments) == 1 else (FUNCTIONS, OVER_LISTS)
         operation = first.get(called) or second.get(called)
         if operation is None:
-            known = ", ".join(dict.fromkeys([*FUNCTIONS, *OVER_LISTS]))
-            raise FaultyText("unknown_function", f"{called[:60]} is no function; there are {known}")
+            names = ", ".join(dict.fromkeys([*FUNCTIONS, *OVER_LISTS]))
+            raise FaultyText("unknown_function", f"{called[:60]} is no function; there are {names}")
         if operation.arity not in (None, len(arguments)):
             count = f"{operation.arity} value{'s' if operation.arity != 1 else ''}"
             raise FaultyText("syntax", f"{called} takes {count}, not {len(arguments)}")
@@ -214,9 +214,9 @@ class _Checked(_Builder):
             raise FaultyPlace(error, tree.meta) from None
 
     def constant(self, text: str) -> Part:
-        made = constant(text)
-        kind = Kind(made.kind.base)
-        return Constant(made.value, kind, text), Sort(kind, float(made.kind.absolute))
+        one = constant(text)
+        kind = Kind(one.kind.base)
+        return Constant(one.value, kind, text), Sort(kind, float(one.kind.absolute))
 
     def name(self, text: str) -> Part:
         return self.scope.name(text)

@@ -69,5 +69,5 @@ def _unknown(zone: str) -> str:
     if alike:
         grades = sorted(int(name.removeprefix(letters)) for name in alike)
         return f"{excerpt(zone)} is not shipped; {letters} has the grades {grades[0]} to {grades[-1]}"
-    known = " ".join(dict.fromkeys(name.rstrip("0123456789") for name in zones()))
-    return f"{excerpt(zone)} is no tolerance zone that is shipped; there are {known}, as in H7 or g6"
+    shipped = " ".join(dict.fromkeys(name.rstrip("0123456789") for name in zones()))
+    return f"{excerpt(zone)} is no tolerance zone that is shipped; there are {shipped}, as in H7 or g6"

@@ -112,10 +112,10 @@ class Relation:
         """
         if self.only_name:
             return values[self.only_name]
-        known = self._with_items(values) if self.items else values
+        all_values = self._with_items(values) if self.items else values
         try:
             with np.errstate(all="ignore"):
-                return value_of(self.tree, known)
+                return value_of(self.tree, all_values)
         except ValueError:
             raise FaultyText("shape", f"{self.text!r} joins arrays of different lengths") from None
 

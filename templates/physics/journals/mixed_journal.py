@@ -144,12 +144,12 @@ class MixedJournal:
 
     def shares(self, eps: Array, speed: Array, i: Indices) -> tuple[Array, ...]:
         """Forces along and across the line of centres, and what they are made of, of bearings i."""
-        known = self.bearing
+        bearings = self.bearing
         So, attitude = self.films.at(np.minimum(eps, ECCENTRICITY_LIMIT), i)
-        along, around = contact_integrals(eps, known.roughness[i])
-        scale = known.contact[i] * known.area[i]
-        film, contact = known.viscous[i] * speed * So, scale * along
-        across = film * np.sin(attitude) - known.mu[i] * contact
+        along, around = contact_integrals(eps, bearings.roughness[i])
+        scale = bearings.contact[i] * bearings.area[i]
+        film, contact = bearings.viscous[i] * speed * So, scale * along
+        across = film * np.sin(attitude) - bearings.mu[i] * contact
         return film * np.cos(attitude) + contact, across, film, contact, scale * around, So, attitude
 
     def excess(self, deep: Array, speed: Array, number: Array) -> Array:
@@ -180,12 +180,12 @@ def mixed_journal(level: str, bearing: RoughJournal) -> MixedJournal:
     values = np.broadcast_arrays(*(np.asarray(getattr(bearing, name), float) for name in names))
     rows = dict(zip(names, values, strict=True))
     usable = np.all(np.isfinite(values), axis=0) & (rows["ratio"] >= NARROWEST) & (rows["ratio"] <= WIDEST)
-    known = RoughJournal(**{name: value[usable] for name, value in rows.items()})
+    bearings = RoughJournal(**{name: value[usable] for name, value in rows.items()})
     number = np.where(usable, np.cumsum(usable).reshape(usable.shape) - 1, -1)
-    films: SmoothFilms | AveragedFilms = SmoothFilms(known.ratio)
+    films: SmoothFilms | AveragedFilms = SmoothFilms(bearings.ratio)
     if level == AVERAGED:
-        films = AveragedFilms(known.ratio, known.roughness, known.asymmetry)
-    return MixedJournal(known, films, number)
+        films = AveragedFilms(bearings.ratio, bearings.roughness, bearings.asymmetry)
+    return MixedJournal(bearings, films, number)
 
 
 @on_paper(

@@ -197,10 +197,10 @@ def _solved(
     if feed.pressure > 0 or So >= smallest:
         smallest = So
     try:
-        found = balance(Loaded(smallest, ratio, bore, tilt, feed, conserving))
+        balanced = balance(Loaded(smallest, ratio, bore, tilt, feed, conserving))
     except NoBalance:
         return _unborne()
-    return _measured(found, bore, tilt, So / smallest if smallest > 0 else 1.0)
+    return _measured(balanced, bore, tilt, So / smallest if smallest > 0 else 1.0)
 
 
 def _unborne() -> dict[str, Array | float]:
@@ -208,16 +208,16 @@ def _unborne() -> dict[str, Array | float]:
     return none | {"eps": np.inf}
 
 
-def _measured(found: Balance, bore: Bore, tilt: Array, share: float) -> dict[str, Array | float]:
+def _measured(balanced: Balance, bore: Bore, tilt: Array, share: float) -> dict[str, Array | float]:
     """Values extrapolated by Richardson, with order 2, or 1 where they see a front or the ends' pressure.
 
     The share is that of the load wanted: below 1 the journal lies as much nearer to the middle.
     """
-    coarse, fine = found.coarse, found.fine
-    gaps = [narrowest(bore, lie)[0] for lie in (found.at_coarse, found.at_fine)]
-    lie = Lie(share * (found.at_fine.e + (found.at_fine.e - found.at_coarse.e) / 3), tilt)
+    coarse, fine = balanced.coarse, balanced.fine
+    gaps = [narrowest(bore, lie)[0] for lie in (balanced.at_coarse, balanced.at_fine)]
+    lie = Lie(share * (balanced.at_fine.e + (balanced.at_fine.e - balanced.at_coarse.e) / 3), tilt)
     if not 0.5 * gaps[1] < narrowest(bore, lie)[0] and share == 1:
-        lie = found.at_fine
+        lie = balanced.at_fine
     couple = fine.couple + (fine.couple - coarse.couple) / 3
     first = 1 if fine.conserving else 3
     return {

@@ -17,7 +17,7 @@ from templates.core.judging.comparison import (
     compare,
     judge_rows,
 )
-from templates.core.judging.criterion import Known, read_criterion
+from templates.core.judging.criterion import Described, read_criterion
 from templates.core.judging.judgement import sentence
 from templates.core.judging.judging import Absent, Along, judge
 from templates.core.judging.summary import summarised, worst_first
@@ -25,11 +25,11 @@ from templates.core.judging.worst import worst_of_rows
 
 NAN = math.nan
 KNOWN = {
-    "film": Known("um", "smallest film"),
-    "limit": Known("um", "permissible film"),
-    "load": Known("kN", "load"),
-    "temperature": Known("degC", "film temperature"),
-    "angle": Known("deg", "attitude angle"),
+    "film": Described("um", "smallest film"),
+    "limit": Described("um", "permissible film"),
+    "load": Described("kN", "load"),
+    "temperature": Described("degC", "film temperature"),
+    "angle": Described("deg", "attitude angle"),
 }
 FILM = read_criterion("film", "film >= 3 um", KNOWN)
 LOAD = read_criterion("load", "load <= 25 kN", KNOWN)
@@ -86,7 +86,7 @@ def test_analytic_verdict_of_an_upper_limit(load, error, verdict):
     ],
 )
 def test_analytic_limit_at_an_end_of_the_band(text, value, verdict):
-    criterion = read_criterion("ratio", text, {"ratio": Known("1", "ratio")})
+    criterion = read_criterion("ratio", text, {"ratio": Described("1", "ratio")})
     assert judge(criterion, {"ratio": Estimate(value, 0.5)}).verdict == verdict
 
 
