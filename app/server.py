@@ -28,6 +28,7 @@ from starlette.types import Receive, Scope, Send
 from app.api import problems
 from app.api.gate.connections import ConnectionLimits, protocol
 from app.api.gate.observing import Observed, what_is_in_flight
+from app.api.problem_kinds import CROWDED
 from app.observation import logs
 from app.settings import Settings
 from app.workers import family
@@ -62,7 +63,7 @@ def configuration(app: FastAPI, settings: Settings, port: int | None = None) -> 
 
 async def _busy(scope: Scope, receive: Receive, send: Send) -> None:
     """Answer a request on a connection beyond the limit."""
-    about = problems.problem(problems.CROWDED, "too many connections are open; close some, or try again")
+    about = problems.problem(CROWDED, "too many connections are open; close some, or try again")
     await problems.answer(about, {"Retry-After": "5", "Connection": "close"})(scope, receive, send)
 
 

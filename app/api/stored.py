@@ -14,6 +14,7 @@ from starlette.types import Message, Receive, Scope, Send
 
 from app.api import problems
 from app.api.attachments import is_at_hand, unchanged
+from app.api.problem_kinds import REBUILDING
 from app.api.waiting import finished
 from app.jobs.service import Jobs
 from app.schemas.problems import Responses, refusals
@@ -71,7 +72,7 @@ async def _unless_healed(sha: str, healing: Healing, jobs: Jobs, prefer: str | N
 
 def rebuilding(sha: str, job: str) -> Response:
     """503 for an artifact that a job makes again."""
-    about = problems.problem(problems.REBUILDING, f"artifact {sha} was missing or damaged and is made again")
+    about = problems.problem(REBUILDING, f"artifact {sha} was missing or damaged and is made again")
     place = f"/api/v1/jobs/{job}"
     return problems.answer({**about, "job": place}, {"Retry-After": str(RETRY_AFTER), "Location": place})
 

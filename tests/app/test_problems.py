@@ -5,7 +5,8 @@ import re
 import pytest
 from serving import API, problem
 
-from app.api.problems import HTTP, INTERNAL, TABLE, describe, kind_of
+from app.api.problem_kinds import HTTP, INTERNAL, TABLE, kind_of
+from app.api.problems import describe
 from app.api.reading import StrictRoute
 from app.storage.errors import StorageError
 

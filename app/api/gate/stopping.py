@@ -11,6 +11,7 @@ import asyncio
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api import problems
+from app.api.problem_kinds import STOPPING
 
 RETRY_AFTER = 5  # until the service is back, if it is started again [s]
 
@@ -35,5 +36,5 @@ class StoppingAnswer:
         except asyncio.CancelledError:
             if scope["type"] != "http" or has_begun:
                 raise
-            about = problems.problem(problems.STOPPING, "the service stopped before the answer was ready")
+            about = problems.problem(STOPPING, "the service stopped before the answer was ready")
             await problems.answer(about, {"Retry-After": str(RETRY_AFTER)})(scope, receive, send)

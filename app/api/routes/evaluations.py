@@ -11,6 +11,7 @@ from app.api import problems
 from app.api.dependencies import TheAnswering, TheJobs, TheStore
 from app.api.gate.clients import TheClient
 from app.api.gate.pacing import PiecesResponse
+from app.api.problem_kinds import INTERNAL
 from app.api.stored import UNAVAILABLE, rebuilding
 from app.api.waiting import LATER, accepted, finished
 from app.calculations.jobs import ANSWERS, CalculationJobs
@@ -60,7 +61,7 @@ async def show_evaluation(
     if not row.finished:
         return accepted(job)
     if row.result is None:
-        return problems.answer(row.problem or problems.problem(problems.INTERNAL, "the job left no answer"))
+        return problems.answer(row.problem or problems.problem(INTERNAL, "the job left no answer"))
     try:
         stored = await run_in_threadpool(stored_answer, store, row)
     except (ArtifactMissing, ArtifactDamaged) as lost:

@@ -9,6 +9,7 @@ from prometheus_client import CONTENT_TYPE_LATEST
 from app.api import problems
 from app.api.dependencies import TheDatabase, TheJobs, TheReadiness
 from app.api.gate.roles import needs, public
+from app.api.problem_kinds import NOT_READY
 from app.api.waiting import written
 from app.observation import metrics
 from app.schemas.health import Health, Ready
@@ -31,7 +32,7 @@ async def show_readiness(readiness: TheReadiness) -> Response:
     if not listed:
         return written(Ready(status="ready", checks=dict.fromkeys(said, "ok")))
     detail = "; ".join(f"{fault['name']}: {fault['detail']}" for fault in listed)
-    about: dict[str, object] = {**problems.problem(problems.NOT_READY, detail[:2000]), "errors": listed}
+    about: dict[str, object] = {**problems.problem(NOT_READY, detail[:2000]), "errors": listed}
     return problems.answer(about, {"Retry-After": "2"})
 
 

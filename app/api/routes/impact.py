@@ -9,6 +9,7 @@ from app.api import problems
 from app.api.dependencies import TheImpacts, TheJobs, TheStore, Units
 from app.api.gate.clients import TheClient
 from app.api.gate.pacing import PiecesResponse
+from app.api.problem_kinds import INTERNAL
 from app.api.reading import StrictRoute
 from app.api.routes.designs import Prefer
 from app.api.routes.evaluations import stored_answer
@@ -49,5 +50,5 @@ async def show_impact(
         return accepted(job)
     row = await run_in_threadpool(jobs.get, job)
     if row.result is None:
-        return problems.answer(row.problem or problems.problem(problems.INTERNAL, "the job left no answer"))
+        return problems.answer(row.problem or problems.problem(INTERNAL, "the job left no answer"))
     return PiecesResponse(await run_in_threadpool(stored_answer, store, row), request.app.state.pace)
