@@ -45,6 +45,7 @@ from app.api.routes.models import router as models
 from app.api.routes.networks import router as networks
 from app.api.routes.principals import router as principals
 from app.api.routes.reports import router as reports
+from app.api.routes.revisions import router as revisions
 from app.api.routes.solving import router as solving
 from app.api.routes.spreadsheet_lines import router as spreadsheet_lines
 from app.api.routes.studies import router as studies
@@ -90,6 +91,7 @@ ROUTERS = (
     written_worksheets,
     library,
     designs,
+    revisions,
     decisions,
     solving,
     tolerances,

@@ -1,11 +1,9 @@
-"""The two clients: they send the requests of `operations`, one at once, one by `await`."""
+"""The two clients: all that can be asked of a service, by calls that return or by calls that are awaited.
+
+Their methods are the `operations`; how a request is sent is in `app.client.connections`.
+"""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
-from typing import Self, TypedDict, TypeVar
-
-import httpx
 
 from app.client import (
     approval_operations,
@@ -15,62 +13,12 @@ from app.client import (
     worksheet_operations,
 )
 from app.client import studies as exchanges
-from app.client.exchange import Exchange, Query, Request
+from app.client.connections import AwaitedConnection, BlockingConnection
 from app.client.methods import AsyncMethod, Method
-from app.client.names import CLIENT_HEADER, authorization, checked_name
 from app.client.studies import AsyncClientStudy, ClientStudy
 
-_RETRIES = 3  # of the transport, for a connection that is refused
 
-Result = TypeVar("Result")
-
-
-class _Options(TypedDict):
-    """What every connection of httpx is made with."""
-
-    base_url: str
-    timeout: float
-    headers: dict[str, str]
-    trust_env: bool
-
-
-class _Message(TypedDict):
-    """A request as httpx takes it."""
-
-    method: str
-    url: str
-    content: bytes | None
-    params: Query | None
-    headers: Mapping[str, str]
-
-
-class _Connection:
-    """Where a client connects to, and under which name."""
-
-    def __init__(
-        self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None
-    ) -> None:
-        self.url, self.name = url, checked_name(name)
-        self._options: _Options = {
-            "base_url": url,
-            "timeout": timeout,
-            "headers": {CLIENT_HEADER: self.name, **authorization(key)},
-            "trust_env": False,
-        }
-
-
-def message(request: Request) -> _Message:
-    """A request as httpx takes it."""
-    return {
-        "method": request.method,
-        "url": request.path,
-        "content": request.content,
-        "params": request.params or None,  # an empty mapping would remove a query from the path
-        "headers": request.headers,
-    }
-
-
-class Client(_Connection):
+class Client(BlockingConnection):
     """A connection to a service, which answers every call before it returns.
 
     Parameters
@@ -90,52 +38,6 @@ class Client(_Connection):
     ValueError
         If the name is no such text, or the key has not the form of one.
     """
-
-    def __init__(
-        self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None
-    ) -> None:
-        super().__init__(url, timeout=timeout, name=name, key=key)
-        transport = httpx.HTTPTransport(retries=_RETRIES)
-        self._http = httpx.Client(transport=transport, **self._options)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *exception: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Close the connection."""
-        self._http.close()
-
-    def healthy(self) -> bool:
-        """Whether the service answers."""
-        try:
-            return (self._http.get("/healthz")).is_success
-        except httpx.TransportError:
-            return False
-
-    def run(self, exchange: Exchange[Result]) -> Result:
-        """Send the requests of an exchange, and return what it makes of their responses."""
-        try:
-            request = next(exchange)
-            while True:
-                request = exchange.send(self._send(request))
-        except StopIteration as end:
-            result: Result = end.value
-            return result
-
-    def _send(self, request: Request) -> httpx.Response:
-        parts = message(request)
-        if request.listen is None:
-            return self._http.request(**parts)
-        with self._http.stream(**parts, timeout=None) as response:
-            if response.is_error:
-                response.read()
-            else:
-                for line in response.iter_lines():
-                    request.listen(line)
-            return response
 
     def study(self, design: str, *, key: str | None = None, **body: object) -> ClientStudy:
         """Begin a study of a design: `method`, `vary`, `outputs` and so on, as `POST /studies` takes them."""
@@ -223,54 +125,8 @@ class Client(_Connection):
     revoke_key = Method(identity_operations.revoke_key)
 
 
-class AsyncClient(_Connection):
+class AsyncClient(AwaitedConnection):
     """A connection to a service, whose calls are awaited. It is made as `Client` is."""
-
-    def __init__(
-        self, url: str, *, timeout: float = 60.0, name: str | None = None, key: str | None = None
-    ) -> None:
-        super().__init__(url, timeout=timeout, name=name, key=key)
-        transport = httpx.AsyncHTTPTransport(retries=_RETRIES)
-        self._http = httpx.AsyncClient(transport=transport, **self._options)
-
-    async def __aenter__(self) -> Self:
-        return self
-
-    async def __aexit__(self, *exception: object) -> None:
-        await self.close()
-
-    async def close(self) -> None:
-        """Close the connection."""
-        await self._http.aclose()
-
-    async def healthy(self) -> bool:
-        """Whether the service answers."""
-        try:
-            return (await self._http.get("/healthz")).is_success
-        except httpx.TransportError:
-            return False
-
-    async def run(self, exchange: Exchange[Result]) -> Result:
-        """Send the requests of an exchange, and return what it makes of their responses."""
-        try:
-            request = next(exchange)
-            while True:
-                request = exchange.send(await self._send(request))
-        except StopIteration as end:
-            result: Result = end.value
-            return result
-
-    async def _send(self, request: Request) -> httpx.Response:
-        parts = message(request)
-        if request.listen is None:
-            return await self._http.request(**parts)
-        async with self._http.stream(**parts, timeout=None) as response:
-            if response.is_error:
-                await response.aread()
-            else:
-                async for line in response.aiter_lines():
-                    request.listen(line)
-            return response
 
     async def study(self, design: str, *, key: str | None = None, **body: object) -> AsyncClientStudy:
         """Begin a study of a design: `method`, `vary`, `outputs` and so on, as `POST /studies` takes them."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Generic, ParamSpec, Self, TypeVar, overload
 from app.client.exchange import Exchange
 
 if TYPE_CHECKING:
-    from app.client.clients import AsyncClient, Client
+    from app.client.connections import AwaitedConnection, BlockingConnection
 
 Asked = ParamSpec("Asked")
 Result = TypeVar("Result")
@@ -24,8 +24,8 @@ class Method(Generic[Asked, Result]):
     @overload
     def __get__(self, client: None, owner: type) -> Self: ...
     @overload
-    def __get__(self, client: Client, owner: type) -> Callable[Asked, Result]: ...
-    def __get__(self, client: Client | None, owner: type) -> Self | Callable[Asked, Result]:
+    def __get__(self, client: BlockingConnection, owner: type) -> Callable[Asked, Result]: ...
+    def __get__(self, client: BlockingConnection | None, owner: type) -> Self | Callable[Asked, Result]:
         if client is None:
             return self
 
@@ -45,8 +45,10 @@ class AsyncMethod(Generic[Asked, Result]):
     @overload
     def __get__(self, client: None, owner: type) -> Self: ...
     @overload
-    def __get__(self, client: AsyncClient, owner: type) -> Callable[Asked, Awaitable[Result]]: ...
-    def __get__(self, client: AsyncClient | None, owner: type) -> Self | Callable[Asked, Awaitable[Result]]:
+    def __get__(self, client: AwaitedConnection, owner: type) -> Callable[Asked, Awaitable[Result]]: ...
+    def __get__(
+        self, client: AwaitedConnection | None, owner: type
+    ) -> Self | Callable[Asked, Awaitable[Result]]:
         if client is None:
             return self
 

@@ -87,7 +87,7 @@ def referenced_files(session: Session) -> set[str]:
     files.update(session.scalars(select(StudyChunkRow.sha256)))
     for given in (StudyRow.table_sha256, WorksheetVersionRow.import_sha256):
         files.update(sha for sha in session.scalars(select(given)) if sha)
-    for column in (AnalysisRow.result, JobRow.payload, JobRow.result):
+    for column in (AnalysisRow.found, JobRow.payload, JobRow.result):
         text = cast(column, Text)
         for part in session.execute(select(text).where(text.like("%" + 64 * "_" + "%"))).scalars():
             files.update(_SHA256.findall(part))

@@ -22,14 +22,14 @@ Outputs = dict[str, JsonObject]
 def outputs_of(session: Session, key: str) -> Outputs:
     """What is known to a question about a build, by output."""
     rows = session.scalars(select(AnalysisRow).where(AnalysisRow.key == key))
-    return {row.output: row.result for row in rows}
+    return {row.output: row.found for row in rows}
 
 
 def outputs_of_builds(session: Session, builds: Collection[str]) -> dict[str, Outputs]:
     """What is known to any question about some builds, by key of the question and output."""
     outputs: dict[str, Outputs] = {}
     for row in session.scalars(select(AnalysisRow).where(AnalysisRow.build_key.in_(builds))):
-        outputs.setdefault(row.key, {})[row.output] = row.result
+        outputs.setdefault(row.key, {})[row.output] = row.found
     return outputs
 
 
@@ -41,7 +41,7 @@ def stresses(session: Session, build: str, question: Question) -> Outputs:
     alike = question.whatever_level()
     earlier = [(Question(**row.asked), row) for row in rows]
     return {
-        row.output: row.result
+        row.output: row.found
         for other, row in earlier
         if other.whatever_level() == alike
         and other.key(build) == row.key  # computed by this program's recipe
@@ -64,7 +64,7 @@ def asked(session: Session, key: str) -> tuple[str, Question, Outputs]:
 
 def key_of_surface(session: Session, sha256: str) -> str | None:
     """The analysis whose surface has this hash; rare, so no index serves it."""
-    named = type_coerce(AnalysisRow.result, Text).contains(f'"sha256":"{sha256}"', autoescape=True)
+    named = type_coerce(AnalysisRow.found, Text).contains(f'"sha256":"{sha256}"', autoescape=True)
     return session.scalar(select(AnalysisRow.key).where(AnalysisRow.output == SURFACE, named).limit(1))
 
 
@@ -80,7 +80,7 @@ def of_build(session: Session, build: str) -> list[tuple[Question, Outputs]]:
 def _together(rows: list[AnalysisRow]) -> tuple[Question, Outputs]:
     """A question from the rows of its answers."""
     question = Question(**rows[0].asked)
-    outputs = {row.output: row.result for row in rows}
+    outputs = {row.output: row.found for row in rows}
     return question, {name: outputs[name] for name in in_order(question.kind, outputs)}
 
 
@@ -89,7 +89,7 @@ def add(session: Session, build: str, question: Question, outputs: Mapping[str, 
     key = question.key(build)
     for name, output in outputs.items():
         row = AnalysisRow(
-            key=key, output=name, build_key=build, asked=question.kept(), result=output, created=now()
+            key=key, output=name, build_key=build, asked=question.kept(), found=output, created=now()
         )
         if "size" in output and session.get(AnalysisRow, (key, name)) is None:
             usage.note_bytes(session, int(output["size"]))

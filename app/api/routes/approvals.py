@@ -7,9 +7,9 @@ from typing import Annotated
 from fastapi import APIRouter, Header, Path, Response
 
 from app.api.dependencies import TheApproving, TheComments, TheOnce
+from app.api.designs import Id, Number
 from app.api.paging import Cursor, Limit, page
 from app.api.reading import PreconditionRequired, StrictRoute
-from app.api.routes.designs import Id, Number
 from app.api.waiting import written
 from app.approvals.comments import shown
 from app.approvals.schemas import ApprovalIn, CommentIn

@@ -15,9 +15,9 @@ from starlette.concurrency import run_in_threadpool
 from app.api import problems
 from app.api.attachments import MemoryFile, disposition, http_time, is_at_hand, tag, unchanged
 from app.api.dependencies import TheDatabase, TheHealing, TheJobs, TheModels, TheStore
+from app.api.designs import Id, Number, Prefer
 from app.api.gate.clients import TheClient
 from app.api.reading import StrictRoute
-from app.api.routes.designs import Id, Number, Prefer
 from app.api.routes.models import send_file
 from app.api.stored import UNAVAILABLE, UNCHANGED, lost
 from app.api.waiting import LATER, accepted, accepted_kinds, finished

@@ -1,16 +1,12 @@
-"""`/designs`: create, change, preview, map, explain, copy, restore, list revisions."""
+"""`/designs`: create, list, change, delete, preview, map, copy, measure, explain."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from functools import partial
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Body, Header, Path, Query, Request, Response
+from fastapi import APIRouter, Body, Path, Query, Request, Response
 from pydantic import WithJsonSchema
 from pydantic.config import JsonDict
-from starlette.concurrency import run_in_threadpool
 
 from app.api.dependencies import (
     ExpensiveSteps,
@@ -23,20 +19,19 @@ from app.api.dependencies import (
     TheThreads,
     Units,
 )
+from app.api.designs import CHANGED, Id, IfMatch, Prefer, Within, answer_saved, seconds_waited, shown
 from app.api.gate.clients import TheClient
 from app.api.gate.roles import needs
 from app.api.paging import Cursor, Limit, page
 from app.api.reading import StrictRoute
-from app.api.waiting import LONGEST, accepted, finished, later, patience, written
+from app.api.waiting import accepted, later, written
 from app.designs import repository, views
 from app.designs.explained import explained as explanation
 from app.designs.filtering import TEMPLATE, DesignFilter
 from app.designs.labels import key_of, tags_of
 from app.designs.previewing import Change
 from app.designs.releases import released_of
-from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn, RestoreIn
-from app.designs.service import Designs, Saved
-from app.jobs.service import Jobs
+from app.designs.schemas import LONGEST_NOTE, PATCH, CopyIn, DesignIn
 from app.plain import JsonObject
 from app.schemas.designs import (
     Design,
@@ -46,10 +41,7 @@ from app.schemas.designs import (
     MappedDesign,
     ModelMeasurements,
     Preview,
-    Proposal,
     Proposals,
-    Revision,
-    RevisionList,
     State,
 )
 from app.schemas.labels import MOST_TAGS, Tag
@@ -63,15 +55,7 @@ router = APIRouter(
     prefix="/api/v1/designs", tags=["designs"], route_class=StrictRoute, dependencies=[ExpensiveSteps]
 )
 
-Id = Annotated[str, Path(max_length=64)]
 Explained = Annotated[str, Path(max_length=140, description="`model.width`; `film.film`, a criterion")]
-Number = Annotated[int, Path(ge=1, le=10**9)]
-Prefer = Annotated[str | None, Header(description="`wait=5` or `respond-async`")]
-IfMatch = Annotated[str | None, Header(description='the ETag of the design that was read, such as `"3"`')]
-Within = Annotated[
-    float | None,
-    Query(ge=0, le=LONGEST, description="leave pending what takes longer [s], instead of queueing a job"),
-]
 NamePart = Annotated[
     str | None,
     Query(max_length=200, pattern=PRINTABLE, description="part of the name, in upper or lower case"),
@@ -100,7 +84,6 @@ Patch = Annotated[
     ),
     WithJsonSchema(PATCH),
 ]
-CHANGED = {**later(Design), **refusals(404, 429)}
 MERGE_PATCH: JsonDict = {"requestBody": {"content": {"application/merge-patch+json": {"schema": PATCH}}}}
 
 
@@ -151,7 +134,7 @@ def list_designs(
 @router.get("/{id}", response_model=Design, responses=refusals(404))
 def show_design(id: Id, designs: TheDesigns) -> Response:
     """A design as of its newest revision; the ETag is that revision."""
-    return _shown(designs, id, None, 200)
+    return shown(designs, id, None, 200)
 
 
 @router.patch("/{id}", response_model=Design, responses=CHANGED, openapi_extra=MERGE_PATCH)
@@ -254,49 +237,6 @@ async def copy_design(
     return await answer_saved(designs, jobs, saved, prefer)
 
 
-@router.post("/{id}/revisions/{number}/restore", response_model=Design, responses=CHANGED)
-async def restore_revision(
-    id: Id,
-    number: Number,
-    designs: TheDesigns,
-    threads: TheThreads,
-    jobs: TheJobs,
-    once: TheOnce,
-    request: Request,
-    body: RestoreIn | None = None,
-    if_match: IfMatch = None,
-    prefer: Prefer = None,
-) -> Response:
-    """A new revision equal to an old one."""
-    note = body.note if body else None
-    saved = await threads.run_within(
-        seconds_waited(prefer), request, designs.restore, id, number, note, if_match, once
-    )
-    return await answer_saved(designs, jobs, saved, prefer)
-
-
-@router.get("/{id}/revisions", responses=refusals(404))
-def list_revisions(
-    id: Id,
-    database: TheDatabase,
-    limit: Limit = 50,
-    cursor: Annotated[int | None, Query(ge=1, le=10**9)] = None,
-) -> RevisionList:
-    """The revisions of a design, newest first."""
-    with database.read() as session:
-        repository.design(session, id)
-        rows = repository.revisions(session, id, limit, cursor)
-        show = partial(views.revision, session)
-        return page(RevisionList, rows, limit, show, lambda row: str(row.number))
-
-
-@router.get("/{id}/revisions/{number}", responses=refusals(404))
-def show_revision(id: Id, number: Number, database: TheDatabase) -> Revision:
-    """A revision: its inputs never change, its results are attached once."""
-    with database.read() as session:
-        return views.revision(session, repository.revision(session, id, number))
-
-
 @router.get("/{id}/measurements", responses=refusals(404))
 def show_measurements(id: Id, database: TheDatabase, units: Units = "si") -> dict[str, ModelMeasurements]:
     """What the newest good models measure, their dimensions read back from the STEP files."""
@@ -336,36 +276,3 @@ def _noted(body: JsonObject) -> tuple[JsonObject, str | None]:
     if note is not None and not (isinstance(note, str) and len(note) <= LONGEST_NOTE):
         raise InvalidInputs([Fault("note", "string", f"a note is a text of at most {LONGEST_NOTE} letters")])
     return patch, note
-
-
-def seconds_waited(prefer: str | None) -> float:
-    """How long a request waits for expensive steps [s]; at most until the deadline."""
-    return patience(prefer, math.inf)
-
-
-async def answer_saved(
-    designs: Designs,
-    jobs: Jobs,
-    saved: Saved,
-    prefer: str | None,
-    proposals: Sequence[Proposal] | None = None,
-) -> Response:
-    """The design itself, whether its job ended in time (200, 201) or goes on (202, the job in Location)."""
-    done = not saved.is_deferred and await finished(jobs, saved.job, prefer)
-    status = (201 if saved.created else 200) if done else 202
-    place = f"/api/v1/jobs/{saved.job}" if saved.job and not done else f"/api/v1/designs/{saved.design}"
-    answer = await run_in_threadpool(_shown, designs, saved.design, saved.revision, status, proposals)
-    answer.headers["Location"] = place
-    return answer
-
-
-def _shown(
-    designs: Designs, id: str, number: int | None, status: int, proposals: Sequence[Proposal] | None = None
-) -> Response:
-    with designs.database.read() as session:
-        row = repository.design(session, id)
-        revision = repository.revision(session, id, number or row.head)
-        design = views.design(row, revision)
-    if proposals is not None:
-        design = MappedDesign(**dict(design), proposals=list(proposals))
-    return written(design, status, {"ETag": f'"{revision.number}"'})

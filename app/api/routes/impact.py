@@ -7,11 +7,11 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api import problems
 from app.api.dependencies import TheImpacts, TheJobs, TheStore, Units
+from app.api.designs import Prefer
 from app.api.gate.clients import TheClient
 from app.api.gate.pacing import PiecesResponse
 from app.api.problem_kinds import INTERNAL
 from app.api.reading import StrictRoute
-from app.api.routes.designs import Prefer
 from app.api.routes.evaluations import stored_answer
 from app.api.routes.templates import Id, Number
 from app.api.waiting import LATER, accepted, finished

@@ -13,10 +13,10 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.attachments import named
 from app.api.dependencies import ExpensiveSteps, TheJobs, ThePress, TheReports, TheThreads, Units
+from app.api.designs import Id, Number, Prefer, Within
 from app.api.gate.clients import TheClient
 from app.api.gate.guard import PAGE_POLICY
 from app.api.reading import StrictRoute
-from app.api.routes.designs import Id, Number, Prefer, Within
 from app.api.waiting import accepted_kinds, finished, patience, written
 from app.jobs.service import Jobs
 from app.presentation.spreadsheets import XLSX

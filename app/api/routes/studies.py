@@ -25,12 +25,12 @@ from app.api.dependencies import (
     Units,
     services_of,
 )
+from app.api.designs import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited
 from app.api.gate.clients import TheClient
 from app.api.paging import Cursor, Limit, page
 from app.api.paths import register_id
 from app.api.reading import PreconditionRequired, StrictRoute
 from app.api.resuming import LastEvent, Whole, as_it_stands, listening
-from app.api.routes.designs import CHANGED, IfMatch, Prefer, answer_saved, seconds_waited
 from app.api.waiting import written
 from app.calculations.pool import Calculation, CalculationPool
 from app.plain import Json

@@ -5,10 +5,10 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 
 from app.api.dependencies import ExpensiveSteps, TheThreads, TheTolerances, Units
+from app.api.designs import Id, Prefer
 from app.api.gate.clients import TheClient
 from app.api.gate.roles import needs
 from app.api.reading import StrictRoute
-from app.api.routes.designs import Id, Prefer
 from app.api.routes.solving import answer_asked
 from app.api.waiting import LATER
 from app.designs.asking import Asked

@@ -9,8 +9,8 @@ from fastapi import APIRouter, Request, Response
 
 from app.api.attachments import disposition
 from app.api.dependencies import ExpensiveSteps, TheDesigns, TheJobs, TheOnce, TheThreads
+from app.api.designs import Id, IfMatch, Prefer
 from app.api.reading import StrictRoute
-from app.api.routes.designs import Id, IfMatch, Prefer
 from app.api.routes.variants import answer_table
 from app.api.sheets import ANSWERS, MEDIA, SheetRoute, sheet_kind
 from app.api.waiting import later, patience

@@ -31,10 +31,10 @@ from app.api.dependencies import (
     TheVariantDetails,
     Units,
 )
+from app.api.designs import Id, IfMatch, Number, Prefer
 from app.api.gate.clients import TheClient
 from app.api.reading import StrictRoute
 from app.api.routes.design_files import FILES, Accept, IfNoneMatch, Wanted, model_file
-from app.api.routes.designs import Id, IfMatch, Number, Prefer
 from app.api.sheets import ANSWERS, BODIES
 from app.api.stored import UNAVAILABLE, lost
 from app.api.waiting import LATER, accepted, finished, later, patience, written

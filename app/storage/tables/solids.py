@@ -45,5 +45,5 @@ class AnalysisRow(Base):
     output: Mapped[str] = mapped_column(primary_key=True)  # stiffness, …
     build_key: Mapped[str] = mapped_column(ForeignKey("build.key"), index=True)
     asked: Mapped[JsonObject]
-    result: Mapped[JsonObject] = mapped_column("found")
+    found: Mapped[JsonObject]
     created: Mapped[str]
