@@ -130,8 +130,8 @@ class TestPlaces:
     def test_each_mutant_differs_from_its_file_by_one_place(self, places):
         file = "templates/physics/journals/whirl.py"
         before = (places.ROOT / file).read_text(encoding="utf-8")
-        found = places.places(file, 1)
-        mutants = [one for place in random.Random(1).sample(found, 10) if (one := places.mutant(place))]
+        listed = places.places(file, 1)
+        mutants = [one for place in random.Random(1).sample(listed, 10) if (one := places.mutant(place))]
         assert len(mutants) > 5
         for mutant in mutants:
             assert ast.dump(ast.parse(mutant.source)) != ast.dump(ast.parse(before))

@@ -53,9 +53,9 @@ GROWING = {
 
 
 def modules(package):
-    for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-        if not found.name.endswith(("__main__", "migrations.env")):
-            yield importlib.import_module(found.name)
+    for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+        if not module.name.endswith(("__main__", "migrations.env")):
+            yield importlib.import_module(module.name)
 
 
 @pytest.mark.parametrize("package", [templates, cad, app], ids=["templates", "cad", "app"])

@@ -95,17 +95,17 @@ def everybody(team):
     identity, admin, checker = team.identity, team.principals["admin"], team.principals["checker"]
     moment = datetime.now(UTC)
     gone, bare = identity.add(f"gone {moment}", ["admin"]).id, identity.add(f"bare {moment}", []).id
-    made = {
+    principals = {
         "revoked": (admin, identity.add_key(admin)[0]),
         "expired": (admin, identity.add_key(admin, expires=moment - timedelta(seconds=1))[0]),
         "disabled": (gone, identity.add_key(gone)[0]),
         "bare": (bare, identity.add_key(bare)[0]),
         "scoped": (checker, identity.add_key(checker, scopes=["viewer"])[0]),
     }
-    identity.revoke(made["revoked"][1].prefix)
+    identity.revoke(principals["revoked"][1].prefix)
     identity.change(gone, Changes(disabled=True))
     usual = {name: (team.principals[name], team.keys[name]) for name in (*INCLUDED, "author2")}
-    return {"nobody": (None, None), **{who: (id, key.text) for who, (id, key) in made.items()}, **usual}
+    return {"nobody": (None, None), **{who: (id, key.text) for who, (id, key) in principals.items()}, **usual}
 
 
 def objects(scene):

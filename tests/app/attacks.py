@@ -58,13 +58,13 @@ def maker(scene, who):
 
 
 def design(scene, who):
-    made = created(maker(scene, who), document(**EXACT, variants={}, models={}))
-    return {"id": made["id"]}, match(f'"{made["revision"]}"')
+    owned = created(maker(scene, who), document(**EXACT, variants={}, models={}))
+    return {"id": owned["id"]}, match(f'"{owned["revision"]}"')
 
 
 def to_choose(scene, who):
-    made = created(maker(scene, who), document(variants={}, models={}))
-    return {"id": done(scene.author, made, **GRID)["id"]}, match(f'"{made["revision"]}"')
+    design = created(maker(scene, who), document(variants={}, models={}))
+    return {"id": done(scene.author, design, **GRID)["id"]}, match(f'"{design["revision"]}"')
 
 
 def to_sign(scene, who):
@@ -137,8 +137,8 @@ def oneself(scene, who):
 
 
 def own_key(scene, who):
-    made, _ = scene.team.identity.add_key(scene.principals[who])
-    return {"id": scene.principals[who], "prefix": made.prefix}, {}
+    key, _ = scene.team.identity.add_key(scene.principals[who])
+    return {"id": scene.principals[who], "prefix": key.prefix}, {}
 
 
 def new_principal(scene, who):

@@ -264,10 +264,10 @@ def descendants(pid: int) -> set[int]:
     for entry in Path("/proc").iterdir():
         if entry.name.isdecimal():
             parents[int(entry.name)] = parent_of(entry)
-    found: set[int] = set()
-    while more := {child for child, parent in parents.items() if parent in found | {pid}} - found:
-        found |= more
-    return found
+    pids: set[int] = set()
+    while more := {child for child, parent in parents.items() if parent in pids | {pid}} - pids:
+        pids |= more
+    return pids
 
 
 def alive(pid: int) -> bool:

@@ -52,22 +52,22 @@ def painted(http):
 class TestAnswer:
     def test_analytic_stiffness_is_coulombs(self, torsion):
         """K = G π d⁴ / (32 l), exact for a round bar."""
-        found = torsion["outputs"]["stiffness"]
-        assert found["unit"] == "N*m/rad"
-        assert found["value"] == pytest.approx(SHEAR * pi / 32 * 0.020**4 / 0.040, rel=found["error"])
-        assert 0 < found["error"] <= TYPICAL
+        output = torsion["outputs"]["stiffness"]
+        assert output["unit"] == "N*m/rad"
+        assert output["value"] == pytest.approx(SHEAR * pi / 32 * 0.020**4 / 0.040, rel=output["error"])
+        assert 0 < output["error"] <= TYPICAL
 
     def test_analytic_frequency_is_that_of_a_wave(self, torsion):
         """f = sqrt(G / ρ) / (4 l), held at one end."""
-        found = torsion["outputs"]["torsional_frequency"]
-        assert found["unit"] == "Hz"
-        assert found["value"] == pytest.approx(sqrt(SHEAR / DENSITY) / 0.160, rel=found["error"])
-        assert 0 < found["error"] <= TYPICAL
+        output = torsion["outputs"]["torsional_frequency"]
+        assert output["unit"] == "Hz"
+        assert output["value"] == pytest.approx(sqrt(SHEAR / DENSITY) / 0.160, rel=output["error"])
+        assert 0 < output["error"] <= TYPICAL
 
     def test_analytic_bending_is_the_beams(self, http):
         """M / θ = E I / l; a clamp that forbids the section to contract stiffens a short bar a little."""
-        found = asked(http, kind="bending")["outputs"]["stiffness"]
-        assert found["value"] == pytest.approx(YOUNG * pi / 64 * 0.020**4 / 0.040, rel=0.05)
+        output = asked(http, kind="bending")["outputs"]["stiffness"]
+        assert output["value"] == pytest.approx(YOUNG * pi / 64 * 0.020**4 / 0.040, rel=0.05)
 
     def test_it_says_of_what_and_how(self, torsion):
         assert torsion["model"] == {"id": "bar", "version": 1}
@@ -103,14 +103,14 @@ class TestAnswer:
 
     def test_stress(self, http):
         """Under 1 N·m: τ = 16 / (π d³), von Mises √3 τ; it converges where nothing is sharp."""
-        found = asked(http, bar(20, 12), outputs=["maximum_stress"])["outputs"]["maximum_stress"]
-        assert found["unit"] == "MPa"
-        assert found["value"] == pytest.approx(sqrt(3) * 16 / (pi * 0.020**3) / 1e6, rel=0.03)
-        assert len(found["convergence"]) >= 2
-        assert found["error"] <= 0.01
+        output = asked(http, bar(20, 12), outputs=["maximum_stress"])["outputs"]["maximum_stress"]
+        assert output["unit"] == "MPa"
+        assert output["value"] == pytest.approx(sqrt(3) * 16 / (pi * 0.020**3) / 1e6, rel=0.03)
+        assert len(output["convergence"]) >= 2
+        assert output["error"] <= 0.01
         loaded = asked(http, bar(20, 12), outputs=["maximum_stress", "stiffness"], load="0.5 kN*m")
         assert loaded["load"] == {"value": 500, "unit": "N*m"}
-        assert loaded["outputs"]["maximum_stress"]["value"] == pytest.approx(500 * found["value"], rel=1e-12)
+        assert loaded["outputs"]["maximum_stress"]["value"] == pytest.approx(500 * output["value"], rel=1e-12)
         again = http.get(f"{API}/analyses/{loaded['id']}", params={"load": "0.5 kN*m"}).json()
         assert again["outputs"]["maximum_stress"] == loaded["outputs"]["maximum_stress"]
         unloaded = asked(http, bar(20, 12), outputs=["stiffness"])
@@ -184,9 +184,9 @@ class TestSurface:
 
     def test_bending_has_no_twist(self, http):
         surface = asked(http, kind="bending", outputs=["surface"])["outputs"]["surface"]
-        found = http.get(surface["url"]).json()
-        assert "twist" not in found
-        assert found["load"] == "a moment of 1 N*m about y"
+        surface_of_bending = http.get(surface["url"]).json()
+        assert "twist" not in surface_of_bending
+        assert surface_of_bending["load"] == "a moment of 1 N*m about y"
 
     def test_not_asked_for(self, http, torsion):
         answer = http.get(f"{API}/analyses/{torsion['id']}/surface")
@@ -341,7 +341,7 @@ def test_the_server_knows_what_the_elements_tell() -> None:
 
 def test_an_error_beyond_the_tolerance_is_a_warning() -> None:
     asked_for = question("torsion", Options(tolerance=0.001))
-    found = {"stiffness": {"error": 0.002}, "torsional_frequency": {"error": 0.0005}}
-    listed = warnings(asked_for, found)
+    outputs = {"stiffness": {"error": 0.002}, "torsional_frequency": {"error": 0.0005}}
+    listed = warnings(asked_for, outputs)
     assert [(warning["code"], warning["name"]) for warning in listed] == [("tolerance_unmet", "stiffness")]
-    assert warnings(question("torsion", Options(level="fine")), found) == []
+    assert warnings(question("torsion", Options(level="fine")), outputs) == []

@@ -49,9 +49,9 @@ def used_stiffness(revised):
 
 @pytest.fixture(scope="module")
 def design(http):
-    made = created(http, train())
-    assert made["state"] == "current", made["problem"]
-    return made
+    train_design = created(http, train())
+    assert train_design["state"] == "current", train_design["problem"]
+    return train_design
 
 
 class TestRelation:
@@ -66,18 +66,18 @@ class TestRelation:
         assert torsion["outputs"].keys() == {"stiffness"}
         assert torsion["boundary"] == "free_end"
         assert torsion["level"] == "coarse"
-        found = torsion["outputs"]["stiffness"]
-        assert found["value"] == pytest.approx(used_stiffness(revision(http, design)), rel=1e-12)
-        assert 0 < found["error"] <= TYPICAL
-        assert "seconds" not in found
-        assert http.get(f"{API}/analyses/{torsion['id']}").json()["outputs"]["stiffness"] == found
+        output = torsion["outputs"]["stiffness"]
+        assert output["value"] == pytest.approx(used_stiffness(revision(http, design)), rel=1e-12)
+        assert 0 < output["error"] <= TYPICAL
+        assert "seconds" not in output
+        assert http.get(f"{API}/analyses/{torsion['id']}").json()["outputs"]["stiffness"] == output
 
     def test_measurements_tell_it(self, http, design):
         answer = http.get(f"{DESIGNS}/{design['id']}/measurements").json()["bar"]
         assert answer["analyses"] == revision(http, design)["models"]["bar"]["analyses"]
 
     def test_reports_and_worksheets_tell_it(self, http, design):
-        found = revision(http, design)["models"]["bar"]["analyses"]["torsion"]["outputs"]["stiffness"]
+        stiffness = revision(http, design)["models"]["bar"]["analyses"]["torsion"]["outputs"]["stiffness"]
         url = f"{DESIGNS}/{design['id']}"
         screen = http.get(f"{url}/report.html").text
         pages = pypdf.PdfReader(io.BytesIO(http.get(f"{url}/report.pdf").content)).pages
@@ -85,11 +85,11 @@ class TestRelation:
         for text in (screen, paper):
             assert "Found by finite elements on the STEP file" in text
             assert "Torsion: stiffness" in text
-            assert f"± {100 * found['error']:.2g} %" in text
-            assert f"{found['mesh']['elements']} elements of order {found['mesh']['order']}" in text
+            assert f"± {100 * stiffness['error']:.2g} %" in text
+            assert f"{stiffness['mesh']['elements']} elements of order {stiffness['mesh']['order']}" in text
         rows = csv.DictReader(io.StringIO(http.get(f"{url}/worksheet.csv").content.decode("utf-8-sig")))
         row = next(row for row in rows if row["name"] == "torsion.stiffness")
-        assert float(row["value"]) == pytest.approx(found["value"], rel=1e-12)
+        assert float(row["value"]) == pytest.approx(stiffness["value"], rel=1e-12)
         assert row["unit"] == "N*m/rad"
 
     def test_a_preview_has_it_old_and_new(self, http, design):
@@ -108,20 +108,20 @@ class TestRelation:
         wanted = {"torsion": {"tolerance": 1e-7}}
         document = train("15 mm")
         document["models"]["bar"]["analyses"] = wanted
-        made = created(http, document)
-        warnings = revision(http, made)["models"]["bar"]["analyses"]["torsion"]["warnings"]
+        design = created(http, document)
+        warnings = revision(http, design)["models"]["bar"]["analyses"]["torsion"]["warnings"]
         assert [(warning["code"], warning["name"]) for warning in warnings] == [
             ("tolerance_unmet", "stiffness")
         ]
-        report = http.get(f"{DESIGNS}/{made['id']}/report.html").text
+        report = http.get(f"{DESIGNS}/{design['id']}/report.html").text
         assert warnings[0]["detail"] in report
         assert "1 warning" in report
 
     def test_nothing_used_nothing_found(self, http):
-        made = created(http, {"name": "unused", "models": {"bar": bar("33 mm")}})
-        assert made["state"] == "current"
-        assert made["models"]["bar"]["analyses"]["torsion"]["level"] == "coarse"
-        assert revision(http, made)["models"]["bar"]["analyses"]["torsion"]["outputs"] == {}
+        design = created(http, {"name": "unused", "models": {"bar": bar("33 mm")}})
+        assert design["state"] == "current"
+        assert design["models"]["bar"]["analyses"]["torsion"]["level"] == "coarse"
+        assert revision(http, design)["models"]["bar"]["analyses"]["torsion"]["outputs"] == {}
 
     def test_a_change_elsewhere_needs_no_job(self, http, design):
         headers = {"If-Match": "*", "Prefer": "respond-async"}
@@ -134,20 +134,22 @@ class TestRelation:
         http.post(f"{DESIGNS}/{design['id']}/revisions/1/restore", headers={"If-Match": "*"})
 
     def test_another_solid_is_analysed_anew(self, http, design):
-        made = created(http, train("24 mm"))
-        answer = revision(http, made)
+        thicker = created(http, train("24 mm"))
+        answer = revision(http, thicker)
         assert used_stiffness(answer) == pytest.approx(coulomb(0.024), rel=COARSE)
 
     def test_an_analysis_can_be_changed_by_a_patch(self, http):
-        made = created(http, train())
+        design = created(http, train())
         boundary = {"models": {"bar": {"analyses": {"torsion": {"boundary": "guided_end"}}}}}
-        guided = patched(http, made, boundary)
+        guided = patched(http, design, boundary)
         assert guided["models"]["bar"]["analyses"]["torsion"]["level"] == "coarse"
         torsion = revision(http, guided)["models"]["bar"]["analyses"]["torsion"]
         assert torsion["boundary"] == "guided_end"
         assert torsion["outputs"]["stiffness"]["value"] > 0
         refused = http.patch(
-            f"{DESIGNS}/{made['id']}", json={"models": {"bar": {"analyses": None}}}, headers={"If-Match": "*"}
+            f"{DESIGNS}/{design['id']}",
+            json={"models": {"bar": {"analyses": None}}},
+            headers={"If-Match": "*"},
         )
         assert faults(refused) == {"train.stiffnesses": "unknown_name"}
 
@@ -171,9 +173,9 @@ class TestBeforeItIsKnown:
     def test_explained(self, http):
         document = train()
         document["models"]["second"] = bar("= 20 mm * (bar.torsion.stiffness / (40 kN*m/rad))**0.25")
-        made = created(http, document)
-        assert made["state"] == "current", made["problem"]
-        answer = http.get(f"{DESIGNS}/{made['id']}/explain/second.diameter").json()
+        design = created(http, document)
+        assert design["state"] == "current", design["problem"]
+        answer = http.get(f"{DESIGNS}/{design['id']}/explain/second.diameter").json()
         (because,) = answer["because"]
         assert because["name"] == "bar.torsion.stiffness"
         assert because["kind"] == "analysis"
@@ -199,24 +201,24 @@ class TestLoad:
             "models": {"bar": bar(length="12 mm", torsion={"torsion": {"load": "300 N*m"}})},
             "steps": {"life": {"template": "fatigue_life", "version": 1, "inputs": life}},
         }
-        made = created(http, document)
-        assert made["state"] == "current", made["problem"]
-        answer = revision(http, made)
+        design = created(http, document)
+        assert design["state"] == "current", design["problem"]
+        answer = revision(http, design)
         analysis = answer["models"]["bar"]["analyses"]["torsion"]
-        found = analysis["outputs"]["maximum_stress"]
+        output = analysis["outputs"]["maximum_stress"]
         assert analysis["load"] == {"value": 300.0, "unit": "N*m"}
-        assert found["value"] == pytest.approx(3**0.5 * 16 * torque / pi / diameter**3 / 1e6, rel=0.03)
-        assert found["convergence"][-1]["value"] == found["value"]
+        assert output["value"] == pytest.approx(3**0.5 * 16 * torque / pi / diameter**3 / 1e6, rel=0.03)
+        assert output["convergence"][-1]["value"] == output["value"]
         cycles = answer["steps"]["life"]["outputs"]["cycles"]["value"]
-        assert cycles == pytest.approx((found["value"] * 1e6 / strength) ** (1 / exponent) / 2, rel=1e-6)
+        assert cycles == pytest.approx((output["value"] * 1e6 / strength) ** (1 / exponent) / 2, rel=1e-6)
 
     def test_property_another_load_is_no_other_analysis(self, http):
         document = {"name": "loads", "parameters": {"peak": "= bar.torsion.maximum_stress"}}
-        made = []
+        revisions = []
         for load in ("1 N*m", "0.2 kN*m"):
             short = bar(length="12 mm", torsion={"torsion": {"load": load}})
-            made.append(revision(http, created(http, {**document, "models": {"bar": short}})))
-        one, other = (one_of_both["models"]["bar"]["analyses"]["torsion"] for one_of_both in made)
+            revisions.append(revision(http, created(http, {**document, "models": {"bar": short}})))
+        one, other = (one_of_both["models"]["bar"]["analyses"]["torsion"] for one_of_both in revisions)
         stresses = [one_of_both["outputs"]["maximum_stress"]["value"] for one_of_both in (one, other)]
         assert one["id"] == other["id"]
         assert stresses[1] == pytest.approx(200 * stresses[0], rel=1e-12)
@@ -232,17 +234,17 @@ class TestRuns:
                 {"through": "bar.torsion.stiffness", "start": "20 kN*m/rad", "tolerance": 1e-3, "limit": 9}
             ],
         }
-        made = created(http, document)
-        assert made["state"] == "current", made["problem"]
-        answer = revision(http, made)
+        design = created(http, document)
+        assert design["state"] == "current", design["problem"]
+        answer = revision(http, design)
         last = answer["iterations"][-1]
         assert (last["through"], last["unit"]) == ("bar.torsion.stiffness", "N*m/rad")
         assert last["measured"] == pytest.approx(last["assumed"], rel=1e-3)
         diameter = answer["models"]["bar"]["parameters"]["diameter"]["value"]
         assert diameter == pytest.approx(18 + 0.02 * last["assumed"] / 1000, rel=1e-9)
         assert last["measured"] == pytest.approx(coulomb(diameter / 1000), rel=COARSE)
-        found = answer["models"]["bar"]["analyses"]["torsion"]["outputs"]["stiffness"]["value"]
-        assert found == pytest.approx(last["measured"], rel=1e-12)
+        output = answer["models"]["bar"]["analyses"]["torsion"]["outputs"]["stiffness"]["value"]
+        assert output == pytest.approx(last["measured"], rel=1e-12)
 
     def test_a_reason_instead_of_a_value(self, http, served):
         """As a stress that does not converge leaves it: nothing follows, and the reason is reported."""

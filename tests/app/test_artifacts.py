@@ -51,9 +51,9 @@ class TestEveryStore:
         assert sha == hashlib.sha256(BYTES).hexdigest()
         assert each.exists(sha)
         assert each.read(sha) == each.fetch(sha).read_bytes() == BYTES
-        with each.open(sha) as found:
-            assert found.file.read() == BYTES
-            assert found.is_unchanged()
+        with each.open(sha) as file:
+            assert file.file.read() == BYTES
+            assert file.is_unchanged()
 
     def test_the_same_bytes_are_stored_once(self, each):
         before = len(list(each.list()))
@@ -78,9 +78,9 @@ class TestEveryStore:
 
     def test_an_open_file_stays_when_it_is_deleted(self, each):
         sha = each.put(BYTES)
-        with each.open(sha) as found:
+        with each.open(sha) as file:
             each.delete(sha)
-            assert found.file.read() == BYTES
+            assert file.file.read() == BYTES
         assert not each.exists(sha)
         with pytest.raises(ArtifactMissing):
             each.read(sha)

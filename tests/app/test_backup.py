@@ -355,10 +355,10 @@ def test_a_backup_among_writes_is_complete(folders, tmp_path, each):
     with serving(Settings(data=tmp_path / "new", queue_limit=1000, client_queue_limit=1000)) as server:
         with httpx.Client(base_url=server.url, timeout=90, trust_env=False) as http:
             for id, number, state in before:
-                found = revision(http, {"id": id}, number)
+                restored = revision(http, {"id": id}, number)
                 if state != "current":
                     continue
-                sha = found["models"]["model"]["artifacts"]["step"]
+                sha = restored["models"]["model"]["artifacts"]["step"]
                 content = http.get(f"{API}/artifacts/{sha}").content
                 assert hashlib.sha256(content).hexdigest() == sha
             assert any(state == "current" for *_, state in before)

@@ -44,7 +44,7 @@ def gates():
 
 
 @pytest.fixture
-def made(gates):
+def new_pool(gates):
     pools = []
 
     def make(size=1, waiting=32):
@@ -68,8 +68,8 @@ def order(gates, count):
     return gates.started
 
 
-def test_clients_take_turns(made, gates):
-    pool = made()
+def test_clients_take_turns(new_pool, gates):
+    pool = new_pool()
     submitted(pool, "flood", *(f"f{number}" for number in range(5)))
     assert eventually(lambda: gates.started == ["f0"])
     submitted(pool, "newcomer", "n0", "n1")
@@ -77,8 +77,8 @@ def test_clients_take_turns(made, gates):
     assert order(gates, 8) == ["f0", "n0", "a0", "f1", "n1", "f2", "f3", "f4"]
 
 
-def test_a_newcomer_starts_next_after_those_that_run(made, gates):
-    pool = made(size=2)
+def test_a_newcomer_starts_next_after_those_that_run(new_pool, gates):
+    pool = new_pool(size=2)
     submitted(pool, "flood", *(f"f{number}" for number in range(10)))
     assert eventually(lambda: len(gates.started) == 2)
     submitted(pool, "newcomer", "n0")
@@ -87,9 +87,9 @@ def test_a_newcomer_starts_next_after_those_that_run(made, gates):
     assert gates.started[2] == "n0"
 
 
-def test_nobody_is_always_passed_over(made, gates):
+def test_nobody_is_always_passed_over(new_pool, gates):
     """Two clients that come again and again, one at a time, do not starve a third."""
-    pool = made()
+    pool = new_pool()
     submitted(pool, "a", "a0")
     assert eventually(lambda: gates.started == ["a0"])
     submitted(pool, "patient", "p0", "p1")
@@ -102,8 +102,8 @@ def test_nobody_is_always_passed_over(made, gates):
     assert {"p0", "p1"} <= set(gates.started[:7])
 
 
-def test_results_and_errors_arrive(made, gates):
-    pool = made()
+def test_results_and_errors_arrive(new_pool, gates):
+    pool = new_pool()
     (good,) = submitted(pool, "a", "good")
     bad = pool.submit("a", int, "bad")
     gates.release("good")
@@ -112,8 +112,8 @@ def test_results_and_errors_arrive(made, gates):
     assert isinstance(bad.future.exception(SOON), ValueError)
 
 
-def test_progress_that_came_before_is_reported_to_who_listens_later(made, gates):
-    (calculation,) = submitted(made(), "a", "one")
+def test_progress_that_came_before_is_reported_to_who_listens_later(new_pool, gates):
+    (calculation,) = submitted(new_pool(), "a", "one")
     assert eventually(lambda: gates.started)
     heard = []
     assert eventually(lambda: calculation._latest is not None)
@@ -121,8 +121,8 @@ def test_progress_that_came_before_is_reported_to_who_listens_later(made, gates)
     assert heard == [(0.5, "one runs")]
 
 
-def test_too_many_are_refused(made, gates):
-    pool = made(waiting=2)
+def test_too_many_are_refused(new_pool, gates):
+    pool = new_pool(waiting=2)
     submitted(pool, "flood", "f0")
     assert eventually(lambda: gates.started)
     submitted(pool, "flood", "f1", "f2")
@@ -132,8 +132,8 @@ def test_too_many_are_refused(made, gates):
     assert (pool.running, pool.waiting) == (1, 2)
 
 
-def test_a_flood_gives_way_to_a_newcomer(made, gates):
-    pool = made(waiting=2)
+def test_a_flood_gives_way_to_a_newcomer(new_pool, gates):
+    pool = new_pool(waiting=2)
     submitted(pool, "flood", "f0")
     assert eventually(lambda: gates.started)
     _, last = submitted(pool, "flood", "f1", "f2")
@@ -144,13 +144,13 @@ def test_a_flood_gives_way_to_a_newcomer(made, gates):
     assert order(gates, 3) == ["f0", "n0", "f1"]
 
 
-def test_what_finds_free_processes_does_not_count_as_waiting(made, gates):
-    pool = made(size=4, waiting=1)
+def test_what_finds_free_processes_does_not_count_as_waiting(new_pool, gates):
+    pool = new_pool(size=4, waiting=1)
     assert len(submitted(pool, "a", *map(str, range(5)))) == 5
 
 
-def test_what_waits_is_cancelled_at_once(made, gates):
-    pool = made()
+def test_what_waits_is_cancelled_at_once(new_pool, gates):
+    pool = new_pool()
     first, second = submitted(pool, "a", "one", "two")
     assert eventually(lambda: gates.started == ["one"])
     pool.cancel(second)
@@ -161,16 +161,16 @@ def test_what_waits_is_cancelled_at_once(made, gates):
     assert gates.started == ["one"]
 
 
-def test_what_runs_is_cancelled(made, gates):
-    pool = made()
+def test_what_runs_is_cancelled(new_pool, gates):
+    pool = new_pool()
     (calculation,) = submitted(pool, "a", "one")
     assert eventually(lambda: gates.started)
     pool.cancel(calculation)
     assert isinstance(calculation.future.exception(SOON), JobCancelled)
 
 
-def test_what_became_a_job_frees_its_place(made, gates):
-    pool = made()
+def test_what_became_a_job_frees_its_place(new_pool, gates):
+    pool = new_pool()
     first, second = submitted(pool, "a", "one", "two")
     assert eventually(lambda: gates.started == ["one"])
     assert not pool.keep(second)  # it has not begun
@@ -182,8 +182,8 @@ def test_what_became_a_job_frees_its_place(made, gates):
     assert pool.keep(second)
 
 
-def test_jobs_wait_in_a_lane_of_their_own(made, gates):
-    pool = made()
+def test_jobs_wait_in_a_lane_of_their_own(new_pool, gates):
+    pool = new_pool()
     for name in ("job0", "job1"):
         pool.submit("jobs", str.upper, name, lane="jobs")
     submitted(pool, "a", "one")
@@ -194,8 +194,8 @@ def test_jobs_wait_in_a_lane_of_their_own(made, gates):
     assert eventually(lambda: "job1" in gates.started)
 
 
-def test_closing_ends_everything(made, gates):
-    pool = made()
+def test_closing_ends_everything(new_pool, gates):
+    pool = new_pool()
     calculations = submitted(pool, "a", "one", "two", "three")
     assert eventually(lambda: gates.started)
     pool.close()
@@ -206,8 +206,8 @@ def test_closing_ends_everything(made, gates):
     assert not any(thread.is_alive() for thread in pool._threads)
 
 
-def test_who_would_be_refused_is_refused_before_the_body_comes(made, gates):
-    pool = made(waiting=2)
+def test_who_would_be_refused_is_refused_before_the_body_comes(new_pool, gates):
+    pool = new_pool(waiting=2)
     submitted(pool, "flood", "a")
     assert eventually(lambda: gates.started == ["a"])
     submitted(pool, "flood", "b", "c")

@@ -439,9 +439,9 @@ def design(duration):
 
 
 def test_a_step_of_a_design_is_calculated_in_another_process(http, log):
-    made = http.post(f"{API}/designs", json=design("11 ms"))
-    assert made.status_code == 201, made.text
-    steps = http.get(f"{API}/designs/{made.json()['id']}/revisions/1").json()["steps"]
+    response = http.post(f"{API}/designs", json=design("11 ms"))
+    assert response.status_code == 201, response.text
+    steps = http.get(f"{API}/designs/{response.json()['id']}/revisions/1").json()["steps"]
     assert steps["s"]["outputs"]["process"]["value"] == begun(log)[0] != os.getpid()
 
 
@@ -454,13 +454,13 @@ def test_a_step_that_is_refused_or_crashes_says_so(http):
 
 def test_a_preview_that_nobody_waits_for_ends(http, log):
     place = f"{API}/designs/{http.post(f'{API}/designs', json=design('12 ms')).json()['id']}"
-    (made,) = begun(log)
+    (process,) = begun(log)
     patch = {"steps": {"s": {"inputs": {"duration": "60 s"}}}}
     with pytest.raises(httpx.ReadTimeout):
         http.post(f"{place}/preview", json=patch, timeout=1.0)
     assert eventually(lambda: not alive(begun(log, 2)[1]))
     assert http.get(place).status_code == 200
-    assert made
+    assert process
 
 
 def test_a_page_waits_for_its_calculation_within_the_process(server, http):

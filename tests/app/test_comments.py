@@ -80,8 +80,8 @@ def test_comments_are_listed_page_by_page_over_all_revisions(room):
     texts = [f"comment {n}" for n in range(5)]
     for n, text in enumerate(texts):
         commented(room.author, newer, text, 1 + n % 2)
-    found = [one["text"] for one in pages(room.author, f"{API}/designs/{design['id']}/comments", 2, 10)]
-    assert found == texts[::-1]
+    listed = [one["text"] for one in pages(room.author, f"{API}/designs/{design['id']}/comments", 2, 10)]
+    assert listed == texts[::-1]
     assert len(room.author.get(f"{API}/designs/{design['id']}/revisions/2/comments").json()["items"]) == 2
 
 

@@ -23,10 +23,10 @@ def by_name(items):
 @pytest.fixture(scope="module")
 def design(http):
     """Three revisions: scale 1, then 1.05, then 1 with another speed."""
-    made = created(http, paper(name="compared"))
-    made = patched(http, made, {"parameters": {"scale": "1.05"}})
+    first = created(http, paper(name="compared"))
+    first = patched(http, first, {"parameters": {"scale": "1.05"}})
     speed = {"steps": {"film": {"inputs": {"speed": "6000 rpm"}}}}
-    return patched(http, made, {"parameters": {"scale": "1"}, **speed, "note": "faster"})
+    return patched(http, first, {"parameters": {"scale": "1"}, **speed, "note": "faster"})
 
 
 class TestRevisions:

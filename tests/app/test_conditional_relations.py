@@ -82,14 +82,14 @@ class TestConditions:
             shell = {**SHELL, "parameters": {"inner_diameter": "= diameter", "width": width}}
             raw = bearing(models={"shell": shell})
             document = Document.model_validate(raw)
-            found = explained(document, calculated(raw), CATALOGUES, "shell.width")
-            slopes = {one.name: one.slope for one in found.sensitivities}
+            explanation = explained(document, calculated(raw), CATALOGUES, "shell.width")
+            slopes = {one.name: one.slope for one in explanation.sensitivities}
             if slope is None:
                 assert all(not one or one.value == 0 for one in slopes.values())
             else:
                 assert slopes["clearance"].value == pytest.approx(slope)
-            assert "cases" in found.latex
-            assert {link.name for link in found.because} == {"clearance", "film.minimum_film_thickness"}
+            assert "cases" in explanation.latex
+            assert {link.name for link in explanation.because} == {"clearance", "film.minimum_film_thickness"}
 
     @pytest.mark.parametrize(
         ("relation", "code", "words"),
@@ -200,7 +200,7 @@ class TestChoices:
     def test_property_a_choice_that_is_tested_is_explained(self):
         shell = {**SHELL, "parameters": {"inner_diameter": "= diameter", "width": self.GRADE}}
         raw = bearing(film={"viscosity_law": "vogel"}, models={"shell": shell})
-        found = explained(Document.model_validate(raw), calculated(raw), CATALOGUES, "shell.width")
-        because = {link.name: link for link in found.because}
+        explanation = explained(Document.model_validate(raw), calculated(raw), CATALOGUES, "shell.width")
+        because = {link.name: link for link in explanation.because}
         assert because["film.viscosity_law"].typed == "vogel"
         assert because["film.oil_grade"].kind == "default"

@@ -94,9 +94,9 @@ class TestInterface:
         curves = answer.json()["curves"]
         inputs = {**BearingLoad.example, "gas_cycle": "table", "pressure": curves["pressure"],
                   "pressure_angle": curves["crank_angle"]}  # fmt: skip
-        made = http.post(f"{API}/templates/bearing_load/versions/1/evaluate", json={"inputs": inputs})
-        assert made.status_code == 200, made.text
-        assert made.json()["outputs"]["mean_torque"]["value"] > 0
+        response = http.post(f"{API}/templates/bearing_load/versions/1/evaluate", json={"inputs": inputs})
+        assert response.status_code == 200, response.text
+        assert response.json()["outputs"]["mean_torque"]["value"] > 0
 
     def test_property_faults_are_a_problem(self, http):
         answer = http.post(f"{API}/curves", content="p [bar]\nx\n", headers={"Content-Type": "text/csv"})
@@ -132,10 +132,10 @@ class TestCommandLine:
         rows = "".join(f"{a};{str(1.5 + a / 720).replace('.', ',')}\n" for a in range(0, 720, 10))
         (tmp_path / "diagram.csv").write_text("crank angle [deg];pressure [bar]\n" + rows, encoding="utf-8")
         file = f"@{tmp_path}/diagram.csv"
-        made = self.run("gas_cycle=table", f"pressure={file}", f"pressure_angle={file}:crank_angle")
-        assert made.exit_code == 0, made.output
-        assert "crankpin_load_x" in made.output
-        assert "24 values" in made.output
+        ran = self.run("gas_cycle=table", f"pressure={file}", f"pressure_angle={file}:crank_angle")
+        assert ran.exit_code == 0, ran.output
+        assert "crankpin_load_x" in ran.output
+        assert "24 values" in ran.output
 
     def test_property_faults_are_reported(self, tmp_path):
         (tmp_path / "d.csv").write_text("p [bar]\n1\n", encoding="utf-8")

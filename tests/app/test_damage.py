@@ -46,10 +46,10 @@ def files(http, design):
 
 @pytest.fixture(scope="module")
 def design(http):
-    made = created(http, moody("31.5 mm"))
+    first = created(http, moody("31.5 mm"))
     for kind in ("png", "drawing.svg"):
-        assert http.get(f"{API}/designs/{made['id']}/model.{kind}", headers=WAIT).status_code == 200
-    return made
+        assert http.get(f"{API}/designs/{first['id']}/model.{kind}", headers=WAIT).status_code == 200
+    return first
 
 
 class TestServed:
@@ -158,12 +158,12 @@ class TestServed:
             "outputs": ["surface"],
         }
         path = f"{API}/models/bar/versions/1/analyses/torsion"
-        found = http.post(path, json=body, headers=WAIT).json()
-        url = found["outputs"]["surface"]["url"]
+        analysis = http.post(path, json=body, headers=WAIT).json()
+        url = analysis["outputs"]["surface"]["url"]
         whole = http.get(url, headers=WAIT)
-        damage(place(served, found["outputs"]["surface"]["sha256"]))
+        damage(place(served, analysis["outputs"]["surface"]["sha256"]))
         assert http.get(url, headers=WAIT).content == whole.content
-        damage(place(served, found["outputs"]["surface"]["sha256"]))
+        damage(place(served, analysis["outputs"]["surface"]["sha256"]))
         assert http.post(path, json=body, headers=WAIT).status_code == 200
         assert http.get(url, headers={"Prefer": "respond-async"}).content == whole.content
 

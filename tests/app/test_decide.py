@@ -26,8 +26,8 @@ def document(require, level="short_bearing", **inputs):
 
 
 def decided(raw, criteria=("own",), budget=60.0):
-    graph, found = build_graph(resolved(Document.model_validate(raw), CATALOGUES), CATALOGUES)
-    assert not found
+    graph, graph_faults = build_graph(resolved(Document.model_validate(raw), CATALOGUES), CATALOGUES)
+    assert not graph_faults
     calculation = calculate(graph, lambda shape: None, lambda *question: None)
     return Deciding(calculation, criteria, budget).decide()
 

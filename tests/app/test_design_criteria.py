@@ -48,7 +48,7 @@ def faults_of(raw):
 
 def test_analytic_own_criterion_of_a_design():
     """At level fit the film is 2.7467 um, off by 4.7 %: 2.6234 … 2.8822 um."""
-    found = verdicts(
+    judged = verdicts(
         document(
             {
                 "low": {"require": "film.minimum_film_thickness >= 2.6 um", "source": "me"},
@@ -58,24 +58,24 @@ def test_analytic_own_criterion_of_a_design():
             }
         )
     )
-    assert {name: found[name].verdict for name in ("low", "near", "high", "load")} == {
+    assert {name: judged[name].verdict for name in ("low", "near", "high", "load")} == {
         "low": "met",
         "near": "undecided",
         "high": "not_met",
         "load": "met",
     }
-    low = found["low"]
+    low = judged["low"]
     assert (low.source, low.unit, low.level) == ("me", "um", "fit")
     assert low.band == pytest.approx((2.6234, 2.8822), abs=1e-4)
     assert low.truth
-    assert found["high"].words == "thick enough"
-    assert found["near"].words == "minimum film thickness ≥ 2.7 um"
+    assert judged["high"].words == "thick enough"
+    assert judged["near"].words == "minimum film thickness ≥ 2.7 um"
 
 
 def test_criteria_of_templates_have_the_step_in_their_names_and_take_its_limits():
-    found = verdicts(document(steps={"film": {**film(), "limits": {"permissible_film": "2 um"}}}))
-    assert (found["film.own_film"].verdict, found["film.own_film"].limit) == ("met", pytest.approx(2))
-    assert found["film.pressure_times_speed"].give == ("film.permissible_pressure_times_speed",)
+    judged = verdicts(document(steps={"film": {**film(), "limits": {"permissible_film": "2 um"}}}))
+    assert (judged["film.own_film"].verdict, judged["film.own_film"].limit) == ("met", pytest.approx(2))
+    assert judged["film.pressure_times_speed"].give == ("film.permissible_pressure_times_speed",)
 
 
 def test_a_waived_criterion_is_judged_all_the_same():
@@ -87,9 +87,9 @@ def test_a_waived_criterion_is_judged_all_the_same():
 
 def test_an_overridden_criterion_demands_what_the_design_says():
     require = "film.minimum_film_thickness >= 1 um"
-    found = verdicts(document({"film.film": {"require": require, "source": "our handbook"}}))
-    assert (found["film.film"].verdict, found["film.film"].limit) == ("met", pytest.approx(1))
-    assert (found["film.film"].source, found["film.film"].unverified) == ("our handbook", None)
+    judged = verdicts(document({"film.film": {"require": require, "source": "our handbook"}}))
+    assert (judged["film.film"].verdict, judged["film.film"].limit) == ("met", pytest.approx(1))
+    assert (judged["film.film"].source, judged["film.film"].unverified) == ("our handbook", None)
 
 
 def test_an_output_that_a_criterion_needs_is_computed_although_the_step_leaves_it_out():

@@ -66,27 +66,27 @@ def test_the_step_file_says_whose_it_is_and_opens(http, design):
     assert all(word in description for word in (NAME, "model shell", "revision 1", "steel (7850 kg/m³)"))
     (body,) = read_step(step)
     assert body.name == WIDE
-    made = revision(http, design)["created"][:19]
-    assert f"'{made}'".encode() in step
+    saved_at = revision(http, design)["created"][:19]
+    assert f"'{saved_at}'".encode() in step
     assert b"PRODUCT_DEFINITION_FORMATION('1'" in step
 
 
 @pytest.mark.parametrize("kind", ["dxf", "drawing.svg"])
 def test_the_drawing_says_whose_it_is(http, design, kind):
     text = get(http, design, f"models/shell/model.{kind}").text
-    made = revision(http, design)["created"][:10]
+    day = revision(http, design)["created"][:10]
     if kind == "dxf":
         drawing = ezdxf.read(io.StringIO(text))
         assert not drawing.audit().errors
         lines = {entity.dxf.text for entity in drawing.modelspace().query("TEXT")}
         assert {
             f"design: {NAME}",
-            f"part: shell, revision 1, {made}",
+            f"part: shell, revision 1, {day}",
             "material: steel (7850 kg/m³)",
         } <= lines
     else:
         assert "design: Käfig &#x27;A&#x27; 轴承</text>" in text
-        assert f"part: shell, revision 1, {made}</text>" in text
+        assert f"part: shell, revision 1, {day}</text>" in text
 
 
 def test_builds_and_artifacts_are_shared_and_stay(http, design):

@@ -37,8 +37,8 @@ class TestRefusals:
         document["parameters"] = {"scale": "1", "a": "= nobody * 2", "b": "= 2 *"}
         document["steps"]["film"]["inputs"] |= {"radial_load": "25 kN", "sped": "1 rpm"}
         document["model"]["parameters"] = {"inner_diameter": "= film.thickness", "colour": "1"}
-        found = faults(http.post(DESIGNS, json=document))
-        assert found == {
+        listed = faults(http.post(DESIGNS, json=document))
+        assert listed == {
             "a": "unknown_name",
             "b": "syntax",
             "film.sped": "unknown_name",

@@ -72,11 +72,11 @@ class TestRevisions:
         assert http.get(f"{place}/revisions/1/model.step").status_code == 200
 
     def test_paging(self, http):
-        made = [created(http, {"name": f"page {i}"})["id"] for i in range(3)]
+        new = [created(http, {"name": f"page {i}"})["id"] for i in range(3)]
         whole = http.get(DESIGNS, params={"limit": 500}).json()["items"]
-        found = [item["id"] for item in pages(http, DESIGNS, 2, len(whole) // 2 + 1)]
-        assert found[:3] == made[::-1]
-        assert len(found) == len(set(found))
+        listed = [item["id"] for item in pages(http, DESIGNS, 2, len(whole) // 2 + 1)]
+        assert listed[:3] == new[::-1]
+        assert len(listed) == len(set(listed))
 
     def test_paging_of_revisions(self, http):
         design = created(http, {"name": "many", "parameters": {"a": "0"}})

@@ -134,10 +134,10 @@ def test_the_page_says_where_a_verdict_comes_from(http, design):
 
 def test_the_sensitivities_of_a_verdict_and_their_page(http, design):
     chain = explained(http, design, "film.own_film")
-    found = {one["name"]: one for one in chain["sensitivities"]}
-    assert found["half"]["slope"] == {"value": 0, "unit": "um"}
-    assert (found["half"]["elasticity"], found["half"]["helps"]) == (0, "decrease")
-    load = found["film.radial_load"]
+    by_name = {one["name"]: one for one in chain["sensitivities"]}
+    assert by_name["half"]["slope"] == {"value": 0, "unit": "um"}
+    assert (by_name["half"]["elasticity"], by_name["half"]["helps"]) == (0, "decrease")
+    load = by_name["film.radial_load"]
     assert (load["slope"]["unit"], load["helps"]) == ("um/N", "decrease")
     assert load["elasticity"] < 0
     assert "reason" not in chain

@@ -110,10 +110,10 @@ def test_one_key_is_verified_by_the_same_steps_whatever_its_prefix(team, monkeyp
     monkeypatch.setattr(
         rows, "is_same", lambda text, stored: compared.append(len(stored)) or original(text, stored)
     )
-    known = team.keys["viewer"][:14] + new_key().text[14:]
+    forged = team.keys["viewer"][:14] + new_key().text[14:]
     revoked, row = team.identity.add_key(team.principals["viewer"])
     team.identity.revoke(row.prefix)
-    for key in (known, new_key().text, revoked.text, "nothing"):
+    for key in (forged, new_key().text, revoked.text, "nothing"):
         compared.clear()
         assert answered(team, key).status_code == 401
         assert compared == [64]

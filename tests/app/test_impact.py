@@ -113,7 +113,7 @@ def test_the_impact_of_a_batch_is_that_of_each_design():
     singly = [
         compared(batch_of([document], 2, ids=[f"d{place:02}"])) for place, document in enumerate(documents)
     ]
-    each = {impact.design: impact for found in singly for impact in found.designs}
+    each = {impact.design: impact for comparison in singly for impact in comparison.designs}
     assert {impact.design for impact in whole.designs} == each.keys()
     for impact in whole.designs:
         one = each[impact.design]
@@ -125,15 +125,15 @@ def test_the_impact_of_a_batch_is_that_of_each_design():
             assert impact.margin.name == one.margin.name
         if one.output:
             assert impact.output.change == pytest.approx(one.output.change, rel=1e-6)
-    assert whole.unchanged == sum(found.unchanged for found in singly) == 1  # it has version 2
+    assert whole.unchanged == sum(comparison.unchanged for comparison in singly) == 1  # it has version 2
     assert whole.variants == 3
 
 
 def test_the_refusal_of_a_design_names_what_to_give_and_to_remove():
     document = bearing()
     film = {**document["steps"]["film"], "limits": {"permissible_film": "2 um"}}
-    found = compared(batch_of([{**document, "steps": {"film": film}}], 1))
-    [impact] = found.designs
+    comparison = compared(batch_of([{**document, "steps": {"film": film}}], 1))
+    [impact] = comparison.designs
     assert impact.effect == "refused"
     assert impact.remove == ["film.supply_temperature", "film.limits.permissible_film"]
     without = {n: raw for n, raw in film["inputs"].items() if n != "supply_temperature"}
@@ -150,8 +150,8 @@ def test_the_worst_design_comes_first():
     document = loaded("25 kN")
     document["criteria"] = {"gap": {"require": "film.relative_clearance >= 0.001147"}}
     document["steps"]["film"]["inputs"]["radial_load"] = "5 kN"
-    found = compared(batch_of([fine, refused, met, document], 2))
-    ordered = sorted(found.designs, key=rank)
+    comparison = compared(batch_of([fine, refused, met, document], 2))
+    ordered = sorted(comparison.designs, key=rank)
     assert ordered[0].design == "d03"  # c/d became c/D
     assert (ordered[0].verdicts[0].name, ordered[0].verdicts[0].old) == ("gap", "met")
     assert ordered[0].verdicts[0].new == "not_met"

@@ -28,12 +28,12 @@ def bearings(http):
     documents = [loaded("24 kN"), loaded("26 kN"), with_variants(), at_points(), loaded("30 kN")]
     for document in (*documents[1:3], *documents[4:]):
         del document["models"]  # one solid is enough
-    found = [created(http, {**document, "name": f"bearing {n}"}) for n, document in enumerate(documents)]
-    for design in found:
-        is_last = design is found[-1]
+    designs = [created(http, {**document, "name": f"bearing {n}"}) for n, document in enumerate(documents)]
+    for design in designs:
+        is_last = design is designs[-1]
         labels = {"add_tags": ["impact"], "archived": True if is_last else None}
         assert http.post(f"{API}/designs/{design['id']}/labels", json=labels).is_success
-    return found
+    return designs
 
 
 def without_a_model(load):
@@ -56,23 +56,23 @@ def test_designs_are_ranked_and_nothing_is_written(http, bearings, rows):
     before = rows()
     answer = http.post(IMPACT, json=TAGGED, headers={"Prefer": "wait=60"})
     assert answer.status_code == 200, answer.text
-    found = answer.json()
+    impact = answer.json()
     assert rows() == before
-    assert found["template"] == {"id": "oil_film", "version": 2}
-    assert (found["concerned"], found["moved"], found["archived"]) == (4, 4, 1)
-    assert (found["variants"], found["unchanged"], found["refused"]) == (3, 0, 0)
-    assert {one["design"] for one in found["designs"]} == {design["id"] for design in bearings[:4]}
-    verdicts = [len([v for v in one["verdicts"] if v["new"] == "not_met"]) > 0 for one in found["designs"]]
+    assert impact["template"] == {"id": "oil_film", "version": 2}
+    assert (impact["concerned"], impact["moved"], impact["archived"]) == (4, 4, 1)
+    assert (impact["variants"], impact["unchanged"], impact["refused"]) == (3, 0, 0)
+    assert {one["design"] for one in impact["designs"]} == {design["id"] for design in bearings[:4]}
+    verdicts = [len([v for v in one["verdicts"] if v["new"] == "not_met"]) > 0 for one in impact["designs"]]
     assert verdicts == sorted(verdicts, reverse=True)
-    second = next(one for one in found["designs"] if one["design"] == bearings[0]["id"])
+    second = next(one for one in impact["designs"] if one["design"] == bearings[0]["id"])
     assert second["steps"] == [{"step": "film", "version": 1}]
     assert [one["name"] for one in second["parameters"]] == ["shell.inner_diameter"]
 
 
 def test_the_values_are_those_of_the_upgrade_and_of_the_revision(http, bearings):
     design = bearings[0]
-    found = http.post(IMPACT, json={"designs": [design["id"]]}, headers={"Prefer": "wait=60"}).json()
-    [impact] = found["designs"]
+    answer = http.post(IMPACT, json={"designs": [design["id"]]}, headers={"Prefer": "wait=60"}).json()
+    [impact] = answer["designs"]
     patch = {"steps": {"film": {"version": 2}}}
     preview = http.post(f"{API}/designs/{design['id']}/preview", json=patch).json()
     new = {criterion["name"]: criterion for criterion in preview["criteria"]}
@@ -159,15 +159,15 @@ def test_a_wrong_question_is_refused(http, path, body, status, slug):
 
 
 def test_the_limit_shortens_the_list_and_not_the_counts(http, bearings):
-    found = http.post(IMPACT, json={**TAGGED, "limit": 1}, headers={"Prefer": "wait=60"}).json()
-    assert (found["moved"], len(found["designs"])) == (4, 1)
+    impact = http.post(IMPACT, json={**TAGGED, "limit": 1}, headers={"Prefer": "wait=60"}).json()
+    assert (impact["moved"], len(impact["designs"])) == (4, 1)
 
 
 def test_the_clients_ask_and_upgrade(http, client, served):
     design = client.design(created(http, {**without_a_model("20 kN"), "name": "upgraded"})["id"])
     heard = []
-    found = client.impact("oil_film", 2, [design.id], on_progress=lambda done, text: heard.append(done))
-    assert [one.design for one in found.designs] == [design.id]
+    impact = client.impact("oil_film", 2, [design.id], on_progress=lambda done, text: heard.append(done))
+    assert [one.design for one in impact.designs] == [design.id]
     newer = client.upgrade(design, "oil_film", 2)
     assert (newer.revision, newer.steps["film"].version) == (design.revision + 1, 2)
     assert newer.steps["film"].inputs == design.steps["film"].inputs
@@ -200,9 +200,9 @@ def test_a_worksheet_is_held_against_designs_before_its_release(http):
         "inputs": {"radial_load": "25 kN", "bearing_diameter": "48 mm"},
     }
     criteria = {"tight": {"require": "duty.finished_bore <= 48.055 mm"}}
-    made = [{"name": f"duty {n}", "steps": {"duty": step}, "criteria": criteria} for n in range(3)]
-    made[2] = {**made[2], "criteria": {}}
-    ids = [created(http, document)["id"] for document in made]
+    documents = [{"name": f"duty {n}", "steps": {"duty": step}, "criteria": criteria} for n in range(3)]
+    documents[2] = {**documents[2], "criteria": {}}
+    ids = [created(http, document)["id"] for document in documents]
     draft = edited(http, http.get(place(sheet["id"])).json(), WIDER)
     assert (draft["version"], draft["state"]) == (2, "draft")
     path = f"{API}/templates/{sheet['id']}/versions/2/impact"

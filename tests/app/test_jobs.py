@@ -61,15 +61,15 @@ def failures():
 @pytest.fixture
 def make(database):
     """Jobs that are stopped at the end of the test."""
-    made = []
+    running = []
 
     def make(worker=None, **settings):
         jobs = Jobs(database, worker or Inline(), Settings(**settings), describe)
-        made.append(jobs)
+        running.append(jobs)
         return jobs
 
     yield make
-    for jobs in made:
+    for jobs in running:
         jobs.stop()
 
 

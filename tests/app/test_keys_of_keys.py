@@ -64,9 +64,9 @@ def test_a_key_ends_at_the_latest_with_the_one_that_made_it(team, ada):
 def test_a_scoped_key_makes_none_that_gains_later_roles(team, ada):
     scoped = team.identity.add_key(ada, scopes=["checker"])[0]
     with by(team, scoped.text) as client:
-        made = client.add_key(ada)
+        key = client.add_key(ada)
     team.identity.change(ada, Changes(roles=["checker", "admin"]))
-    with by(team, made.key) as client:
+    with by(team, key.key) as client:
         assert client.me().roles == ["checker"]
 
 
@@ -75,8 +75,8 @@ def test_a_session_makes_keys_as_the_key_by_which_it_began(team, ada):
     key, row = team.identity.add_key(ada, scopes=["viewer"], expires=end)
     with team.http() as browser:
         assert browser.post("/sign-in", data={"key": key.text}).status_code == 303
-        made = browser.post(f"/api/v1/principals/{ada}/keys", json={}).json()
-    assert (made["made_by"], made["expires"], made["scopes"]) == (key.prefix, row.expires, ["viewer"])
+        new = browser.post(f"/api/v1/principals/{ada}/keys", json={}).json()
+    assert (new["made_by"], new["expires"], new["scopes"]) == (key.prefix, row.expires, ["viewer"])
 
 
 def test_a_key_that_the_gate_still_trusts_makes_no_more_keys(team, ada):

@@ -125,7 +125,7 @@ class TestStep:
         ]
 
     @pytest.mark.parametrize(
-        ("text", "found"),
+        ("text", "expected"),
         [
             (START + "'a','b'),'2;1');", ["'a'", "'b'"]),
             (START + "'a' 'b',),'2;1');", ["'a'", "'b'"]),
@@ -141,8 +141,8 @@ class TestStep:
             ("ENDSEC;" + START + "'a'),'2;1');", []),
         ],
     )
-    def test_what_is_found(self, text, found):
-        assert description(text) == found
+    def test_the_description_is_read_from_the_header(self, text, expected):
+        assert description(text) == expected
 
 
 class TestUnitsAndQuantities:

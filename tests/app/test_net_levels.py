@@ -90,7 +90,7 @@ def test_estimated_seconds_grow_with_rows_and_levels():
     assert net.seconds(1000, [FILM], {"film": "reynolds"}) > 10 * cheap
     assert net.seconds(1000, [ref("load")], {}) == 0
     net(spread(net, 200), [FILM], levels={"film": "map"})
-    known = net.seconds(1000, [FILM], {"film": "map"})
-    assert known > 0
-    assert net.seconds(10_000, [FILM], {"film": "map"}) == pytest.approx(10 * known)
+    seconds = net.seconds(1000, [FILM], {"film": "map"})
+    assert seconds > 0
+    assert net.seconds(10_000, [FILM], {"film": "map"}) == pytest.approx(10 * seconds)
     assert net.seconds(1000, [FILM], {"film": "reynolds"}) > 10 * cheap

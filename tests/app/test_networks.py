@@ -8,8 +8,8 @@ DESIGNS = f"{API}/designs"
 
 
 def network(http, document):
-    made = created(http, document)
-    answer = http.get(f"{DESIGNS}/{made['id']}/network")
+    design = created(http, document)
+    answer = http.get(f"{DESIGNS}/{design['id']}/network")
     assert answer.status_code == 200, answer.text
     return answer.json()
 

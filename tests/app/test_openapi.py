@@ -75,18 +75,18 @@ def examples(document, schema):
     """The examples of a schema, wherever they stand."""
     if "$ref" in schema:
         schema = document["components"]["schemas"][schema["$ref"].rpartition("/")[2]]
-    inside = [found for part in schema.get("anyOf", ()) for found in examples(document, part)]
+    inside = [example for part in schema.get("anyOf", ()) for example in examples(document, part)]
     return [*schema.get("examples", ()), *inside]
 
 
 def filled(path, operation, design):
     """A path with the examples of its parameters; designs and jobs are named by what exists."""
-    known = {
+    examples_of = {
         "/designs/{id}": f"/designs/{design['id']}",
         "/studies/{id}": f"/studies/{design['study']}",
         "revisions/{number}": "revisions/1",
     }
-    for template, value in known.items():
+    for template, value in examples_of.items():
         path = path.replace(template, value)
     for parameter in operation.get("parameters", ()):
         given = parameter.get("schema", {}).get("examples")

@@ -113,13 +113,13 @@ class TestAnotherMaker:
             "level": "coarse",
             "outputs": ["surface"],
         }
-        found = http.post(f"{API}/models/bar/versions/1/analyses/torsion", json=body, headers=WAIT).json()
+        analysis = http.post(f"{API}/models/bar/versions/1/analyses/torsion", json=body, headers=WAIT).json()
         served.app.state.services.database.write(
             lambda session: session.execute(update(AnalysisRow).values(key="0" * 64))
         )
-        delete(place(served, found["outputs"]["surface"]["sha256"]))
+        delete(place(served, analysis["outputs"]["surface"]["sha256"]))
         refusal = problem(http.get(f"{API}/analyses/{'0' * 64}/surface", headers=WAIT), 410, "artifact-gone")
-        assert refusal["analysis"] == f"{API}/analyses/{found['id']}"
+        assert refusal["analysis"] == f"{API}/analyses/{analysis['id']}"
 
 
 def test_damage_while_serving_is_503_and_not_ready(shared):

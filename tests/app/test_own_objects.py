@@ -22,8 +22,8 @@ def test_a_revision_names_its_author(team):
 
 
 def test_without_keys_the_author_is_local(http):
-    made = http.post(f"{API}/designs", json={"name": "of nobody", "parameters": {"scale": "1"}})
-    revision = http.get(f"{API}/designs/{made.json()['id']}/revisions/1").json()
+    response = http.post(f"{API}/designs", json={"name": "of nobody", "parameters": {"scale": "1"}})
+    revision = http.get(f"{API}/designs/{response.json()['id']}/revisions/1").json()
     assert revision["author"] == {"id": "local", "name": "local"}
 
 

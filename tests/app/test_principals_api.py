@@ -39,15 +39,15 @@ def test_an_administrator_adds_disables_and_renames(team):
 def test_own_keys_are_made_and_revoked_by_oneself(team):
     id = team.principals["author"]
     with team.client("author") as client:
-        made = client.add_key(id, name="laptop", scopes=["viewer"])
-        assert made.prefix in [key.prefix for key in client.keys(id)]
-        with Client(team.server.url, key=made.key) as limited:
+        laptop = client.add_key(id, name="laptop", scopes=["viewer"])
+        assert laptop.prefix in [key.prefix for key in client.keys(id)]
+        with Client(team.server.url, key=laptop.key) as limited:
             assert limited.me().roles == ["viewer"]
             with pytest.raises(Problem, match="403"):
                 limited.add_key(id, scopes=["author"])
             assert limited.add_key(id).scopes == ["viewer"]
-        client.revoke_key(id, made.prefix)
-        with Client(team.server.url, key=made.key) as revoked, pytest.raises(Problem, match="401"):
+        client.revoke_key(id, laptop.prefix)
+        with Client(team.server.url, key=laptop.key) as revoked, pytest.raises(Problem, match="401"):
             revoked.me()
 
 

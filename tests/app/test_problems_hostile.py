@@ -156,8 +156,8 @@ class TestEvaluate:
         names = ["radial_load", "diametral_clearance", "bearing_diameter", "bearing_width", "speed"]
         wrong = ['"-4 kN"', "NaN", "1e999", "true", '"m**9**9**9"']
         pairs = ", ".join(f'"{name}": {typed}' for name, typed in zip(names, wrong, strict=True))
-        found = faults(post(http, f"{FILM}/evaluate", f'{{"inputs": {{{pairs}, "unheard_of": "1"}}}}'))
-        assert found.keys() >= {*names, "unheard_of", "oil_inlet_temperature"}
+        listed = faults(post(http, f"{FILM}/evaluate", f'{{"inputs": {{{pairs}, "unheard_of": "1"}}}}'))
+        assert listed.keys() >= {*names, "unheard_of", "oil_inlet_temperature"}
 
     @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES)
     def test_a_body(self, http, body):

@@ -41,18 +41,18 @@ def job(database):
 @pytest.fixture
 def kept(database):
     """Makes a keeper; what it hints at is in its list."""
-    made = []
+    keepers = []
 
     def make(failures=0):
         counting, events, hints = Counting(database, failures), Events(database), []
         events.tell = hints.extend
         keeper = ProgressKeeper(counting, events, INTERVAL)
         keeper.start()
-        made.append(keeper)
+        keepers.append(keeper)
         return keeper, counting, hints
 
     yield make
-    for keeper in made:
+    for keeper in keepers:
         keeper.stop()
 
 

@@ -22,9 +22,9 @@ def related(limits=RELATED, parameters=PARAMETERS, level="fit", **steps):
 
 def test_analytic_limit_by_a_relation():
     """At level fit the film is 2.7467 um; half of 4 um is below its band, all of 4 um above it."""
-    found = verdicts(related())["film.own_film"]
-    assert (found.verdict, found.limit, found.unit) == ("met", pytest.approx(2, abs=1e-12), "um")
-    assert found.source.endswith("permissible_film = share * least")
+    judged = verdicts(related())["film.own_film"]
+    assert (judged.verdict, judged.limit, judged.unit) == ("met", pytest.approx(2, abs=1e-12), "um")
+    assert judged.source.endswith("permissible_film = share * least")
     assert verdicts(related(parameters={**PARAMETERS, "share": "1"}))["film.own_film"].verdict == "not_met"
 
 
@@ -36,25 +36,25 @@ def test_the_error_of_a_limit_counts():
     factor = 0.98  # the first film times this, and its 4.7 %, spans the second film
     limits = {"permissible_film": f"= {factor} * film.minimum_film_thickness"}
     steps = {"film": film("fit"), "next": {**film("map"), "limits": limits}}
-    found = verdicts(document(steps=steps))["next.own_film"]
-    assert found.verdict == "undecided"
-    exact = {"permissible_film": f"{found.limit} um"}
+    judged = verdicts(document(steps=steps))["next.own_film"]
+    assert judged.verdict == "undecided"
+    exact = {"permissible_film": f"{judged.limit} um"}
     same = verdicts(document(steps={**steps, "next": {**film("map"), "limits": exact}}))["next.own_film"]
-    assert same.limit == pytest.approx(found.limit, rel=1e-12)
+    assert same.limit == pytest.approx(judged.limit, rel=1e-12)
     assert same.verdict in ("met", "not_met")  # the same number by hand is exact
 
 
 def test_a_limit_may_follow_from_its_own_step():
-    found = verdicts(related({"permissible_film": "= film.smallest_permissible_film"}))["film.own_film"]
+    judged = verdicts(related({"permissible_film": "= film.smallest_permissible_film"}))["film.own_film"]
     other = verdicts(document())["film.film"]
-    assert found.limit == pytest.approx(other.limit, rel=1e-12)
+    assert judged.limit == pytest.approx(other.limit, rel=1e-12)
 
 
 def test_an_output_that_only_a_limit_uses_is_computed():
     limits = {"permissible_film": "= film.diametral_clearance / 2 * (1 - film.relative_eccentricity)"}
     step = {**film(), "outputs": ["minimum_film_thickness"], "limits": limits}
-    found = verdicts(document(steps={"film": step}))["film.own_film"]
-    assert found.limit == pytest.approx(found.value, rel=1e-9)
+    judged = verdicts(document(steps={"film": step}))["film.own_film"]
+    assert judged.limit == pytest.approx(judged.value, rel=1e-9)
 
 
 def test_a_relation_wins_over_a_row_of_the_library():
@@ -66,9 +66,9 @@ def test_a_relation_wins_over_a_row_of_the_library():
 def test_a_limit_that_waits_for_a_solid_is_not_checked_although_a_row_has_a_value():
     limits = {"bearing_material": "tin_bronze", "permissible_pressure": "= model.mass / (1 kg) * (1 MPa)"}
     raw = related(limits, {}) | {"models": {"model": {"id": "plain_bearing", "parameters": SHELL}}}
-    found = verdicts(raw)["film.pressure"]
-    assert (found.verdict, found.limit) == ("not_checked", None)
-    assert "film.limits.permissible_pressure has no value yet" in found.reason
+    judged = verdicts(raw)["film.pressure"]
+    assert (judged.verdict, judged.limit) == ("not_checked", None)
+    assert "film.limits.permissible_pressure has no value yet" in judged.reason
 
 
 SHELL = {"inner_diameter": "48 mm", "width": "18 mm", "wall": "3 mm"}
@@ -120,5 +120,5 @@ def test_rows_are_judged_as_designs_of_their_own():
     for row in range(4):
         one = merge(raw, {"parameters": {"share": repr(float(rows[share][row]))}})
         one = merge(one, {"steps": {"film": {"inputs": {"radial_load": f"{rows[load][row]} N"}}}})
-        single = {name: found.verdict for name, found in verdicts(one).items()}
+        single = {name: judged.verdict for name, judged in verdicts(one).items()}
         assert single == {name: column[row] for name, column in words.items()}

@@ -50,8 +50,8 @@ def rows_of(team, design):
         "where design_id = :id and number = 1) and kind = 'step'",
     )
     with team.server.app.state.services.database.read() as session:
-        found = [session.execute(text(query), {"id": design["id"]}).all() for query in queries]
-    return [[tuple(map(str, row)) for row in rows] for rows in found]
+        tables = [session.execute(text(query), {"id": design["id"]}).all() for query in queries]
+    return [[tuple(map(str, row)) for row in rows] for rows in tables]
 
 
 def unsafe_routes(app):

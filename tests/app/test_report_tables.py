@@ -60,32 +60,32 @@ def values(book):
 
 def test_csv_has_every_input_and_output(lines, worksheet):
     film = worksheet["steps"]["film"]
-    found = {(line["block"], line["kind"], line["name"]): line for line in lines}
+    by_place = {(line["block"], line["kind"], line["name"]): line for line in lines}
     for kind, part in (("input", "inputs"), ("output", "outputs")):
         for name, quantity in film[part].items():
-            line = found["film", kind, name]
+            line = by_place["film", kind, name]
             assert float(line["value"]) == quantity["value"]
             assert line["unit"] == quantity["unit"]
-    assert found["model", "dimension", "inner_diameter"]["value"] == "48.0"
+    assert by_place["model", "dimension", "inner_diameter"]["value"] == "48.0"
 
 
 def test_csv_counts_points_and_tells_reasons(lines, worksheet):
     ratios = worksheet["steps"]["friction"]["outputs"]["sommerfeld_number"]
-    found = [line for line in lines if line["name"] == "friction_force"]
-    assert [line["index"] for line in found] == ["1", "2", "3"]
+    forces = [line for line in lines if line["name"] == "friction_force"]
+    assert [line["index"] for line in forces] == ["1", "2", "3"]
     masked = [line for line in lines if line["name"] == "sommerfeld_number" and line["block"] == "friction"]
     assert [line["value"] == "" for line in masked] == [value is None for value in ratios["value"]]
     assert [line["remark"] for line in masked] == [reason or "" for reason in ratios["reasons"]]
 
 
 def test_xlsx_numbers_are_numbers_and_units_stand_apart(book, worksheet):
-    found = values(book)
+    cells = values(book)
     for name, quantity in worksheet["steps"]["film"]["outputs"].items():
-        row = found["film", name]
+        row = cells["film", name]
         assert row["value"] == pytest.approx(quantity["value"], rel=DIGITS)
         assert isinstance(row["value"], (int, float))
         assert (row["unit"] or "") == quantity["unit"]
-    assert found["design", "scale"]["value"] == 1
+    assert cells["design", "scale"]["value"] == 1
 
 
 def test_xlsx_curves_have_a_sheet_of_their_own(book, worksheet):

@@ -290,8 +290,10 @@ def test_a_worksheet_does_not_calculate_its_steps_again(http, log):
 def test_so_does_one_of_a_revision_that_comes_from_the_database(http, served, monkeypatch):
     film = served.app.state.services.catalogues.templates.get("oil_film", 2)
     step = {"template": "oil_film", "version": 2, "level": "mass_conserving", "inputs": dict(film.example)}
-    made = http.post(DESIGNS, json={"name": "film", "steps": {"film": step}}, headers={"Prefer": "wait=60"})
-    design = settled(http, made.json()["id"])
+    response = http.post(
+        DESIGNS, json={"name": "film", "steps": {"film": step}}, headers={"Prefer": "wait=60"}
+    )
+    design = settled(http, response.json()["id"])
     monkeypatch.setattr(served.app.state.services.calculations, "submit", None)  # whoever calculates fails
     written = http.get(f"{DESIGNS}/{design['id']}/worksheet")
     assert written.status_code == 200

@@ -65,15 +65,15 @@ def of(raw, name):
 
 
 def test_a_power_law_through_a_step_and_relations_has_its_exponents():
-    found = of(with_shell("= idle.power_loss * 1 mm/W"), "inner_diameter")
-    assert {name: item.elasticity for name, item in found.items()} == pytest.approx(EXPONENTS, abs=1e-6)
-    sizes = [abs(item.elasticity) for item in found.values()]
+    slopes = of(with_shell("= idle.power_loss * 1 mm/W"), "inner_diameter")
+    assert {name: item.elasticity for name, item in slopes.items()} == pytest.approx(EXPONENTS, abs=1e-6)
+    sizes = [abs(item.elasticity) for item in slopes.values()]
     assert sizes == sorted(sizes, reverse=True)
     chain = asked(with_shell("= idle.power_loss * 1 mm/W"), "inner_diameter")
-    size, turns = chain.value.value, found["turns"]
+    size, turns = chain.value.value, slopes["turns"]
     assert turns.slope.unit == "mm/rpm"
     assert turns.slope.value == pytest.approx(2 * size / 1500, rel=1e-6)
-    viscosity = found["idle.dynamic_viscosity"]
+    viscosity = slopes["idle.dynamic_viscosity"]
     assert (viscosity.slope.unit, viscosity.slope.value) == (
         "mm/(mPa*s)",
         pytest.approx(size / 11.877, rel=1e-6),
@@ -81,25 +81,25 @@ def test_a_power_law_through_a_step_and_relations_has_its_exponents():
 
 
 def test_a_criterion_has_the_slopes_of_its_value_and_what_helps_its_margin():
-    found = of(PETROV, "loss")
-    moving = {name: item.elasticity for name, item in found.items() if name != "most"}
+    slopes = of(PETROV, "loss")
+    moving = {name: item.elasticity for name, item in slopes.items() if name != "most"}
     assert moving == pytest.approx(EXPONENTS, abs=1e-6)
-    assert {name for name, item in found.items() if item.helps == "increase"} == {"play", "most"}
-    assert {item.helps for name, item in found.items() if name not in ("play", "most")} == {"decrease"}
-    assert (found["most"].elasticity, found["most"].slope.value, found["most"].slope.unit) == (0, 0, "W/W")
+    assert {name for name, item in slopes.items() if item.helps == "increase"} == {"play", "most"}
+    assert {item.helps for name, item in slopes.items() if name not in ("play", "most")} == {"decrease"}
+    assert (slopes["most"].elasticity, slopes["most"].slope.value, slopes["most"].slope.unit) == (0, 0, "W/W")
 
 
 def test_a_place_that_does_not_matter_has_a_slope_of_zero():
-    found = of(with_shell("= max(bore, other)"), "inner_diameter")
-    assert found["bore"].elasticity == pytest.approx(1)
-    assert (found["other"].slope.value, found["other"].elasticity, found["other"].helps) == (0, 0, None)
+    slopes = of(with_shell("= max(bore, other)"), "inner_diameter")
+    assert slopes["bore"].elasticity == pytest.approx(1)
+    assert (slopes["other"].slope.value, slopes["other"].elasticity, slopes["other"].helps) == (0, 0, None)
 
 
 def test_a_value_of_zero_and_a_place_of_zero_have_no_elasticity():
-    found = of(with_shell("= bore + 2 * offset", offset="0 mm"), "inner_diameter")
-    assert found["bore"].elasticity == pytest.approx(1)
-    assert found["offset"].elasticity is None
-    assert found["offset"].slope.value == pytest.approx(2)
+    slopes = of(with_shell("= bore + 2 * offset", offset="0 mm"), "inner_diameter")
+    assert slopes["bore"].elasticity == pytest.approx(1)
+    assert slopes["offset"].elasticity is None
+    assert slopes["offset"].slope.value == pytest.approx(2)
     raw = copy.deepcopy(PETROV)
     raw["criteria"] = {"alike": {"require": "bore - same <= 1 mm"}}
     raw["parameters"]["same"] = "50 mm"
@@ -128,30 +128,30 @@ def test_a_place_at_the_end_of_its_range_has_the_slope_of_one_side():
     raw = copy.deepcopy(PETROV)
     raw["parameters"]["turns"] = "0 rpm"
     raw["criteria"] = {"force": {"require": "idle.friction_force <= 100 N"}}
-    found = of(raw, "force")["turns"]
-    assert found.elasticity is None
-    assert found.reason.startswith("below: ")
-    assert "0" in found.reason
+    slopes = of(raw, "force")["turns"]
+    assert slopes.elasticity is None
+    assert slopes.reason.startswith("below: ")
+    assert "0" in slopes.reason
     whole = copy.deepcopy(PETROV)
     whole["criteria"] = raw["criteria"]
     force = calculated(whole).value(ref("idle.friction_force"))
-    assert (found.slope.unit, found.slope.value) == ("N/rpm", pytest.approx(float(force) / 1500))
+    assert (slopes.slope.unit, slopes.slope.value) == ("N/rpm", pytest.approx(float(force) / 1500))
 
 
 def test_numbers_that_differences_cannot_tell_apart_have_a_reason():
     for least in ("4e-321 mm", "1e300 mm"):
         raw = with_shell("= bore + 0 * least", least=least)
-        found = of(raw, "inner_diameter")
-        assert found["bore"].elasticity == pytest.approx(1)
-        assert found["least"].slope is None or found["least"].slope.value == 0
+        slopes = of(raw, "inner_diameter")
+        assert slopes["bore"].elasticity == pytest.approx(1)
+        assert slopes["least"].slope is None or slopes["least"].slope.value == 0
     assert of(with_shell("= bore + least", least="5e-321 m"), "inner_diameter")["least"].reason
 
 
 def test_slopes_of_one_side_and_of_none():
     points = Local(np.array([1.0, 2.0]), np.array([0.1, 0.2]))
-    found = slopes_at(points, np.array([5.0, np.nan, 4.0, np.nan, np.nan]))
-    assert np.isnan(found.slopes[0])
-    assert found.slopes[1] == pytest.approx(5)
+    estimated = slopes_at(points, np.array([5.0, np.nan, 4.0, np.nan, np.nan]))
+    assert np.isnan(estimated.slopes[0])
+    assert estimated.slopes[1] == pytest.approx(5)
 
 
 def test_the_levels_are_those_of_the_design():
@@ -196,12 +196,12 @@ def test_what_acts_through_a_solid_has_a_reason_and_the_rest_has_slopes():
     assert not faults
     built = calculate(graph, measured, lambda *question: None)
     chain = asked(SHELL, "sleeve.inner_diameter", built)
-    found = {item.name: item for item in chain.sensitivities}
-    assert found.keys() == {"play", "bore", "shell.wall"}
-    assert (found["play"].slope.value, found["play"].reason) == (pytest.approx(100), None)
+    by_name = {item.name: item for item in chain.sensitivities}
+    assert by_name.keys() == {"play", "bore", "shell.wall"}
+    assert (by_name["play"].slope.value, by_name["play"].reason) == (pytest.approx(100), None)
     for name in ("bore", "shell.wall"):
-        assert found[name].slope is None
-        assert "solid of shell" in found[name].reason
+        assert by_name[name].slope is None
+        assert "solid of shell" in by_name[name].reason
 
 
 def test_a_value_that_waits_for_its_solid_has_no_slopes():
@@ -221,16 +221,16 @@ def test_expensive_rows_are_left_to_a_study(monkeypatch):
 def test_a_criterion_along_a_curve_has_the_slopes_of_its_worst_place():
     raw = copy.deepcopy(CURVES)
     raw["criteria"] = {"loads": {"require": "loads.main_load_x <= bore * 1 MN/m"}}
-    found = {item.name: item for item in asked(raw, "loads").sensitivities}
+    by_name = {item.name: item for item in asked(raw, "loads").sensitivities}
     where = int(np.argmax(calculated(raw).value(ref("loads.main_load_x"))))
     ends = []
     for bore in (85.9, 86.1):
         moved = {**raw, "parameters": {**raw["parameters"], "bore": f"{bore} mm"}}
         ends.append(calculated(moved).value(ref("loads.main_load_x"))[where])
-    assert found["bore"].slope.unit == "N/mm"
-    assert found["bore"].slope.value == pytest.approx((ends[1] - ends[0]) / 0.2, rel=1e-4)
-    assert found["loads.strokes"].slope is None
-    assert "whole number" in found["loads.strokes"].reason
+    assert by_name["bore"].slope.unit == "N/mm"
+    assert by_name["bore"].slope.value == pytest.approx((ends[1] - ends[0]) / 0.2, rel=1e-4)
+    assert by_name["loads.strokes"].slope is None
+    assert "whole number" in by_name["loads.strokes"].reason
 
 
 def test_too_many_values_are_left_to_a_study(monkeypatch):

@@ -82,13 +82,13 @@ def test_a_form_of_no_session_is_refused_in_one(team, browser):
     refused = browser.post("/designs", data={"name": "from elsewhere", "form_token": "guessed"})
     assert refused.status_code == 403
     page = browser.get("/designs")
-    made = browser.post("/designs", data={"name": "of this page", "form_token": token_of(page)})
-    assert made.status_code == 303, made.text
+    response = browser.post("/designs", data={"name": "of this page", "form_token": token_of(page)})
+    assert response.status_code == 303, response.text
 
 
 def test_a_session_does_no_more_than_its_key_and_ends_with_it(team, browser):
-    made, row = team.identity.add_key(team.principals["author"], scopes=["viewer"])
-    signed_in(browser, made.text)
+    key, row = team.identity.add_key(team.principals["author"], scopes=["viewer"])
+    signed_in(browser, key.text)
     assert browser.get("/designs").status_code == 200
     assert browser.post("/api/v1/designs", json={}).status_code == 403
     team.identity.revoke(row.prefix)

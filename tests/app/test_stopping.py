@@ -34,10 +34,10 @@ EVALUATE = f"{API}/templates/oil_film/versions/2/evaluate"
 
 def until(condition, seconds=PATIENCE):
     end = time.monotonic() + seconds
-    while not (found := condition()):
+    while not (answer := condition()):
         assert time.monotonic() < end, "waited too long"
         time.sleep(0.02)
-    return found
+    return answer
 
 
 class Stopping(ServerProcess):

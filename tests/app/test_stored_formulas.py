@@ -23,8 +23,8 @@ def templates():
 
 def stored(evaluation, **changed):
     """A step as the database holds it."""
-    made = record(evaluation.template)
-    answer = {**rendering.evaluation(evaluation), "relations": {}, "record": vars(made), **changed}
+    kept = record(evaluation.template)
+    answer = {**rendering.evaluation(evaluation), "relations": {}, "record": vars(kept), **changed}
     del answer["seconds"]
     return json.loads(to_json(answer))
 

@@ -33,8 +33,8 @@ class TestCatalogue:
 
     def test_pages(self, http):
         whole = http.get(f"{API}/templates").json()["items"]
-        found = list(pages(http, f"{API}/templates", 1, len(whole)))
-        assert found == whole
+        listed = list(pages(http, f"{API}/templates", 1, len(whole)))
+        assert listed == whole
 
     def test_versions(self, http):
         assert 1 in [item["version"] for item in http.get(f"{API}/templates/oil_film").json()["items"]]

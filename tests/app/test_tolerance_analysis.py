@@ -103,15 +103,15 @@ def test_the_yield_is_that_of_a_million_products(analysis):
     factors = [Factor("clearance", 55, 45, 65), Factor("load", 25, 24, 26)]
     random = film(scattered(factors, np.random.default_rng(5).random((1_000_000, 2))))
     exact = float((random >= 2.6).mean())
-    found = analysis[THICKNESS]["yield"]
+    estimated = analysis[THICKNESS]["yield"]
     noise = np.sqrt(exact * (1 - exact) / 1e6)
     assert 0.5 < exact < 0.99
-    assert abs(found["value"] - exact) <= 3 * np.hypot(found["standard_error"], noise)
-    assert found["standard_error"] <= 1e-3
-    low, high = found["with_model_error"]
-    assert low <= found["value"] <= high
+    assert abs(estimated["value"] - exact) <= 3 * np.hypot(estimated["standard_error"], noise)
+    assert estimated["standard_error"] <= 1e-3
+    low, high = estimated["with_model_error"]
+    assert low <= estimated["value"] <= high
     assert 0 < high - low < 0.01  # the error of level map is stated, and small
-    assert found["error_stated"]
+    assert estimated["error_stated"]
     quantiles = np.quantile(random, [0.00135, 0.5, 0.99865])
     stated = [analysis[THICKNESS]["quantiles"][share] for share in ("0.00135", "0.5", "0.99865")]
     assert stated == pytest.approx(quantiles.tolist(), rel=2e-3)

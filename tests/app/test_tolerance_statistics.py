@@ -104,10 +104,10 @@ def test_refused_rows_are_counted_and_left_out():
     def refusing(x):
         return np.where(x[:, :1] > 1.05, np.nan, x[:, :1] * np.ones((1, 2)))
 
-    found = worst(ABC, refusing, 1)
-    assert 0 < found.refused < found.rows
-    assert found.first_refused[0] > 1.05
-    low, high = found.ends[0]
+    extremes = worst(ABC, refusing, 1)
+    assert 0 < extremes.refused < extremes.rows
+    assert extremes.first_refused[0] > 1.05
+    low, high = extremes.ends[0]
     assert low.value == 0.9
     assert 1.0 <= high.value <= 1.05
 
@@ -142,20 +142,20 @@ def test_a_constant_output_has_no_shares():
 def test_the_yield_of_one_factor_is_its_distribution_function(distribution, seed):
     factor = Factor("x", 0.0, -1.0, 1.0, distribution)
     for limit in (-0.6, -0.1, 0.35):
-        found = scatter([factor], judging(lambda x: x[:, 0], limit), 16_384, seed).yields["k"]
+        sample = scatter([factor], judging(lambda x: x[:, 0], limit), 16_384, seed).yields["k"]
         exact = {
             "normal": stats.truncnorm(-3, 3).sf(3 * limit),
             "uniform": (1 - limit) / 2,
             "triangular": stats.triang(0.5, -1, 2).sf(limit),
         }[distribution]
-        assert abs(found.value - exact) <= 3 * found.standard_error
-        assert found.standard_error <= 5e-4
+        assert abs(sample.value - exact) <= 3 * sample.standard_error
+        assert sample.standard_error <= 5e-4
 
 
 def test_scatter_of_a_linear_function_has_its_mean_deviation_and_normal_quantiles():
     factors = [Factor(f"x{n}", 1.0, 0.0, 2.0) for n in range(4)]
-    found = scatter(factors, lambda x: Rows(x.sum(axis=1, keepdims=True), {}, {}), 16_384, 1)
-    [spread] = found.spreads
+    sample = scatter(factors, lambda x: Rows(x.sum(axis=1, keepdims=True), {}, {}), 16_384, 1)
+    [spread] = sample.spreads
     deviation = 2 * np.sqrt(VARIANCE["normal"])
     assert spread.mean == pytest.approx(4, abs=1e-3)
     assert spread.deviation == pytest.approx(deviation, rel=2e-3)
@@ -167,9 +167,9 @@ def test_scatter_of_a_linear_function_has_its_mean_deviation_and_normal_quantile
 
 def test_the_model_error_stands_beside_the_yield():
     factor = Factor("x", 0.0, -1.0, 1.0, "uniform")
-    found = scatter([factor], judging(lambda x: x[:, 0], 0.2, error=0.1), 16_384, 1).yields["k"]
-    assert found.value == pytest.approx(0.4, abs=1e-3)
-    assert found.with_model_error == pytest.approx((0.35, 0.45), abs=1e-3)
+    sample = scatter([factor], judging(lambda x: x[:, 0], 0.2, error=0.1), 16_384, 1).yields["k"]
+    assert sample.value == pytest.approx(0.4, abs=1e-3)
+    assert sample.with_model_error == pytest.approx((0.35, 0.45), abs=1e-3)
     exact = scatter([factor], judging(lambda x: x[:, 0], 0.2), 16_384, 1).yields["k"]
     assert exact.with_model_error == (exact.value, exact.value)
 
@@ -182,15 +182,15 @@ def test_a_refused_row_meets_nothing():
         codes = np.select([np.isnan(value), value >= 0], [NOT_CHECKED, MET], NOT_MET)
         return Rows(value[:, np.newaxis], {"k": codes}, {"k": value})
 
-    found = scatter([factor], judged, 16_384, 1)
-    assert found.yields["k"].value == pytest.approx(0.25, abs=1e-3)
-    assert found.yields["k"].with_model_error == pytest.approx((0.25, 0.25), abs=1e-3)
-    assert found.refused == pytest.approx(4096, abs=20)
+    sample = scatter([factor], judged, 16_384, 1)
+    assert sample.yields["k"].value == pytest.approx(0.25, abs=1e-3)
+    assert sample.yields["k"].with_model_error == pytest.approx((0.25, 0.25), abs=1e-3)
+    assert sample.refused == pytest.approx(4096, abs=20)
 
 
 def test_a_yield_of_one_has_a_standard_error_of_a_row():
-    found = scatter(ABC, judging(linear, 0.0), 4096, 1).yields["k"]
-    assert (found.value, found.standard_error) == (1.0, 1 / 4096)
+    sample = scatter(ABC, judging(linear, 0.0), 4096, 1).yields["k"]
+    assert (sample.value, sample.standard_error) == (1.0, 1 / 4096)
 
 
 def test_the_same_seed_gives_the_same_scatter_and_another_one_another():
@@ -201,26 +201,26 @@ def test_the_same_seed_gives_the_same_scatter_and_another_one_another():
 
 
 def test_shares_of_a_linear_function_are_its_variances():
-    [found] = shares(ABC, one(linear), 2048, 1).outputs
+    [output] = shares(ABC, one(linear), 2048, 1).outputs
     parts = np.array([9 * variance(A), 4 * variance(B), variance(C)])
-    for share, exact in zip(found.shares, parts / parts.sum(), strict=True):
+    for share, exact in zip(output.shares, parts / parts.sum(), strict=True):
         assert abs(share.first - exact) <= 4 * share.first_error + 1e-12
         assert abs(share.total - exact) <= 4 * share.total_error + 1e-12
         assert share.first_error <= 0.01
-    assert abs(found.sum - 1) <= 3 * found.sum_error
+    assert abs(output.sum - 1) <= 3 * output.sum_error
 
 
 def test_shares_of_a_product_have_what_two_values_do_together():
     factors = [Factor("a", 1.0, -1.0, 3.0, "uniform"), Factor("b", 1.0, -1.0, 3.0, "uniform"), C]
-    [found] = shares(factors, one(lambda x: x[:, 0] * x[:, 1]), 8192, 1).outputs
+    [output] = shares(factors, one(lambda x: x[:, 0] * x[:, 1]), 8192, 1).outputs
     alone = variance(factors[0])  # mean 1, so the variance of a b is 2 v + v²
     exact = alone / (2 * alone + alone**2)
-    for share in found.shares[:2]:
+    for share in output.shares[:2]:
         assert abs(share.first - exact) <= 4 * share.first_error
         assert abs(share.total - (1 - exact)) <= 4 * share.total_error
-    assert found.shares[2].first == found.shares[2].total == 0
-    assert abs(found.sum - 2 * exact) <= 4 * found.sum_error
-    assert found.sum < 1 - 3 * found.sum_error
+    assert output.shares[2].first == output.shares[2].total == 0
+    assert abs(output.sum - 2 * exact) <= 4 * output.sum_error
+    assert output.sum < 1 - 3 * output.sum_error
 
 
 def test_ishigamis_shares_are_those_published():
@@ -230,9 +230,9 @@ def test_ishigamis_shares_are_those_published():
     def ishigami(x):
         return np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
 
-    [found] = shares(factors, one(ishigami), 16_384, 1).outputs
-    assert [s.first for s in found.shares] == pytest.approx([0.3139, 0.4424, 0.0], abs=0.01)
-    assert [s.total for s in found.shares] == pytest.approx([0.5576, 0.4424, 0.2437], abs=0.01)
+    [share] = shares(factors, one(ishigami), 16_384, 1).outputs
+    assert [s.first for s in share.shares] == pytest.approx([0.3139, 0.4424, 0.0], abs=0.01)
+    assert [s.total for s in share.shares] == pytest.approx([0.5576, 0.4424, 0.2437], abs=0.01)
 
 
 @given(
@@ -251,10 +251,10 @@ def test_first_shares_sum_to_at_most_one(terms, seed):
         parts = [a * x[:, n] + b * x[:, n] ** 2 * x[:, n - 1] for n, (a, b, _) in enumerate(terms)]
         return np.sum(parts, axis=0)
 
-    [found] = shares(factors, one(function), 2048, seed).outputs
-    if found is not None:
-        assert found.sum <= 1 + 5 * found.sum_error + 1e-9
-        for share in found.shares:
+    [output] = shares(factors, one(function), 2048, seed).outputs
+    if output is not None:
+        assert output.sum <= 1 + 5 * output.sum_error + 1e-9
+        for share in output.shares:
             assert share.first <= share.total + 5 * np.hypot(share.first_error, share.total_error) + 1e-9
 
 
@@ -271,12 +271,12 @@ def test_further_points_are_sampled_until_the_standard_error_is_as_aimed():
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("limit", [6.2, 6.6, 7.0, 7.5])
 def test_yields_are_those_of_a_million_random_products(limit, seed):
-    found = scatter(ABC, judging(linear, limit), 16_384, seed, most=131_072).yields["k"]
+    sample = scatter(ABC, judging(linear, limit), 16_384, seed, most=131_072).yields["k"]
     random = scattered(ABC, np.random.default_rng(2).random((1_000_000, 3)))
     exact = float((linear(random) >= limit).mean())
     noise = np.sqrt(exact * (1 - exact) / 1e6)
-    assert abs(found.value - exact) <= 3 * np.hypot(found.standard_error, noise)
-    assert found.standard_error <= 5e-4
+    assert abs(sample.value - exact) <= 3 * np.hypot(sample.standard_error, noise)
+    assert sample.standard_error <= 5e-4
 
 
 def test_eight_scramblings_differ():

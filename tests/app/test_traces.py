@@ -33,12 +33,12 @@ def spans(collector, tmp_path_factory):
     own = folder_of_models(folder)
     settings = Settings(data=folder / "data", template_folders=(own / "own",), traces_url=url, wait_seconds=0)
     with serving(settings) as server, httpx.Client(base_url=server.url, timeout=PATIENCE) as http:
-        made = http.post(f"{API}/designs", json=moody(), headers={"Prefer": "wait=60"})
+        response = http.post(f"{API}/designs", json=moody(), headers={"Prefer": "wait=60"})
         changed = http.patch(
-            made.headers["Location"],
+            response.headers["Location"],
             json={"model": {"parameters": {"size": "11 mm"}}},
             headers={
-                "If-Match": made.headers["ETag"],
+                "If-Match": response.headers["ETag"],
                 "Content-Type": "application/merge-patch+json",
                 "Prefer": "wait=60",
                 "traceparent": CALLER,

@@ -244,7 +244,7 @@ class TestNoScan:
             about = [(sql, values) for sql, values in asked if "job" in sql and not sql.startswith("INSERT")]
             with database._writer.engine.connect() as connection:
                 rows = [connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {q}", v).all() for q, v in about]
-            return [(about[place][0], row[3]) for place, found in enumerate(rows) for row in found]
+            return [(about[place][0], row[3]) for place, steps in enumerate(rows) for row in steps]
 
         return plans
 

@@ -110,7 +110,7 @@ def test_what_nobody_limited_is_never_met(mains):
 def test_paper_design_by_hand():
     """The paper prints 3.2449 um; the stated error of its fit decides how far that carries."""
     inputs = built_in().get("oil_film", 1).example
-    found = verdicts(
+    judged = verdicts(
         {
             "name": "435 cc main bearing",
             "steps": {"film": {"template": "oil_film", "version": 1, "inputs": dict(inputs)}},
@@ -121,10 +121,10 @@ def test_paper_design_by_hand():
             },
         }
     )
-    far = found["far"]
+    far = judged["far"]
     assert far.value == pytest.approx(3.2449, abs=5e-4)
     low, high = far.value / (1 + far.relative_error), far.value / (1 - far.relative_error)
     assert far.band == pytest.approx((low, high if far.relative_error < 1 else math.inf))
-    assert found["near"].verdict == "undecided", "the limit is the printed value itself"
+    assert judged["near"].verdict == "undecided", "the limit is the printed value itself"
     assert far.verdict == ("met" if low >= 1 else "undecided")
-    assert found["above"].verdict == "not_met"
+    assert judged["above"].verdict == "not_met"

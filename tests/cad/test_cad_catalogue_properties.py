@@ -89,11 +89,11 @@ def test_model_is_made_again_from_the_text_in_its_file(model: type[CadModel], ex
 @pytest.fixture(scope="session")
 def elsewhere() -> dict[str, str]:
     """The hashes of all models' examples, built in another process."""
-    found = list(models())
-    builds = [[cls.id, cls.version, cls.from_quantities(cls.example).inputs_si()] for cls in found]
+    classes = list(models())
+    builds = [[cls.id, cls.version, cls.from_quantities(cls.example).inputs_si()] for cls in classes]
     command = [sys.executable, "-c", IN_ANOTHER_PROCESS]
     done = subprocess.run(command, input=json.dumps(builds), capture_output=True, text=True, check=True)
-    return dict(zip((f"{cls.id}_v{cls.version}" for cls in found), done.stdout.split(), strict=True))
+    return dict(zip((f"{cls.id}_v{cls.version}" for cls in classes), done.stdout.split(), strict=True))
 
 
 def test_bytes_are_the_same_in_another_process(

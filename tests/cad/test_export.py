@@ -17,12 +17,12 @@ STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", 
 
 
 @pytest.fixture(scope="session")
-def made(example: Build) -> dict[str, bytes]:
+def files(example: Build) -> dict[str, bytes]:
     return {kind: derive(example.step, kind) for kind in DERIVED}
 
 
-def test_every_kind_has_a_media_type(made: dict[str, bytes]) -> None:
-    assert set(MEDIA_TYPES) == {"step", *made}
+def test_every_kind_has_a_media_type(files: dict[str, bytes]) -> None:
+    assert set(MEDIA_TYPES) == {"step", *files}
 
 
 def test_unknown_kind_is_refused(example: Build) -> None:
@@ -30,29 +30,29 @@ def test_unknown_kind_is_refused(example: Build) -> None:
         derive(example.step, "exe")
 
 
-def test_derived_files_are_the_same_each_time(example: Build, made: dict[str, bytes]) -> None:
+def test_derived_files_are_the_same_each_time(example: Build, files: dict[str, bytes]) -> None:
     assert {kind: derive(example.step, kind) for kind in ("glb", "stl", "svg")} == {
-        kind: made[kind] for kind in ("glb", "stl", "svg")
+        kind: files[kind] for kind in ("glb", "stl", "svg")
     }
 
 
-def test_stl_encloses_the_volume(example: Build, made: dict[str, bytes]) -> None:
-    triangles = np.frombuffer(made["stl"], STL, offset=84)
-    assert struct.unpack_from("<I", made["stl"], 80) == (len(triangles),)
+def test_stl_encloses_the_volume(example: Build, files: dict[str, bytes]) -> None:
+    triangles = np.frombuffer(files["stl"], STL, offset=84)
+    assert struct.unpack_from("<I", files["stl"], 80) == (len(triangles),)
     a, b, c = triangles["corners"].astype(float).transpose(1, 0, 2)
     volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6  # divergence theorem
     assert volume == pytest.approx(example.measures["volume"], rel=0.01)
 
 
-def test_stl_is_closed(made: dict[str, bytes]) -> None:
-    triangles = np.frombuffer(made["stl"], STL, offset=84)
+def test_stl_is_closed(files: dict[str, bytes]) -> None:
+    triangles = np.frombuffer(files["stl"], STL, offset=84)
     a, b, c = triangles["corners"].astype(float).transpose(1, 0, 2)
     areas = np.cross(b - a, c - a) / 2
     assert np.abs(areas.sum(axis=0)).max() < 1e-5 * np.linalg.norm(areas, axis=1).sum()
 
 
-def test_glb_is_a_scene_in_metres(example: Build, made: dict[str, bytes]) -> None:
-    data = made["glb"]
+def test_glb_is_a_scene_in_metres(example: Build, files: dict[str, bytes]) -> None:
+    data = files["glb"]
     magic, version, length, json_length, kind = struct.unpack_from("<4sIII4s", data)
     content = json.loads(data[20 : 20 + json_length])
     assert (magic, version, length, kind) == (b"glTF", 2, len(data), b"JSON")
@@ -78,18 +78,18 @@ def test_normals_point_outwards(example: Build) -> None:
         )
 
 
-def test_svg_is_a_drawing_true_to_scale(made: dict[str, bytes]) -> None:
-    root = ElementTree.fromstring(made["svg"])
+def test_svg_is_a_drawing_true_to_scale(files: dict[str, bytes]) -> None:
+    root = ElementTree.fromstring(files["svg"])
     _, _, width, _ = map(float, root.attrib["viewBox"].split())
     paths = root.findall(".//{http://www.w3.org/2000/svg}path")
     assert root.attrib["width"].endswith("mm")
     assert float(root.attrib["width"].removesuffix("mm")) == pytest.approx(width, rel=1e-3)
     assert all(len(path.attrib["d"]) > 100 for path in paths)
-    assert "nan" not in made["svg"].decode()
+    assert "nan" not in files["svg"].decode()
 
 
-def test_png_is_a_picture(made: dict[str, bytes]) -> None:
-    picture = np.asarray(Image.open(io.BytesIO(made["png"])).convert("RGB"), dtype=int)
+def test_png_is_a_picture(files: dict[str, bytes]) -> None:
+    picture = np.asarray(Image.open(io.BytesIO(files["png"])).convert("RGB"), dtype=int)
     painted = (picture != 255).any(axis=2)
     assert picture.shape == (480, 640, 3)
     assert 0.1 < painted.mean() < 0.9

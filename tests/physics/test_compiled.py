@@ -25,9 +25,9 @@ def load(tmp_path, monkeypatch):
 
     def module():
         spec = importlib.util.spec_from_file_location("doubling", path)
-        made = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(made)
-        return made
+        fresh = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(fresh)
+        return fresh
 
     return module
 

@@ -54,10 +54,10 @@ def test_analytic_rod_swings_by_the_angle_of_the_crank_triangle():
 
 def test_analytic_even_turning_is_whole_turns_or_none():
     angle = np.radians(np.arange(0, 720, 10.0))
-    found = turning(angle, 4 * np.pi, np.array([[1.0], [-1.0], [0.5], [0.3]]) * np.ones(angle.size))
-    assert found.turns[:3].tolist() == [2, -2, 1]
-    assert np.isnan(found.turns[3])
-    assert found.at(angle, found.swing)[0] == pytest.approx(angle)
+    motion = turning(angle, 4 * np.pi, np.array([[1.0], [-1.0], [0.5], [0.3]]) * np.ones(angle.size))
+    assert motion.turns[:3].tolist() == [2, -2, 1]
+    assert np.isnan(motion.turns[3])
+    assert motion.at(angle, motion.swing)[0] == pytest.approx(angle)
 
 
 def test_analytic_share_of_the_sector_about_the_load():

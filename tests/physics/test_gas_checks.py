@@ -100,8 +100,8 @@ class TestPressure:
         step = angle[1] - angle[0]
         theta = np.array([0.5, 0.5 + 0.25 * step, 0.5 - 0.25 * step, angle[3] + 8 * np.pi])
         expected = np.array([p[0], 0.75 * p[0] + 0.25 * p[1], 0.75 * p[0] + 0.25 * p[-1], p[3]])
-        found = gas.pressure(theta, np.zeros(4))
-        assert found == pytest.approx(np.stack([expected, 2 * expected]))
+        pressure = gas.pressure(theta, np.zeros(4))
+        assert pressure == pytest.approx(np.stack([expected, 2 * expected]))
 
     def test_a_table_without_angles_has_equal_steps(self):
         p = np.arange(10.0)

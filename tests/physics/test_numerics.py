@@ -39,14 +39,14 @@ class Counted:
 class TestRoots:
     def test_many_roots_at_once(self):
         cubes = np.array([1e-9, 0.3, 1.0, 2.0, 900.0])
-        found = bracketed_root(lambda x: x**3 - cubes, np.zeros(5), np.full(5, 10.0))
-        assert found == pytest.approx(np.cbrt(cubes), rel=1e-14)
+        roots = bracketed_root(lambda x: x**3 - cubes, np.zeros(5), np.full(5, 10.0))
+        assert roots == pytest.approx(np.cbrt(cubes), rel=1e-14)
 
     def test_a_root_at_either_end_and_none(self):
         low, high = np.array([0.0, -1.0, 1.0]), np.array([1.0, 0.0, 2.0])
-        found = bracketed_root(lambda x: x, low, high)
-        assert found[:2] == pytest.approx([0, 0], abs=1e-300)
-        assert np.isnan(found[2])
+        roots = bracketed_root(lambda x: x, low, high)
+        assert roots[:2] == pytest.approx([0, 0], abs=1e-300)
+        assert np.isnan(roots[2])
 
     def test_an_inverse_parabola_is_met_at_once(self):
         """x = (f + 1.2)² - 1: two ends, a bisection, the parabola through the three, and its check."""
@@ -71,8 +71,8 @@ class TestRoots:
         assert loose.calls < tight.calls
 
     def test_a_step_is_found_by_halving(self):
-        found = bracketed_root(lambda x: np.where(x < 1 / 3, -1.0, 1.0), np.array([0.0]), np.array([1.0]))
-        assert found == pytest.approx(1 / 3, rel=1e-14)
+        root = bracketed_root(lambda x: np.where(x < 1 / 3, -1.0, 1.0), np.array([0.0]), np.array([1.0]))
+        assert root == pytest.approx(1 / 3, rel=1e-14)
 
 
 class TestSplines:
@@ -178,14 +178,14 @@ class TestPeriodicSteps:
 class TestEccentricity:
     def test_it_inverts_the_load(self):
         eps, ratio = np.array([1e-9, 0.2, 0.5, 0.99, 1 - 1e-6]), np.array([[0.1], [2.0]])
-        found = eccentricity(load_Ocvirk_1952, load_Ocvirk_1952(eps, ratio), ratio)
-        assert found == pytest.approx(np.broadcast_to(eps, (2, 5)), rel=1e-9)
+        inverse = eccentricity(load_Ocvirk_1952, load_Ocvirk_1952(eps, ratio), ratio)
+        assert inverse == pytest.approx(np.broadcast_to(eps, (2, 5)), rel=1e-9)
 
     def test_no_load_and_more_than_the_film_bears(self):
         most = load_Ocvirk_1952(np.asarray(ECCENTRICITY_LIMIT), np.asarray(1.0))
-        found = eccentricity(load_Ocvirk_1952, np.array([0.0, most * 1.01]), np.asarray(1.0))
-        assert found[0] == 0
-        assert np.isnan(found[1])
+        positions = eccentricity(load_Ocvirk_1952, np.array([0.0, most * 1.01]), np.asarray(1.0))
+        assert positions[0] == 0
+        assert np.isnan(positions[1])
 
     @pytest.mark.parametrize("load", [-1.0, np.nan, np.inf])
     def test_a_load_that_is_none_is_refused(self, load):

@@ -168,9 +168,9 @@ class TestPadMeshes:
 class TestRegimes:
     def test_film_over_the_composite_roughness(self):
         h, R = np.array([1e-6, 2e-6, 1e-6]), np.array([3e-7, 0.0, 0.0])
-        found = film_parameter(h, R, np.array([4e-7, 5e-7, 0.0]))
-        assert found[:2] == pytest.approx([2, 4])
-        assert np.isnan(found[2])
+        ratios = film_parameter(h, R, np.array([4e-7, 5e-7, 0.0]))
+        assert ratios[:2] == pytest.approx([2, 4])
+        assert np.isnan(ratios[2])
 
     def test_literature_limits_of_the_regimes(self):
         """Hamrock 2004, section 1.3: boundary below 1, mixed to 3."""

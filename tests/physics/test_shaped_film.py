@@ -21,8 +21,8 @@ TABLE = Path(__file__).parents[1] / "references/lund_thomsen_1978_elliptical.csv
 
 def placed(loaded):
     """Displacement extrapolated from two meshes, and the finer film."""
-    found = balance(loaded)
-    return found.at_fine.e + (found.at_fine.e - found.at_coarse.e) / 3, found.fine
+    balanced = balance(loaded)
+    return balanced.at_fine.e + (balanced.at_fine.e - balanced.at_coarse.e) / 3, balanced.fine
 
 
 class TestGap:

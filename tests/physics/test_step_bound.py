@@ -21,17 +21,17 @@ def test_analytic_vertex_across_the_end_of_the_cycle() -> None:
     place = np.linspace(0, 2 * np.pi, 48, endpoint=False)
     for vertex in (0.03, 6.25, 3.0):
         gap = 1 - 0.9 * np.cos(place - vertex)
-        found = least_between(place, 2 * np.pi, gap[None])
-        assert found == pytest.approx([0.1], rel=1e-3)
-        assert found < gap.min()
+        least = least_between(place, 2 * np.pi, gap[None])
+        assert least == pytest.approx([0.1], rel=1e-3)
+        assert least < gap.min()
 
 
 def test_property_never_above_the_lowest_node_nor_at_the_wall() -> None:
     rng = np.random.default_rng(3)
     gap = 10.0 ** rng.uniform(-6, 0, (200, 40))
-    found = least_between(np.sort(rng.random(40)), 1.0, gap)
-    assert (found <= gap.min(axis=-1)).all()
-    assert (found >= gap.min(axis=-1) / 2).all()
+    least = least_between(np.sort(rng.random(40)), 1.0, gap)
+    assert (least <= gap.min(axis=-1)).all()
+    assert (least >= gap.min(axis=-1) / 2).all()
 
 
 @pytest.mark.parametrize(

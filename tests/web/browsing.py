@@ -132,10 +132,10 @@ def from_example(http, template: str) -> str:
     id, _, version = template.partition("/")
     example = http.get(f"{API}/templates/{id}/versions/{version}").json()["example"]
     step = {"template": id, "version": int(version), "inputs": example}
-    made = http.post(
+    response = http.post(
         f"{API}/designs", json={"name": "own", "steps": {id: step}}, headers={"Prefer": "wait=30"}
     )
-    return f"/designs/{made.json()['id']}"
+    return f"/designs/{response.json()['id']}"
 
 
 def settled(http, place: str) -> dict:

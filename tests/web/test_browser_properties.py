@@ -82,10 +82,10 @@ def test_pages_have_no_serious_fault_of_accessibility(watched, kinds, is_all):
     design, template, model = kinds[2], *kinds[5:]
     for path in (*kinds, "/nowhere") if is_all else (design, template, model):
         watched.open(path, wait_until="networkidle")
-        found = Axe().run(watched.page).response["violations"]
+        violations = Axe().run(watched.page).response["violations"]
         serious = [
             (fault["id"], [node["target"] for node in fault["nodes"]][:3])
-            for fault in found
+            for fault in violations
             if fault["impact"] in SERIOUS
         ]
         assert serious == [], path

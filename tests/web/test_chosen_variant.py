@@ -22,8 +22,8 @@ def engine(served):
     with httpx.Client(base_url=served.url, timeout=90, trust_env=False) as http:
         criteria = {"light": {"require": "loads.main_load_x <= 1 GN"}}
         document = {"name": "engine", "parameters": PARAMETERS, "steps": {"loads": LOADS}}
-        made = created(http, {**document, "variants": VARIANTS, "criteria": criteria})
-    return f"/designs/{made['id']}"
+        design = created(http, {**document, "variants": VARIANTS, "criteria": criteria})
+    return f"/designs/{design['id']}"
 
 
 def shown(http, engine, name):

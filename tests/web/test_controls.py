@@ -25,9 +25,9 @@ def awkward(http):
         "parameters": {name: f"{place} mm" for place, name in enumerate(NAMES, 1)},
         "steps": {"awkward": {"template": "awkward", "version": 1, "inputs": inputs}},
     }
-    made = http.post("/api/v1/designs", json=document, headers=HEADERS)
-    assert made.status_code == 201, made.text
-    return f"/designs/{made.json()['id']}"
+    response = http.post("/api/v1/designs", json=document, headers=HEADERS)
+    assert response.status_code == 201, response.text
+    return f"/designs/{response.json()['id']}"
 
 
 def save(page, revision):

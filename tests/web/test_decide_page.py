@@ -21,8 +21,8 @@ def undecided(http):
     limit = film["value"] * (1 + answer["error"]["minimum_film_thickness"] / 2)
     criteria = {"thick_enough": {"require": f"film.minimum_film_thickness >= {limit} {film['unit']}"}}
     document = {"name": "near", "steps": {"film": step}, "criteria": criteria}
-    made = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"}).json()
-    return f"/designs/{made['id']}"
+    design = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"}).json()
+    return f"/designs/{design['id']}"
 
 
 def test_decide_decides_what_it_can_and_says_what_it_took(watched, undecided, http):

@@ -103,9 +103,9 @@ def throw(http):
     """The path of a design with a shell, and with a crank throw that nothing sets yet."""
     shell = {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "48 mm", "width": "18 mm"}}
     document = {"name": "throw", "models": {"throw": {"id": "crank_throw", "version": 1}, "shell": shell}}
-    made = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"})
-    assert made.status_code in (201, 202), made.text
-    return f"/designs/{made.json()['id']}"
+    response = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"})
+    assert response.status_code in (201, 202), response.text
+    return f"/designs/{response.json()['id']}"
 
 
 def test_analyses_and_iterations_are_added_changed_and_removed_without_json(watched, http, throw):

@@ -42,8 +42,8 @@ def drawn(page):
 
 def serious(page):
     """What a check of accessibility finds that shuts somebody out."""
-    found = Axe().run(page).response["violations"]
-    return [(fault["id"], fault["nodes"][0]["target"]) for fault in found if fault["impact"] in SERIOUS]
+    violations = Axe().run(page).response["violations"]
+    return [(fault["id"], fault["nodes"][0]["target"]) for fault in violations if fault["impact"] in SERIOUS]
 
 
 def asked(http, kind="torsion", **more):
@@ -173,8 +173,8 @@ def test_a_design_is_analysed_as_it_declares(watched, http):
         "parameters": {"twice": "= 2 * throw.torsion.stiffness"},
         "models": {"throw": {"id": "crank_throw", "version": 1, "parameters": wider, "analyses": analyses}},
     }
-    made = http.post(f"{API}/designs", json=document, headers={"Accept": "*/*"}).json()
-    place = f"/designs/{made['id']}"
+    design = http.post(f"{API}/designs", json=document, headers={"Accept": "*/*"}).json()
+    place = f"/designs/{design['id']}"
     assert settled(http, place)["state"] == "current"
     page = watched.page
     watched.open(place)

@@ -20,9 +20,9 @@ def shell(http):
         "steps": {"film": step},
         "model": {"id": "plain_bearing", "version": 1, "parameters": {"inner_diameter": "48 mm"}},
     }
-    made = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"}).json()
-    settled(http, f"/designs/{made['id']}")
-    return f"/designs/{made['id']}"
+    design = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"}).json()
+    settled(http, f"/designs/{design['id']}")
+    return f"/designs/{design['id']}"
 
 
 def test_a_verdict_leads_to_value_and_limit_and_who_gave_it(watched, shell):

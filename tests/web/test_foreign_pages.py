@@ -188,8 +188,8 @@ def test_the_documentation_works_under_its_policy(watched, http):
     expect(call.locator(".live-responses-table .response-col_status").last).to_contain_text(
         "201", timeout=PATIENCE
     )
-    made = http.get(f"{API}/designs?limit=1").json()["items"][0]["id"]
-    settled(http, f"/designs/{made}")
+    design_id = http.get(f"{API}/designs?limit=1").json()["items"][0]["id"]
+    settled(http, f"/designs/{design_id}")
     assert watched.faults() == []
 
 

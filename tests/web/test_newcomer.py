@@ -185,9 +185,9 @@ def test_the_back_button_and_deep_links(watched):
 
 @pytest.mark.slow
 def test_long_work_shows_its_progress_and_can_be_cancelled(watched, http):
-    made = http.post("/api/v1/designs", json=moody(), headers={"Prefer": "wait=60"}).json()
+    design = http.post("/api/v1/designs", json=moody(), headers={"Prefer": "wait=60"}).json()
     page = watched.page
-    watched.open(f"/designs/{made['id']}")
+    watched.open(f"/designs/{design['id']}")
     expect(page.locator(".solid .js-plotly-plot")).to_be_visible(timeout=PATIENCE)
     page.get_by_label("Mood").select_option("loops")
     page.get_by_role("button", name=re.compile("Save as revision")).click()

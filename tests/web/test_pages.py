@@ -75,13 +75,13 @@ def test_the_design_page_shows_formulas_with_numbers_and_results(http, paper):
 
 def test_what_a_user_typed_is_shown_as_text_and_never_as_markup(http):
     document = {"name": HOSTILE, "parameters": {"scale": "1"}}
-    made = http.post("/api/v1/designs", json=document).json()
-    for path in ("/", "/designs", f"/designs/{made['id']}", f"/designs/{made['id']}/revisions/1"):
+    design = http.post("/api/v1/designs", json=document).json()
+    for path in ("/", "/designs", f"/designs/{design['id']}", f"/designs/{design['id']}/revisions/1"):
         page = http.get(path).text
         assert HOSTILE not in page
         assert "&lt;script&gt;" in page
     typed = {"revision": "1", "was": "{}", ".scale": HOSTILE, "note": HOSTILE}
-    refused = http.post(f"/designs/{made['id']}", data=typed)
+    refused = http.post(f"/designs/{design['id']}", data=typed)
     assert refused.status_code == 422
     assert "<script>alert" not in refused.text
 

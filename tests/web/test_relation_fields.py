@@ -156,17 +156,17 @@ def test_a_narrow_page_scrolls_the_drawing_inside_its_panel(browser, served, pap
     box = page.locator(LIST).bounding_box()
     assert box["x"] >= 0
     assert box["x"] + box["width"] <= 390
-    found = Axe().run(page, options={"runOnly": ["wcag2a", "wcag2aa"]}).response["violations"]
-    assert [(rule["id"], [node["target"] for node in rule["nodes"]]) for rule in found] == []
+    violations = Axe().run(page, options={"runOnly": ["wcag2a", "wcag2aa"]}).response["violations"]
+    assert [(rule["id"], [node["target"] for node in rule["nodes"]]) for rule in violations] == []
     bore.press("Alt+ArrowDown")
     box = page.locator("[data-picker]").bounding_box()
     assert box["x"] + box["width"] <= 390
-    found = Axe().run(page, options={"runOnly": ["wcag2a", "wcag2aa"]}).response["violations"]
-    assert [(rule["id"], [node["target"] for node in rule["nodes"]]) for rule in found] == []
+    violations = Axe().run(page, options={"runOnly": ["wcag2a", "wcag2aa"]}).response["violations"]
+    assert [(rule["id"], [node["target"] for node in rule["nodes"]]) for rule in violations] == []
     context.close()
 
 
 def test_a_design_without_relations_has_no_drawing(http):
-    made = http.post(f"{API}/designs", json={"name": "alone", "parameters": {"scale": "1"}}).json()
-    settled(http, f"/designs/{made['id']}")
-    assert "data-drives" not in http.get(f"/designs/{made['id']}").text
+    design = http.post(f"{API}/designs", json={"name": "alone", "parameters": {"scale": "1"}}).json()
+    settled(http, f"/designs/{design['id']}")
+    assert "data-drives" not in http.get(f"/designs/{design['id']}").text

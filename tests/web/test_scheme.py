@@ -52,5 +52,5 @@ def test_the_dark_scheme_can_be_chosen_and_a_report_stays_white(watched, http):
 def test_dark_pages_have_enough_contrast(dark, served, http):
     for path in (from_example(http, "oil_film/2"), "/templates/oil_film/1"):
         dark.goto(served.url + path, wait_until="networkidle")
-        found = Axe().run(dark, options={"runOnly": ["color-contrast"]}).response["violations"]
-        assert [node["target"] for rule in found for node in rule["nodes"]] == [], path
+        violations = Axe().run(dark, options={"runOnly": ["color-contrast"]}).response["violations"]
+        assert [node["target"] for rule in violations for node in rule["nodes"]] == [], path

@@ -19,8 +19,8 @@ def bearing(http):
     step = {"template": "oil_film", "version": 2, "level": "map", "inputs": inputs}
     criteria = {"thick_enough": {"require": f"{FILM} >= 2.6 um"}}
     document = {"name": "studied", "steps": {"film": step}, "criteria": criteria}
-    made = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"})
-    return f"/designs/{made.json()['id']}"
+    response = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"})
+    return f"/designs/{response.json()['id']}"
 
 
 @pytest.fixture

@@ -17,8 +17,8 @@ def design(http, **changes):
     step = {"template": "oil_film", "version": 2, "level": "map", "inputs": inputs}
     criteria = {"thick_enough": {"require": f"{FILM} >= 2.6 um"}}
     document = {"name": "toleranced", "steps": {"film": step}, "criteria": criteria}
-    made = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"}).json()
-    return f"/designs/{made['id']}"
+    answer = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"}).json()
+    return f"/designs/{answer['id']}"
 
 
 @pytest.fixture

@@ -63,8 +63,8 @@ def two_steps(http):
             "parameters": {"inner_diameter": "= film.bearing_diameter"},
         },
     }
-    made = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"}).json()
-    place = f"/designs/{made['id']}"
+    design = http.post(f"{API}/designs", json=document, headers={"Prefer": "wait=30"}).json()
+    place = f"/designs/{design['id']}"
     settled(http, place)
     return place
 

@@ -187,8 +187,8 @@ def test_the_pages_are_accessible_wide_and_narrow_light_and_dark(browser, served
         if path == place:
             expect(watched.page.locator(".note")).to_be_visible()
         assert watched.page.evaluate("document.documentElement.scrollWidth") <= width, path
-        found = Axe().run(watched.page).response["violations"]
-        assert [(rule["id"], node["target"]) for rule in found for node in rule["nodes"]] == [], path
+        violations = Axe().run(watched.page).response["violations"]
+        assert [(rule["id"], node["target"]) for rule in violations for node in rule["nodes"]] == [], path
     assert watched.faults() == []
     context.close()
 

@@ -63,8 +63,8 @@ def test_a_newcomer_writes_a_worksheet_that_drives_a_part(watched, tmp_path):
 
 
 def test_a_released_worksheet_shows_its_text_and_its_review_on_its_template_page(watched, http):
-    made = {"id": "shown_sheet", "text": '# Shown\nA [mm] = 2 mm * 3 "a length"\n', "author": "An author"}
-    http.post("/api/v1/worksheets", json=made).raise_for_status()
+    body = {"id": "shown_sheet", "text": '# Shown\nA [mm] = 2 mm * 3 "a length"\n', "author": "An author"}
+    http.post("/api/v1/worksheets", json=body).raise_for_status()
     page = watched.page
     watched.open("/worksheets/shown_sheet")
     page.get_by_role("button", name="Run the tests").click()

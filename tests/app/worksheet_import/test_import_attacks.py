@@ -239,7 +239,7 @@ def test_functions_that_double_or_call_themselves_end():
 )
 def test_no_name_or_text_writes_a_line_of_its_own(said):
     safe = said.replace("&", "").replace("<", "")
-    made = imported(prime(math(define(name(safe), real(1))), words(safe or "a")), "Sheet")
-    lines = made.text.split("\n")
+    sheet = imported(prime(math(define(name(safe), real(1))), words(safe or "a")), "Sheet")
+    lines = sheet.text.split("\n")
     assert len(lines) <= 6
     assert not any(line.startswith("given y") for line in lines)

@@ -119,11 +119,11 @@ def sheet(chance):
 
 def is_accepted(content):
     try:
-        made = imported(content, "Sheet")
+        sheet = imported(content, "Sheet")
     except SheetNotRead:
         return False
-    read(made.text)
-    assert {one["state"] for one in made.record["regions"]} <= STATES
+    read(sheet.text)
+    assert {one["state"] for one in sheet.record["regions"]} <= STATES
     return True
 
 

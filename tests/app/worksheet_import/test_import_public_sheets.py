@@ -18,11 +18,11 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def records():
-    made = {path: imported(path.read_bytes(), path.stem) for path in SHEETS}
-    for one in made.values():
+    sheets = {path: imported(path.read_bytes(), path.stem) for path in SHEETS}
+    for one in sheets.values():
         read(one.text)
     return [
-        [region for region in one.record["regions"] if region["is_mathematical"]] for one in made.values()
+        [region for region in one.record["regions"] if region["is_mathematical"]] for one in sheets.values()
     ]
 
 

@@ -32,9 +32,9 @@ from templates.core.sheets import read
 
 def regions_of(*regions, **options):
     """The records of regions, and the text, which the language reads without a fault."""
-    made = imported(prime(*regions, **options), "Sheet")
-    read(made.text)
-    return made.record["regions"], made.text
+    sheet = imported(prime(*regions, **options), "Sheet")
+    read(sheet.text)
+    return sheet.record["regions"], sheet.text
 
 
 def last(*regions, **options):
@@ -326,10 +326,10 @@ def test_a_sheet_of_mathcad_15_is_read_alike():
     case += "<ml:real>1500</ml:real></ml:ifThen><ml:otherwise><ml:real>1</ml:real></ml:otherwise>"
     z = f"<ml:define><ml:id>z</ml:id><ml:eval><ml:program>{case}</ml:program>{stored}</ml:eval></ml:define>"
     bodies = [legacy_math(x), "<text><p>Some words</p></text>", legacy_math(y), legacy_math(z)]
-    made = imported(legacy(*bodies), "Old")
-    assert 'given x [mm] = 500 mm "x"' in made.text
-    assert "> Some words" in made.text
-    assert [record["state"] for record in made.record["regions"]] == [
+    sheet = imported(legacy(*bodies), "Old")
+    assert 'given x [mm] = 500 mm "x"' in sheet.text
+    assert "> Some words" in sheet.text
+    assert [record["state"] for record in sheet.record["regions"]] == [
         "unverified",
         "shown",
         "verified",

@@ -49,11 +49,12 @@ def test_results_agree_or_do_not(old, new, agree):
 
 
 @pytest.mark.parametrize(
-    ("of", "off", "found"), [("levels", 1e-5, 0), ("levels", 1e-3, 1), ("cases", 1e-5, 1), ("cases", 0.0, 0)]
+    ("of", "off", "different"),
+    [("levels", 1e-5, 0), ("levels", 1e-3, 1), ("cases", 1e-5, 1), ("cases", 0.0, 0)],
 )
-def test_a_level_is_held_to_its_own_precision_and_the_others_to_that_of_the_class(of, off, found):
+def test_a_level_is_held_to_its_own_precision_and_the_others_to_that_of_the_class(of, off, different):
     kept = copy.deepcopy(record(Marched))
     assert kept["levels"][0]["precision"] == 1e-4
     assert not any("precision" in case for case in kept["cases"])
     kept[of][0]["outputs"]["size"] *= 1 + off
-    assert len(list(differences(Marched, kept))) == found
+    assert len(list(differences(Marched, kept))) == different

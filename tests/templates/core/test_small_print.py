@@ -179,8 +179,8 @@ class TestSolve:
         """x (2 x) (3 x) = 6 x³: to the last digits, not to some fixed step."""
         for target in (1e-9, 0.3, 4e6):
             solution = solve(Worded, {}, "x", ["1 um", "1 km"], {"volume": f"{target!r} m**3"})
-            found = solution.evaluation.template.x
-            assert float(found) == pytest.approx(np.cbrt(target / 6), rel=1e-13)
+            root = solution.evaluation.template.x
+            assert float(root) == pytest.approx(np.cbrt(target / 6), rel=1e-13)
 
 
 class TestFiles:

@@ -141,9 +141,9 @@ class TestNextLevels:
     def test_property_the_film_climbs_to_the_map_and_no_farther(self):
         """`mass_conserving` follows another convention, and errs more."""
         film = OilFilm.from_quantities(OilFilm.example)
-        found = [n.level for n in next_levels(film.at("short_bearing"), "minimum_film_thickness")]
-        assert found[:2] == ["fit", "map"]
-        assert "mass_conserving" not in found
+        levels = [n.level for n in next_levels(film.at("short_bearing"), "minimum_film_thickness")]
+        assert levels[:2] == ["fit", "map"]
+        assert "mass_conserving" not in levels
         assert "mass_conserving" not in [n.level for n in next_levels(film.at("fit"), "power_loss")]
 
 

@@ -144,8 +144,8 @@ class TestAnalytic:
             x = film / result["film_thickness"]
             return result["pumping_power"] * x**3 + result["friction_power"] / x
 
-        found = minimize_scalar(power, bounds=(5, 200), method="bounded", options={"xatol": 1e-8})
-        assert result["film_of_least_power"] == pytest.approx(found.x, rel=1e-5)
+        least = minimize_scalar(power, bounds=(5, 200), method="bounded", options={"xatol": 1e-8})
+        assert result["film_of_least_power"] == pytest.approx(least.x, rel=1e-5)
 
     def test_analytic_viscosity_of_least_power(self):
         result = outputs()
@@ -154,8 +154,8 @@ class TestAnalytic:
             x = eta / 80
             return result["pumping_power"] / x + result["friction_power"] * x
 
-        found = minimize_scalar(power, bounds=(5, 500), method="bounded", options={"xatol": 1e-8})
-        assert result["viscosity_of_least_power"] == pytest.approx(found.x, rel=1e-5)
+        least = minimize_scalar(power, bounds=(5, 500), method="bounded", options={"xatol": 1e-8})
+        assert result["viscosity_of_least_power"] == pytest.approx(least.x, rel=1e-5)
 
     def test_analytic_heat(self):
         result = outputs()
@@ -182,12 +182,12 @@ class TestAnalytic:
             outputs({"load": f"{full * (1 + 1e-9)} kN"})
 
     def test_limit_at_rest(self):
-        found = answer({"speed": "0 rpm"}).outputs
-        assert found["friction_power"].value == 0
-        assert found["film_of_least_power"].reason.startswith("needs speed")
-        found = answer({"speed": None}).outputs
-        assert found["film_thickness"].value > 0
-        assert found["friction_power"].reason == "needs speed"
+        outputs = answer({"speed": "0 rpm"}).outputs
+        assert outputs["friction_power"].value == 0
+        assert outputs["film_of_least_power"].reason.startswith("needs speed")
+        outputs = answer({"speed": None}).outputs
+        assert outputs["film_thickness"].value > 0
+        assert outputs["friction_power"].reason == "needs speed"
 
 
 class TestInputs:

@@ -132,11 +132,11 @@ class TestStribeck:
     @pytest.mark.parametrize("level", LEVELS)
     @pytest.mark.parametrize("film", [None, "0.3 um", "2 um"])
     def test_analytic_transition_speed_has_its_film(self, level, film):
-        found = outputs({"transition_film": film}, level=level)
+        results = outputs({"transition_film": film}, level=level)
         at = outputs(
-            {"transition_film": film, "speed": f"{float(found['transition_speed'])!r} rpm"}, level=level
+            {"transition_film": film, "speed": f"{float(results['transition_speed'])!r} rpm"}, level=level
         )
-        assert at["minimum_film_thickness"] == pytest.approx(found["transition_film"], rel=1e-6)
+        assert at["minimum_film_thickness"] == pytest.approx(results["transition_film"], rel=1e-6)
         if film is None:
             assert at["film_parameter"] == pytest.approx(3, rel=1e-6)
 
@@ -152,10 +152,10 @@ class TestStribeck:
         assert (np.diff(result["speed_of_least_friction"]) > 0).all()
 
     def test_property_least_friction_by_parabola(self):
-        found = outputs()
-        near = outputs(speeds(*(found["speed_of_least_friction"] * np.array([0.8, 1.25])), 201))
+        results = outputs()
+        near = outputs(speeds(*(results["speed_of_least_friction"] * np.array([0.8, 1.25])), 201))
         lowest = near["friction_coefficient"].min()
-        assert found["least_friction"] == pytest.approx(lowest, rel=3e-3)
+        assert results["least_friction"] == pytest.approx(lowest, rel=3e-3)
 
 
 class TestInputs:
@@ -177,10 +177,10 @@ class TestInputs:
         assert name in {one for fault in refusal.value.faults for one in fault.names}
 
     def test_property_what_is_missing_is_said(self):
-        found = answer(SMOOTH).outputs
-        assert found["transition_speed"].reason.startswith("the roughness alone")
-        assert found["film_parameter"].reason == "the surfaces are perfectly smooth"
-        assert found["largest_contact_pressure"].value == 0
+        outputs = answer(SMOOTH).outputs
+        assert outputs["transition_speed"].reason.startswith("the roughness alone")
+        assert outputs["film_parameter"].reason == "the surfaces are perfectly smooth"
+        assert outputs["largest_contact_pressure"].value == 0
 
     def test_property_gaps_below_the_tables_are_warned_of(self):
         (warning,) = answer({"speed": "1 rpm"}).warnings
@@ -212,8 +212,8 @@ class TestInputs:
             "composite_modulus": drawn(-1, 3, "GPa"),
             "contact_friction": {"value": rng.uniform(0, 1, count).tolist(), "unit": "1"},
         }
-        found = evaluate(MixedFriction, raw, level=level).outputs
-        for name, one in found.items():
+        results = evaluate(MixedFriction, raw, level=level).outputs
+        for name, one in results.items():
             if name == "lubrication_regime":
                 continue
             values = np.asarray(one.value, dtype=float)
@@ -222,4 +222,4 @@ class TestInputs:
             missing = np.isnan(values.reshape(count, -1)).any(axis=1)
             reasons = np.full(count, one.reason) if one.reasons is None else one.reasons
             assert all(reasons[i] for i in np.flatnonzero(missing)), name
-        assert np.isfinite(found["friction_coefficient"].value).mean() > 0.5
+        assert np.isfinite(results["friction_coefficient"].value).mean() > 0.5

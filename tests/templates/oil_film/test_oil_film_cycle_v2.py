@@ -158,8 +158,8 @@ class TestGroove:
             "load_y": si(np.interp(angle, ANGLE, Y, period=2 * np.pi) * scale, "N"),
         }
         expected = outputs(inputs(X, Y, **HALF))["minimum_film_thickness"]
-        found = outputs(inputs(X, Y, **HALF) | curves)["minimum_film_thickness"]
-        assert found == pytest.approx(expected, rel=5e-3)
+        results = outputs(inputs(X, Y, **HALF) | curves)["minimum_film_thickness"]
+        assert results == pytest.approx(expected, rel=5e-3)
 
     def test_property_groove_in_the_load_thins_the_film(self):
         films = [outputs(inputs(X, Y, **HALF | {"groove_start": start}))["minimum_film_thickness"]

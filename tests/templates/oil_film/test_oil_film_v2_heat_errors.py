@@ -28,16 +28,18 @@ def shares(bearings, level):
     vars(truth)["unbounded_film"] = bearings.film
     names = outputs_of_film()
     evaluation = evaluate(OilFilm, bearings.inputs, outputs=names, level=level)
-    found = {}
+    used = {}
     for name in names:
         with np.errstate(all="ignore"):
             error = change(
                 name, value_of(evaluation.template, name), value_of(truth, name), sizes(truth, name)
             )
-        known = np.isfinite(error) & np.isfinite(evaluation.error[name])
-        if known.any():
-            found[name] = (np.broadcast_to(evaluation.error[name], error.shape)[known] >= error[known]).mean()
-    return found
+        is_finite = np.isfinite(error) & np.isfinite(evaluation.error[name])
+        if is_finite.any():
+            used[name] = (
+                np.broadcast_to(evaluation.error[name], error.shape)[is_finite] >= error[is_finite]
+            ).mean()
+    return used
 
 
 @pytest.mark.parametrize("supplied", [True, False])

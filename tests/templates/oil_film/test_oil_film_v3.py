@@ -17,8 +17,8 @@ COUPLE = 1e-9
 
 def values(raw, *names, **options):
     answers = evaluate(OilFilm, raw, outputs=names, **options).outputs
-    found = [answers[name].value for name in names]
-    return found[0] if len(names) == 1 else found
+    numbers = [answers[name].value for name in names]
+    return numbers[0] if len(names) == 1 else numbers
 
 
 class TestPlainBearing:

@@ -170,12 +170,12 @@ class TestInputs:
             "carried_over_share": {"value": rng.uniform(0, 1, count).tolist(), "unit": "1"},
             "supply_temperature": {"value": rng.uniform(-60, 200, count).tolist(), "unit": "degC"},
         }
-        found = evaluate(ThrustBearing, raw, level=level).outputs
-        for name, one in found.items():
+        outputs = evaluate(ThrustBearing, raw, level=level).outputs
+        for name, one in outputs.items():
             values = np.broadcast_to(np.asarray(one.value, dtype=float), count)
             assert not np.isinf(values).any(), name
             reasons = np.full(count, one.reason) if one.reasons is None else one.reasons
             assert all(reasons[i] for i in np.flatnonzero(np.isnan(values))), name
-        present = np.isfinite(found["film_temperature"].value)
+        present = np.isfinite(outputs["film_temperature"].value)
         assert present.sum() > count / 20
-        assert (found["side_flow"].value[present] > 0).all()
+        assert (outputs["side_flow"].value[present] > 0).all()

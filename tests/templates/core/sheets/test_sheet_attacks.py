@@ -109,10 +109,10 @@ def faults(text):
 @pytest.mark.parametrize("attack", ATTACKS)
 def test_an_attack_is_refused_at_its_place(attack):
     text, code = ATTACKS[attack]
-    found = faults(SHEET + text)
-    assert code in [fault.code for fault in found], found
+    listed = faults(SHEET + text)
+    assert code in [fault.code for fault in listed], listed
     lines = (SHEET + text).split("\n")
-    for fault in found:
+    for fault in listed:
         assert FIRST <= fault.line <= len(lines)
         assert 1 <= fault.column <= len(lines[fault.line - 1]) + 1
         assert fault.message.isprintable()

@@ -79,7 +79,7 @@ def changed(line, random):
 def try_sheet(text):
     """Read a worksheet and use it as the service does; whether it was accepted."""
     try:
-        made = read(text)
+        sheet = read(text)
     except SheetRefused as refused:
         lines = text.replace("\r\n", "\n").split("\n")
         for fault in refused.faults:
@@ -88,9 +88,9 @@ def try_sheet(text):
             assert fault.remedy, (text, fault)
             fault.sentence.encode("utf-8")
         return False
-    assert read(text).digest() == made.digest()
-    cls = made.template("fuzzed", 1)
-    assert len(made.statements) >= len(cls.declarations) - 1  # a system declares two
+    assert read(text).digest() == sheet.digest()
+    cls = sheet.template("fuzzed", 1)
+    assert len(sheet.statements) >= len(cls.declarations) - 1  # a system declares two
     describe(cls)
     run_tests(cls)
     with suppress(InvalidInputs):

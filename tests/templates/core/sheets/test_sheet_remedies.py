@@ -63,9 +63,11 @@ def test_a_filled_in_test_of_a_choice_names_the_choice():
 def test_a_check_of_lists_of_different_lengths_warns_with_the_reason():
     text = SHEET + 'q [bar] over cycle = [1, 2, 3] * 1 bar "short"\ncheck g <= q "it is carried"'
     cls = read(text).template("uneven", 1)
-    found = evaluate(cls, {**cls.example, "law": "a"})
-    assert [(warning.code, warning.name) for warning in found.warnings] == [("check_not_judged", "pressure")]
-    assert "different lengths" in found.warnings[0].detail
+    evaluation = evaluate(cls, {**cls.example, "law": "a"})
+    assert [(warning.code, warning.name) for warning in evaluation.warnings] == [
+        ("check_not_judged", "pressure")
+    ]
+    assert "different lengths" in evaluation.warnings[0].detail
 
 
 @pytest.mark.parametrize(

@@ -16,15 +16,15 @@ def roots(equation, factor):
 
 @pytest.mark.parametrize("equation", ["a * x * (x - 10)", "a * x * 0"])
 def test_an_equation_that_holds_at_both_bounds_has_no_value(equation):
-    found = roots(equation, 1)
-    assert found.value is None
-    assert "holds at both bounds" in found.reason
+    answer = roots(equation, 1)
+    assert answer.value is None
+    assert "holds at both bounds" in answer.reason
 
 
 def test_other_points_keep_their_root():
-    found = roots("(x - a) * x", [5.0, 10.0])
-    assert found.value[0] == 0
-    assert np.isnan(found.value[1])
+    answer = roots("(x - a) * x", [5.0, 10.0])
+    assert answer.value[0] == 0
+    assert np.isnan(answer.value[1])
     assert roots("(x - a) / (1 + x)", [5.0, 10.0]).value == pytest.approx([5, 10])
 
 

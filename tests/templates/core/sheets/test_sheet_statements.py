@@ -58,12 +58,12 @@ def outputs(cls, **changed):
 
 class TestOnePoint:
     def test_formulas_functions_curves_and_equations(self, bearing):
-        found = outputs(bearing)
-        assert found["projected_pressure"] == pytest.approx(25e3 / (48 * 24), rel=1e-12)
-        assert found["viscosity"] == pytest.approx(80 - 71 * 40 / 60, rel=1e-12)
-        assert found["bending_stress"] == pytest.approx(25e3 / (48 * 24), rel=1e-12)
-        assert found["pressure_swing"] == pytest.approx([-10, -9, 19], rel=1e-12)
-        assert found["diameter_for_10_mpa"] == pytest.approx(25e3 / (24 * 10), rel=1e-12)
+        results = outputs(bearing)
+        assert results["projected_pressure"] == pytest.approx(25e3 / (48 * 24), rel=1e-12)
+        assert results["viscosity"] == pytest.approx(80 - 71 * 40 / 60, rel=1e-12)
+        assert results["bending_stress"] == pytest.approx(25e3 / (48 * 24), rel=1e-12)
+        assert results["pressure_swing"] == pytest.approx([-10, -9, 19], rel=1e-12)
+        assert results["diameter_for_10_mpa"] == pytest.approx(25e3 / (24 * 10), rel=1e-12)
 
     def test_a_choice_chooses(self, bearing):
         mine, other = outputs(bearing), outputs(bearing, viscosity_law="vogel")
@@ -110,14 +110,14 @@ class TestOnePoint:
         assert ("outside_published_range", "projected_pressure") in [(w.code, w.name) for w in warned]
 
     def test_a_check_is_a_criterion_and_warns(self, bearing):
-        found = evaluate(bearing, bearing.example)
-        verdicts = {judged.name: judged.verdict for judged in found.criteria}
+        evaluation = evaluate(bearing, bearing.example)
+        verdicts = {judged.name: judged.verdict for judged in evaluation.criteria}
         assert verdicts == {
             "white_metal_carries_it": "met",
             "the_gas_pressure_is_moderate": "not_met",
             "the_oil_stays_cool": "met",
         }
-        assert ["check_not_met"] == [warning.code for warning in found.warnings]
+        assert ["check_not_met"] == [warning.code for warning in evaluation.warnings]
         carried = next(c for c in bearing.declared_criteria if c.name == "white_metal_carries_it")
         assert (carried.require, carried.source) == ("projected_pressure <= 30 MPa", "catalogue")
 
@@ -148,11 +148,11 @@ class TestManyPoints:
 
     def test_curves_at_many_points_are_each_their_own(self, bearing):
         pressures = [[1.0, 2.0, 30.0], [3.0, 3.0, 3.0]]
-        found = outputs(bearing, gas_pressure={"value": pressures, "unit": "bar"})
-        assert found["pressure_swing"] == pytest.approx(
+        results = outputs(bearing, gas_pressure={"value": pressures, "unit": "bar"})
+        assert results["pressure_swing"] == pytest.approx(
             np.array([[-10, -9, 19], [0, 0, 0]]), rel=1e-12, abs=1e-12
         )
-        assert found["largest_pressure"] == pytest.approx([30, 3])
+        assert results["largest_pressure"] == pytest.approx([30, 3])
 
     def test_a_curve_of_a_list_says_at_which_points_it_has_no_value(self):
         text = """given g [bar] over cycle "gas" (example [1, 2] * 1 bar)

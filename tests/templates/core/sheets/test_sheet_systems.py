@@ -27,10 +27,10 @@ def shaft():
 
 def test_a_system_gives_all_its_unknowns(shaft):
     assert [test.message for test in run_tests(shaft) if not test.passed] == []
-    found = evaluate(shaft, shaft.example).outputs
-    assert found["left_reaction"].value == pytest.approx(8, rel=1e-12)
-    assert found["right_reaction"].value == pytest.approx(4000, rel=1e-12)
-    assert found["share_of_the_left_bearing"].value == pytest.approx(2 / 3, rel=1e-12)
+    outputs = evaluate(shaft, shaft.example).outputs
+    assert outputs["left_reaction"].value == pytest.approx(8, rel=1e-12)
+    assert outputs["right_reaction"].value == pytest.approx(4000, rel=1e-12)
+    assert outputs["share_of_the_left_bearing"].value == pytest.approx(2 / 3, rel=1e-12)
     assert shaft.formulas["right_reaction"].meaning.source == "statics"
 
 
@@ -47,12 +47,12 @@ def test_a_system_is_one_statement_on_paper(shaft):
 
 def test_a_singular_system_has_no_value_and_the_answer_says_why(shaft):
     arms = {"value": [100, -200, 50], "unit": "mm"}
-    found = evaluate(shaft, {**shaft.example, "left_arm": arms}).outputs
+    outputs = evaluate(shaft, {**shaft.example, "left_arm": arms}).outputs
     why = "the equations do not determine A, B"
     for name, right in (("left_reaction", [8, 9.6]), ("right_reaction", [4000, 2400])):
-        assert found[name].value[[0, 2]] == pytest.approx(right, rel=1e-12)
-        assert found[name].reasons.tolist() == [None, why, None]
-    assert found["share_of_the_left_bearing"].reasons.tolist() == [None, why, None]
+        assert outputs[name].value[[0, 2]] == pytest.approx(right, rel=1e-12)
+        assert outputs[name].reasons.tolist() == [None, why, None]
+    assert outputs["share_of_the_left_bearing"].reasons.tolist() == [None, why, None]
     alone = evaluate(shaft, {**shaft.example, "left_arm": "-200 mm"}).outputs["left_reaction"]
     assert (alone.value, alone.reason) == (None, why)
 
@@ -66,10 +66,10 @@ solve x [mm] "first way", y [um] "second way", z [mm] "third way" so that
   (if F > 1 N then 2 else 3) * z == x + 0 mm
 """
     cls = read(text).template("springs", 1)
-    found = evaluate(cls, cls.example).outputs
+    outputs = evaluate(cls, cls.example).outputs
     right = np.linalg.solve([[1, -0.5, 0], [-0.5, 0.5, 1], [-1, 0, 2]], [3, 1, 0])
     for name, value, size in zip(("first_way", "second_way", "third_way"), right, (1, 1000, 1), strict=True):
-        assert found[name].value == pytest.approx(value * size, rel=1e-12)
+        assert outputs[name].value == pytest.approx(value * size, rel=1e-12)
 
 
 @pytest.mark.parametrize("count", [2, 3, 6])
@@ -82,12 +82,12 @@ def test_units_and_order_of_the_equations_do_not_matter(count):
     order = random.permutation(count)
     scaled = (matrices * np.swapaxes(rows, -1, -2) * columns)[:, order]
     plain, never = solved(matrices, right)
-    found, singular = solved(scaled, (right * rows[:, 0])[:, order])
+    solution, singular = solved(scaled, (right * rows[:, 0])[:, order])
     assert not singular.any()
     assert not never.any()
     conditions = np.linalg.cond(matrices)[:, None]
     largest = np.abs(wanted).max(axis=-1, keepdims=True)
-    assert (np.abs(found * columns[:, 0] - wanted) <= 1e-14 * count * conditions * largest).all()
+    assert (np.abs(solution * columns[:, 0] - wanted) <= 1e-14 * count * conditions * largest).all()
     assert (np.abs(plain - wanted) <= 1e-14 * count * conditions * largest).all()
 
 
@@ -95,10 +95,10 @@ def test_what_is_missing_or_singular_spoils_no_other_point():
     matrices = np.array(
         [np.eye(2), [[1, 2], [2, 4]], [[np.nan, 1], [1, 0]], np.zeros((2, 2)), 1e-300 * np.eye(2)]
     )
-    found, singular = solved(matrices, np.ones((5, 2)))
+    solution, singular = solved(matrices, np.ones((5, 2)))
     assert singular.tolist() == [False, True, False, True, False]
-    assert np.isnan(found).all(axis=-1).tolist() == [False, True, True, True, False]
-    assert found[[0, 4]] == pytest.approx(np.array([[1, 1], [1e300, 1e300]]))
+    assert np.isnan(solution).all(axis=-1).tolist() == [False, True, True, True, False]
+    assert solution[[0, 4]] == pytest.approx(np.array([[1, 1], [1e300, 1e300]]))
 
 
 GIVEN = 'given F [N] "load" (example 1 N)\ngiven g [N] over cycle "loads" (example [1, 2] * 1 N)\n'
