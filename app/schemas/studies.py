@@ -84,14 +84,22 @@ class StudyRows(Units, Page[StudyRow]):
         return self.model_copy(update={"items": items, "units": self._units(system)})
 
 
-class Trade(Answer):
-    """What one level of fidelity promises, and what is true of it."""
+class TradePlace(Answer):
+    """A place that a level promises, and what is true of it."""
 
-    level: dict[str, str] = Field(description="by step")
-    at: dict[str, Quantity] = Field(description="where its optimum lies")
-    promise: dict[str, Quantity]
+    at: dict[str, Quantity] = Field({}, description="where it lies")
+    promise: dict[str, Quantity] = {}
     confirmed: dict[str, Quantity] = Field({}, description="at the levels of `confirm`")
     verdicts: dict[str, Word] = Field({}, description="as confirmed")
+
+
+class Trade(TradePlace):
+    """What one level of fidelity promises: its optimum, or along `front` if there are several objectives."""
+
+    level: dict[str, str] = Field(description="by step")
+    front: list[TradePlace] | None = Field(
+        None, description="its front, by the first objective as promised; of several objectives"
+    )
     rows: int = Field(description="that were calculated")
     seconds: float = Field(description="estimated")
 

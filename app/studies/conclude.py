@@ -66,9 +66,11 @@ def _chosen(run: Run) -> StudyResult:
     explored = numbers
     if is_open and len(numbers):
         run.confirm(stored.rows([f"{PLACE}{name}" for name in run.plan.places], numbers))
-        stored, numbers = run.stored(), np.arange(stored.count, stored.count + len(numbers))
-        numbers = _feasible(stored, numbers, run, names, maximised)
-    return _result(run, stored, explored, numbers, met, several=len(names) > 1)
+        stored, again = run.stored(), np.arange(stored.count, stored.count + len(numbers))
+        numbers = _feasible(stored, again, run, names, maximised)
+        shown = len(again) if len(names) > 1 else 1
+        met = {**met, "trade": [_trade(run, stored, explored[:shown], again[:shown], several=len(names) > 1)]}
+    return _result(run, stored, numbers, met, several=len(names) > 1)
 
 
 def _shares_met(run: Run, stored: Stored, worst: AnyArray) -> dict[str, object]:
@@ -93,7 +95,6 @@ def _feasible(
 def _result(
     run: Run,
     stored: Stored,
-    explored: Integers,
     numbers: Integers,
     met: dict[str, object],
     *,
@@ -107,8 +108,6 @@ def _result(
         **met,
         ("front" if several else "best"): found if several else found[0],
     }
-    if is_confirmed and not several:
-        result["trade"] = [_trade(run, stored, int(explored[0]), int(numbers[0]))]
     return _answered(**result)
 
 
@@ -117,17 +116,22 @@ def _answered(**fields: object) -> StudyResult:
     return StudyResult.model_validate({name: value for name, value in fields.items() if value is not None})
 
 
-def _trade(run: Run, stored: Stored, explored: int, confirmed: int) -> Trade:
-    """What the levels of the exploration promised, and what is true of it."""
-    (promised,) = rows_found(run, stored, np.array([explored]), confirmed=False)
-    (true,) = rows_found(run, stored, np.array([confirmed]), confirmed=True)
-    levels = {step: level for step, level in run.plan.levels.items() if level is not None}
-    return Trade(
-        level=levels,
-        at=promised.at,
-        promise=promised.outputs,
-        confirmed=true.outputs,
-        verdicts=true.verdicts,
-        rows=run.plan.rows,
-        seconds=run.plan.seconds,
+def _trade(run: Run, stored: Stored, explored: Integers, confirmed: Integers, *, several: bool) -> Trade:
+    """What the levels of the exploration promised in some rows, and what is true of it."""
+    pairs = zip(
+        rows_found(run, stored, explored, confirmed=False),
+        rows_found(run, stored, confirmed, confirmed=True),
+        strict=True,
+    )
+    places = [
+        {"at": one.at, "promise": one.outputs, "confirmed": true.outputs, "verdicts": true.verdicts}
+        for one, true in pairs
+    ]
+    return Trade.model_validate(
+        {
+            **({"front": places} if several else places[0]),
+            "level": {step: level for step, level in run.plan.levels.items() if level is not None},
+            "rows": run.plan.rows,
+            "seconds": run.plan.seconds,
+        }
     )

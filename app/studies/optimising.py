@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.schemas.studies import Best, StudyResult, Trade
+from app.studies.methods.confirming import Round
 from app.studies.running import Run
 from app.studies.searching import Outcome, Promised, Search, Slice, searched
 from app.studies.shown import quantities, rows_found
@@ -77,18 +78,26 @@ def _objectives(run: Run) -> list[str]:
 
 
 def _trade(run: Run, promised: Promised) -> Trade:
-    names, place = _objectives(run), promised.place
-    held = run.plan.required
-    judged = [*names, *held]
+    in_order = sorted(promised.places, key=lambda place: float(place.promise[0]))
+    places = [_place(run, place) for place in in_order]
+    several = len(_objectives(run)) > 1
     levels = run.plan.searched[promised.level]
     return Trade.model_validate(
         {
+            **({"front": places} if several else places[0]),
             "level": {step: level for step, level in levels.items() if level is not None},
-            "at": quantities(run.plan.units, run.plan.places, place.at.tolist()),
-            "promise": quantities(run.plan.units, judged, place.promise[: len(judged)].tolist()),
-            "confirmed": quantities(run.plan.units, judged, place.confirmed[: len(judged)].tolist()),
-            "verdicts": dict(zip(held, place.verdicts, strict=True)),
             "rows": promised.rows,
             "seconds": promised.seconds,
         }
     )
+
+
+def _place(run: Run, place: Round) -> dict[str, object]:
+    held, units = run.plan.required, run.plan.units
+    judged = [*_objectives(run), *held]
+    return {
+        "at": quantities(units, run.plan.places, place.at.tolist()),
+        "promise": quantities(units, judged, place.promise[: len(judged)].tolist()),
+        "confirmed": quantities(units, judged, place.confirmed[: len(judged)].tolist()),
+        "verdicts": dict(zip(held, place.verdicts, strict=True)),
+    }

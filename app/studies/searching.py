@@ -2,7 +2,8 @@
 
 An optimiser asks for the same rows in the same order whenever it begins with the same seed. So a search that
 was interrupted begins again and receives the answers that are stored, by the bytes of the rows, until it asks
-for the first that is not. A slice ends by estimated seconds, not by a clock: equal studies, equal chunks.
+for the first that is not. Generations of NSGA-II are stored as well: finished ones are not repeated.
+A slice ends by estimated seconds, not by a clock: equal studies, equal chunks.
 """
 
 from __future__ import annotations
@@ -12,13 +13,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.plain import JsonObject
 from app.studies.archive import AnyArray, Archive, packed
 from app.studies.chunks import Chunk, Levels, called, columns_of, reasons_of, results_of
 from app.studies.judged import JUDGED, SIDES, judged_of
 from app.studies.methods.answers import AllRefused, Answer, Columns, Held, Objective, Problem
 from app.studies.methods.confirming import Round
-from app.studies.methods.front import pareto_front
+from app.studies.methods.front import Effort, pareto_front
 from app.studies.methods.optimise import optimise
+from app.studies.methods.stages import Stage
 from app.studies.signs import criterion_of
 from app.studies.stored import CONFIRM, EXPLORE, OUTPUT
 from app.studies.task import Prepared, Task, prepared
@@ -27,6 +30,8 @@ from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
 
 SLICE_SECONDS = 0.5  # of new rows, estimated
+ALONE = Effort(generations=50, rounds=1)
+"""Of the front that a level finds by itself: no more rows than a comparison is worth."""
 CALL_SECONDS = 0.03  # that a call takes beside its rows
 
 
@@ -45,10 +50,10 @@ class Search:
 
 @dataclass(frozen=True)
 class Promised:
-    """What a level promised at its best place [SI], and what is true of it."""
+    """What a level promised at its best place, or along its front [SI], and what is true of it."""
 
     level: int
-    place: Round
+    places: tuple[Round, ...]
     rows: int
     seconds: float
 
@@ -73,6 +78,10 @@ class Slice:
 
 class Paused(Exception):
     """A slice has calculated as much as it may."""
+
+
+class TooManyRows(InvalidInputs):
+    """A search needs more rows than it may calculate."""
 
 
 def searched(task: Task, search: Search, stored: tuple[Pieces, ...]) -> Slice:
@@ -104,22 +113,43 @@ def _problem(ready: Prepared, search: Search) -> Problem:
 def _outcome(ready: Prepared, problem: Problem, search: Search, book: _Book) -> Outcome:
     seed, explore, confirm = ready.asked.body.seed, book.answer(EXPLORE), book.answer(CONFIRM)
     if len(problem.objectives) > 1:
-        front = pareto_front(problem, explore, confirm, seed=seed)
-        return Outcome(front.state, tuple(place.at for place in front.places), (), ())
+        front = pareto_front(problem, explore, confirm, seed=seed, journal=book.journal(EXPLORE))
+        first = Promised(EXPLORE, front.rounds[0], front.explored, front.seconds)
+        places = tuple(place.at for place in front.places)
+        return Outcome(front.state, places, *_compared(problem, search, book, seed, first, ()))
     optimum = optimise(problem, explore, confirm, seed=seed)
-    first = Promised(EXPLORE, optimum.rounds[0], optimum.explored, optimum.seconds)
+    first = Promised(EXPLORE, optimum.rounds[:1], optimum.explored, optimum.seconds)
     notes = tuple(f"{v.criterion} is not met by {v.relative:.2%} of its limit" for v in optimum.violations)
-    others = (_alone(problem, book, level, seed) for level in range(CONFIRM + 1, len(search.levels)))
-    return Outcome(optimum.state, (optimum.best.at,), (first, *filter(None, others)), notes)
+    return Outcome(optimum.state, (optimum.best.at,), *_compared(problem, search, book, seed, first, notes))
 
 
-def _alone(problem: Problem, book: _Book, level: int, seed: int) -> Promised | None:
-    """What one level finds by itself, confirmed once; None of a level that lacks a result."""
+def _compared(
+    problem: Problem, search: Search, book: _Book, seed: int, first: Promised, notes: tuple[str, ...]
+) -> tuple[tuple[Promised, ...], tuple[str, ...]]:
+    """What each level promises, and the notes with one more if there are not rows enough for all levels."""
+    others: list[Promised] = []
     try:
-        found = optimise(problem, book.answer(level), book.answer(CONFIRM), seed=seed, rounds=1)
+        for level in range(CONFIRM + 1, len(search.levels)):
+            others += _alone(problem, book, level, seed)
+    except TooManyRows:
+        detail = f"not every level is compared: a search takes at most {search.most} rows"
+        notes = (*notes, detail)
+    return (first, *others), notes
+
+
+def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Promised]:
+    """What one level finds by itself, confirmed once; nothing of a level that lacks a result."""
+    answer, confirm = book.answer(level), book.answer(CONFIRM)
+    try:
+        if len(problem.objectives) > 1:
+            front = pareto_front(
+                problem, answer, confirm, seed=seed, effort=ALONE, journal=book.journal(level)
+            )
+            return [Promised(level, front.rounds[0], front.explored, front.seconds)]
+        found = optimise(problem, answer, confirm, seed=seed, rounds=1)
     except AllRefused:
-        return None
-    return Promised(level, found.rounds[0], found.explored, found.seconds)
+        return []
+    return [Promised(level, found.rounds[:1], found.explored, found.seconds)]
 
 
 @dataclass(frozen=True)
@@ -136,8 +166,26 @@ class _Call:
         return len(self.arrays["reason"])
 
 
+@dataclass(frozen=True)
+class _Journal:
+    """The stages of one level, among those of all."""
+
+    level: int
+    stages: dict[str, Stage]
+    changed: set[str]
+
+    def stored(self, name: str) -> Stage | None:
+        """The stage of a name, as it was kept last."""
+        return self.stages.get(f"{self.level}: {name}")
+
+    def keep(self, name: str, stage: Stage) -> None:
+        """Keep a stage as far as it has come; the next chunk has it."""
+        self.stages[f"{self.level}: {name}"] = stage
+        self.changed.add(f"{self.level}: {name}")
+
+
 class _Book:
-    """All answers of a search, by level and by the bytes of the rows."""
+    """All answers of a search, by level and by the bytes of the rows; and its stages."""
 
     def __init__(
         self, ready: Prepared, task: Task, search: Search, problem: Problem, stored: Sequence[Pieces]
@@ -147,9 +195,16 @@ class _Book:
         self._answers: dict[tuple[int, bytes], Columns] = {}
         self._new: list[_Call] = []
         self._rows, self._spent = 0, 0.0
+        self._stages, self._changed = dict[str, Stage](), set[str]()
         for pieces in stored:
-            for call in _calls(pieces):
+            calls, stages = _read(pieces)
+            self._stages |= stages
+            for call in calls:
                 self._remember(call)
+
+    def journal(self, level: int) -> _Journal:
+        """The stages of the search at a level."""
+        return _Journal(level, self._stages, self._changed)
 
     def answer(self, level: int) -> Answer:
         """The results at a level, from what is stored or by calculating."""
@@ -177,7 +232,9 @@ class _Book:
             reasons += call.reasons
         arrays["reason"] = np.concatenate(shift)
         calls = [[call.level, call.count, call.seconds] for call in self._new]
-        about = {"reasons": reasons, "levels": self._levels, "calls": calls}
+        about: JsonObject = {"reasons": reasons, "levels": self._levels, "calls": calls}
+        if self._changed:
+            about["stages"] = {name: _plain(self._stages[name]) for name in sorted(self._changed)}
         refused: dict[str, int] = {}
         for which in arrays["reason"][arrays["reason"] >= 0].tolist():
             name = ": ".join(reasons[which][:2])
@@ -198,7 +255,7 @@ class _Book:
             detail = (
                 f"the search needs more than {self._search.most} rows; narrow the bounds, or raise `points`"
             )
-            raise InvalidInputs([Fault("points", "too_many_rows", detail)])
+            raise TooManyRows([Fault("points", "too_many_rows", detail)])
         net, asked = self._ready.net, self._ready.asked
         levels = self._levels[level]
         criteria = self._search.criteria  # by tables: what was measured would differ from run to run
@@ -236,8 +293,8 @@ def _array(call: _Call, name: str) -> AnyArray:
     return call.arrays[name] if name in call.arrays else np.full(call.count, np.nan)
 
 
-def _calls(pieces: Pieces) -> list[_Call]:
-    """The calls whose answers a chunk holds, in their order."""
+def _read(pieces: Pieces) -> tuple[list[_Call], dict[str, Stage]]:
+    """The calls whose answers a chunk holds, in their order, and the stages as they stood at its end."""
     with Archive(pieces.joined()) as archive:
         arrays, about = {name: archive[name] for name in archive.names}, archive.about()
     calls, start = [], 0
@@ -245,4 +302,14 @@ def _calls(pieces: Pieces) -> list[_Call]:
         part = {name: array[start : start + count] for name, array in arrays.items()}
         calls.append(_Call(level, part, about["reasons"], seconds))
         start += count
-    return calls
+    return calls, {name: _stage(plain) for name, plain in about.get("stages", {}).items()}
+
+
+def _plain(stage: Stage) -> JsonObject:
+    """A stage as JSON, whose numbers keep all their digits."""
+    return {**vars(stage), "arrays": [array.tolist() for array in stage.arrays]}
+
+
+def _stage(plain: JsonObject) -> Stage:
+    arrays = tuple(np.array(array, dtype=np.float64) for array in plain["arrays"])
+    return Stage(plain["done"], arrays, plain["rows"], plain["seconds"])

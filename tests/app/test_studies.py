@@ -146,7 +146,25 @@ def test_the_best_row_is_confirmed_and_meets_what_is_held(http, film):
     assert best["row"] in [row["row"] for row in met]
     assert best["outputs"][LOSS]["value"] == pytest.approx(min(row["values"][LOSS] for row in met))
     assert trade["level"] == study["levels"]
-    assert trade["confirmed"][LOSS] == best["outputs"][LOSS]
+    promised = min(
+        (row for row in rows(http, study)["items"] if row.get("confirmed")),
+        key=lambda row: abs(row["values"]["clearance"] - trade["at"]["clearance"]["value"]),
+    )
+    assert trade["confirmed"][LOSS]["value"] == promised["values"][LOSS]  # where the promise was made
+
+
+def test_a_front_among_rows_has_its_promise_and_what_is_true_of_it(http, film):
+    study = done(
+        http, film, method="sample", points=64, vary=CLEARANCE, minimise=[LOSS], maximise=[THICKNESS],
+        hold=["thick_enough"], explore={"tolerance": 0.2}, confirm={"tolerance": 0.001},
+    )  # fmt: skip
+    front, (trade,) = study["result"]["front"], study["result"]["trade"]
+    assert trade["level"] == study["levels"]
+    assert len(trade["front"]) >= len(front) > 1
+    confirmed = [place["confirmed"] for place in trade["front"]]
+    assert all({name: one["outputs"][name] for name in (LOSS, THICKNESS)} in confirmed for one in front)
+    assert any(place["promise"] != place["confirmed"] for place in trade["front"])
+    assert all(place["at"]["clearance"]["unit"] == "mm" for place in trade["front"])
 
 
 @pytest.fixture(scope="module")
@@ -185,8 +203,10 @@ def test_the_front_of_two_objectives(http, held):
     pytest.importorskip("pymoo")
     other = "rest.twice_the_length"
     search = {"method": "optimise", "vary": LENGTHS, "minimise": [OUT, other], "hold": ["long_enough"]}
-    front = done(http, held, **search)["result"]["front"]
+    result = done(http, held, **search)["result"]
+    front, (trade,) = result["front"], result["trade"]
     assert len(front) > 5
+    assert [place["promise"] for place in trade["front"]] == [best["outputs"] for best in front]
     for best in front:
         assert best["outputs"][OUT]["value"] + best["outputs"][other]["value"] == pytest.approx(20)
         assert best["verdicts"] == {"long_enough": "met"}

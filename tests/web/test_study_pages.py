@@ -77,6 +77,57 @@ def test_the_levels_of_a_search_show_the_output_that_a_criterion_judges(http, be
     assert "of thick_enough" in promise
 
 
+def test_a_front_is_listed_with_what_its_levels_promise(http, bearing):
+    body = {
+        "design": bearing.rpartition("/")[2],
+        "method": "sample",
+        "points": 64,
+        "minimise": ["film.power_loss"],
+    }
+    body |= {
+        "maximise": [FILM],
+        "vary": {CLEARANCE: {"between": ["30 um", "90 um"]}},
+        "hold": ["thick_enough"],
+    }
+    body |= {"explore": {"tolerance": 0.2}, "confirm": {"tolerance": 0.001}}
+    study = http.post(f"{API}/studies", json=body).json()["id"]
+    ended = until(lambda: http.get(f"{API}/studies/{study}").json(), lambda now: now["state"] in ENDED)
+    front, (trade,) = ended["result"]["front"], ended["result"]["trade"]
+    page = http.get(f"/studies/{study}").text
+    listed = page.partition("<table data-front>")[2].partition("</table>")[0]
+    assert listed.count("<tr>") == 1 + len(front) > 2
+    assert f'name="row" value="{front[-1]["row"]}"' in listed
+    promised = page.partition("<details data-trade>")[2].partition("</details>")[0]
+    assert f"{len(trade['front'])} places of its front, 64 rows" in promised
+    assert promised.count("<tr>") == 1 + len(trade["front"])
+
+
+def test_the_form_studies_the_variant_that_is_chosen(http, bearing):
+    patch = {"variants": {"main_10": {WIDTH: "20 mm"}, "main_2": {WIDTH: "26 mm"}}}
+    headers = {"If-Match": '"1"', "Content-Type": "application/merge-patch+json", "Prefer": "wait=30"}
+    assert http.patch(f"{API}{bearing}", json=patch, headers=headers).status_code == 200
+    form = http.get(f"{bearing}/studies/new?variant=main_2").text
+    choice = form.partition('<select name="variant"')[2].partition("</select>")[0]
+    assert choice.index("main_2") < choice.index("main_10")
+    assert '<option value="main_2" selected>' in choice
+    typed = {
+        "method": "grid",
+        "place.0": CLEARANCE,
+        "low.0": "30 um",
+        "high.0": "60 um",
+        "steps.0": "2",
+        **KEPT,
+    }
+    begun = http.post(f"{bearing}/studies", data={**typed, "variant": "main_2"})
+    assert begun.status_code == 303
+    study = begun.headers["location"]
+    assert http.get(f"{API}{study}").json()["variant"] == "main_2"
+    assert "variant main_2" in http.get(study).text
+    refused = http.post(f"{bearing}/studies", data={**typed, "variant": "main_3"})
+    assert refused.status_code == 422
+    assert "its variants are main_2, main_10" in fieldset(refused.text, "What is varied")
+
+
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
 def test_a_grid_of_two_shows_a_contour_and_a_chosen_row_becomes_a_revision(plotted, watched, http, grid):
     study, design = grid

@@ -2,25 +2,23 @@
 
 The front is searched at the coarse level, where places spread over it are polished too. The fine level
 confirms them, which corrects the coarse level for the next round, as for one objective.
-
-References
-----------
-Deb, Pratap, Agarwal and Meyarivan 2002, IEEE Trans. Evol. Comput. 6, 182.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, Protocol, cast
+from functools import partial
+from typing import Literal
 
 import numpy as np
 
 from app.studies.methods.answers import Answer, Problem
 from app.studies.methods.confirming import WITHIN, Round, Run, State, unmet
-from app.studies.methods.corrected import Corrected, Seen
-from app.studies.methods.extras import extra
+from app.studies.methods.corrected import Corrected
+from app.studies.methods.evolution import evolved
 from app.studies.methods.polish import Scaled, polished
 from app.studies.methods.search import best, middle_and_width
+from app.studies.methods.stages import Forgetful, Journal, Stages
 from templates.core.arrays import Array, Integers, Mask
 
 POPULATION, GENERATIONS = 100, 200
@@ -77,8 +75,11 @@ def pareto_front(
     seed: int,
     effort: Effort = Effort(),
     within: float = WITHIN,
+    journal: Journal | None = None,
 ) -> Front:
     """The front of a problem of several objectives; parameters as of `optimise`.
+
+    What `journal` has kept of an earlier call with equal arguments is not calculated again.
 
     Raises
     ------
@@ -88,11 +89,14 @@ def pareto_front(
     run = Run(problem, explore, confirm, seed, within)
     done: list[tuple[Round, ...]] = []
     state: State | None = None
-    population = _first(run, effort.population)
+    stages = Stages(journal or Forgetful(), run.explore)
+    population = stages.once("first", lambda: _first(run, effort.population))
     while state is None and len(done) < effort.rounds:
-        generations = effort.generations if not done else -(-effort.generations // 2)
-        population = _evolved(run.surface, population, seed, generations)
-        unit = _chosen(run.surface, population, effort.confirmed)
+        number, generations = len(done), effort.generations if not done else -(-effort.generations // 2)
+        population = evolved(
+            run.surface, population, (seed, number), generations, stages, f"evolved {number}"
+        )
+        unit = stages.once(f"chosen {number}", partial(_chosen, run.surface, population, effort.confirmed))
         rounds, fine = run.confirmed(unit)
         done.append(tuple(rounds))
         state = _state(rounds)
@@ -133,66 +137,6 @@ def _first(run: Run, count: int) -> Array:
     rows = np.flatnonzero(seen.complete)
     order = np.lexsort((dominations(seen.objectives[rows]), seen.violation[rows]))
     return run.scanned.unit[rows[order[:count]]]
-
-
-def _evolved(surface: Corrected, population: Array, seed: int, generations: int) -> Array:
-    """The last population of NSGA-II, as places of the unit cube."""
-    problem, algorithm = _set_up(surface, population, seed, generations)
-    static, evaluator = extra("pymoo.problems.static").StaticProblem, extra("pymoo.core.evaluator").Evaluator
-    while algorithm.has_next():
-        asked = algorithm.ask()
-        if asked is None or not len(asked):
-            break
-        objectives, margins = _for_pymoo(surface(np.asarray(asked.get("X"), dtype=np.float64)))
-        evaluator().eval(static(problem, F=objectives, G=margins), asked)
-        algorithm.tell(infills=asked)
-    return np.asarray(algorithm.pop.get("X"), dtype=np.float64)
-
-
-class Population(Protocol):
-    """What is used of pymoo's population."""
-
-    def __len__(self) -> int: ...
-
-    def get(self, name: str) -> Array:
-        """The variables of all members, by the name `X`."""
-        ...
-
-
-class Algorithm(Protocol):
-    """What is used of pymoo's algorithms."""
-
-    pop: Population
-
-    def has_next(self) -> bool:
-        """Whether a generation is left."""
-        ...
-
-    def ask(self) -> Population | None:
-        """The members to evaluate."""
-        ...
-
-    def tell(self, *, infills: Population) -> object:
-        """Take members that have been evaluated."""
-        ...
-
-
-def _set_up(surface: Corrected, population: Array, seed: int, generations: int) -> tuple[object, Algorithm]:
-    kinds = surface.problem
-    problem = extra("pymoo.core.problem").Problem(
-        n_var=len(kinds.space), n_obj=len(kinds.objectives), n_ieq_constr=len(kinds.held) + 1, xl=0.0, xu=1.0
-    )
-    algorithm = extra("pymoo.algorithms.moo.nsga2").NSGA2(pop_size=len(population), sampling=population)
-    algorithm.setup(problem, termination=("n_gen", generations), seed=seed, verbose=False)
-    return problem, cast(Algorithm, algorithm)
-
-
-def _for_pymoo(seen: Seen) -> tuple[Array, Array]:
-    """Objectives and constraints, which hold at zero or less; one more says whether a row has results."""
-    complete = seen.complete
-    objectives = np.where(complete[:, None], seen.objectives, 0.0)
-    margins = np.where(complete[:, None], -seen.margins, 0.0)
-    return objectives, np.column_stack([margins, np.where(complete, -1.0, 1e6)])
 
 
 def _chosen(surface: Corrected, population: Array, count: int) -> Array:

@@ -1,0 +1,108 @@
+"""NSGA-II of pymoo, generation by generation: each follows from the one before, the seed and its number.
+
+So a search that was interrupted goes on with the generation that it had not finished.
+
+References
+----------
+Deb, Pratap, Agarwal and Meyarivan 2002, IEEE Trans. Evol. Comput. 6, 182.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol, cast
+
+import numpy as np
+
+from app.studies.methods.corrected import Corrected, Seen
+from app.studies.methods.extras import extra
+from app.studies.methods.stages import Stages
+from templates.core.arrays import Array
+
+
+class Population(Protocol):
+    """What is used of pymoo's population."""
+
+    def __len__(self) -> int: ...
+
+    def get(self, name: str) -> Array:
+        """Of all members the variables `X`, the objectives `F` or the constraints `G`."""
+        ...
+
+
+class Algorithm(Protocol):
+    """What is used of pymoo's algorithms."""
+
+    pop: Population
+
+    def ask(self) -> Population | None:
+        """The members to evaluate."""
+        ...
+
+    def tell(self, *, infills: Population) -> object:
+        """Take members that have been evaluated."""
+        ...
+
+
+def evolved(
+    surface: Corrected, population: Array, seeds: tuple[int, int], generations: int, stages: Stages, name: str
+) -> Array:
+    """The last population of NSGA-II, as places of the unit cube, shape (P, d).
+
+    Parameters
+    ----------
+    population
+        The first population.
+    seeds
+        The seed of the search, and the number of the round.
+    stages, name
+        Where its generations are kept, and by which name.
+    """
+    size = len(population)
+
+    def first() -> tuple[Array, ...]:
+        return population, *_for_pymoo(surface(population))
+
+    def following(number: int, members: tuple[Array, ...]) -> tuple[Array, ...] | None:
+        seed = int(np.random.SeedSequence([*seeds, number]).generate_state(1)[0])
+        return _next(surface, members, size, seed)
+
+    return stages.stepped(name, first, following, generations)[0]
+
+
+def _next(surface: Corrected, members: tuple[Array, ...], size: int, seed: int) -> tuple[Array, ...] | None:
+    """The next generation: places, objectives and constraints; None if no new places come up."""
+    kinds = surface.problem
+    problem = extra("pymoo.core.problem").Problem(
+        n_var=len(kinds.space), n_obj=len(kinds.objectives), n_ieq_constr=len(kinds.held) + 1, xl=0.0, xu=1.0
+    )
+    before = extra("pymoo.core.population").Population.new(**dict(zip("XFG", members, strict=True)))
+    nsga2 = extra("pymoo.algorithms.moo.nsga2").NSGA2(pop_size=size, sampling=before)
+    nsga2.setup(problem, termination=("n_gen", 3), seed=seed, verbose=False)
+    algorithm = cast(Algorithm, nsga2)
+    known = algorithm.ask()
+    assert known is not None, "the first members are those that were given"
+    _tell(algorithm, problem, known, known.get("F"), known.get("G"))
+    new = algorithm.ask()
+    if new is None or not len(new):
+        return None
+    _tell(algorithm, problem, new, *_for_pymoo(surface(np.asarray(new.get("X"), dtype=np.float64))))
+    places, objectives, constraints = (
+        np.asarray(algorithm.pop.get(part), dtype=np.float64) for part in "XFG"
+    )
+    return places, objectives, constraints
+
+
+def _tell(
+    algorithm: Algorithm, problem: object, members: Population, objectives: Array, constraints: Array
+) -> None:
+    static, evaluator = extra("pymoo.problems.static").StaticProblem, extra("pymoo.core.evaluator").Evaluator
+    evaluator().eval(static(problem, F=objectives, G=constraints), members)
+    algorithm.tell(infills=members)
+
+
+def _for_pymoo(seen: Seen) -> tuple[Array, Array]:
+    """Objectives and constraints, which hold at zero or less; one more says whether a row has results."""
+    complete = seen.complete
+    objectives = np.where(complete[:, None], seen.objectives, 0.0)
+    margins = np.where(complete[:, None], -seen.margins, 0.0)
+    return objectives, np.column_stack([margins, np.where(complete, -1.0, 1e6)])
