@@ -7,8 +7,11 @@ component is not installed.
 import atexit
 import itertools
 import os
+import shutil
+import tempfile
 from dataclasses import dataclass, field
 from functools import cache
+from pathlib import Path
 
 import pytest
 
@@ -52,6 +55,18 @@ def running_cluster():
     atexit.register(cluster.close)
     migrate(cluster.create(MIGRATED))
     return cluster
+
+
+@cache
+def migrated_file():
+    """A migrated and empty SQLite file, to be copied: eight migrations take longer than most tests."""
+    from app.storage.migrations import migrate
+
+    folder = tempfile.mkdtemp(prefix="crankwright-tests-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    migrate(f"sqlite:///{folder}/migrated.sqlite")
+    (file,) = Path(folder).iterdir()  # nothing is left in a journal beside it
+    return file
 
 
 @cache

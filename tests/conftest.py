@@ -3,14 +3,13 @@
 import os
 import sys
 import time
-from pathlib import Path
 
 from app.workers.threads import use_one_thread
 
 use_one_thread()  # before NumPy is imported, here and in the servers that tests start
-if sys.dont_write_bytecode:  # compiled tests are kept, but not beside their sources: to compile takes seconds
-    sys.dont_write_bytecode = False
-    sys.pycache_prefix = str(Path.home() / ".cache" / "crankwright-tests")
+if sys.dont_write_bytecode:  # what is compiled is kept, here and in all processes that tests start:
+    sys.dont_write_bytecode = False  # to compile takes seconds
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 import forked  # noqa: E402
 import pytest  # noqa: E402

@@ -1,10 +1,11 @@
 """A migrated database in a folder of its own, and one server for all tests of the interface."""
 
 import os
+import shutil
 
 import httpx
 import pytest
-from components import ON_POSTGRESQL, database_of
+from components import ON_POSTGRESQL, database_of, migrated_file
 from patience import patient
 from serving import created, folder_of_models, paper, patched, serving
 from signed_in import service_with_roles
@@ -12,16 +13,14 @@ from signed_in import service_with_roles
 from app.client import Client
 from app.settings import Settings
 from app.storage.database import Database
-from app.storage.migrations import migrate
 
 
 @pytest.fixture
 def url(tmp_path):
     if ON_POSTGRESQL:
         return database_of(tmp_path)
-    url = f"sqlite:///{tmp_path}/test.sqlite"
-    migrate(url)
-    return url
+    shutil.copy(migrated_file(), tmp_path / "test.sqlite")
+    return f"sqlite:///{tmp_path}/test.sqlite"
 
 
 @pytest.fixture

@@ -10,19 +10,17 @@ from pathlib import Path
 import pytest
 from attacked import ROLES, Scene
 from attacks import CALLS, PRINCIPAL, Call, long_study, waiting_job
+from described import APP, description
 from serving import API
 from sqlalchemy import func, select
 
 from app.api.gate.roles import needs_of, routes_of
-from app.main import create_app
-from app.settings import Settings
 from app.storage.tables import AuditRow
 
 sys.path.append(str(Path(__file__).parent / "worksheet_import"))  # mathcad_files
 from mathcad_files import define, math, prime, scale
 
-APP = create_app(Settings())
-DESCRIBED = {f"{method.upper()} {path}" for path, item in APP.openapi()["paths"].items() for method in item}
+DESCRIBED = {f"{method.upper()} {path}" for path, item in description()["paths"].items() for method in item}
 NEEDED = {
     f"{method} {path}": needs_of(route)
     for route in routes_of(APP)

@@ -11,6 +11,7 @@ import httpx
 import jsonschema_rs
 import pytest
 import schemathesis
+from described import description
 from hypothesis import HealthCheck, Phase, seed, settings
 from schemathesis.config import SchemathesisConfig
 from seeds import CHOSEN, seeded
@@ -18,12 +19,10 @@ from serving import API, HANG, created, moody
 
 from app.api.gate.allow import METHODS
 from app.api.routes.film_pressure import TYPICAL
-from app.main import create_app
-from app.settings import Settings
 
 SEED = seeded(11)
 CONFIGURATION = SchemathesisConfig.from_path(Path(__file__).parents[2] / "schemathesis.toml")
-INTERFACE = schemathesis.openapi.from_dict(create_app(Settings()).openapi(), config=CONFIGURATION)
+INTERFACE = schemathesis.openapi.from_dict(description(), config=CONFIGURATION)
 QUICK = settings(
     max_examples=8,
     database=None,

@@ -6,13 +6,11 @@ The browser is signed in and everything else about the request is right, as if a
 import re
 
 import pytest
+from described import APP
 from fastapi.routing import iter_route_contexts
 
 from app.api.gate.access import SIGN_IN
-from app.main import create_app
-from app.settings import Settings
 
-APP = create_app(Settings())
 FORMS = sorted(
     context.path
     for context in iter_route_contexts(APP.router.routes)

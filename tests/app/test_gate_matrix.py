@@ -7,13 +7,12 @@ these tables name what is declared otherwise, so a new route that does is looked
 import re
 
 import pytest
+from described import APP
 from fastapi.routing import iter_route_contexts
 from starlette.routing import Mount
 
 from app.api.gate.roles import needs_of
 from app.identity.acting import INCLUDED, ROLES
-from app.main import create_app
-from app.settings import Settings
 
 PUBLIC = {
     "GET /healthz",
@@ -73,7 +72,6 @@ JOBS = {
     "DELETE /api/v1/jobs/{id}",
 }
 
-APP = create_app(Settings())
 ROUTES = [
     (method, context.path, context.original_route)
     for context in iter_route_contexts(APP.router.routes)

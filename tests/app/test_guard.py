@@ -5,6 +5,7 @@ import re
 
 import httpx
 import pytest
+from described import APP, description
 from hostile import (
     EVIL,
     FOREIGN_HOSTS,
@@ -19,16 +20,13 @@ from hostile import (
 from serving import API, created, moody
 
 from app.api.reading import SHEET_TYPES
-from app.main import create_app
-from app.settings import Settings
 
-APP = create_app(Settings())
 ROUTES = sorted(set(every_route(APP)))
 SAFE = {"GET", "HEAD", "OPTIONS"}
 UNSAFE = [route for route in ROUTES if route[0] not in SAFE]
 WITH_BODY = sorted(
     (method.upper(), path)
-    for path, item in APP.openapi()["paths"].items()
+    for path, item in description()["paths"].items()
     for method, operation in item.items()
     if "requestBody" in operation
 )
@@ -182,7 +180,7 @@ def test_no_unsafe_route_is_open_to_other_sites(served, victim, method, path):
 
 def test_the_list_of_unsafe_routes_is_complete():
     described = {
-        (method.upper(), path) for path, item in APP.openapi()["paths"].items() for method in item
+        (method.upper(), path) for path, item in description()["paths"].items() for method in item
     } - {route for route in ROUTES if route[0] in SAFE}
     assert described <= set(UNSAFE)
     assert {("POST", path) for path in FORMS} <= set(UNSAFE)
