@@ -182,9 +182,15 @@ def opened(data: Path | None) -> Iterator[Identity]:
 
 
 def _prepared(settings: Settings) -> str:
-    """The URL of the database; a server that runs has migrated it."""
-    if settings.database_url is not None:
-        require_connection(settings.database_url)
+    """The URL of the database, migrated; a server that holds the data folder has migrated its own.
+
+    A database that servers share needs no folder: this may run where nothing can be written.
+    """
+    if (shared := settings.database_url) is not None:
+        require_connection(shared)
+        if sqlite_file(shared) is None:
+            migrate(shared)
+            return shared
     try:
         folder = DataFolder(settings.data)
     except DataFolderInUse:
