@@ -10,6 +10,7 @@ from pydantic import JsonValue
 from app.calculations.schemas import OIL_FILM
 from app.designs.schemas import PAPER, DesignIn
 from app.schemas.templates import TemplateSummary
+from app.web.gallery_engine import FOUR_CYLINDERS
 
 FILM = {**OIL_FILM, "bearing_diameter": "= scale * 48 mm"}
 
@@ -60,6 +61,12 @@ GALLERY = {
                 },
             },
         },
+    ),
+    "engine": Example(
+        title="All bearings of a four-cylinder engine",
+        text="From gas pressure to the load of every main and big end, and a film in each of them: "
+        "change the bore of the cylinders, and see which bearing governs.",
+        document=FOUR_CYLINDERS,
     ),
 }
 """By the name that its form sends."""
