@@ -13,6 +13,7 @@ from app.designs.reference import Reference
 from app.designs.slopes import Local
 from app.plain import Raw
 from app.studies.methods.points import Grid, LatinHypercube, Points, Sobol
+from app.studies.methods.search import scanned
 from app.studies.methods.sensitivity import MorrisPoints, SobolPoints
 from app.studies.methods.space import Interval, Space, Values, Variable
 from app.studies.schemas import MOST_ROWS, StudyIn, Vary
@@ -70,8 +71,23 @@ def _contradictions(body: StudyIn, varied: Sequence[str]) -> Iterator[Fault]:
         yield Fault("minimise", "missing", "name an output to minimise or maximise")
     elif not (body.outputs or has_goal):
         yield Fault("outputs", "missing", "name what each row keeps, such as film.minimum_film_thickness")
+    if body.points is not None and (body.method in ("grid", "table") or _is_local(body)):
+        yield Fault("points", "contradiction", _WITHOUT_POINTS[body.method])
+    if body.steps is not None and body.method != "grid":
+        yield Fault("steps", "contradiction", f"{body.method} takes no `steps`, only grid does; leave it out")
     for name in sorted({*body.minimise} & {*body.maximise}):
         yield Fault("maximise", "contradiction", f"{name} is minimised as well")
+
+
+def _is_local(body: StudyIn) -> bool:
+    return body.method == "sensitivity" and body.kind == "local"
+
+
+_WITHOUT_POINTS = {
+    "grid": f"grid takes no `points`; give `steps`, at most {MOST_ROWS['grid']} rows in all",
+    "table": f"table takes no `points`; it has the rows that you give, at most {MOST_ROWS['table']}",
+    "sensitivity": "local slopes take no `points`; leave it out, or choose `kind` morris or sobol",
+}
 
 
 def _variables(body: StudyIn, varied: Sequence[str], net: Net) -> Iterator[Variable]:
@@ -166,14 +182,18 @@ def _too_many(body: StudyIn, space: Space) -> list[Fault]:
         case "sensitivity" if body.kind == "sobol":
             count = (body.points or 1024) * (len(space) + 2)
         case "optimise":
-            count = body.points or 0
+            count, least = body.points or 0, scanned(space)
+            if body.points is not None and body.points < least:
+                detail = f"optimise looks at {least} rows before it searches; give more, up to"
+                return [Fault("points", "out_of_range", f"{detail} {MOST_ROWS['optimise']}")]
     return [too_long(body.method, count)] if count > MOST_ROWS[body.method] else []
 
 
 def too_long(method: str, count: int) -> Fault:
     """The fault of a study with more rows than its method takes."""
     place = {"grid": "steps", "table": "rows"}.get(method, "points")
-    return Fault(place, "too_many_rows", f"{method} takes at most {MOST_ROWS[method]} rows, not {count}")
+    given = str(count) if count < 10**15 else "as many as these"  # its digits may be thousands
+    return Fault(place, "too_many_rows", f"{method} takes at most {MOST_ROWS[method]} rows, not {given}")
 
 
 def _refuse(faults: Sequence[Fault]) -> None:

@@ -50,7 +50,7 @@ LONG = [40 + n / 100 for n in range(501)]
         ({"method": "sample", "vary": BORE, "points": 720}, 720, 720, "2"),
         ({"method": "sample", "vary": BORE, "points": 10**6}, 10**6, 10**6, "2.8e+03"),
         ({"method": "table", "rows": {"diameter": {"value": LONG, "unit": "mm"}}}, 501, 501, "1.4"),
-        ({"method": "optimise", "vary": BORE, "minimise": [LOSS], "points": 36}, 36, 36, "0.1"),
+        ({"method": "optimise", "vary": BORE, "minimise": [LOSS], "points": 4800}, 4800, 4800, "13"),
     ],
     ids=["grid", "values", "sample", "million", "table", "optimise"],
 )

@@ -56,9 +56,15 @@ def scan(problem: Problem, answer: Answer, seed: int) -> Scan:
     return Scan(unit, columns)
 
 
+def scanned(space: Space) -> int:
+    """How many rows a scan has."""
+    lists = [len(v.values) for v in space.variables if isinstance(v, Values)]
+    return min(prod(lists), SCANNED) if len(lists) == len(space) else SCANNED
+
+
 def _places(space: Space, seed: int) -> Array:
-    lists = [v for v in space.variables if isinstance(v, Values)]
-    if len(lists) == len(space) and prod(len(v.values) for v in lists) <= SCANNED:
+    lists = [len(v.values) for v in space.variables if isinstance(v, Values)]
+    if len(lists) == len(space) and prod(lists) <= SCANNED:
         grid = Grid(space)
         return space.place(grid.rows(0, grid.count))
     return sobol_sequence(len(space), seed, 0, SCANNED)

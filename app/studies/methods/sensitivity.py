@@ -116,7 +116,9 @@ class SobolPoints:
 
     def __post_init__(self) -> None:
         if self.base < 2 or self.base & (self.base - 1):
-            raise InvalidInputs([Fault("points", "points", f"{self.base} is no power of two, such as 1024")])
+            low = 2 ** max(1, min(self.base, 10**6).bit_length() - 1)
+            detail = f"{self.base} is no power of two; write {low} or {2 * low}"
+            raise InvalidInputs([Fault("points", "points", detail)])
 
     @property
     def count(self) -> int:
