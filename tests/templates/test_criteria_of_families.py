@@ -8,6 +8,7 @@ from math import hypot, pi, sqrt
 
 import numpy as np
 import pytest
+from criteria_of_engines import CASES as OF_ENGINES
 from criteria_of_pads import CASES as OF_PADS
 
 from templates.core.judging.judging import judge
@@ -59,6 +60,7 @@ LOADS, ENGINE = ("bearing_load", 1), ("engine", 1)
 CHAIN, THROW, FATIGUE = ("torsional_vibration", 1), ("crank_stiffness", 1), ("fatigue_life", 1)
 
 CASES = [
+    *OF_ENGINES,
     *OF_PADS,  # criterion, what differs from the example, limits given, verdict, value and limit by hand
     # The paper prints 3.2449 µm for its example; the bound of its error is 24 %.
     (FILM_1, "film", {}, {"smallest_permissible_film": "2.5 um"}, "met", 3.2449, 2.5),
