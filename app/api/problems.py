@@ -55,7 +55,7 @@ def problem(kind: Kind, detail: str) -> JsonObject:
     return {"type": f"/problems/{kind.slug}", "title": kind.title, "status": kind.status, "detail": detail}
 
 
-def _faults(error: templates.InvalidInputs) -> JsonObject:
+def _faults(error: templates.InvalidInputs) -> dict[str, object]:
     listed = [_fault(fault) for fault in error.faults]
     count = len(listed)
     return {"errors": listed, "detail": f"{count} {'fault' if count == 1 else 'faults'}: {_short(listed)}"}
@@ -66,7 +66,7 @@ def _fault(fault: templates.Fault) -> dict[str, str | list[str]]:
     return {"name": fault.name, "code": fault.code, "detail": fault.detail, **also}
 
 
-def _validation(error: RequestValidationError | InvalidBody) -> JsonObject:
+def _validation(error: RequestValidationError | InvalidBody) -> dict[str, object]:
     listed = [_located(fault) for fault in error.errors()]
     return {"errors": listed, "detail": _short(listed)}
 
@@ -89,22 +89,22 @@ def _short(listed: Iterable[Mapping[str, object]]) -> str:
     return "; ".join(f"{fault['name']}: {fault['detail']}" for fault in listed)[:500]
 
 
-def _unreachable(error: templates.Unreachable) -> JsonObject:
+def _unreachable(error: templates.Unreachable) -> dict[str, object]:
     ends = [None if end != end else end for end in error.reachable]
     listed = [{"name": f"target.{error.name}", "code": "unreachable", "detail": str(error)}]
     return {"reachable": [{"value": end, "unit": error.unit} for end in ends], "errors": listed}
 
 
-def _geometry(error: GeometryError) -> JsonObject:
+def _geometry(error: GeometryError) -> dict[str, object]:
     names = error.parameters or ("model",)
     return {"errors": [{"name": name, "code": error.code, "detail": error.detail} for name in names]}
 
 
-def _untested(error: worksheets.TestsFailed) -> JsonObject:
+def _untested(error: worksheets.TestsFailed) -> dict[str, object]:
     return {"errors": [{"name": "text", "code": "test_failed", "detail": text} for text in error.reasons]}
 
 
-_CARRIED: dict[type[Exception], Callable[..., JsonObject]] = {
+_CARRIED: dict[type[Exception], Callable[..., dict[str, object]]] = {
     templates.InvalidInputs: _faults,
     RequestValidationError: _validation,
     InvalidBody: _validation,

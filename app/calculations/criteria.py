@@ -53,11 +53,11 @@ def criterion(judgement: Judgement) -> JsonObject:
     return {**names, "verdict": judgement.verdict, **present}
 
 
-def _quantity(value: float, unit: str) -> JsonObject | None:
+def _quantity(value: float, unit: str) -> dict[str, object] | None:
     return {"value": value, "unit": unit} if math.isfinite(value) else None
 
 
-def _band(band: tuple[float, float], unit: str) -> JsonObject:
+def _band(band: tuple[float, float], unit: str) -> dict[str, object]:
     return {"value": [end if math.isfinite(end) else None for end in band], "unit": unit}
 
 
