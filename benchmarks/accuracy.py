@@ -75,14 +75,14 @@ def film_errors(film: JournalFilm, truth: JournalFilm) -> Errors:
     }
 
 
-def coefficient_errors(found: tuple[Array, Array], truth: tuple[Array, Array]) -> Errors:
+def coefficient_errors(values: tuple[Array, Array], truth: tuple[Array, Array]) -> Errors:
     """Errors of stiffness and damping over the largest of their four, and of the threshold of whirl."""
     parts = []
-    for matrix, true in zip(found, truth, strict=True):
+    for matrix, true in zip(values, truth, strict=True):
         size = np.abs(true).max(axis=(-1, -2), keepdims=True)
         parts.append((np.abs(matrix - true) / size).reshape(-1, 4))
     errors = dict(zip(COEFFICIENTS, np.concatenate(parts, axis=1).T, strict=True))
-    mass, true_mass = (_threshold(*pair) for pair in (found, truth))
+    mass, true_mass = (_threshold(*pair) for pair in (values, truth))
     with np.errstate(all="ignore"):
         speed = np.abs(np.sqrt(mass / true_mass) - 1)
     both = np.isinf(mass) & np.isinf(true_mass)
@@ -93,10 +93,10 @@ def coefficient_errors(found: tuple[Array, Array], truth: tuple[Array, Array]) -
 
 
 def _threshold(K: Array, B: Array) -> Array:
-    known = np.isfinite(K).all(axis=(-1, -2))
+    is_finite = np.isfinite(K).all(axis=(-1, -2))
     unit = np.broadcast_to(np.eye(2), K.shape)
-    mass = threshold_mass(*(np.where(known[:, None, None], matrix, unit) for matrix in (K, B)))
-    return np.where(known, mass, np.nan)
+    mass = threshold_mass(*(np.where(is_finite[:, None, None], matrix, unit) for matrix in (K, B)))
+    return np.where(is_finite, mass, np.nan)
 
 
 def _relative(value: Array, true: Array) -> Array:
@@ -126,10 +126,10 @@ def closed_form(level: str, load: Callable[..., Array], own: dict[str, Array]) -
     film, truth = (static_film_at(name, So, safe.ravel()) for name in (level, "map"))
     film = film.admitted(np.where(np.isfinite(film.eps), film.eps, np.nan))
     true_eps = np.where(np.isfinite(truth.eps), truth.eps, np.nan)
-    found = coefficients_at(level, eps.ravel(), safe.ravel())
+    values = coefficients_at(level, eps.ravel(), safe.ravel())
     errors = {
         **film_errors(film, truth.admitted(true_eps)),
-        **coefficient_errors(found, coefficients_at("map", true_eps, safe.ravel())),
+        **coefficient_errors(values, coefficients_at("map", true_eps, safe.ravel())),
     }
     cells = {name: error.reshape(eps.shape).max(axis=-1) for name, error in errors.items()}
     return {name: MARGIN * cell + own[name] for name, cell in cells.items()}
@@ -169,10 +169,10 @@ def solved(level: str) -> dict[str, Array]:
     ratio = np.exp(y)
     film = static_film_at(level, truth.So, ratio)
     eps = np.where(np.isfinite(film.eps), film.eps, np.nan)
-    found = coefficients_at(level, eps, ratio)
+    solution = coefficients_at(level, eps, ratio)
     errors = {
         **film_errors(film.admitted(eps), truth),
-        **coefficient_errors(found, (matrices[0][some], matrices[1][some])),
+        **coefficient_errors(solution, (matrices[0][some], matrices[1][some])),
     }
     return {name: spread(x, y, error) for name, error in errors.items()}
 

@@ -27,12 +27,12 @@ def examples(names: tuple[str, ...]) -> Iterator[tuple[str, list[str], Client]]:
     """The address of a running service, the pages of designs from its gallery, and its client."""
     with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as client:
         with httpx.Client(base_url=client.url, timeout=60, trust_env=False) as http:
-            made = [http.post("/designs", data={"example": name}).headers["location"] for name in names]
-            for page in made:
+            places = [http.post("/designs", data={"example": name}).headers["location"] for name in names]
+            for page in places:
                 while client.design(page.rpartition("/")[2]).state == "regenerating":
                     time.sleep(0.2)
             _draw_thumbnails(http)
-        yield client.url, made, client
+        yield client.url, places, client
 
 
 def _draw_thumbnails(http: httpx.Client) -> None:

@@ -132,8 +132,8 @@ def row(case: str, folder: Path) -> dict[str, Any]:
     baselines = {"own build": own_build, "plain script": plain_script}
     volume = regenerate(model_id, 1, si).measures["volume"]
     for name, baseline in baselines.items():
-        if abs(found := baseline(throw, file) / volume - 1) > 1e-4:
-            raise RuntimeError(f"{case}: {name} draws another solid, {found:+.1e} of the volume")
+        if abs(off := baseline(throw, file) / volume - 1) > 1e-4:
+            raise RuntimeError(f"{case}: {name} draws another solid, {off:+.1e} of the volume")
     times = milliseconds(
         {
             "regenerate": lambda: regenerate(model_id, 1, si),

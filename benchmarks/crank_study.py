@@ -125,15 +125,15 @@ def document(parameters: Mapping[str, str]) -> dict[str, Any]:
 def states(client: Client, base: Mapping[str, str], changes: Sequence[Mapping[str, str]]) -> list[State]:
     """The shaft and its changes, each a revision of one design."""
     design = client.create(document(base))
-    found = [state(client, design)]
+    listed = [state(client, design)]
     for change in changes:
         parameters = {**base, **change}
         design = client.change(
             design, {"models": {"crank": {"parameters": parameters}}, "note": note_of(change)}
         )
-        found.append(state(client, design))
-        print(note_of(change), found[-1], flush=True)
-    return found
+        listed.append(state(client, design))
+        print(note_of(change), listed[-1], flush=True)
+    return listed
 
 
 def note_of(change: Mapping[str, str]) -> str:
@@ -185,9 +185,9 @@ def main() -> None:
     PAGE.write_text(page(slender, stout), encoding="utf-8")
 
 
-def gains(found: Sequence[State], name: str) -> list[float]:
+def gains(listed: Sequence[State], name: str) -> list[float]:
     """By how much [%] each change has changed something."""
-    base, *changed = (getattr(state, name) for state in found)
+    base, *changed = (getattr(state, name) for state in listed)
     return [100 * (value / base - 1) for value in changed]
 
 
@@ -215,13 +215,13 @@ def draw(slender: Sequence[State], stout: Sequence[State], picture: bytes) -> No
     plt.close(figure)
 
 
-def table(found: Sequence[State]) -> str:
+def table(listed: Sequence[State]) -> str:
     """One row for each change, ours beside the paper's."""
     rows = [HEADS, ("---",) + ("---:",) * (len(HEADS) - 1)]
-    columns = [gains(found, name) for name in ("stiffness", "frequency", "mode", "recommended")]
+    columns = [gains(listed, name) for name in ("stiffness", "frequency", "mode", "recommended")]
     for i, change in enumerate(CHANGES):
         gain, frequency, mode, closed = (column[i] for column in columns)
-        added = found[i + 1].mass - found[0].mass
+        added = listed[i + 1].mass - listed[0].mass
         rows.append((
             change.words, f"{gain:+.2f} %", f"{change.stiffness:+.3f} %", f"{1000 * added:+.0f} g",
             f"{gain / added:+.0f} %/kg" if gain > 0 else "a loss", f"{frequency:+.2f} %", f"{mode:+.2f} %",

@@ -63,7 +63,7 @@ def costs() -> dict[str, dict[str, float]]:
     cylinder = {**BearingLoad.example, "crank_angle_step": "1 deg"}
     engine = {**CASE["inputs"], **FIRED}
     speeds = {"value": np.linspace(500, 3000, CASES).tolist(), "unit": "rpm"}
-    found = {}
+    listed = {}
     for name, cls, raw, outputs in (
         ("one cylinder, all outputs", BearingLoad, cylinder, None),
         ("one cylinder, greatest loads and mean torque", BearingLoad, cylinder, GREATEST),
@@ -72,11 +72,11 @@ def costs() -> dict[str, dict[str, float]]:
         many = {**raw, "speed": speeds}
         one = least(lambda c=cls, r=raw, o=outputs: evaluate(c, r, outputs=o))
         each = least(lambda c=cls, r=many, o=outputs: evaluate(c, r, outputs=o), 8) / CASES
-        found[name] = {"one": one, "each_of_many": each, "times_cheaper": one / each}
+        listed[name] = {"one": one, "each_of_many": each, "times_cheaper": one / each}
         if outputs is None:
             values = si(cls, raw)
-            found[name]["from_si"] = least(lambda c=cls, v=values: bare(c, v))
-    return found
+            listed[name]["from_si"] = least(lambda c=cls, v=values: bare(c, v))
+    return listed
 
 
 def nine_cylinders() -> dict[str, dict[str, Any]]:

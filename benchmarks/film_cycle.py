@@ -85,12 +85,14 @@ def orbit_seconds(level: str) -> float:
 
 def levels() -> dict[str, Any]:
     """Every level on the big end at 1°, with its cost."""
-    found: dict[str, Any] = {}
+    by_level: dict[str, Any] = {}
     for level in OilFilmCycle.levels:
         answers = evaluate(OilFilmCycle, big_end(), level=level).outputs
-        found[level] = {name: answers[name].value for name in SHOWN} | {"orbit_seconds": orbit_seconds(level)}
-        found[level]["curves"] = {name: answers[name].value for name in CURVES}
-    return found
+        by_level[level] = {name: answers[name].value for name in SHOWN} | {
+            "orbit_seconds": orbit_seconds(level)
+        }
+        by_level[level]["curves"] = {name: answers[name].value for name in CURVES}
+    return by_level
 
 
 def costs() -> dict[str, float]:
@@ -113,7 +115,7 @@ def costs() -> dict[str, float]:
     }
 
 
-def draw(found: dict[str, Any]) -> None:
+def draw(by_level: dict[str, Any]) -> None:
     """The orbits, and the films over the cycle."""
     mpl.use("Agg")
     figure, (left, right) = plt.subplots(
@@ -122,7 +124,7 @@ def draw(found: dict[str, Any]) -> None:
     turn = np.linspace(0, 2 * np.pi, 200)
     left.plot(np.cos(turn), np.sin(turn), color="0.6", lw=1)
     styles = {"mobility_short": ":", "mobility": "-", "transient": "--"}
-    for level, answers in found.items():
+    for level, answers in by_level.items():
         curves = answers["curves"]
         x, y = (np.append(curves[name], curves[name][0]) for name in CURVES[:2])
         left.plot(x, y, styles[level], lw=1.4, label=level)
@@ -144,9 +146,11 @@ def draw(found: dict[str, Any]) -> None:
 
 def main() -> None:
     """Measure, write, print."""
-    found, cost = levels(), costs()
-    draw(found)
-    summary = {level: {n: v for n, v in answers.items() if n != "curves"} for level, answers in found.items()}
+    by_level, cost = levels(), costs()
+    draw(by_level)
+    summary = {
+        level: {n: v for n, v in answers.items() if n != "curves"} for level, answers in by_level.items()
+    }
     RESULTS.write_text(json.dumps({"levels": summary, "mobility": cost}, indent=1) + "\n", encoding="utf-8")
     base = summary["mobility"]["orbit_seconds"]
     print("| level |", " | ".join(f"{n} [{UNITS[n]}]" if n in UNITS else n for n in SHOWN), "| cost |")

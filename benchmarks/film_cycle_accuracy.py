@@ -102,10 +102,10 @@ def at_level(level: str, asked: Duty, marching: Marching = MARCHING) -> dict[str
     return outputs(orbit, cycle_film(level, asked, orbit))
 
 
-def errors(found: dict[str, Array], truth: dict[str, Array]) -> dict[str, float]:
+def errors(values: dict[str, Array], truth: dict[str, Array]) -> dict[str, float]:
     """See above."""
     sizes = {name: 1.0 if name.startswith("ecc") else float(np.abs(t).max()) for name, t in truth.items()}
-    return {name: float(np.abs(found[name] - truth[name]).max()) / sizes[name] for name in truth}
+    return {name: float(np.abs(values[name] - truth[name]).max()) / sizes[name] for name in truth}
 
 
 def cell(S: float, ratio: float) -> dict[str, dict[str, float]]:
@@ -118,7 +118,9 @@ def cell(S: float, ratio: float) -> dict[str, dict[str, float]]:
         asked = make(S, ratio)
         truth = finest[make] if make in finest else at_level("transient", asked)
         levels = {level: errors(at_level(level, asked), truth) for level in ("mobility_short", "mobility")}
-        with_own = {level: {n: e + own[n] for n, e in found.items()} for level, found in levels.items()}
+        with_own = {
+            level: {n: e + own[n] for n, e in errors_at.items()} for level, errors_at in levels.items()
+        }
         cases.append({**with_own, "transient": own})
     return {
         level: {name: MARGIN * max(case[level][name] for case in cases) for name in cases[0][level]}
@@ -135,14 +137,14 @@ def cells() -> Iterator[tuple[int, int, dict[str, dict[str, float]]]]:
 
 def costs() -> dict[str, dict[str, float]]:
     """Processor time of one point, of the big end in the middle of the plane [s]."""
-    found = {}
+    seconds = {}
     for level in OilFilmCycle.levels:
         begin = process_time()
         repeats = 1 if level == "transient" else 10
         for _ in range(repeats):
             at_level(level, big_end(5.0, 0.4))
-        found[level] = {"single": round((process_time() - begin) / repeats, 5)}
-    return found
+        seconds[level] = {"single": round((process_time() - begin) / repeats, 5)}
+    return seconds
 
 
 def rounded(value: float) -> float | None:
@@ -158,12 +160,17 @@ def unknown(table: dict[str, list[list[float | None]]]) -> dict[str, list[list[N
 def main() -> None:
     """Measure and write."""
     tables: dict[str, dict[str, list[list[float | None]]]] = {level: {} for level in OilFilmCycle.levels}
-    for i, j, found in cells():
-        for level, by_name in found.items():
+    for i, j, cell_errors in cells():
+        for level, by_name in cell_errors.items():
             for name, error in by_name.items():
                 empty: list[list[float | None]] = [[None] * (len(WIDTHS) - 1) for _ in LOADS[1:]]
                 tables[level].setdefault(name, empty)[i][j] = rounded(error)
-        print(i, j, {level: round(e["minimum_film_thickness"], 4) for level, e in found.items()}, flush=True)
+        print(
+            i,
+            j,
+            {level: round(e["minimum_film_thickness"], 4) for level, e in cell_errors.items()},
+            flush=True,
+        )
     cost = costs()
     page: dict[str, Any] = {
         "id": "oil_film_cycle",

@@ -144,14 +144,14 @@ def compared(kind: str, number: int, seed: int, duty: RandomDuty) -> dict[str, A
         if level == "mobility_grooved" and not duty.fed_by.endswith("groove"):
             continue
         cheap = fed_orbit(level, asked)
-        found = values(cheap, fed_film(level, asked, cheap))
-        line["errors"][level] = [digits(error(found[n], truth[n])) for n in OUTPUTS]
+        cheap_values = values(cheap, fed_film(level, asked, cheap))
+        line["errors"][level] = [digits(error(cheap_values[n], truth[n])) for n in OUTPUTS]
     return line
 
 
-def error(found: Array, truth: Array) -> float:
+def error(value: Array, truth: Array) -> float:
     """Relative to what was found; NaN where nothing was."""
-    return float(np.abs(found - truth).max() / np.abs(found).max())
+    return float(np.abs(value - truth).max() / np.abs(value).max())
 
 
 def digits(value: Any) -> float | None:
@@ -205,18 +205,18 @@ def bound(errors: list[float]) -> float | None:
     high = ranks[binom.cdf(ranks - 1, len(errors), QUANTILE) >= CONFIDENCE]
     if high.size == 0:
         return None
-    found = float(np.sort(errors)[high[0] - 1])
-    return float(f"{found:.2g}") if np.isfinite(found) else None
+    largest = float(np.sort(errors)[high[0] - 1])
+    return float(f"{largest:.2g}") if np.isfinite(largest) else None
 
 
 def at_band(lines: list[dict[str, Any]], level: str, output: str) -> list[float]:
     """Errors of an output, with what the orbit lacks of repeating; infinite where there is none."""
-    found = []
+    rows = []
     for line in lines:
         errors = line.get("errors", {}).get(level)
         own = errors[OUTPUTS.index(output)] if errors else None
-        found.append(np.inf if own is None else own + (line["repeat"] or 0.0))
-    return found
+        rows.append(np.inf if own is None else own + (line["repeat"] or 0.0))
+    return rows
 
 
 Table = list[list[float | None]]
@@ -224,18 +224,18 @@ Table = list[list[float | None]]
 
 def tables(lines: list[dict[str, Any]]) -> dict[str, dict[str, dict[str, Table]]]:
     """Bounds by kind of supply, level and output, in every band."""
-    made: dict[str, dict[str, dict[str, Table]]] = {}
+    result: dict[str, dict[str, dict[str, Table]]] = {}
     for kind in KINDS:
         levels = CHEAP if kind.endswith("groove") else CHEAP[:2]
-        made[kind] = {level: {output: unknown() for output in (*OUTPUTS, *WITHOUT)} for level in levels}
+        result[kind] = {level: {output: unknown() for output in (*OUTPUTS, *WITHOUT)} for level in levels}
         own = [line for line in lines if line["kind"] == kind]
         for row in range(len(LOADS) - 1):
             for column in range(len(WIDTHS) - 1):
                 inside = [line for line in own if band(line["S"], line["b"]) == (row, column)]
                 for level in levels:
                     for output in OUTPUTS:
-                        made[kind][level][output][row][column] = bound(at_band(inside, level, output))
-    return made
+                        result[kind][level][output][row][column] = bound(at_band(inside, level, output))
+    return result
 
 
 def unknown() -> Table:
@@ -243,16 +243,18 @@ def unknown() -> Table:
     return [[None] * (len(WIDTHS) - 1) for _ in LOADS[1:]]
 
 
-def coverage(made: dict[str, dict[str, dict[str, Table]]], lines: list[dict[str, Any]]) -> dict[str, Any]:
+def coverage(
+    stated_tables: dict[str, dict[str, dict[str, Table]]], lines: list[dict[str, Any]]
+) -> dict[str, Any]:
     """Of the duties of another seed, in how many each stated bound holds, by kind and level."""
     held: dict[str, Any] = {}
-    for kind, levels in made.items():
+    for kind, levels in stated_tables.items():
         for level, outputs in levels.items():
             for output in OUTPUTS:
                 own = [line for line in lines if line["kind"] == kind]
                 stated = [(outputs[output][i][j], at_band([line], level, output)[0])
                           for line in own for i, j in [band(line["S"], line["b"])]]  # fmt: skip
-                checked = [found <= limit for limit, found in stated if limit is not None]
+                checked = [actual <= limit for limit, actual in stated if limit is not None]
                 if checked:
                     held.setdefault(kind, {}).setdefault(level, {})[output] = [sum(checked), len(checked)]
     return held
@@ -262,8 +264,8 @@ def write() -> None:
     """Make the accuracy file, and print the coverage."""
     lines = kept()
     first = [line for line in lines if line["seed"] == SEED]
-    made = tables(first)
-    held = coverage(made, [line for line in lines if line["seed"] == OTHER_SEED])
+    measured_tables = tables(first)
+    held = coverage(measured_tables, [line for line in lines if line["seed"] == OTHER_SEED])
     counts = {kind: {f"{i},{j}": n for (i, j), n in sorted(
         Counter(band(line["S"], line["b"]) for line in first if line["kind"] == kind).items())}
         for kind in KINDS}  # fmt: skip
@@ -297,7 +299,7 @@ def write() -> None:
             }
             for level in (*CHEAP, "supplied")
         },
-        "cases": made,
+        "cases": measured_tables,
     }
     FILE.write_text(json.dumps(page, indent=None, ensure_ascii=False) + "\n", encoding="utf-8")
     for kind, levels in held.items():
@@ -321,18 +323,18 @@ def ratios() -> None:
     for kind in ("half_groove", "full_groove"):
         lines = {line["number"]: line for line in kept() if line["kind"] == kind and line["seed"] == SEED}
         marched = {number: line for number, line in lines.items() if "errors" in line}
-        found = []
+        listed = []
         for number, duty in drawn(SEED, kind):
             if number > max(lines, default=-1):
                 break
             if number in marched:
                 film = 1 - fed_orbit("mobility_grooved", fed(duty)).eps_max
-                found.append(float(film) / marched[number]["gap"])
-        if found:
-            low, middle, high = np.quantile(found, [0.025, 0.5, 0.975])
-            near = np.mean([0.75 <= ratio <= 1.25 for ratio in found])
-            print(f"{kind}: {len(found)} duties; 2.5 %, median, 97.5 %: {low:.2f}, {middle:.2f}, {high:.2f}; "
-                  f"{near:.0%} within 0.75 to 1.25")  # fmt: skip
+                listed.append(float(film) / marched[number]["gap"])
+        if listed:
+            low, middle, high = np.quantile(listed, [0.025, 0.5, 0.975])
+            near = np.mean([0.75 <= ratio <= 1.25 for ratio in listed])
+            quantiles = f"2.5 %, median, 97.5 %: {low:.2f}, {middle:.2f}, {high:.2f}"
+            print(f"{kind}: {len(listed)} duties; {quantiles}; {near:.0%} within 0.75 to 1.25")
 
 
 def main() -> None:

@@ -103,14 +103,14 @@ def errors() -> tuple[Array, Array, Array]:
 
 def keep_error() -> None:
     """Largest error of each cell and its neighbours, with a margin, into the data."""
-    x, y, found = errors()
+    x, y, errors_there = errors()
     eccentricity, width = axes()
     row = np.clip((x / (eccentricity.step * (NODES[0] - 1)) * CELLS[0]).astype(int), 0, CELLS[0] - 1)
     column = ((y - width.first) / (width.step * (NODES[1] - 1)) * CELLS[1]).astype(int)
     table = np.zeros((*CELLS, 8))
     for i, j in np.ndindex(*CELLS):
         near = (np.abs(row - i) <= 1) & (np.abs(column - j) <= 1)
-        table[i, j] = MARGIN * found[near, :8].max(axis=0)
+        table[i, j] = MARGIN * errors_there[near, :8].max(axis=0)
     with np.load(DATA) as data:
         kept = {name: data[name] for name in data.files if name != "error"}
     np.savez_compressed(DATA, **kept, error=table.astype(np.float32))
@@ -118,16 +118,16 @@ def keep_error() -> None:
 
 def report() -> None:
     """Print the errors found inside and over the whole range, and the cost a point."""
-    x, y, found = errors()
+    x, y, errors_there = errors()
     eps, ratio = np.tanh(x), np.exp(y)
     with np.load(CHECKS) as checks:
         half = np.arctan(np.exp(checks["truth"][:, 1]) * np.tan(attitude_Ocvirk_1952(eps) / 2))
-    degrees = np.degrees(found[:, 1] * np.sin(2 * half))
+    degrees = np.degrees(errors_there[:, 1] * np.sin(2 * half))
     inside = (eps >= 0.01) & (eps <= 0.999) & (ratio >= 0.1) & (ratio <= 4)
     for name, part in (("eps 0.01…0.999, B/D 0.1…4", inside), ("everywhere", np.ones_like(inside))):
         print(f"{name}: {part.sum()} points")
-        print(f"  So {100 * found[part, 0].max():.4f} %, attitude {degrees[part].max():.4f}°")
-        print("  largest of all values", " ".join(f"{value:.1e}" for value in found[part].max(axis=0)))
+        print(f"  So {100 * errors_there[part, 0].max():.4f} %, attitude {degrees[part].max():.4f}°")
+        print("  largest of all values", " ".join(f"{value:.1e}" for value in errors_there[part].max(axis=0)))
     rng = np.random.default_rng(1)
     many, widths = rng.random(200_000), rng.uniform(0.1, 2, 200_000)
     for function in (mapped_film, mapped_load):

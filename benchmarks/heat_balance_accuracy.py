@@ -171,12 +171,12 @@ def added(bearings: Bearings, level: str) -> dict[str, float]:
     """The largest change of each output at a level; none where the level has no such output."""
     own, true = bearings.template().at(level), bearings.in_equilibrium(level)
     with np.errstate(all="ignore"):
-        found = {
+        shares = {
             name: change(name, value_of(own, name), value_of(true, name), sizes(true, name))
             for name in dependent()
             if name != "heat_balance_residual"
         }
-    return {name: float(np.nanmax(e)) for name, e in found.items() if np.isfinite(e).any()}
+    return {name: float(np.nanmax(e)) for name, e in shares.items() if np.isfinite(e).any()}
 
 
 def upwards(value: float) -> float:
@@ -185,10 +185,10 @@ def upwards(value: float) -> float:
     return float(f"{np.ceil(value / unit) * unit:.2g}")
 
 
-def largest(found: Iterator[dict[str, float]]) -> dict[str, float]:
+def largest(each: Iterator[dict[str, float]]) -> dict[str, float]:
     """The largest change of each output."""
     most: dict[str, float] = {}
-    for changes in found:
+    for changes in each:
         for name, change in changes.items():
             most[name] = max(most.get(name, 0.0), change)
     return most
@@ -226,8 +226,8 @@ def main() -> None:
     measured = {level: fast[source] for level, source in LEVELS.items()}
     measured[SLOW] = slowly(every, fast["map"])
     tables = {
-        level: {name: upwards(MARGIN * error) for name, error in found.items()}
-        for level, found in measured.items()
+        level: {name: upwards(MARGIN * error) for name, error in errors.items()}
+        for level, errors in measured.items()
     }
     content = json.loads(FILE.read_text(encoding="utf-8"))
     content["conditions"] = [

@@ -22,13 +22,13 @@ COLUMNS = {
 def row(level: str) -> list[str]:
     """The cells of one level but for its cost."""
     units = {name: unit for name, (_, unit, _) in COLUMNS.items()}
-    made = evaluate(OilFilm, OilFilm.example, level=level, outputs=list(COLUMNS), units=units)
-    values = [made.outputs[name].value for name in COLUMNS]
+    evaluation = evaluate(OilFilm, OilFilm.example, level=level, outputs=list(COLUMNS), units=units)
+    values = [evaluation.outputs[name].value for name in COLUMNS]
     cells = [
         "none" if v is None else format(v, how)
         for v, (_, _, how) in zip(values, COLUMNS.values(), strict=True)
     ]
-    return [f"`{level}`", *cells, f"{100 * made.error['minimum_film_thickness']:.2g} %"]
+    return [f"`{level}`", *cells, f"{100 * evaluation.error['minimum_film_thickness']:.2g} %"]
 
 
 def main() -> None:

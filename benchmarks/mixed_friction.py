@@ -59,13 +59,13 @@ def random_bearings(level: str, count: int, at_once: int) -> None:
         drawn["bearing_width"] = D * 10 ** rng.uniform(-2, 2, at_once), "mm"
         drawn["diametral_clearance"] = D * 10 ** rng.uniform(-5, -1, at_once), "mm"
         raw = {name: {"value": value.tolist(), "unit": unit} for name, (value, unit) in drawn.items()}
-        found = evaluate(MixedFriction, raw, level=level).outputs
-        for name, one in found.items():
+        outputs = evaluate(MixedFriction, raw, level=level).outputs
+        for name, one in outputs.items():
             values = np.asarray(one.value) if name != "lubrication_regime" else np.zeros(at_once)
             missing = np.isnan(values.reshape(at_once, -1)).any(axis=1) if values.ndim else np.zeros(at_once)
             reasons = np.full(at_once, one.reason) if one.reasons is None else one.reasons
             assert all(reasons[i] for i in np.flatnonzero(missing)), name
-        answered += int(np.isfinite(found["friction_coefficient"].value).sum())
+        answered += int(np.isfinite(outputs["friction_coefficient"].value).sum())
     seconds = process_time() - begin
     print(
         f"{level}: {answered} of {count} answered, none without a reason, {1e3 * seconds / count:.1f} ms each"

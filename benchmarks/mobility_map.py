@@ -139,24 +139,24 @@ def errors() -> tuple[Array, Array]:
     with np.load(CHECKS) as checks:
         places, truth = checks["places"], checks["truth"]
     data = mobility_map()
-    found = volume(np.concatenate([data.motion, data.film], axis=-1), data.axes, places)
+    interpolated = volume(np.concatenate([data.motion, data.film], axis=-1), data.axes, places)
     xi, eta = np.array([place(x, v) for x, v, _ in places.T]).T
     ratio = np.exp(places[2])
-    M, M_true = (decode_motion(xi, eta, ratio, values) for values in (found, truth))
-    difference = np.abs(found - truth)
-    difference[3] = np.abs(found[3] / truth[3] - 1)
+    M, M_true = (decode_motion(xi, eta, ratio, values) for values in (interpolated, truth))
+    difference = np.abs(interpolated - truth)
+    difference[3] = np.abs(interpolated[3] / truth[3] - 1)
     difference[1] = np.hypot(*(M - M_true)) / np.hypot(*M_true)
     return places, difference
 
 
 def keep_error() -> None:
     """Largest error of each cell and its neighbours, with a margin, into the data."""
-    places, found = errors()
+    places, errors_there = errors()
     index = cell_of(axes(), places.T, np.array(CELLS))
     table = np.zeros((*CELLS, 4))
     for cell in np.ndindex(*CELLS):
         near = np.all(np.abs(index - cell) <= 1, axis=1)
-        table[cell] = MARGIN * found[:, near].max(axis=1)
+        table[cell] = MARGIN * errors_there[:, near].max(axis=1)
     with np.load(DATA) as data:
         kept = {name: data[name] for name in data.files if name != "error"}
     np.savez_compressed(DATA, **kept, error=table.astype(np.float32))
@@ -164,14 +164,14 @@ def keep_error() -> None:
 
 def report() -> None:
     """Print the errors found inside and over the whole range, and the cost a point."""
-    places, found = errors()
+    places, errors_there = errors()
     xi, eta = np.array([place(x, v) for x, v, _ in places.T]).T
     eps, ratio = np.hypot(xi, eta), np.exp(places[2])
     inside = (eps <= 0.999) & (ratio >= 0.1) & (ratio <= 4)
     for name, part in (("eps to 0.999, B/D 0.1…4", inside), ("everywhere", np.ones_like(inside))):
         print(f"{name}: {part.sum()} points; errors of ln M_xi, |M|, ln P_max, side flow")
-        print("  largest", " ".join(f"{value:.1e}" for value in found[:, part].max(axis=1)))
-        print("  median ", " ".join(f"{value:.1e}" for value in np.median(found[:, part], axis=1)))
+        print("  largest", " ".join(f"{value:.1e}" for value in errors_there[:, part].max(axis=1)))
+        print("  median ", " ".join(f"{value:.1e}" for value in np.median(errors_there[:, part], axis=1)))
     rng = np.random.default_rng(1)
     eps, chi = 0.999 * rng.random(200_000), rng.uniform(-np.pi, np.pi, 200_000)
     xi, eta, ratio, half = eps * np.cos(chi), -eps * np.sin(chi), 0.1 + 2 * eps, np.array(0.5)

@@ -30,7 +30,7 @@ CHANGES = {
 def main() -> None:
     """Measure and write."""
     with examples(("paper", "shell")) as (url, (paper, shell), _), chromium() as browser:
-        found = {
+        sizes = {
             "first visit": {
                 "home": _visit(browser, url + "/"),
                 "design": _visit(browser, url + paper),
@@ -38,7 +38,7 @@ def main() -> None:
             "preview with worksheet [ms]": _previews(url, (paper, shell, shell)),
             "keystroke to result in the page [ms]": _typing(browser, url + paper),
         }
-    RESULT.write_text(json.dumps(found, indent=1) + "\n")
+    RESULT.write_text(json.dumps(sizes, indent=1) + "\n")
     print(RESULT.read_text())
 
 
@@ -62,7 +62,7 @@ def _visit(browser: Browser, address: str) -> dict[str, Any]:
 
 def _previews(url: str, pages: tuple[str, ...]) -> dict[str, float]:
     """The time of a preview, each of other values."""
-    found = {}
+    times = {}
     with httpx.Client(base_url=url, timeout=60, trust_env=False) as http:
         for page, (name, patch) in zip(pages, CHANGES.items(), strict=True):
             took = []
@@ -72,8 +72,8 @@ def _previews(url: str, pages: tuple[str, ...]) -> dict[str, float]:
                 answer = http.post(f"/api/v1{page}/preview", params={"worksheet": True}, json=body)
                 took.append(time.perf_counter() - start)
                 assert answer.is_success, answer.text
-            found[name] = round(1000 * median(took), 1)
-    return found
+            times[name] = round(1000 * median(took), 1)
+    return times
 
 
 def _typing(browser: Browser, address: str) -> float:

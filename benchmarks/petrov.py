@@ -43,8 +43,8 @@ def error(eps: Array, ratio: Array) -> Array:
 
 def cell(eps: tuple[float, float], ratio: tuple[float, float]) -> float:
     """The largest error found in a cell, its edges included, rounded up."""
-    found = np.abs(error(np.linspace(*eps, INSIDE)[:, None], np.geomspace(*ratio, INSIDE))).max()
-    return float(np.ceil(found * 1e5) / 1e5)
+    largest = np.abs(error(np.linspace(*eps, INSIDE)[:, None], np.geomspace(*ratio, INSIDE))).max()
+    return float(np.ceil(largest * 1e5) / 1e5)
 
 
 def seconds_a_point(count: int) -> float:

@@ -36,9 +36,9 @@ def used(pid: int) -> float:
     processes = {
         int(place.name): _fields(place) for place in Path("/proc").iterdir() if place.name.isdecimal()
     }
-    family, found = {pid}, {pid}
-    while found := {one for one, fields in processes.items() if fields and fields[_PARENT] in found} - family:
-        family |= found
+    family, new = {pid}, {pid}
+    while new := {one for one, fields in processes.items() if fields and fields[_PARENT] in new} - family:
+        family |= new
     return sum(_seconds(fields) for one in family if (fields := processes.get(one)))
 
 

@@ -82,8 +82,8 @@ def _measured_once(http: httpx.Client, address: str) -> float:
 
 def _page(pdf: bytes, number: int) -> Image.Image:
     command = ["pdftoppm", "-r", str(RESOLUTION), "-f", str(number), "-l", str(number), "-png"]
-    made = subprocess.run(command, input=pdf, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
-    return Image.open(io.BytesIO(made.stdout)).convert("RGB")
+    done = subprocess.run(command, input=pdf, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
+    return Image.open(io.BytesIO(done.stdout)).convert("RGB")
 
 
 def _side_by_side(pages: list[Image.Image]) -> Image.Image:

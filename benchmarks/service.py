@@ -87,12 +87,12 @@ def _spread(values: Any) -> tuple[float, tuple[float, float]]:
 
 
 def judged(
-    made: Row, aim: str, *, ratio_at_least: float = 0, ratio_below: float = np.inf, below: float = np.inf
+    measured: Row, aim: str, *, ratio_at_least: float = 0, ratio_below: float = np.inf, below: float = np.inf
 ) -> Row:
     """A line with its aim and whether it is met."""
-    ratio = 1.0 if made.ratio is None else made.ratio
-    met = ratio_at_least <= ratio < ratio_below and made.median < below
-    return Row(**{**asdict(made), "aim": aim, "met": bool(met)})
+    ratio = 1.0 if measured.ratio is None else measured.ratio
+    met = ratio_at_least <= ratio < ratio_below and measured.median < below
+    return Row(**{**asdict(measured), "aim": aim, "met": bool(met)})
 
 
 def milliseconds(action: Callable[[], object]) -> float:
@@ -242,10 +242,10 @@ def quiet_changes(server: Server, folder: Path, rounds: int) -> list[Row]:
             commits.append(alone)
     assert changes.build() == before, "the model was rebuilt"
     database.close()
-    made = row(
+    measured = row(
         "c", "PATCH of the load only", "ms", ours, baseline=commits, against="one synced SQLite commit"
     )
-    return [judged(made, "< 10 ms", below=10)]
+    return [judged(measured, "< 10 ms", below=10)]
 
 
 # (d) ------------------------------------------------------------------------------------------------------
@@ -263,8 +263,8 @@ def arrays(server: Server, folder: Path, rounds: int) -> list[Row]:
         "10⁶ points, all outputs": lambda: evaluate(OilFilm, one),
         "10⁶ points, one output, from a list": lambda: evaluate(OilFilm, typed, outputs=thickness),
     }
-    made = actions["10⁶ points, one output"]().outputs[thickness[0]].value
-    assert np.allclose(made, 1e6 * actions["NumPy"](), rtol=1e-12)
+    thicknesses = actions["10⁶ points, one output"]().outputs[thickness[0]].value
+    assert np.allclose(thicknesses, 1e6 * actions["NumPy"](), rtol=1e-12)
     taken: dict[str, list[float]] = {name: [] for name in actions}
     for _ in range(rounds):
         for name, action in actions.items():
@@ -316,7 +316,7 @@ def health(server: Server, folder: Path, rounds: int) -> list[Row]:
     rows = []
     for part in (50, 99):
         of = {when: [float(np.percentile(turn, part)) for turn in turns] for when, turns in times.items()}
-        made = row(
+        measured = row(
             "e",
             f"/healthz p{part}, a job loops",
             "ms",
@@ -324,7 +324,7 @@ def health(server: Server, folder: Path, rounds: int) -> list[Row]:
             baseline=of["idle"],
             against="the same, idle",
         )
-        rows.append(judged(made, "< 50 ms", below=50) if part == 99 else made)
+        rows.append(judged(measured, "< 50 ms", below=50) if part == 99 else measured)
     return [
         *rows,
         row(
@@ -365,16 +365,16 @@ def pings(server: Server, count: int) -> list[float]:
 def hostile(server: Server, folder: Path, rounds: int) -> list[Row]:
     """Every hostile input, to its whole answer; the slowest of its repeats is printed too."""
     rows = []
-    for name, found in service_hostile.measure(server, service_hostile.CASES, rounds).items():
-        refused = all(400 <= status < 500 for status in found["statuses"])
-        rows.append(judged(_refusal("f", name, found), "4xx < 100 ms", below=100 if refused else 0))
+    for name, times in service_hostile.measure(server, service_hostile.CASES, rounds).items():
+        refused = all(400 <= status < 500 for status in times["statuses"])
+        rows.append(judged(_refusal("f", name, times), "4xx < 100 ms", below=100 if refused else 0))
     beyond = service_hostile.measure(server, service_hostile.LARGEST, 3)
-    return [*rows, *(_refusal("f+", name, found) for name, found in beyond.items())]
+    return [*rows, *(_refusal("f+", name, times) for name, times in beyond.items())]
 
 
-def _refusal(part: str, name: str, found: dict[str, Any]) -> Row:
-    statuses = "/".join(map(str, sorted(found["statuses"])))
-    return row(part, f"{name} → {statuses}, slowest {max(found['ms']):.3g}", "ms", found["ms"])
+def _refusal(part: str, name: str, times: dict[str, Any]) -> Row:
+    statuses = "/".join(map(str, sorted(times["statuses"])))
+    return row(part, f"{name} → {statuses}, slowest {max(times['ms']):.3g}", "ms", times["ms"])
 
 
 # ----------------------------------------------------------------------------------------------------------
@@ -398,9 +398,9 @@ def main() -> None:
         server = stack.enter_context(service_process.crankwright(folder))
         for name in wanted:
             measure, rounds = PARTS[name]
-            made = measure(server, folder, 3 if QUICK else rounds)
-            print("\n".join(line(summary) for summary in made), flush=True)
-            rows += made
+            measured = measure(server, folder, 3 if QUICK else rounds)
+            print("\n".join(line(summary) for summary in measured), flush=True)
+            rows += measured
     summary = {
         "commit": commit(),
         "machine": machine(),
@@ -410,9 +410,10 @@ def main() -> None:
     if len(wanted) == len(PARTS) and not QUICK:
         RESULTS.parent.mkdir(exist_ok=True)
         written = [
-            {key: value for key, value in asdict(made).items() if value not in (None, "")} for made in rows
+            {key: value for key, value in asdict(measured).items() if value not in (None, "")}
+            for measured in rows
         ]
-        lines = ",\n".join(f"  {json.dumps(made, ensure_ascii=False)}" for made in written)
+        lines = ",\n".join(f"  {json.dumps(measured, ensure_ascii=False)}" for measured in written)
         date = datetime.now(UTC).isoformat(timespec="seconds")
         head = json.dumps({"date": date, **summary}, ensure_ascii=False)[:-1]
         RESULTS.write_text(f'{head}, "rows": [\n{lines}\n]}}\n')
@@ -439,14 +440,17 @@ def machine() -> dict[str, Any]:
     }
 
 
-def line(made: Row) -> str:
+def line(measured: Row) -> str:
     """A line of the table."""
     ratio = ""
-    if made.ratio is not None and made.ratio_quartiles is not None:
-        ratio = "× {:6.3g}  [{:.3g} … {:.3g}]  of {}".format(made.ratio, *made.ratio_quartiles, made.against)
-    spread = "[{:.3g} … {:.3g}]".format(*made.quartiles)
-    verdict = "" if made.met is None else f"  aim {made.aim}: {'met' if made.met else 'MISSED'}"
-    return f"{made.part:2} {made.what:52} {made.median:9.4g} {made.unit:4} {spread:19} {ratio}{verdict}"
+    if measured.ratio is not None and measured.ratio_quartiles is not None:
+        ratio = "× {:6.3g}  [{:.3g} … {:.3g}]  of {}".format(
+            measured.ratio, *measured.ratio_quartiles, measured.against
+        )
+    spread = "[{:.3g} … {:.3g}]".format(*measured.quartiles)
+    verdict = "" if measured.met is None else f"  aim {measured.aim}: {'met' if measured.met else 'MISSED'}"
+    value = f"{measured.median:9.4g} {measured.unit:4}"
+    return f"{measured.part:2} {measured.what:52} {value} {spread:19} {ratio}{verdict}"
 
 
 if __name__ == "__main__":

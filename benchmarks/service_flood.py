@@ -185,10 +185,10 @@ def children(pid: int) -> dict[int, float]:
                 continue
             seconds = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
             stats[int(entry.name)] = (int(fields[1]), seconds)
-    found: set[int] = set()
-    while more := {p for p, (parent, _) in stats.items() if parent in found | {pid}} - found:
-        found |= more
-    return {p: stats[p][1] for p in found}
+    pids: set[int] = set()
+    while more := {p for p, (parent, _) in stats.items() if parent in pids | {pid}} - pids:
+        pids |= more
+    return {p: stats[p][1] for p in pids}
 
 
 def cores_used(pid: int, seconds: float = 5.0) -> list[float]:
@@ -225,8 +225,10 @@ def compare() -> dict[str, Any]:
         service_process.crankwright(Path(folder)) as server,
         httpx.Client(base_url=server.url, trust_env=False, timeout=90) as client,
     ):
-        made = client.post("/api/v1/designs", json=PAPER, headers={"Prefer": "wait=60"}).raise_for_status()
-        design = f"/api/v1/designs/{made.json()['id']}"
+        response = client.post(
+            "/api/v1/designs", json=PAPER, headers={"Prefer": "wait=60"}
+        ).raise_for_status()
+        design = f"/api/v1/designs/{response.json()['id']}"
         client.post(heavy()["mass_conserving, 20 points"][0], json=heavy()["mass_conserving, 20 points"][1])
         pings(server, design)  # warms up
         free, statuses = [abandoned(server) for _ in range(5)], dict[str, int]()
@@ -290,8 +292,8 @@ def main() -> None:
     if "estimates" in sys.argv:
         estimates()
         return
-    found = compare()
-    text = json.dumps(found, ensure_ascii=False, indent=1)
+    comparison = compare()
+    text = json.dumps(comparison, ensure_ascii=False, indent=1)
     print(text)
     RESULTS.write_text(text + "\n")
 

@@ -143,20 +143,20 @@ def _status(request: socket.socket) -> int:
 
 def measure(server: Server, cases: dict[str, Sender], repeats: int) -> dict[str, dict[str, Any]]:
     """Times [ms] and statuses of every case, interleaved."""
-    found: dict[str, dict[str, Any]] = {name: {"ms": [], "statuses": set()} for name in cases}
+    by_case: dict[str, dict[str, Any]] = {name: {"ms": [], "statuses": set()} for name in cases}
     for _ in range(repeats):
         for name, send in cases.items():
             seconds, status = answered(server, send)
-            found[name]["ms"].append(1e3 * seconds)
-            found[name]["statuses"].add(status)
-    return found
+            by_case[name]["ms"].append(1e3 * seconds)
+            by_case[name]["statuses"].add(status)
+    return by_case
 
 
 def texts(server: Server) -> dict[str, Sender]:
     """The texts that are hard to read, as senders; some are about a design, which is made here."""
     with httpx.Client(base_url=server.url, trust_env=False) as http:
-        made = http.post(DESIGNS, json={"name": "any", "parameters": {"a": "1"}}).raise_for_status().json()
-    return {name: _text(request, made["id"]) for name, request in EVERY.items()}
+        design = http.post(DESIGNS, json={"name": "any", "parameters": {"a": "1"}}).raise_for_status().json()
+    return {name: _text(request, design["id"]) for name, request in EVERY.items()}
 
 
 def _text(request: Request, design: str) -> Sender:

@@ -34,10 +34,10 @@ def _by_wrk(url: str, body: bytes, seconds: float) -> float:
     # wrk counts whole seconds
     command = [WRK, "-t1", f"-c{CONNECTIONS}", f"-d{max(1, round(seconds))}s", "-s", _script(body), url]
     printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    found = re.search(r"Requests/sec:\s*([0-9.]+)", printed)
-    if found is None or "Non-2xx" in printed or "Socket errors" in printed:
+    match = re.search(r"Requests/sec:\s*([0-9.]+)", printed)
+    if match is None or "Non-2xx" in printed or "Socket errors" in printed:
         raise RuntimeError(f"{url}: {printed}")
-    return float(found[1])
+    return float(match[1])
 
 
 @cache

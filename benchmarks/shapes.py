@@ -71,10 +71,10 @@ def drawn(seed: int) -> Loaded:
 
 def stated(loaded: Loaded) -> tuple[dict[str, float], float]:
     """Gap, largest pressure, side flow and stiffness as `shaped_journal` states them, and the mesh error."""
-    found = balance(loaded)
-    coarse, fine = found.coarse, found.fine
-    gaps = [narrowest(loaded.bore, lie)[0] for lie in (found.at_coarse, found.at_fine)]
-    lie = Lie(found.at_fine.e + (found.at_fine.e - found.at_coarse.e) / 3, loaded.tilt)
+    balanced = balance(loaded)
+    coarse, fine = balanced.coarse, balanced.fine
+    gaps = [narrowest(loaded.bore, lie)[0] for lie in (balanced.at_coarse, balanced.at_fine)]
+    lie = Lie(balanced.at_fine.e + (balanced.at_fine.e - balanced.at_coarse.e) / 3, loaded.tilt)
     values = {
         "gap": narrowest(loaded.bore, lie)[0],
         "pressure": fine.peak[0] + (fine.peak[0] - coarse.peak[0]) / 3,

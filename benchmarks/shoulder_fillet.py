@@ -58,9 +58,9 @@ def peaks(load: Kind) -> Peaks:
     return greatest_stress(solid(), STEEL_MATERIAL, load, "free_end", lambda step: None, measure)
 
 
-def factors(load: Kind, found: Peaks) -> list[float]:
+def factors(load: Kind, stresses: Peaks) -> list[float]:
     """Stress concentration factors by mesh."""
-    return [peak.value / LOADS[load][1] for peak in found.steps]
+    return [peak.value / LOADS[load][1] for peak in stresses.steps]
 
 
 def peterson(load: Kind) -> float:
@@ -71,13 +71,13 @@ def peterson(load: Kind) -> float:
 def row(load: Kind) -> dict[str, Any]:
     """One load: factors mesh by mesh, and the published one."""
     start = perf_counter()
-    found = peaks(load)
-    ours = factors(load, found)
+    stresses = peaks(load)
+    ours = factors(load, stresses)
     return {
         "Peterson": peterson(load),
         "factors": ours,
-        "degrees of freedom": [peak.degrees_of_freedom for peak in found.steps],
-        "converged": found.converged,
+        "degrees of freedom": [peak.degrees_of_freedom for peak in stresses.steps],
+        "converged": stresses.converged,
         "against Peterson": ours[-1] / peterson(load) - 1,
         "seconds": perf_counter() - start,
     }

@@ -73,15 +73,15 @@ def cell(level: str, ratio: tuple[float, float], width: tuple[float, float]) -> 
         return {}
     a = 1 + np.geomspace(max(ratio[0] - 1, 1e-6), ratio[1] - 1, INSIDE)[:, None]
     b = np.geomspace(*width, INSIDE)
-    found = errors(pad_film(level, a, b), finite_pad(a, b, 256, 64))
-    return {name: float(f"{1.05 * error.max():.1e}") for name, error in found.items()}
+    by_name = errors(pad_film(level, a, b), finite_pad(a, b, 256, 64))
+    return {name: float(f"{1.05 * error.max():.1e}") for name, error in by_name.items()}
 
 
 def table(level: str) -> dict[str, list[list[float]]]:
     """The largest errors of every output in every cell; none where the film is ruptured."""
     cells = [[cell(level, ratio, width) for width in pairwise(WIDTH)] for ratio in pairwise(RATIO)]
     names = cells[-1][-1]
-    return {name: [[found.get(name, 0.0) for found in row] for row in cells] for name in names}
+    return {name: [[one.get(name, 0.0) for one in row] for row in cells] for name in names}
 
 
 def seconds_a_point(level: str, count: int) -> float:

@@ -102,15 +102,15 @@ def compared(orbit: Orbit, true: Array, load: Array) -> Shares:
     present = np.isfinite(orbit.least_gap) & np.isfinite(true)
     bound, error = orbit.step_bound[present], np.abs(orbit.between / true - 1)[present]
     at_nodes = np.abs(orbit.least_gap / true - 1)[present]
-    known, usual = np.isfinite(bound), (load[present] > USUAL[0]) & (load[present] < USUAL[1])
+    is_known, usual = np.isfinite(bound), (load[present] > USUAL[0]) & (load[present] < USUAL[1])
     return Shares(
         int(present.sum()),
         float((orbit.step_error[present] >= at_nodes).mean()),
-        float(known.mean()),
-        float(known[usual].mean()),
-        float((bound[known] >= error[known]).mean()),
-        float((error[known] / bound[known]).max()),
-        float(np.median(bound[known] / error[known])),
+        float(is_known.mean()),
+        float(is_known[usual].mean()),
+        float((bound[is_known] >= error[is_known]).mean()),
+        float((error[is_known] / bound[is_known]).max()),
+        float(np.median(bound[is_known] / error[is_known])),
     )
 
 
@@ -118,10 +118,10 @@ def main() -> None:
     """Measure, keep, print."""
     duties = int(sys.argv[1]) if len(sys.argv) > 1 else DUTIES
     shares = {"mobility": measured(SEED, duties), "mobility_grooved": measured_with_grooves(SEED, duties)}
-    kept = {"duties": duties, **{level: asdict(found) for level, found in shares.items()}}
+    kept = {"duties": duties, **{level: asdict(share) for level, share in shares.items()}}
     RESULTS.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
-    for level, found in shares.items():
-        print(level, found)
+    for level, share in shares.items():
+        print(level, share)
 
 
 if __name__ == "__main__":

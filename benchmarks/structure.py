@@ -48,12 +48,12 @@ def imports(path: Path) -> Iterator[str]:
 
 def arrows(app: Path = APP) -> Counter[tuple[str, str]]:
     """How many imports lead from one part to another."""
-    found: Counter[tuple[str, str]] = Counter()
+    counted: Counter[tuple[str, str]] = Counter()
     for path in sorted(app.rglob("*.py")):
         source = part_of("app." + ".".join(path.relative_to(app).with_suffix("").parts))
         targets = (part_of(module) for module in imports(path))
-        found.update((source, target) for target in targets if target != source)
-    return found
+        counted.update((source, target) for target in targets if target != source)
+    return counted
 
 
 def words(pattern: str, app: Path = APP) -> Counter[str]:

@@ -4,7 +4,7 @@
 
 A march picks its steps by the gap, so a last digit may move a step, an iteration or a cycle. Each row marches
 the example's golden case in a process of its own, as another processor or compiler would, or with every input
-off by a few of the last digits; and tells the largest relative difference of each group of outputs from the
+off by a few of the last digits; and prints the largest relative difference of each group of outputs from the
 plain run. The tolerances of the golden record rest on it (`level_precision` of the template).
 """
 
@@ -81,14 +81,14 @@ def run(environment: dict[str, str], nudge: float = 0.0, seed: int = 0) -> dict[
 
 def differences(one: dict[str, Any], other: dict[str, Any]) -> dict[str, float]:
     """The largest relative difference of each output that differs; infinite where a text does."""
-    found = {}
+    largest = {}
     for name, value in one.items():
         if isinstance(value, str) or value is None or other[name] is None:
-            found[name] = 0.0 if value == other[name] else np.inf
+            largest[name] = 0.0 if value == other[name] else np.inf
         else:
             a, b = np.asarray(value, float), np.asarray(other[name], float)
-            found[name] = float(np.nanmax(np.abs(b - a) / np.maximum(np.abs(a), 1e-300)))
-    return {name: off for name, off in found.items() if off > 0}
+            largest[name] = float(np.nanmax(np.abs(b - a) / np.maximum(np.abs(a), 1e-300)))
+    return {name: off for name, off in largest.items() if off > 0}
 
 
 def row(words: str, off: dict[str, float]) -> None:

@@ -61,18 +61,18 @@ def normalised(name: str) -> str:
 
 def component(name: str) -> Component:
     """Return what an installed distribution says of itself."""
-    found = distribution(name)
-    return Component(name, found.version, _licence(found), _home(found), _needs(found))
+    package = distribution(name)
+    return Component(name, package.version, _licence(package), _home(package), _needs(package))
 
 
-def _needs(found: Distribution) -> tuple[str, ...]:
+def _needs(package: Distribution) -> tuple[str, ...]:
     """The names, normalised, of what a distribution needs without any extra."""
-    needs = (need for need in found.requires or () if "extra ==" not in need)
+    needs = (need for need in package.requires or () if "extra ==" not in need)
     return tuple(sorted({normalised(re.split(r"[^\w.-]", need, maxsplit=1)[0]) for need in needs}))
 
 
-def _licence(found: Distribution) -> str:
-    metadata = found.metadata
+def _licence(package: Distribution) -> str:
+    metadata = package.metadata
     classified = [
         line.rpartition("::")[2].strip()
         for line in metadata.get_all("Classifier", ())
@@ -80,23 +80,23 @@ def _licence(found: Distribution) -> str:
     ]
     written = (metadata.get("License") or "").strip()
     short = written if len(written) <= LONGEST and "\n" not in written else ""
-    return metadata.get("License-Expression") or " / ".join(classified) or short or _from_text(found)
+    return metadata.get("License-Expression") or " / ".join(classified) or short or _from_text(package)
 
 
-def _from_text(found: Distribution) -> str:
+def _from_text(package: Distribution) -> str:
     """The first line of the licence's own text, which names most of them."""
-    for path in found.files or ():
+    for path in package.files or ():
         if re.match(r"(licen[cs]e|copying)", path.name.lower()):
             lines = (line.strip() for line in path.read_text().splitlines())
             return next((line[:LONGEST] for line in lines if line), "not stated")
     return "not stated"
 
 
-def _home(found: Distribution) -> str:
-    urls = dict(line.split(", ", 1) for line in found.metadata.get_all("Project-URL", ()))
+def _home(package: Distribution) -> str:
+    urls = dict(line.split(", ", 1) for line in package.metadata.get_all("Project-URL", ()))
     named = {name.lower(): url for name, url in urls.items()}
     ways = ("homepage", "home", "source", "repository", "source code", "github", "documentation")
-    return found.metadata.get("Home-page") or next((named[way] for way in ways if way in named), "")
+    return package.metadata.get("Home-page") or next((named[way] for way in ways if way in named), "")
 
 
 EXTRAS = {
@@ -188,8 +188,8 @@ def _graph(components: dict[str, Component]) -> Iterator[dict[str, object]]:
 
 
 def _edges(reference: str, needs: tuple[str, ...], components: dict[str, Component]) -> dict[str, object]:
-    known = [_reference(components[need]) for need in needs if need in components]
-    return {"ref": reference, "dependsOn": known}
+    references = [_reference(components[need]) for need in needs if need in components]
+    return {"ref": reference, "dependsOn": references}
 
 
 def index_hashes() -> dict[str, str]:

@@ -40,9 +40,11 @@ def rectangle() -> None:
                 [pads[0].load / pads[1].load - 1, torque[0] / torque[1] - 1,
                  pads[0].inlet / pads[1].inlet - 1, thick[0] / thick[1] - 1]
             )  # fmt: skip
-        found = 100 * np.array(rows)
+        percent = 100 * np.array(rows)
         names = ("load", "torque", "inlet flow", "film at a load")
-        spans = (f"{name} {found[:, i].min():.1f} {found[:, i].max():.1f}" for i, name in enumerate(names))
+        spans = (
+            f"{name} {percent[:, i].min():.1f} {percent[:, i].max():.1f}" for i, name in enumerate(names)
+        )
         print(f"reach {reach}:", "; ".join(spans))
 
 

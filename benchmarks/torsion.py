@@ -53,22 +53,22 @@ def throw() -> dict[str, Any]:
 
 def ours(step: bytes, asked: AnalysisRequest) -> dict[str, Any]:
     """Our stiffness [N·m/rad], and what it took."""
-    found = analyse(step, SHAFT, asked, ["stiffness"], lambda done, what: None).outputs["stiffness"]
+    stiffness = analyse(step, SHAFT, asked, ["stiffness"], lambda done, what: None).outputs["stiffness"]
     return {
-        "stiffness": found["value"],
-        "estimated error": found["error"],
-        "level": found["level"],
-        **found["mesh"],
+        "stiffness": stiffness["value"],
+        "estimated error": stiffness["error"],
+        "level": stiffness["level"],
+        **stiffness["mesh"],
     }
 
 
 def greatest_stress(step: bytes) -> dict[str, Any]:
     """The greatest stress [MPa] under 1 N·m, and what it took."""
     outputs = ["maximum_stress"]
-    found = analyse(step, SHAFT, AnalysisRequest(), outputs, lambda done, what: None).outputs[
+    stress = analyse(step, SHAFT, AnalysisRequest(), outputs, lambda done, what: None).outputs[
         "maximum_stress"
     ]
-    return {"stress": found["value"], "estimated error": found["error"], **found["mesh"]}
+    return {"stress": stress["value"], "estimated error": stress["error"], **stress["mesh"]}
 
 
 def calculix(step: bytes, size: float, curvature: float) -> dict[str, Any]:
@@ -91,13 +91,13 @@ def timed(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]
     """Do something here; adds seconds, error, and memory [MB]: all, and above the libraries'."""
     loaded = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     start = perf_counter()
-    found = action(*inputs)
+    result = action(*inputs)
     seconds = perf_counter() - start
     who = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
     memory = max(resource.getrusage(one).ru_maxrss for one in who) / 1024
-    error = {"error": found["stiffness"] / TRUE - 1} if "stiffness" in found else {}
+    error = {"error": result["stiffness"] / TRUE - 1} if "stiffness" in result else {}
     return {
-        **found,
+        **result,
         **error,
         "seconds": seconds,
         "megabytes": memory,
@@ -107,12 +107,12 @@ def timed(action: Callable[..., dict[str, Any]], *inputs: Any) -> dict[str, Any]
 
 def climb(step: bytes, error: float) -> list[dict[str, Any]]:
     """CalculiX on finer and finer meshes until it errs no more than this."""
-    found: list[dict[str, Any]] = []
+    steps: list[dict[str, Any]] = []
     for size in SIZES:
-        found.append(alone(calculix, step, *size))
-        if abs(found[-1]["error"]) <= error:
+        steps.append(alone(calculix, step, *size))
+        if abs(steps[-1]["error"]) <= error:
             break
-    return found
+    return steps
 
 
 def main() -> None:

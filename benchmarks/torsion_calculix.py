@@ -76,8 +76,8 @@ def _gradients(place: NDArray[np.float64]) -> NDArray[np.float64]:
 def _faces(mesh: Any, name: str) -> NDArray[np.int64]:
     """The six nodes, from 0, of each triangle on the faces of a name."""
     named = {i + 1 for i in range(mesh.GetNFaceDescriptors()) if mesh.GetBCName(i) == name}
-    found = [[v.nr - 1 for v in one.points] for one in mesh.Elements2D() if one.index in named]
-    return np.array(found)
+    faces = [[v.nr - 1 for v in one.points] for one in mesh.Elements2D() if one.index in named]
+    return np.array(faces)
 
 
 def _traction(points: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -123,9 +123,9 @@ def _deck(mesh: Any, points: NDArray[np.float64], force: NDArray[np.float64], sh
 
 def _displacements(text: str, count: int) -> NDArray[np.float64]:
     """Displacements [mm] of all nodes from CalculiX's .dat file."""
-    found = np.zeros((count, 3))
+    displacements = np.zeros((count, 3))
     for line in text.splitlines():
         if re.match(r"\s*\d+\s+\S+\s+\S+\s+\S+\s*$", line):
             node, *moved = line.split()
-            found[int(node) - 1] = [float(part) for part in moved]
-    return found
+            displacements[int(node) - 1] = [float(part) for part in moved]
+    return displacements

@@ -91,7 +91,7 @@ def shaft_of(parameters: dict[str, Any]) -> tuple[bytes, Shaft]:
 Found = dict[str, float]
 
 
-def found_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Found:
+def outputs_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Found:
     """Outputs on one mesh: stiffnesses [N·m/rad], frequency [Hz]."""
     computed: Found = {}
     few = FREQUENCY not in outputs
@@ -111,7 +111,7 @@ def found_by(grid: Grid, order: int, shaft: Shaft, outputs: Collection[str] = OU
 def truth(step: bytes, shaft: Shaft, outputs: Collection[str] = OUTPUTS) -> Found:
     """The same from another mesh, in elements of a higher order than any level has."""
     grid = make_grid(read_solid(step, shaft), TRUTH)
-    return found_by(grid, SHARP_ORDER if grid.is_sharp else ORDER, shaft, outputs)
+    return outputs_by(grid, SHARP_ORDER if grid.is_sharp else ORDER, shaft, outputs)
 
 
 def row(parameters: dict[str, Any]) -> dict[str, Any]:
@@ -121,7 +121,7 @@ def row(parameters: dict[str, Any]) -> dict[str, Any]:
     kept: dict[str, Any] = {"parameters": parameters, **true}
     for level in LEVELS:
         grid = make_grid(read_solid(step, shaft), level.fineness)
-        low, high = (found_by(grid, order, shaft) for order in (level.order - 1, level.order))
+        low, high = (outputs_by(grid, order, shaft) for order in (level.order - 1, level.order))
         outputs = {
             name: {"true error": high[name] / true[name] - 1, "change": low[name] / high[name] - 1}
             for name in true
@@ -141,11 +141,11 @@ def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
     }
 
 
-def worst(level: Level, found: list[dict[str, Any]], *, is_sharp: bool) -> dict[str, Any]:
+def worst(level: Level, cases: list[dict[str, Any]], *, is_sharp: bool) -> dict[str, Any]:
     """By output, the greatest of each, in magnitude."""
     worst_ones: dict[str, Any] = {}
     for name in OUTPUTS:
-        errors = [(abs(one["outputs"][name]["true error"]), one["outputs"][name]["change"]) for one in found]
+        errors = [(abs(one["outputs"][name]["true error"]), one["outputs"][name]["change"]) for one in cases]
         worst_ones[name] = {
             "true error": max((true for true, _ in errors), default=0),
             "change": max((abs(change) for _, change in errors), default=0),

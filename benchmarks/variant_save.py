@@ -55,7 +55,7 @@ def saved(http: httpx.Client, design: str, turn: int) -> None:
 
 def measured(server: Server, rounds: int) -> dict[str, list[float]]:
     """Processor time and time on the clock of every save after the first, which builds the solids [s]."""
-    found: dict[str, list[float]] = {"processor": [], "clock": []}
+    seconds: dict[str, list[float]] = {"processor": [], "clock": []}
     with httpx.Client(base_url=server.url, timeout=120, trust_env=False) as http:
         page = http.post("/designs", data={"example": "shell"}).headers["location"]
         saved(http, f"/api/v1{page}", 0)
@@ -63,10 +63,10 @@ def measured(server: Server, rounds: int) -> dict[str, list[float]]:
             time.sleep(2)  # processes that are forked ahead rehearse after an answer
             before, start = spent(server), time.perf_counter()
             saved(http, f"/api/v1{page}", turn)
-            found["clock"].append(time.perf_counter() - start)
-            found["processor"].append(spent(server) - before)
-            print(found["processor"][-1], found["clock"][-1], flush=True)
-    return found
+            seconds["clock"].append(time.perf_counter() - start)
+            seconds["processor"].append(spent(server) - before)
+            print(seconds["processor"][-1], seconds["clock"][-1], flush=True)
+    return seconds
 
 
 def main() -> None:
@@ -75,10 +75,10 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=10)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder, crankwright(Path(folder)) as server:
-        found = measured(server, options.rounds)
+        seconds = measured(server, options.rounds)
     figures = {
         f"{kind}, {what} [s]": round(value(times), 3)
-        for kind, times in found.items()
+        for kind, times in seconds.items()
         for what, value in (("median", median), ("most", max))
     }
     content = {"variants": 9, "rounds": options.rounds, "load": os.getloadavg()[0], **figures, "aim [s]": AIM}

@@ -137,8 +137,8 @@ def main() -> None:
             separate(http, ["35 mm"], "step", "svg")  # what is loaded once does not count
             reported(http, saved(http, ["36 mm"]))
         _settle(server)
-        found = [dict(rounds(server, asked.count, number)) for number in range(asked.rounds)]
-    for each in found:
+        results = [dict(rounds(server, asked.count, number)) for number in range(asked.rounds)]
+    for each in results:
         solids = each["variants"] + each["zip"]
         whole = solids + each["report"]
         each |= {
@@ -148,7 +148,7 @@ def main() -> None:
         }
         print({name: round(value, 3) for name, value in each.items()})
     about = {"date": datetime.now(UTC).isoformat(timespec="seconds"), "count": asked.count}
-    RESULTS.write_text(json.dumps({**about, "rounds": found}, indent=1) + "\n")
+    RESULTS.write_text(json.dumps({**about, "rounds": results}, indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -26,10 +26,10 @@ def named(file: Path) -> list[Mutant]:
 
 
 def _mutant(title: str, before: str, after: str) -> Mutant:
-    found = [(path, text) for path, text in _sources() if before in text]
-    if len(found) != 1 or found[0][1].count(before) != 1:
-        raise LookupError(f"{title}: its text occurs in {[path for path, _ in found]}, not once")
-    path, text = found[0]
+    matching = [(path, text) for path, text in _sources() if before in text]
+    if len(matching) != 1 or matching[0][1].count(before) != 1:
+        raise LookupError(f"{title}: its text occurs in {[path for path, _ in matching]}, not once")
+    path, text = matching[0]
     mutated = text.replace(before, after)
     if not is_another(text, mutated):
         raise LookupError(f"{title}: the change is no other program")

@@ -73,7 +73,7 @@ class Observations:
             target = self._target(test)
             kept = self._read(target)
             if kept is None or not kept.holds_for(file):
-                kept = self._made(test, target)
+                kept = self._observed(test, target)
         return kept
 
     def has(self, test: str, file: str) -> bool:
@@ -84,7 +84,7 @@ class Observations:
     def _target(self, test: str) -> Path:
         return self.folder / f"{test.replace('/', '-')}-{digest(test)[:12]}.json"
 
-    def _made(self, test: str, target: Path) -> Observation:
+    def _observed(self, test: str, target: Path) -> Observation:
         raw = target.with_suffix(".raw")
         if self._observe(test, raw) and raw.exists():
             target.write_text(json.dumps(with_digests(json.loads(raw.read_text()))), encoding="utf-8")
@@ -94,9 +94,9 @@ class Observations:
                 json.dumps({"seconds": {}, "lines": {}, "programs": True, "processes": True}),
                 encoding="utf-8",
             )
-        made = self._read(target)
-        assert made is not None
-        return made
+        observation = self._read(target)
+        assert observation is not None
+        return observation
 
     @staticmethod
     def _read(target: Path) -> Observation | None:

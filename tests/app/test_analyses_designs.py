@@ -133,7 +133,7 @@ class TestRelation:
         assert content["models"] == revision(http, design, 1)["models"]
         http.post(f"{DESIGNS}/{design['id']}/revisions/1/restore", headers={"If-Match": "*"})
 
-    def test_another_solid_is_analysed_anew(self, http, design):
+    def test_another_solid_is_analysed_again(self, http, design):
         thicker = created(http, train("24 mm"))
         answer = revision(http, thicker)
         assert used_stiffness(answer) == pytest.approx(coulomb(0.024), rel=COARSE)

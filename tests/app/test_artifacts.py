@@ -188,7 +188,7 @@ def test_the_same_bytes_are_stored_once(store):
     assert len(files(store)) == 1
 
 
-def test_a_torn_file_is_found_and_mended(store):
+def test_a_torn_file_is_noticed_and_replaced(store):
     sha = store.put(BYTES)
     store.fetch(sha).write_bytes(BYTES[:100])
     assert not store.exists(sha)

@@ -83,8 +83,8 @@ def test_a_body_too_large_is_413_with_and_without_its_length_declared(http, path
     piece = b" " * 2**20
     response = http.post(f"{API}/{path}", content=piece * 50, headers=headers)
     assert "16 MiB" in problem(response, 413, "body-too-large")["detail"]
-    untold = http.post(f"{API}/{path}", content=(piece for _ in range(18)), headers=headers)
-    assert "16 MiB" in problem(untold, 413, "body-too-large")["detail"]
+    chunked = http.post(f"{API}/{path}", content=(piece for _ in range(18)), headers=headers)
+    assert "16 MiB" in problem(chunked, 413, "body-too-large")["detail"]
 
 
 def test_every_route_with_a_body_is_strict(served):

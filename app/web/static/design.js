@@ -194,7 +194,7 @@ function refuseToSave(error) {
 // A key that makes a repeated request harmless; crypto.randomUUID is there on encrypted pages only.
 const onlyOnce = () => [...crypto.getRandomValues(new Uint32Array(4))].map((part) => part.toString(16)).join("-");
 
-// Somebody else saved: the draft is kept, and put onto the newest revision when the page is loaded anew.
+// Somebody else saved: the draft is kept, and put onto the newest revision when the page is loaded again.
 function conflict() {
   conflicted = true;
   draft.keep();

@@ -178,7 +178,7 @@ async function act(action, asked) {
   }
 }
 
-// Take in anew what the page says of the state: as the service writes it.
+// Take over again what the page says of the state: as the service writes it.
 async function refresh(action) {
   const answer = await fetch(location.pathname, { headers: { Accept: "text/html" } });
   if (!answer.ok) return;

@@ -24,7 +24,7 @@ _TEX = frozenset(
 
 
 def key_of(node: Node) -> str:
-    """A name as Mathcad tells it from others: its letters, with its subscript in braces."""
+    """A name as Mathcad distinguishes it: its letters, with its subscript in braces."""
     letters = []
     for piece in node.pieces:
         if isinstance(piece, str):
