@@ -1,6 +1,7 @@
 """A job as its handler and the API see it."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from app.plain import JsonObject
 from app.schemas.jobs import State
@@ -36,7 +37,7 @@ class Job:
     event: int = 0
     """The number of its newest event."""
 
-    @property
+    @cached_property
     def topics(self) -> tuple[str, ...]:
         """The topics of its events: its own, and its design's."""
         own = f"job:{self.id}"

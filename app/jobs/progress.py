@@ -114,7 +114,7 @@ class ProgressFollower:
 def publish(events: Events, job: Job, fraction: float, text: str) -> None:
     """Send how far a job is to all who listen to it, or to its design, in this process."""
     data: JsonObject = {"job": job.id, "revision": job.revision, "progress": fraction, "text": text}
-    events.publish(*(Event(topic, "progress", data) for topic in job.topics))
+    events.publish(*map(partial(Event, name="progress", data=data), job.topics))
 
 
 def _topics(hint: str) -> Collection[str]:
