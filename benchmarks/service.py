@@ -11,17 +11,14 @@ machine does, ratios hardly: the load average stands in the results. Writes `ben
 import http.client
 import json
 import os
-import platform
 import sqlite3
-import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from datetime import UTC, datetime
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +29,7 @@ from app.calculations.schemas import OIL_FILM
 from app.designs.schemas import PAPER
 from benchmarks import service_cad, service_hostile, service_load, service_process
 from benchmarks.service_process import Server
+from benchmarks.service_rows import Row, commit, judged, line, machine, milliseconds, row
 from cad.regenerate import regenerate
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_v1 import OilFilm
@@ -47,59 +45,6 @@ QUESTIONS: dict[str, dict[str, Any]] = {
 POINTS = 10**6
 PAUSE = 0.5  # around a change, as between the changes of one user: the service prepares its next job [s]
 QUICK = "quick" in sys.argv[1:]
-
-
-@dataclass(frozen=True)
-class Row:
-    """One line of the table: a measure over its repeats and, if it is compared, the ratio."""
-
-    part: str
-    what: str
-    unit: str
-    median: float
-    quartiles: tuple[float, float]
-    against: str = ""
-    ratio: float | None = None
-    ratio_quartiles: tuple[float, float] | None = None
-    aim: str = ""
-    met: bool | None = None
-
-
-def row(
-    part: str,
-    what: str,
-    unit: str,
-    values: Sequence[float],
-    *,
-    baseline: Sequence[float] | None = None,
-    **more: Any,
-) -> Row:
-    """A line from its repeats, with the ratios to those of the baseline."""
-    figures: dict[str, Any] = {}
-    if baseline is not None:
-        figures["ratio"], figures["ratio_quartiles"] = _spread(np.divide(values, baseline))
-    return Row(part, what, unit, *_spread(values), **figures, **more)
-
-
-def _spread(values: Any) -> tuple[float, tuple[float, float]]:
-    low, middle, high = (float(f"{q:.4g}") for q in np.percentile(values, [25, 50, 75]))
-    return middle, (low, high)
-
-
-def judged(
-    measured: Row, aim: str, *, ratio_at_least: float = 0, ratio_below: float = np.inf, below: float = np.inf
-) -> Row:
-    """A line with its aim and whether it is met."""
-    ratio = 1.0 if measured.ratio is None else measured.ratio
-    met = ratio_at_least <= ratio < ratio_below and measured.median < below
-    return Row(**{**asdict(measured), "aim": aim, "met": bool(met)})
-
-
-def milliseconds(action: Callable[[], object]) -> float:
-    """How long it takes."""
-    start = time.perf_counter()
-    action()
-    return 1e3 * (time.perf_counter() - start)
 
 
 # (a) ------------------------------------------------------------------------------------------------------
@@ -417,40 +362,6 @@ def main() -> None:
         date = datetime.now(UTC).isoformat(timespec="seconds")
         head = json.dumps({"date": date, **summary}, ensure_ascii=False)[:-1]
         RESULTS.write_text(f'{head}, "rows": [\n{lines}\n]}}\n')
-
-
-def commit() -> str:
-    """Which commit was measured, and whether the working tree had changes beside it."""
-    command = ["git", "describe", "--always", "--dirty", "--exclude=*"]
-    return subprocess.run(command, capture_output=True, text=True).stdout.strip()
-
-
-def machine() -> dict[str, Any]:
-    """What it was measured on."""
-    names = [line for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
-    packages = {name: version(name) for name in ("fastapi", "uvicorn", "cadquery", "numpy")}
-    load = "wrk" if service_load.WRK else "sockets"
-    processor = names[0].partition(":")[2].strip() if names else platform.processor()
-    return {
-        "processor": processor,
-        "cores": os.cpu_count(),
-        "python": platform.python_version(),
-        "load": load,
-        **packages,
-    }
-
-
-def line(measured: Row) -> str:
-    """A line of the table."""
-    ratio = ""
-    if measured.ratio is not None and measured.ratio_quartiles is not None:
-        ratio = "× {:6.3g}  [{:.3g} … {:.3g}]  of {}".format(
-            measured.ratio, *measured.ratio_quartiles, measured.against
-        )
-    spread = "[{:.3g} … {:.3g}]".format(*measured.quartiles)
-    verdict = "" if measured.met is None else f"  aim {measured.aim}: {'met' if measured.met else 'MISSED'}"
-    value = f"{measured.median:9.4g} {measured.unit:4}"
-    return f"{measured.part:2} {measured.what:52} {value} {spread:19} {ratio}{verdict}"
 
 
 if __name__ == "__main__":
