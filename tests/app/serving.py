@@ -173,6 +173,7 @@ class Served:
 
     url: str
     app: object
+    settings: Settings
 
     @property
     def jobs(self):
@@ -194,7 +195,7 @@ def serving(settings: Settings):
             assert time.monotonic() < end, "the server takes too long to start"
             time.sleep(0.02)
         port = server.servers[0].sockets[0].getsockname()[1]
-        yield Served(f"http://127.0.0.1:{port}", app)
+        yield Served(f"http://127.0.0.1:{port}", app, settings)
     finally:
         server.should_exit = True
         thread.join(PATIENCE)

@@ -19,6 +19,9 @@ from templates.core.progress import report
 from templates.core.template import Array, Template, choice, formula, given, units
 
 
+ALARM = "no such file"
+
+
 class Sleeper(Template):
     """Sleeps, or worse, in the process that calculates."""
 
@@ -45,17 +48,22 @@ def slept(seconds, mood):
         bytearray(8 * 2**30)
     end = time.monotonic() + float(np.max(seconds))
     report(0.5, "half asleep")
-    while (left := end - time.monotonic()) > 0:
+    while (left := end - time.monotonic()) > 0 and not Path(ALARM).exists():
         time.sleep(min(left, 0.2))
         report(0.5, "half asleep")
     return np.float64(os.getpid())
 '''
 
 
+ALARM = "alarm"
+"""While a file of this name lies in its folder, the template sleeps no longer."""
+
+
 def folder_of_sleeper(path: Path) -> Path:
     """A team's folder with the template and the table that says what it costs."""
     path.mkdir(parents=True)
-    (path / "sleeper_v1.py").write_text(dedent(SLEEPER).lstrip())
+    source = dedent(SLEEPER).lstrip().replace('"no such file"', repr(str(path / ALARM)))
+    (path / "sleeper_v1.py").write_text(source)
     axis = {"attribute": "t", "name": "duration", "unit": "s", "values": [0, 1]}
     words = {"truth": "a clock", "error": "relative error", "cost": "seconds a point"}
     table = {**words, "axes": [axis, axis], "levels": {"only": {"cost": {"single": 1.0}, "errors": {}}}}

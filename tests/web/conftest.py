@@ -7,7 +7,7 @@ import httpx
 import pytest
 from browsing import AWKWARD, CHROMIUM, FLAGS, THIRD, Watched, created
 from serving import folder_of_models, serving
-from sleeping import folder_of_sleeper
+from sleeping import ALARM, folder_of_sleeper
 
 from app.settings import Settings
 
@@ -23,6 +23,15 @@ def served(tmp_path_factory):
     settings = Settings(data=folder / "data", template_folders=(own,), wait_seconds=5)
     with serving(settings) as server:
         yield server
+
+
+@pytest.fixture
+def alarm(served):
+    """A file: once a test touches it, whoever sleeps wakes; until the test ends."""
+    (own,) = served.settings.template_folders
+    file = own / "sleeper" / ALARM
+    yield file
+    file.unlink(missing_ok=True)
 
 
 @pytest.fixture

@@ -44,14 +44,15 @@ def idle(served):
     return until(lambda: served.app.state.services.calculations.running == 0)
 
 
-def test_a_slow_save_says_how_far_it_is_and_shows_its_results(watched, place, http):
+def test_a_slow_save_says_how_far_it_is_and_shows_its_results(watched, place, http, alarm):
     watched.open(place)
     progress, duration = parts(watched)
     expect(progress).to_be_hidden()
-    duration.fill("5.1 s")
+    duration.fill("60.5 s")
     save(watched)
     expect(progress).to_contain_text("half asleep")
     expect(progress.locator("progress")).to_have_attribute("value", "0.5")
+    alarm.touch()
     expect(watched.page.locator("[data-design-state]")).to_have_text("current")
     expect(watched.page.get_by_role("link", name="revision 2", exact=True)).to_be_visible()
     expect(progress).to_be_hidden()
@@ -77,14 +78,15 @@ def test_a_slow_save_can_be_cancelled(watched, served, place):
     assert watched.faults() == []
 
 
-def test_a_slow_preview_says_how_far_it_is_and_shows_its_results(watched, place):
+def test_a_slow_preview_says_how_far_it_is_and_shows_its_results(watched, place, alarm):
     watched.open(place)
     progress, duration = parts(watched)
     value = watched.page.locator(OUTPUT)
     value.evaluate("cell => cell.textContent = 'not yet'")
-    duration.fill("4.1 s")
+    duration.fill("60.6 s")
     expect(progress).to_contain_text("half asleep")
     expect(watched.page.locator("[data-step=s]")).to_have_class("sheet step outdated")
+    alarm.touch()
     expect(progress).to_be_hidden()
     expect(watched.page.locator(OUTPUT)).not_to_have_text("not yet")
     expect(watched.page.locator("[data-step=s]")).to_have_class("sheet step")
@@ -115,19 +117,21 @@ def test_a_slow_preview_can_be_cancelled(watched, served, place):
     idle(served)
 
 
-def test_who_opens_the_page_meanwhile_sees_the_progress_and_then_the_results(watched, place, http):
-    saved_slowly(http, place, "7.1 s")
+def test_who_opens_the_page_meanwhile_sees_the_progress_and_then_the_results(watched, place, http, alarm):
+    saved_slowly(http, place, "60.7 s")
     watched.open(place)
     progress, _ = parts(watched)
     expect(progress).to_contain_text("half asleep")
     expect(watched.page.locator(OUTPUT)).to_contain_text("is not calculated yet")
+    alarm.touch()
     expect(watched.page.locator("[data-design-state]")).to_have_text("current")
     expect(watched.page.locator(OUTPUT)).not_to_contain_text("not calculated")
     assert watched.faults() == []
 
 
-def test_a_page_calculates_nothing_again_that_its_revision_holds(watched, served, http, place):
-    job = saved_slowly(http, place, "6.1 s")
+def test_a_page_calculates_nothing_again_that_its_revision_holds(watched, served, http, place, alarm):
+    job = saved_slowly(http, place, "60.8 s")
+    alarm.touch()
     until(lambda: http.get(job).json()["state"], lambda state: state == "done")
     results.limit(1)  # as after a restart of the server
     jobs = http.get(f"{API}/jobs").json()
