@@ -11,7 +11,7 @@ from described import APP
 from fastapi.routing import iter_route_contexts
 from starlette.routing import Mount
 
-from app.api.gate.roles import needs_of
+from app.api.gate.roles import needs_of, routes_of
 from app.identity.acting import INCLUDED, ROLES
 
 PUBLIC = {
@@ -130,6 +130,12 @@ def test_a_role_is_asked_for_before_anything_else(team, role):
             if denied == allowed or (answer.status_code >= 500 and path != "/readyz"):
                 wrong.append((method, path, answer.status_code))
     assert wrong == []
+
+
+def test_the_gate_sees_all_routes_that_fastapi_serves():
+    served = [context.original_route for context in iter_route_contexts(APP.router.routes)]
+    assert len(served) > 200
+    assert list(map(id, routes_of(APP))) == list(map(id, served))
 
 
 def test_no_route_of_an_app_is_left_unguarded():
