@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import click
+from sqlalchemy.exc import DBAPIError
 from sqlalchemy.orm import Session
 
 from app.identity import audit_rows, chain
@@ -14,8 +15,13 @@ from app.identity.audit_rows import AuditFilter
 from app.maintenance.errors import CannotRun
 from app.maintenance.folder import database_file
 from app.settings import Settings
+from app.storage.connecting import require_connection, require_database
 from app.storage.engines import reading_engine, sqlite_file
+from app.storage.errors import StorageError
+from app.storage.migrations import known_schemas, schema_of
 from templates.core.errors import plain
+
+FIRST = "0007"  # the schema with which the audit begins
 
 _data = click.option(
     "--data", type=click.Path(path_type=Path), default=None, help="folder of designs and artifacts"
@@ -50,9 +56,9 @@ def list_command(
 def verify_command(ctx: click.Context, head: str | None, data: Path | None) -> None:
     """Walk along the chain, and name the first row that is changed, missing or inserted.
 
-    The exit code is 0 if all is sound, 1 if not. Rows at the end that were cut off, and a chain that was
-    written again from the start, show only against a hash of `GET /api/v1/audit/head` that was noted
-    elsewhere: give it as --head.
+    The exit code is 0 if all is sound, 1 if not, 2 if the database cannot be read. Rows at the end that were
+    cut off, and a chain that was written again from the start, show only against a hash of `GET
+    /api/v1/audit/head` that was noted elsewhere: give it as --head.
     """
     with _reading(data) as session:
         result = chain.verify(session, head)
@@ -63,23 +69,50 @@ def verify_command(ctx: click.Context, head: str | None, data: Path | None) -> N
     ctx.exit(1 if result.fault else 0)
 
 
+class CannotRead(click.ClickException):
+    """There is no audit to be read; that says nothing about its rows."""
+
+    exit_code = 2
+
+
 @contextmanager
 def _reading(data: Path | None) -> Iterator[Session]:
     """A snapshot of the database that the settings name."""
     settings = Settings(data=data) if data else Settings()
-    engine = reading_engine(_url(settings))
     try:
-        with Session(engine) as session:
-            yield session
-    finally:
-        engine.dispose()
+        engine = reading_engine(_url(settings))
+        try:
+            with Session(engine) as session:
+                _require_audit(session)
+                yield session
+        finally:
+            engine.dispose()
+    except (CannotRun, StorageError) as error:
+        raise CannotRead(str(error)) from None
+    except DBAPIError as error:
+        why = plain(str(error.orig).strip(), 300)
+        raise CannotRead(f"The database cannot be read ({why}): see `crankwright check`.") from None
 
 
 def _url(settings: Settings) -> str:
     url = settings.database_url
+    if url:
+        require_database(url)
     if url and sqlite_file(url) is None:
+        require_connection(url)
         return url
-    try:
-        return f"sqlite:///{database_file(settings.data, url).absolute()}"
-    except CannotRun as error:
-        raise click.ClickException(str(error)) from None
+    return f"sqlite:///{database_file(settings.data, url).absolute()}"
+
+
+def _require_audit(session: Session) -> None:
+    """Return if the database has an audit that this program can read; raises CannotRun."""
+    schema = schema_of(session.connection())
+    if schema is None:
+        raise CannotRun("The database holds no tables of Crankwright.")
+    if schema not in known_schemas():
+        raise CannotRun(f"The database has schema {schema}, newer than {known_schemas()[0]}: upgrade.")
+    if schema < FIRST:
+        raise CannotRun(
+            f"The database has schema {schema}, and the audit begins with {FIRST}: start the service once, "
+            "which brings it up to date."
+        )
