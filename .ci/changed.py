@@ -33,6 +33,7 @@ ABOUT = {
     ),
     "tests/app/test_saves_as_jobs.py": ("app/*jobs/*.py", "app/designs/*.py", "app/calculations/*.py"),
     "tests/app/test_old_database.py": ("app/*storage/*.py",),
+    "tests/app/test_sheet_start.py": ("app/worksheets/*.py", "app/*storage/*.py"),
     "tests/app/test_stopping.py": ("app/server.py", "app/*jobs/*.py", "app/*workers/*.py"),
     "tests/web/test_browser_properties.py": WEB,
     "tests/web/test_elements.py": WEB,

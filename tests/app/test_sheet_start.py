@@ -154,6 +154,7 @@ class Author(threading.Thread):
         self.answered[id] = step(http, id, "withdraw", reason="enough")["state"]
 
 
+@pytest.mark.slow
 def test_a_kill_loses_no_state_that_was_answered(tmp_path):
     server = ServerProcess(tmp_path / "data").start().ready()
     author = Author(server.url)

@@ -156,7 +156,10 @@ SPEEDS = {"value": [3000.0 + number for number in range(20)], "unit": "rpm"}
 MASS_CONSERVING = {"inputs": {**OIL_FILM, "speed": SPEEDS}, "level": "mass_conserving"}
 
 
-@pytest.mark.parametrize("stopped", ["fork server", "its children", "all"])
+@pytest.mark.parametrize(
+    "stopped",
+    [*(pytest.param(one, marks=pytest.mark.slow) for one in ("fork server", "its children")), "all"],
+)
 def test_calculations_of_stopped_processes_are_cut(server, stopped):
     """Some are calculated and some wait for a process, all of which ignore every signal but one."""
     forkserver = forkserver_of(server, "app.calculations.warm")

@@ -200,9 +200,10 @@ class TestClaims:
         yield database
         database.close()
 
-    def test_900_jobs_and_four_claimers_end_each_once(self, database):
+    @pytest.mark.parametrize("count", [90, pytest.param(900, marks=pytest.mark.slow)])
+    def test_four_claimers_end_each_job_once(self, database, count):
         def queue(session):
-            for number in range(900):
+            for number in range(count):
                 repository.add(session, "k", {"n": number}, None, None, f"name:{number % 5}", number // 5)
 
         database.write(queue)
@@ -214,7 +215,7 @@ class TestClaims:
                 ends.append(job.id)
 
         at_once([lambda n=n: work(f"owner {n}") for n in range(4)])
-        assert len(ends) == len(set(ends)) == 900
+        assert len(ends) == len(set(ends)) == count
 
     def test_what_nobody_prolongs_is_queued_again_and_its_owner_is_fenced(self, database):
         database.write(lambda session: repository.add(session, "k", {}, None, None))
@@ -241,6 +242,7 @@ class TestClaims:
         assert owners == ["other"]
 
 
+@pytest.mark.slow
 def test_a_killed_server_leaves_its_job_to_the_other_one(own_postgres, tmp_path):
     """A job that never ends by itself: the other server claims it after the lease, up to the deadline."""
     folder = folder_of_models(tmp_path / "templates")
