@@ -61,7 +61,7 @@ def _band(band: tuple[float, float], unit: str) -> dict[str, object]:
     return {"value": [end if math.isfinite(end) else None for end in band], "unit": unit}
 
 
-def _where(places: Sequence[Place]) -> JsonObject:
+def _where(places: Sequence[Place]) -> dict[str, object]:
     """Places by name; what has no unit is a name, such as that of a variant."""
     return {
         place.name: {"value": place.value, "unit": place.unit} if place.unit else place.value

@@ -36,7 +36,7 @@ def quantity(value: Json, unit: str | None) -> JsonObject:
 
 def outputs(answers: Mapping[str, Answer]) -> JsonObject:
     """The outputs; what does not exist is null with its reason."""
-    shown: JsonObject = {}
+    shown: dict[str, object] = {}
     for name, output in answers.items():
         if isinstance(output.value, np.ndarray):
             shown[name] = _array(output)
@@ -47,7 +47,7 @@ def outputs(answers: Mapping[str, Answer]) -> JsonObject:
     return shown
 
 
-def _array(output: Answer) -> JsonObject:
+def _array(output: Answer) -> dict[str, object]:
     """An output of several points or places; each that does not exist is null with its reason."""
     if output.reasons is None:
         return quantity(output.value.tolist(), output.unit)
@@ -76,7 +76,7 @@ def _plain(value: Json) -> Json:
     return [_plain(row) for row in value]
 
 
-def _errors(errors: Mapping[str, Json]) -> JsonObject:
+def _errors(errors: Mapping[str, Json]) -> dict[str, object]:
     """The error of each output as JSON."""
     return {
         name: _plain(error) if isinstance(error, np.ndarray) else None if error != error else error
@@ -84,9 +84,9 @@ def _errors(errors: Mapping[str, Json]) -> JsonObject:
     }
 
 
-def _inputs(echoes: Mapping[str, Echo]) -> JsonObject:
+def _inputs(echoes: Mapping[str, Echo]) -> dict[str, object]:
     """The inputs as they were used."""
-    shown: JsonObject = {}
+    shown: dict[str, object] = {}
     for name, used in echoes.items():
         unit = {} if used.unit is None else {"unit": used.unit}
         shown[name] = {"value": used.value, **unit, "from": used.source, **used.extra}
@@ -107,7 +107,7 @@ def evaluation(result: Evaluation) -> JsonObject:
     }
 
 
-def _warnings(notices: Iterable[Notice]) -> list[JsonObject]:
+def _warnings(notices: Iterable[Notice]) -> list[dict[str, object]]:
     return [{"code": w.code, "name": w.name, "detail": w.detail} for w in notices]
 
 
@@ -124,12 +124,12 @@ def solution(result: Solution) -> JsonObject:
     }
 
 
-def _root(root: Root, unit: str) -> JsonObject:
+def _root(root: Root, unit: str) -> dict[str, object]:
     about = {"slope": root.slope, "level": root.level, "error": root.error, "confirmed": root.confirmed}
     return {**quantity(root.value, unit), **about}
 
 
-def _jump(jump: Jump, result: Solution) -> JsonObject:
+def _jump(jump: Jump, result: Solution) -> dict[str, object]:
     sides = {
         "before": quantity(jump.before, result.target_unit),
         "after": quantity(jump.after, result.target_unit),
@@ -137,7 +137,7 @@ def _jump(jump: Jump, result: Solution) -> JsonObject:
     return {**quantity(jump.value, result.unit), **sides}
 
 
-def _curve(curve: TracedCurve, result: Solution) -> JsonObject:
+def _curve(curve: TracedCurve, result: Solution) -> dict[str, object]:
     return {
         "x": quantity(curve.x.tolist(), result.unit),
         "y": quantity(_plain(curve.y), result.target_unit),

@@ -38,7 +38,7 @@ def output(stored: Mapping[str, Json]) -> AnalysisOutput:
     return AnalysisOutput.model_validate(_timeless(stored))
 
 
-def _fields(build: str, question: Question, outputs: Mapping[str, Mapping[str, Json]]) -> JsonObject:
+def _fields(build: str, question: Question, outputs: Mapping[str, Mapping[str, Json]]) -> dict[str, object]:
     key = question.key(build)
     return {
         "id": key,
@@ -48,10 +48,10 @@ def _fields(build: str, question: Question, outputs: Mapping[str, Mapping[str, J
     }
 
 
-def _timeless(output: Mapping[str, Json]) -> JsonObject:
+def _timeless(output: Mapping[str, Json]) -> dict[str, object]:
     return {name: part for name, part in output.items() if name != "seconds"}
 
 
-def _linked(key: str, name: str, output: Mapping[str, Json]) -> JsonObject:
+def _linked(key: str, name: str, output: Mapping[str, Json]) -> dict[str, object]:
     """An output; one that is a file says where it is."""
     return {"url": f"/api/v1/analyses/{key}/{name}", **output} if name == SURFACE else {**output}
