@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from app.plain import Json, JsonObject
+from app.plain import Json
 from app.schemas.analyses import Analysis, AnalysisOutput, ModelAnalysis
 from app.schemas.answers import Version
 from app.solids.questions import Question, warnings
