@@ -34,6 +34,7 @@ LOOK = 0.05  # between two questions whether it answers [s]
 STILL = 2.0  # for so long a family that has come to rest uses no more than `REST` [s]
 REST = 0.03  # of processor time [s]
 LEVEL = 0.95
+FEWEST = 6  # pairs: all of fewer lie on one side of the median with a probability above 5 %
 
 
 @dataclass(frozen=True)
@@ -113,12 +114,13 @@ def confidence(values: Sequence[float]) -> tuple[float, float]:
         if outside > 1 - LEVEL:
             break
         k += 1
-    k = max(k, 1)
     return ordered[k - 1], ordered[-k]
 
 
 def main(earlier: Path, pairs: int, python: str) -> None:
     """Compare the start of this program with that of an earlier one."""
+    if pairs < FEWEST:
+        raise SystemExit(f"fewer than {FEWEST} pairs bound no median with {LEVEL:.0%} confidence")
     programs = {"this program": (HERE, sys.executable), "the earlier one": (earlier, python)}
     starts: dict[str, list[Start]] = {name: [] for name in programs}
     for pair in range(pairs + 1):

@@ -9,6 +9,7 @@ from click.testing import CliRunner
 from serving import API, created, paper, patched
 
 from app.approval_commands import verify_report_command
+from app.connecting import KEY
 from app.identity.service import Changes
 from app.reports.verification import NotReport, read_block, verify
 from app.schemas.approvals import Approvals
@@ -193,3 +194,38 @@ def test_the_command_verifies_against_a_service(team, design, printed, tmp_path)
     run = CliRunner().invoke(verify_report_command, [str(file), "--url", team.server.url], env=environment)
     assert run.exit_code == 1
     assert "FAILS  not released" in run.output
+
+
+@pytest.fixture
+def verified(team, tmp_path):
+    """Runs the command on bytes; nothing but a sentence may come of it."""
+
+    def run(pdf, url=team.server.url, key=team.keys["viewer"]):
+        file = tmp_path / "report.pdf"
+        file.write_bytes(pdf)
+        done = CliRunner().invoke(verify_report_command, [str(file), "--url", url], env={KEY: key})
+        assert isinstance(done.exception, SystemExit), done.exception
+        assert done.exit_code != 0
+        return done.output
+
+    return run
+
+
+def test_reports_of_another_service_and_files_that_are_none_end_in_a_sentence(verified, printed):
+    foreign = with_block(printed, lambda block: block.model_copy(update={"design": "0" * 24}))
+    assert "Error: 404" in verified(foreign) or "no design" in verified(foreign)
+    for wrong in (b"", b"\0" * 1000, printed[: len(printed) // 2], printed[:20] + b"\xff" * 5000):
+        assert "Error: " in verified(wrong)
+
+
+def test_a_block_with_another_place_for_a_design_is_refused_before_anything_is_asked(verified, printed):
+    """It comes from whoever made the file, and becomes part of an address."""
+    for design in ("../principals", "a/b?c=d", "\x1b[31m", "", "x" * 5000):
+        said = verified(with_block(printed, lambda block, d=design: block.model_copy(update={"design": d})))
+        assert "its attachment approval.json is wrong: design" in said
+        assert "\x1b" not in said
+
+
+def test_a_service_that_is_away_or_does_not_know_the_key_is_named(verified, printed):
+    assert "no service answers at http://127.0.0.1:1" in verified(printed, url="http://127.0.0.1:1")
+    assert "Error: " in verified(printed, key="cw_aaaaaaaaaa_" + "b" * 43)
