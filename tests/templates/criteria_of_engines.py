@@ -5,7 +5,9 @@ Each: template, criterion, what differs from the example, limits given, verdict,
 
 from math import pi, sqrt
 
-ENGINE = ("engine", 2)
+ENGINE, ROLLING = ("engine", 2), ("rolling_bearing_life", 1)
+STEADY = {"radial_load": "10 kN", "axial_load": "0 N", "reliability": 0.9}  # on 55.3 and 31.5 kN
+HOURS = 5.53**3 * 1e6 / (60 * 3000)
 NO_GAS = {"gas_cycle": "none", "cylinder_offset": "0 mm", "crank_angle_step": "30 deg"}
 RADIUS, SHARE, FACTOR = 0.043, 43 / 145, (4500 * pi / 30) ** 2  # m, r/l, rad²/s²
 BIG_END, PISTON = 0.6 * 103 / 145, 0.6 * 42 / 145 + 0.48  # kg
@@ -20,4 +22,8 @@ CASES = [
     (ENGINE, "main_load", NO_GAS, {"permissible_main_load": "5 kN"}, "not_met", MAIN, 5e3),
     (ENGINE, "shaking_force", NO_GAS, {"permissible_shaking_force": "9 kN"}, "met", SHAKING, 9e3),
     (ENGINE, "shaking_force", NO_GAS, {"permissible_shaking_force": "5 kN"}, "not_met", SHAKING, 5e3),
+    (ROLLING, "life", STEADY, {"required_life": "900 h"}, "met", HOURS, 900),
+    (ROLLING, "life", STEADY, {"required_life": "1000 h"}, "not_met", HOURS, 1000),
+    (ROLLING, "static_safety", STEADY, {"required_static_safety": 2}, "met", 3.15, 2),
+    (ROLLING, "static_safety", STEADY, {"required_static_safety": 4}, "not_met", 3.15, 4),
 ]
