@@ -170,6 +170,7 @@ async def study_form(
         bounds=bounds,
         outputs=named,
         judged=_judged(revision, named),
+        grouped=_by_step(named),
         criteria=[(one.name, one.require, has_limit(one)) for one in revision.criteria or ()],
         methods=METHODS,
         lines=range(LINES),
@@ -196,6 +197,14 @@ def _judged(revision: RevisionWorksheet, named: list[NetworkName]) -> set[str]:
     limited = filter(has_limit, revision.criteria or ())
     words = {word for one in limited for word in _words(one.name, one.require)}
     return {name.name for name in named if name.name in words}
+
+
+def _by_step(named: list[NetworkName]) -> dict[str, list[NetworkName]]:
+    """Outputs by their steps, in the order of the design."""
+    groups: dict[str, list[NetworkName]] = {}
+    for name in named:
+        groups.setdefault(name.name.partition(".")[0], []).append(name)
+    return groups
 
 
 def _words(criterion: str, require: str) -> set[str]:

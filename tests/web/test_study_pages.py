@@ -129,6 +129,29 @@ def test_the_form_studies_the_variant_that_is_chosen(http, bearing):
 
 
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
+def test_many_outputs_are_grouped_by_step_and_narrowed_by_words(watched, bearing):
+    page = watched.page
+    watched.open(f"{bearing}/studies/new")
+    page.get_by_text("More outputs").click()
+    shown, narrowed = page.locator("[data-more] label[data-words]:visible"), page.locator("[data-narrowed]")
+    count = shown.count()
+    assert count > 12
+    page.get_by_role("checkbox", name="film.sommerfeld_number").check()
+    page.get_by_role("searchbox", name="Show those with").fill("Temperature")
+    expect(narrowed).to_have_text(f"{shown.count()} of {count}")
+    names = shown.all_inner_texts()
+    assert 1 < len(names) < count
+    assert all("temperature" in name for name in names if "sommerfeld" not in name)
+    assert any("sommerfeld" in name for name in names)  # it is ticked
+    page.get_by_role("searchbox", name="Show those with").press("Enter")
+    expect(page).to_have_url(f"{watched.url}{bearing}/studies/new")  # it starts no study
+    page.get_by_role("searchbox", name="Show those with").fill("")
+    assert shown.count() == count
+    assert page.locator('[name="objective.0"] optgroup[label="film"] option').count() > 12
+    assert watched.faults() == []
+
+
+@pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
 def test_a_grid_of_two_shows_a_contour_and_a_chosen_row_becomes_a_revision(plotted, watched, http, grid):
     study, design = grid
     page = watched.page

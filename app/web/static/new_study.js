@@ -58,6 +58,20 @@ async function ask() {
   }
 }
 
+// Of many outputs those whose name or words hold all that is typed; a ticked one stays in sight.
+const MANY = 12, more = form.querySelector("[data-more]"), boxes = [...more.querySelectorAll("[data-words]")];
+const narrow = more.querySelector("[data-narrow]"), typed = narrow.querySelector("input");
+narrow.hidden = boxes.length <= MANY;
+typed.addEventListener("input", () => {
+  const wanted = typed.value.toLowerCase().split(/\s+/).filter(Boolean);
+  for (const box of boxes) box.hidden = !box.querySelector("input").checked && !wanted.every((word) => box.dataset.words.includes(word));
+  for (const group of more.querySelectorAll("[data-group]")) group.hidden = !group.querySelector("[data-words]:not([hidden])");
+  more.querySelector("[data-narrowed]").textContent = `${boxes.filter((box) => !box.hidden).length} of ${boxes.length}`;
+});
+typed.addEventListener("keydown", (event) => {
+  if (event.key === "Enter") event.preventDefault(); // it filters; it does not start the study
+});
+
 form.querySelector("[data-ask]").hidden = true; // it is asked for by itself
 form.addEventListener("change", () => {
   showOwn();
