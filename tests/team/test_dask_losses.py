@@ -3,6 +3,7 @@
 import signal
 import subprocess
 import sys
+import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
@@ -28,6 +29,7 @@ pytestmark = pytest.mark.slow
 LONG = Limits(deadline=patient(100), memory_mb=512)
 SERVER = """
 import sys
+import time
 from pathlib import Path
 from app.settings import Settings
 from app.workers.remote.engine import DaskWorker
@@ -119,9 +121,11 @@ def worker_of(network, child):
 def test_the_job_of_a_killed_worker_runs_on_the_other_and_is_recorded_once(network, jobs, database, tmp_path):
     id = put(jobs, database, folder := tmp_path / "job")
     first = running_in(folder)
+    killed = time.monotonic()
     worker_of(network, first).kill()
     until_gone(first)
     second = running_in(folder, [first])
+    assert time.monotonic() - killed < patient(Settings().lease_seconds)
     (folder / "go").touch()
     until(lambda: jobs.get(id).state, lambda state: state == "done")
     assert (losses(database, id), jobs.get(id).crashes, recorded(database)) == (1, 0, [id])
