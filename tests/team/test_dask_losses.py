@@ -29,7 +29,6 @@ pytestmark = pytest.mark.slow
 LONG = Limits(deadline=patient(100), memory_mb=512)
 SERVER = """
 import sys
-import time
 from pathlib import Path
 from app.settings import Settings
 from app.workers.remote.engine import DaskWorker
