@@ -22,6 +22,7 @@ import hashlib
 import inspect
 import json
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +38,7 @@ MARKS = frozenset({"withdrawn", "criteria"})
 """Class attributes that a released version may change."""
 
 _FIRST_MARKS = MARKS | {"film_bore"}
+_MOST_KEPT = 256  # versions whose digests are kept, by the text of their files: every page quotes both
 _SILENT = frozenset({"ctx", "kind", "type_comment"})  # fields that repeat what stands elsewhere in the tree
 
 
@@ -55,7 +57,7 @@ def source_digest(cls: type[Template]) -> str:
     """The first digest, computed from the file as it stands, import lines included."""
     if cls.sheet:
         return cls.sheet.digest()
-    return _sha256("\n".join(dict.fromkeys(_bare(source) for source in _sources(cls))))
+    return _source_digest_of(tuple(_sources(cls)))
 
 
 def content_digest(cls: type[Template]) -> str:
@@ -67,7 +69,17 @@ def content_digest(cls: type[Template]) -> str:
 
 def content_digest_of(sources: Iterable[str]) -> str:
     """The second digest of the text of files: that of a template, then those of its groups."""
+    return _content_digest_of(tuple(sources))
+
+
+@lru_cache(_MOST_KEPT)
+def _content_digest_of(sources: tuple[str, ...]) -> str:
     return _sha256("\n".join(dict.fromkeys(_content(parse(source)) for source in sources)))
+
+
+@lru_cache(_MOST_KEPT)
+def _source_digest_of(sources: tuple[str, ...]) -> str:
+    return _sha256("\n".join(dict.fromkeys(_bare(source) for source in sources)))
 
 
 def is_digest_of(text: str, cls: type[Template]) -> bool:
