@@ -13,7 +13,7 @@ import re
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -63,6 +63,27 @@ def words(pattern: str, app: Path = APP) -> Counter[str]:
         count = len(re.findall(rf"\b(?:{pattern})\b", path.read_text(encoding="utf-8")))
         counts.update({str(path.relative_to(app)): count} if count else {})
     return counts
+
+
+def named(banned: Container[str], root: Path = APP) -> Counter[str]:
+    """How often each file below a folder gives a value, an argument or a function one of these names."""
+    counts = Counter[str]()
+    for path in root.rglob("*.py"):
+        nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        count = sum((_given(node) or "").strip("_") in banned for node in nodes)
+        counts.update({str(path.relative_to(root)): count} if count else {})
+    return counts
+
+
+def _given(node: ast.AST) -> str | None:
+    """The name that a node gives to something, if it gives one."""
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        return node.name.lower()
+    if isinstance(node, ast.arg):
+        return node.arg
+    if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Store):
+        return node.id if isinstance(node, ast.Name) else node.attr
+    return None
 
 
 def rank(part: str) -> int:

@@ -96,9 +96,9 @@ class TeamFiles:
 
     def _current(self, folder: Path, signature: Signature, path: Path) -> TeamFile:
         """What is known of a file, if its content is the same; else it is checked and loaded."""
-        known = self._files.get(path)
-        if known is not None and known.signature == signature:
-            return known
+        cached = self._files.get(path)
+        if cached is not None and cached.signature == signature:
+            return cached
         try:
             content = path.read_bytes() if path.is_file() else None
         except OSError as error:
@@ -110,8 +110,8 @@ class TeamFiles:
             fault = FileFault("folder", "there is no such folder", "make it, or correct the setting")
             return TeamFile(folder, path, signature, "", None, (fault,))
         digest = _digest(path, content)
-        if known is not None and known.digest == digest:
-            return replace(known, signature=signature)
+        if cached is not None and cached.digest == digest:
+            return replace(cached, signature=signature)
         return self._checked(TeamFile(folder, path, signature, digest, None, ()), content)
 
     def _checked(self, file: TeamFile, content: bytes) -> TeamFile:

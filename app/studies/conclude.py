@@ -103,10 +103,10 @@ def _result(
     if not len(numbers):
         return _answered(**met, notes=["no row meets all criteria that are held"])
     is_confirmed = run.plan.confirm is not None
-    found = rows_found(run, stored, numbers if several else numbers[:1], confirmed=is_confirmed)
+    best = rows_found(run, stored, numbers if several else numbers[:1], confirmed=is_confirmed)
     result: dict[str, object] = {
         **met,
-        ("front" if several else "best"): found if several else found[0],
+        ("front" if several else "best"): best if several else best[0],
     }
     return _answered(**result)
 

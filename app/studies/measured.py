@@ -15,8 +15,8 @@ def measured_in(designs: Designs, document: JsonObject) -> dict[str, float]:
     if not document.get("models"):
         return {}
     calculation = designs.prepare(document)[1]
-    known = {str(reference): _value(calculation, reference) for reference in _used(calculation)}
-    return {name: value for name, value in known.items() if value is not None}
+    values = {str(reference): _value(calculation, reference) for reference in _used(calculation)}
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def _used(calculation: Calculation) -> set[Reference]:

@@ -49,17 +49,17 @@ def _content(run: Run, sha: str) -> Pieces:
 def _result(run: Run, outcome: Outcome) -> StudyResult:
     stored = run.stored()
     numbers = _numbers(run, stored, outcome.places)
-    found = rows_found(run, stored, numbers, confirmed=run.plan.confirm is not None)
+    best = rows_found(run, stored, numbers, confirmed=run.plan.confirm is not None)
     notes = [SETTLED[outcome.state], *outcome.notes]
     result = {"settled": outcome.state == "settled", "global": "not proven", "notes": notes}
     if outcome.trade:
         result["trade"] = [_trade(run, promised) for promised in outcome.trade]
     several = len(_objectives(run)) > 1
-    return StudyResult.model_validate(result | _found(found, several=several))
+    return StudyResult.model_validate(result | _listed(best, several=several))
 
 
-def _found(found: list[Best], *, several: bool) -> dict[str, object]:
-    return {"front": found} if several else {"best": found[0]} if found else {}
+def _listed(best: list[Best], *, several: bool) -> dict[str, object]:
+    return {"front": best} if several else {"best": best[0]} if best else {}
 
 
 def _numbers(run: Run, stored: Stored, places: tuple[Array, ...]) -> Integers:

@@ -183,12 +183,12 @@ def _searched(
     return searched[: 2 + MOST_COMPARED]
 
 
-def _judged(hold: Sequence[str] | None, known: Collection[str]) -> list[str]:
+def _judged(hold: Sequence[str] | None, names: Collection[str]) -> list[str]:
     """The criteria that are judged: those named, else all of the design."""
     if hold is None:
-        return sorted(known)
-    if unknown := [name for name in hold if name not in known]:
-        raise InvalidInputs(f.within("hold") for f in unknown_names(unknown, known, "criterion"))
+        return sorted(names)
+    if unknown := [name for name in hold if name not in names]:
+        raise InvalidInputs(f.within("hold") for f in unknown_names(unknown, names, "criterion"))
     return list(dict.fromkeys(hold))
 
 

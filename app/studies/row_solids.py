@@ -81,7 +81,7 @@ class Resolved:
 
 
 def measures_of_rows(
-    net: Net, body: StudyIn, outputs: Collection[Reference], known: Collection[Reference]
+    net: Net, body: StudyIn, outputs: Collection[Reference], measured: Collection[Reference]
 ) -> list[Reference]:
     """The measures that a study needs and that differ from row to row, or are not `known`.
 
@@ -92,7 +92,7 @@ def measures_of_rows(
     due = needs(net.graph, wanted.references, net.varied, wanted.inside)
     moving = net.design.moving
     return sorted(
-        (r for r in due.waiting if r not in known or net.graph.blocks[r.block].solid in moving), key=str
+        (r for r in due.waiting if r not in measured or net.graph.blocks[r.block].solid in moving), key=str
     )
 
 
@@ -135,9 +135,9 @@ class RowSolids:
         """The measures of rows, as far as their solids are known."""
         empty = {reference: np.full(count, np.nan) for reference in self.measures}
         result = Resolved(empty, np.zeros(count, dtype=bool))
-        known = {(solid.model, solid.texts): solid for solid in solids}
+        by_texts = {(solid.model, solid.texts): solid for solid in solids}
         for model in self.models:
-            self._measure(model, rows, levels, known, result)
+            self._measure(model, rows, levels, by_texts, result)
         return result
 
     def _measure(
@@ -145,7 +145,7 @@ class RowSolids:
         model: Block,
         rows: Rows,
         levels: Levels | None,
-        known: Mapping[tuple[str, Texts], Measured],
+        by_texts: Mapping[tuple[str, Texts], Measured],
         result: Resolved,
     ) -> None:
         """Fill in the columns of one model."""
@@ -159,14 +159,14 @@ class RowSolids:
         for row in np.flatnonzero(~there & ~result.waiting).tolist():
             _refuse(result, [row], table.refusals.get(row, Refusal(model.name, "not_finite", NO_VALUE)))
         for values, numbers in _distinct(matrix, there):
-            found = self._solid(model, dict(zip(names, values.tolist(), strict=True)))
-            if isinstance(found, Refusal):
-                _refuse(result, numbers, found)
+            texts = self._solid(model, dict(zip(names, values.tolist(), strict=True)))
+            if isinstance(texts, Refusal):
+                _refuse(result, numbers, texts)
                 continue
-            solid = known.get((model.name, found))
+            solid = by_texts.get((model.name, texts))
             if solid is None:
                 measures = tuple(reference.member for reference in self.measures_of(model.name))
-                result.wanting.append(Wanting(model.name, found, measures))
+                result.wanting.append(Wanting(model.name, texts, measures))
                 result.waiting[numbers] = True
             elif solid.failure is not None:
                 _refuse(result, numbers, solid.failure)

@@ -124,7 +124,7 @@ class Run:
         def started(number: int) -> Calculation:
             first = number * self.plan.chunk
             last = min(first + self.plan.chunk, self.plan.rows)
-            levels, criteria, solids = self.plan.levels, self.criteria, self.solids.known
+            levels, criteria, solids = self.plan.levels, self.criteria, self.solids.measured
             if given is not None:
                 return self.submit(calculated, self.task, given[first:last], levels, criteria, solids)
             return self.submit(explored, self.task, first, last, levels, criteria, solids)
@@ -137,7 +137,7 @@ class Run:
 
         def started(number: int) -> Calculation:
             first = (number - self.plan.chunks) * size
-            part, solids = rows[first : first + size], self.solids.known
+            part, solids = rows[first : first + size], self.solids.measured
             return self.submit(calculated, self.task, part, levels, self.criteria, solids)
 
         self._all(range(self.plan.chunks, self.plan.chunks - (-len(rows) // size)), started)
@@ -182,7 +182,7 @@ class Run:
         for wanting in lacking.solids:
             if self.solids.is_known(wanting):
                 continue
-            if len(self.solids.known) >= MOST_SOLIDS + MOST_FRONT:
+            if len(self.solids.measured) >= MOST_SOLIDS + MOST_FRONT:
                 detail = f"confirmed rows need other solids than explored ones, more than {MOST_FRONT}"
                 raise InvalidInputs([Fault("confirm", NEEDS_SOLIDS, detail)])
             self._report()
@@ -215,7 +215,7 @@ class Run:
     def _report(self) -> None:
         with self.parts.database.read() as session:
             done = repository.done(session, self.row.id, self.plan.chunks).rows
-        solids = len(self.solids.known)
+        solids = len(self.solids.measured)
         words = f"solids {solids} of {max(solids, self.plan.solids)}, " if self.plan.solids else ""
         self.context.progress(self.plan.share(done, solids), f"{words}{done} rows are calculated")
 

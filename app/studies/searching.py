@@ -146,10 +146,10 @@ def _alone(problem: Problem, book: _Book, level: int, seed: int) -> list[Promise
                 problem, answer, confirm, seed=seed, effort=ALONE, journal=book.journal(level)
             )
             return [Promised(level, front.rounds[0], front.explored, front.seconds)]
-        found = optimise(problem, answer, confirm, seed=seed, rounds=1)
+        optimum = optimise(problem, answer, confirm, seed=seed, rounds=1)
     except AllRefused:
         return []
-    return [Promised(level, found.rounds[:1], found.explored, found.seconds)]
+    return [Promised(level, optimum.rounds[:1], optimum.explored, optimum.seconds)]
 
 
 @dataclass(frozen=True)

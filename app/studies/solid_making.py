@@ -87,23 +87,23 @@ class StudySolids:
     catalogues: Catalogues
     context: JobContext
     _graph: Graph | None = None
-    _known: dict[tuple[str, Texts], Measured] = field(default_factory=dict)
+    _measures: dict[tuple[str, Texts], Measured] = field(default_factory=dict)
 
     @property
-    def known(self) -> Solids:
+    def measured(self) -> Solids:
         """What was measured so far."""
-        return tuple(self._known.values())
+        return tuple(self._measures.values())
 
     def is_known(self, wanting: Wanting) -> bool:
         """Whether a solid was measured, or has failed."""
-        return (wanting.model, wanting.texts) in self._known
+        return (wanting.model, wanting.texts) in self._measures
 
     def make(self, wanting: Wanting) -> None:
         """Build a solid and measure it, or note why it has no measures; raises JobCancelled."""
         with self.making.turn(self.context):
-            self._known[wanting.model, wanting.texts] = self._made(wanting)
+            self._measures[wanting.model, wanting.texts] = self._measured_solid(wanting)
 
-    def _made(self, wanting: Wanting) -> Measured:
+    def _measured_solid(self, wanting: Wanting) -> Measured:
         try:
             measures = tuple(self._measured(wanting).items())
         except FAILURES as error:
@@ -144,12 +144,12 @@ class StudySolids:
             question = self._questions().blocks[wanting.model].analyses[kind]
             outputs = in_order(kind, {r.output for r in references if r.analysis == kind and r.output})
             self.making.analysing.find(shape, question, outputs, runner)
-            found = analysed(self.making.database)(shape, question, outputs)
-            assert found is not None, "it has just been analysed"
+            stored = analysed(self.making.database)(shape, question, outputs)
+            assert stored is not None, "it has just been analysed"
             for output in outputs:
-                name, value = f"{kind}.{output}", found[output]["value"]
+                name, value = f"{kind}.{output}", stored[output]["value"]
                 if value is None:
-                    raise AnalysisError("no_value", f"{name} has no value: {found[output]['reason']}")
+                    raise AnalysisError("no_value", f"{name} has no value: {stored[output]['reason']}")
                 scale = unit(measured_unit(Reference.parse(f"{wanting.model}.{name}")))
                 values[name] = float(scale.to_si(value))
         return values

@@ -93,17 +93,19 @@ def read_body(body: str) -> StudyIn:
 def _prepared(task: Task) -> Prepared:
     document, catalogues = task.design.read()
     varied = [Reference.parse(name) for name in task.varied]
-    known = {Reference.parse(name): value for name, value in task.measured}
+    measured_si = {Reference.parse(name): value for name, value in task.measured}
     body = read_body(task.body)
     aside = [Reference.parse(name) for name in body.set_aside]
-    net = _net(document, catalogues, varied, known, aside)
+    net = _net(document, catalogues, varied, measured_si, aside)
     asked = asked_of(body, task.varied, net)
-    measures = measures_of_rows(net, body, asked.wanted, known)
+    measures = measures_of_rows(net, body, asked.wanted, measured_si)
     raise_if(list(iterated(document, measures)))
-    nominal = {reference: known[reference] for reference in measures if reference in known}
+    nominal = {reference: measured_si[reference] for reference in measures if reference in measured_si}
     blocks, moving = net.graph.blocks, net.design.moving
-    constant = {reference: v for reference, v in known.items() if blocks[reference.block].solid not in moving}
-    if measures or constant != known:
+    constant = {
+        reference: v for reference, v in measured_si.items() if blocks[reference.block].solid not in moving
+    }
+    if measures or constant != measured_si:
         net = _net(document, catalogues, [*varied, *measures], constant, aside)
     return Prepared(net, asked, RowSolids(net, tuple(measures)), nominal)
 

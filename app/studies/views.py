@@ -103,13 +103,13 @@ class Listing:
 
     def __init__(self, row: Row, stored: Stored, wanted: Wanted) -> None:
         self.plan, self.stored, self.wanted = Plan.of(row.plan), stored, wanted
-        known = [*self.plan.places, *self.plan.outputs]
+        names = [*self.plan.places, *self.plan.outputs]
         sort = (wanted.sort or "").removeprefix("-")
         if unknown := [
-            *dict.fromkeys(n for n in (*wanted.columns, *([sort] if sort else [])) if n not in known)
+            *dict.fromkeys(n for n in (*wanted.columns, *([sort] if sort else [])) if n not in names)
         ]:
-            raise InvalidInputs(f.within("columns") for f in unknown_names(unknown, known, "column"))
-        self.names = list(wanted.columns) or known
+            raise InvalidInputs(f.within("columns") for f in unknown_names(unknown, names, "column"))
+        self.names = list(wanted.columns) or names
 
     @property
     def units(self) -> dict[str, str]:

@@ -29,15 +29,15 @@ def main(reader: int, user: str, command: list[str]) -> None:
 def _others(reader: int) -> list[int]:
     """The descriptors of the pipe that `hang_on` has opened beside the reader."""
     pipe = os.stat(f"/proc/self/fd/{reader}").st_ino
-    found = []
+    descriptors = []
     for name in os.listdir("/proc/self/fd"):
         descriptor = int(name)
         try:
             if descriptor != reader and os.fstat(descriptor).st_ino == pipe:
-                found.append(descriptor)
+                descriptors.append(descriptor)
         except OSError:  # the one that listed them
             continue
-    return found
+    return descriptors
 
 
 if __name__ == "__main__":

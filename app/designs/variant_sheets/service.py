@@ -72,7 +72,7 @@ def save_sheet(
 
 
 def _faults_of_save(
-    designs: Designs, raw: JsonObject, sheet: SheetVariants, known: Sequence[Fault]
+    designs: Designs, raw: JsonObject, sheet: SheetVariants, listed: Sequence[Fault]
 ) -> Iterator[Fault]:
     """What a save would refuse in the cells that are left.
 
@@ -80,13 +80,13 @@ def _faults_of_save(
     later steps from it. So what is refused is left out, and the rest is tried once more. In a row with cells
     left out, only what is wrong with a cell by itself counts: the row as a whole may be right without them.
     """
-    incomplete = {cell[0] for fault in known if (cell := cell_of(fault.name))}
+    incomplete = {cell[0] for fault in listed if (cell := cell_of(fault.name))}
     for _ in range(TRIES):
         try:
-            found = designs.faulty_variants({**raw, "variants": sheet.variants})
+            new = designs.faulty_variants({**raw, "variants": sheet.variants})
         except InvalidInputs as error:
-            found = list(error.faults)
-        named = sheet.named(InvalidInputs(found)).faults
+            new = list(error.faults)
+        named = sheet.named(InvalidInputs(new)).faults
         cells = [cell_of(fault.name) or (-1, 0) for fault in named]
         for fault, (row, column) in zip(named, cells, strict=True):
             if row not in incomplete or (column > 0 and not fault.also):

@@ -79,9 +79,9 @@ def _next(surface: Corrected, members: tuple[Array, ...], size: int, seed: int) 
     nsga2 = extra("pymoo.algorithms.moo.nsga2").NSGA2(pop_size=size, sampling=before)
     nsga2.setup(problem, termination=("n_gen", 3), seed=seed, verbose=False)
     algorithm = cast(Algorithm, nsga2)
-    known = algorithm.ask()
-    assert known is not None, "the first members are those that were given"
-    _tell(algorithm, problem, known, known.get("F"), known.get("G"))
+    parents = algorithm.ask()
+    assert parents is not None, "the first members are those that were given"
+    _tell(algorithm, problem, parents, parents.get("F"), parents.get("G"))
     new = algorithm.ask()
     if new is None or not len(new):
         return None

@@ -151,5 +151,5 @@ def violated(problem: Problem, place: Round, scales: Array) -> tuple[Violation, 
     values, limits = place.confirmed[count : count + held], place.confirmed[count + held :]
     by = (-problem.signs * (values - limits)).tolist()
     each = zip(problem.held, by, (by / scales).tolist(), strict=True)
-    found = [Violation(one.name, short, relative) for one, short, relative in each if short > 0]
-    return tuple(sorted(found, key=lambda one: one.relative))
+    violations = [Violation(one.name, short, relative) for one, short, relative in each if short > 0]
+    return tuple(sorted(violations, key=lambda one: one.relative))

@@ -89,7 +89,7 @@ def effects(points: MorrisPoints, output: str, y: Array) -> Effects:
     """
     _complete(output, y, points.count)
     analyse = extra("SALib.analyze.morris").analyze
-    found = analyse(
+    by_name = analyse(
         _problem(points.space),
         points.unit,
         np.asarray(y, dtype=np.float64),
@@ -97,7 +97,7 @@ def effects(points: MorrisPoints, output: str, y: Array) -> Effects:
         num_levels=points.levels,
         seed=np.random.default_rng(points.seed),
     )
-    return Effects(*(_plain(found[name]) for name in ("mu", "mu_star", "sigma", "mu_star_conf")))
+    return Effects(*(_plain(by_name[name]) for name in ("mu", "mu_star", "sigma", "mu_star_conf")))
 
 
 @dataclass(frozen=True)
@@ -165,14 +165,14 @@ def indices(points: SobolPoints, output: str, y: Array) -> Indices:
         raise InvalidInputs([Fault(output, "constant", detail)])
     analyse = extra("SALib.analyze.sobol").analyze
     random = np.random.default_rng(points.seed)  # SALib takes a seed of 0 for none
-    found = analyse(
+    by_name = analyse(
         _problem(points.space),
         np.asarray(y, dtype=np.float64),
         calc_second_order=False,
         conf_level=CONFIDENCE,
         seed=random,
     )
-    return Indices(*(_plain(found[name]) for name in ("S1", "S1_conf", "ST", "ST_conf")))
+    return Indices(*(_plain(by_name[name]) for name in ("S1", "S1_conf", "ST", "ST_conf")))
 
 
 def most_base(rows: int, dimensions: int) -> int:
