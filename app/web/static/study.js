@@ -90,9 +90,9 @@ async function draw(section, table, kind, x, y, z) {
 
 // A drawing without what another chart left in it.
 function fresh(section) {
-  const old = section.querySelector("[data-drawing]"), fresh = old.cloneNode(false);
-  old.replaceWith(fresh);
-  return fresh;
+  const old = section.querySelector("[data-drawing]"), drawing = old.cloneNode(false);
+  old.replaceWith(drawing);
+  return drawing;
 }
 
 function show(section, table, row) {
