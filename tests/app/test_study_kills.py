@@ -48,7 +48,10 @@ SOLIDS = {
     "steps": 400,
     "outputs": [OUT, "cube.mass"],
 }
-STUDIES = {"rows": (HELD, [SAMPLE, SEARCH]), "solids": (CUBES, [SOLIDS])}
+REST = {"template": "double", "version": 1, "inputs": {"length": "= 10 mm - length"}}
+PAIR = {**HELD, "steps": {**TWICE["steps"], "rest": REST}}
+FRONT = {**SEARCH, "minimise": [OUT, "rest.twice_the_length"]}
+STUDIES = {"rows": (HELD, [SAMPLE, SEARCH]), "front": (PAIR, [FRONT]), "solids": (CUBES, [SOLIDS])}
 
 
 def work_done(data):
