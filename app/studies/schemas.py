@@ -75,7 +75,7 @@ class StudyIn(Bounded):
     design: str = Field(max_length=64)
     revision: int | None = Field(None, ge=1, le=10**9, description="the newest, if not given")
     variant: VariantName | None = Field(
-        None, examples=[None], description="which variant is studied; the design itself, if not given"
+        None, description="which variant is studied; the design itself, if not given"
     )
     method: Method
     seed: int = Field(1, ge=0, le=MOST_SEED, description="the same seed, the same rows")
