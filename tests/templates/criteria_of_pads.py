@@ -1,4 +1,4 @@
-"""Cases of the criteria of pads, collars, mixed friction and elastic films, for `test_criteria_of_families`.
+"""Cases of the criteria of pads, collars, films that rub, give way or heat, for `test_criteria_of_families`.
 
 Each: template, criterion, what differs from the example, limits given, verdict, value and limit.
 """
@@ -7,7 +7,11 @@ from math import pi
 
 HYDROSTATIC, THRUST, MIXED = ("hydrostatic_pad", 1), ("thrust_bearing", 1), ("mixed_friction", 1)
 GIVEN_OIL = {"supply_temperature": None, "dynamic_viscosity": "1 mPa*s"}
-ELASTIC = ("elastic_film", 1)
+ELASTIC, HEAT = ("elastic_film", 1), ("cycle_heat_balance", 1)
+WATERY = {
+    "kinematic_viscosity_1": "1 mm**2/s", "kinematic_viscosity_2": "0.6 mm**2/s", "hths_viscosity": None,
+    "bearing_width": "6 mm",
+}  # fmt: skip
 LIGHT = {"radial_load": "10 N", "liner_thickness": "0.01 mm"}
 THICK = {**GIVEN_OIL, "taper": "200 um", "load": "20 N"}
 THIN = {**GIVEN_OIL, "dynamic_viscosity": "0.001 mPa*s", "taper": "0.2 um", "load": "200 kN"}
@@ -46,6 +50,14 @@ CASES = [
     (ELASTIC, "film_exists", {"radial_load": "1e9 N"}, {}, "not_met", 2.1155237e-4, 0.05),
     (ELASTIC, "pressure", {}, {"permissible_pressure": "50 MPa"}, "met", 48.114488, 50),
     (ELASTIC, "pressure", {}, BABBITT, "not_met", 48.114488, 20.6),
+    (HEAT, "film_exists", {}, {}, "met", 2.3878203, 0.05),
+    (HEAT, "film_exists", WATERY, {}, "not_met", 0.044457229, 0.05),
+    (HEAT, "own_film", {}, {"permissible_film": "2 um"}, "met", 2.3878203, 2),
+    (HEAT, "own_film", {}, {"permissible_film": "3 um"}, "not_met", 2.3878203, 3),
+    (HEAT, "temperature", {}, BABBITT, "met", 93.751210, 150),
+    (HEAT, "temperature", {}, {"permissible_temperature": "90 degC"}, "not_met", 93.751210, 90),
+    (HEAT, "temperature_rise", {}, {"permissible_temperature_rise": "8 K"}, "met", 7.5024198, 8),
+    (HEAT, "temperature_rise", {}, {"permissible_temperature_rise": "7 K"}, "not_met", 7.5024198, 7),
     (MIXED, "full_film", {"speed": "600 rpm"}, {}, "met", 4.9008874, 3),
     (MIXED, "full_film", {}, {}, "not_met", 2.9660099, 3),
     (MIXED, "above_transition", {"speed": "600 rpm"}, {}, "met", 600, 304.596723),

@@ -1,0 +1,1 @@
+"""Heat balances of films over a cycle."""

@@ -1,0 +1,369 @@
+r"""One viscosity for a film over a cycle, from what the film heats and what its oil carries off.
+
+.. math::
+    k\,P = \rho c\,(Q + Q_p)(T_{ex} - T_{en}),\quad T = (T_{en} + T_{ex})/2,\quad
+    \eta = \eta_\mathrm{Cross}\left(\eta_0(T),\ \dot\gamma\right)
+
+as ISO 7902-1 has it for a steady load, with loss P and side flow Q as means over the cycle. Q_p is what the
+supply pressure drives from a groove over the two lands, with the gap along the orbit; the film's own
+pressure does not hinder it, as in the standard. The shear rate is |U|/h, a mean over circle and cycle.
+
+P rises with the viscosity, and so the viscosity that belongs to its heat falls: there is one root in ln(eta).
+The viscosity of the supply is lowered by factors of four until it is too low: that step holds the root.
+
+References
+----------
+ISO 7902-1:1998, clause 6.4; Cross: J. Colloid Sci. 20, 1965, p. 417.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from scipy.optimize.elementwise import find_root
+
+from templates.core.arrays import Array
+from templates.core.language.declare import on_paper, units
+from templates.physics.journals.oil import viscosity_at
+from templates.physics.journals.shear_thinning import (
+    HTHS_TEMPERATURE,
+    critical_rate_at,
+    critical_rate_of_HTHS,
+    viscosity_Cross_1965,
+)
+from templates.physics.orbits.cyclic_film import Duty, cycle_of, weights
+from templates.physics.orbits.fed_cycle import FedDuty, FedOrbit, fed_duty, fed_film, fed_orbit
+from templates.physics.orbits.feeding import AROUND, Feeding
+from templates.physics.orbits.turning import turning
+
+LEVELS = ("mobility_short", "mobility", "mobility_grooved")
+"""Those of `fed_cycle` that are cheap enough to be solved at many viscosities."""
+_STEPS = 6
+_STEP = float(np.log(4))
+"""How often, and by how much in ln, the viscosity of the supply is lowered in search of the root."""
+
+
+@dataclass(frozen=True)
+class CycleOil:
+    """The oil and what it carries off, SI; single values of the points."""
+
+    A: Array
+    B: Array
+    """Walther's intercept and slope [-]."""
+    a: Array
+    b: Array
+    offset: Array
+    """Vogel's factor, NaN with Walther's law [Pa s], slope and offset [K]."""
+    eta: Array
+    """Viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
+    rho_ref: Array
+    T_ref: Array
+    """Density [kg/m³] at a temperature [K]."""
+    left: Array
+    """Of what shear can take, the share that 1e6 1/s leave at 150 °C; NaN if the oil does not thin [-]."""
+    endless: Array
+    """Share of the viscosity that endless shear leaves [-]."""
+    exponent: Array
+    """Of Cross's law [-]."""
+    supply: Array
+    """Temperature of the supply [K]."""
+    heat_capacity: Array
+    """Per volume [J/(m³ K)]."""
+    share: Array
+    """Share of the loss that the oil carries off [-]."""
+
+    def still(self, T: Array) -> Array:
+        """Viscosity at low shear at a temperature [K]; [Pa s]."""
+        return viscosity_at(
+            T, self.A, self.B, self.a, self.b, self.offset, self.eta, self.rho_ref, self.T_ref
+        )
+
+    def sheared(self, T: Array, rate: Array) -> Array:
+        """Viscosity at a temperature [K] and a shear rate [1/s]; [Pa s]."""
+        still, hot = self.still(T), self.still(np.asarray(HTHS_TEMPERATURE))
+        at_150 = critical_rate_of_HTHS(self.left, np.asarray(1.0), np.asarray(0.0), self.exponent)
+        critical = critical_rate_at(at_150, hot, still)
+        with np.errstate(invalid="ignore"):
+            thin = viscosity_Cross_1965(rate, still, self.endless * still, critical, self.exponent)
+        return np.where(np.isnan(self.left), still, thin)
+
+
+@dataclass(frozen=True)
+class CycleBearing:
+    """A bearing over its cycle, SI."""
+
+    level: str
+    duty: Duty
+    """Its scale is that of 1 Pa s."""
+    feeding: Feeding
+    pressure: Array
+    """Supply pressure, NaN without a groove [Pa]."""
+    clearance: Array
+    """Radial clearance [m]."""
+
+
+@dataclass(frozen=True)
+class CycleHeat:
+    """The balance of every point; NaN where there is none."""
+
+    eta: Array
+    """Effective viscosity [Pa s]; infinite where no balance was found."""
+    T: Array
+    """Effective temperature [K]."""
+    rate: Array
+    """Mean shear rate [1/s]."""
+    loss: Array
+    """Power loss [W]."""
+    side_flow: Array
+    """What the journal's motion displaces from the ends [m³/s]."""
+    feed_flow: Array
+    """What the supply pressure drives [m³/s]."""
+    residual: Array
+    """Viscosity that belongs to the heat, over that taken, less 1 [-]."""
+
+
+@dataclass(frozen=True)
+class Warmed:
+    """What a film of some viscosity does."""
+
+    loss: Array
+    side_flow: Array
+    feed_flow: Array
+    rate: Array
+
+
+def heated_film(bearing: CycleBearing, eta: Array) -> tuple[FedOrbit, Warmed]:
+    """Orbit, loss, flows and shear rate at viscosities (...) [Pa s]; NaN where no orbit is found."""
+    duty = bearing.duty
+    fed = warmed_duty(duty, bearing.feeding, eta)
+    orbit = fed_orbit(bearing.level, fed)
+    film = fed_film(bearing.level, fed, orbit)
+    D, W, c, Omega = bearing.feeding.D, bearing.feeding.W, bearing.clearance, duty.Omega
+    loss = film.loss * W * D**3 * eta * Omega**2 / (4 * c)
+    side = film.side_flow * W * D * c * Omega
+    period = cycle_of(duty.angle)
+    mean = weights(duty.angle, period) / period
+    sliding = np.abs(duty.omega_J - duty.omega_B)
+    gap = orbit.gap
+    with np.errstate(invalid="ignore"):
+        rate = (sliding / np.sqrt(gap * (2 - gap))) @ mean * D / (2 * c)
+    return orbit, Warmed(loss, side, feed_flow(bearing, orbit, eta), rate)
+
+
+def feed_flow(bearing: CycleBearing, orbit: FedOrbit, eta: Array) -> Array:
+    """What the supply pressure drives from the groove over both lands, mean over the cycle [m³/s]."""
+    duty, groove = bearing.duty, bearing.feeding
+    turned = sleeve_turn(duty)
+    whole = np.asarray(groove.groove_extent >= AROUND)[..., None]
+    turned = np.where(whole, np.nan_to_num(turned), turned)
+    cubes = gap_cubed(
+        orbit.eps_x, orbit.eps_y, turned + np.asarray(groove.groove_start)[..., None],
+        np.asarray(groove.groove_extent)[..., None],
+    )  # fmt: skip
+    period = cycle_of(duty.angle)
+    cubed = cubes @ weights(duty.angle, period) / period
+    land = (groove.W - groove.groove_width) / 2
+    flow = bearing.pressure * bearing.clearance**3 * groove.D / 2 * cubed / (6 * eta * land)
+    return np.asarray(np.where(groove.grooved, flow, 0 * eta))[()]
+
+
+def gap_cubed(eps_x: Array, eps_y: Array, start: Array, extent: Array) -> Array:
+    """Integral of H³ over an arc of a bearing, H = 1 − eps · n, by its antiderivative [rad].
+
+    Parameters
+    ----------
+    eps_x, eps_y
+        Relative eccentricity [-].
+    start, extent
+        Where the arc begins and how far it goes [rad].
+    """
+    eps, centre = np.hypot(eps_x, eps_y), np.arctan2(eps_y, eps_x)
+
+    def up_to(angle: Array) -> Array:
+        sin = np.sin(angle)
+        square = 1.5 * eps**2 * (angle + sin * np.cos(angle))
+        return np.asarray(angle - 3 * eps * sin + square - eps**3 * (sin - sin**3 / 3))
+
+    return up_to(start + extent - centre) - up_to(start - centre)
+
+
+def sleeve_turn(duty: Duty) -> Array:
+    """Angle of the sleeve in the frame (..., N) [rad]."""
+    period = cycle_of(duty.angle)
+    speed = (duty.omega_B - duty.omega_F) / np.asarray(duty.Omega)[..., None]
+    rows = np.broadcast_arrays(speed, duty.angle)[0]
+    turned = turning(duty.angle, period, rows.reshape(-1, duty.angle.size))
+    return np.asarray(turned.at(duty.angle, turned.swing)).reshape(rows.shape)
+
+
+@on_paper("solved numerically by bracketing the viscosity in the heat balance over the cycle")
+def cycle_heat(bearing: CycleBearing, oil: CycleOil) -> CycleHeat:
+    """The viscosity of every point at which heat and viscosity agree."""
+    shape = np.broadcast_shapes(
+        *(np.shape(getattr(oil, field.name)) for field in fields(oil)), np.shape(bearing.duty.scale),
+        np.shape(bearing.pressure), np.shape(bearing.duty.F_x)[:-1], np.shape(bearing.clearance),
+        np.shape(bearing.duty.omega_J)[:-1],
+    )  # fmt: skip
+    top = np.log(np.broadcast_to(oil.still(oil.supply), shape))
+
+    def lack(x: Array) -> Array:
+        """Logarithm of the viscosity that belongs to the heat, less that taken."""
+        eta = np.exp(x)
+        film = heated_film(bearing, eta)[1]
+        T = temperature(oil, film)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            return np.asarray(np.log(oil.sheared(T, film.rate)) - x)
+
+    def at_some(x: Array, number: Array) -> Array:
+        """The same of the points of these numbers alone."""
+        everywhere = np.full(top.size, np.nan)
+        everywhere[number.astype(np.int64)] = x
+        return lack(everywhere.reshape(shape)).ravel()[number.astype(np.int64)]
+
+    low, high = _bracket(lack, top, heaviest(bearing.duty))
+    x = np.where(low == top, top, np.nan).ravel()
+    number = np.flatnonzero((low < high).ravel())
+    if number.size:
+        missing: Callable[..., Array] = at_some
+        found = find_root(
+            missing, (low.ravel()[number], high.ravel()[number]), args=(number.astype(float),),
+            tolerances={"xatol": 1e-10, "xrtol": 1e-12, "fatol": 1e-11},
+        )  # fmt: skip
+        x[number] = np.where(found.success, found.x, np.nan)
+    solved = x.reshape(shape)
+    film = heated_film(bearing, np.exp(solved))[1]
+    T = temperature(oil, film)
+    with np.errstate(invalid="ignore"):
+        residual = np.asarray(oil.sheared(T, film.rate) / np.exp(solved) - 1)
+    eta = np.where(np.isfinite(residual), np.exp(solved), np.inf)
+    values = (eta, T, film.rate, film.loss, film.side_flow, film.feed_flow, residual)
+    return CycleHeat(*(np.asarray(value)[()] for value in values))
+
+
+def _bracket(lack: Callable[[Array], Array], top: Array, load: Array) -> tuple[Array, Array]:
+    """The step downwards from the supply's viscosity, in ln, that holds the root; NaN where none does.
+
+    A load so light at the supply's viscosity that no orbit is found may have one further down.
+    """
+    low, high = np.full(top.shape, np.nan), np.full(top.shape, np.nan)
+    at, above = top, top
+    for _ in range(_STEPS + 1):
+        missing = lack(at)
+        with np.errstate(invalid="ignore"):
+            found = missing >= 0
+            light = np.isnan(missing) & (load < np.exp(at))
+            low, high = np.where(found, at, low), np.where(found, above, high)
+            above = np.where(light, np.nan, at)
+            at = np.where(light | (missing < 0), at - _STEP, np.nan)
+        if np.isnan(at).all():
+            break
+    high = np.where(np.isnan(high) & (low < top), low + _STEP, high)
+    return low, np.where(low == top, top, high)
+
+
+def heaviest(duty: Duty) -> Array:
+    """Largest load number with oil of 1 Pa s, (...) [Pa s]."""
+    return np.asarray(np.hypot(duty.F_x, duty.F_y).max(axis=-1) * duty.scale)
+
+
+def temperature(oil: CycleOil, film: Warmed) -> Array:
+    """Mean of supply and outlet, by the heat that the oil carries off [K]."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        rise = oil.share * film.loss / (oil.heat_capacity * (film.side_flow + film.feed_flow))
+    return np.asarray(oil.supply + rise / 2)
+
+
+def _where_known(eta: Array, value: Array) -> Array:
+    """The value where a viscosity was found, else NaN."""
+    return np.asarray(np.where(np.isnan(eta), np.nan, value))[()]
+
+
+@units(None, returns="Pa*s", latex=r"\text{{by the heat balance}}")
+def viscosity_of(heat: CycleHeat) -> Array:
+    """Effective viscosity [Pa s]."""
+    return heat.eta
+
+
+@units(None, "Pa*s", returns="K", latex=r"\text{{by the heat balance}}")
+def temperature_of(heat: CycleHeat, eta: Array) -> Array:
+    """Effective temperature [K]; NaN where the viscosity is."""
+    return _where_known(eta, heat.T)
+
+
+@units(None, "Pa*s", returns="1/s", latex=r"\text{{by the heat balance}}")
+def rate_of(heat: CycleHeat, eta: Array) -> Array:
+    """Mean shear rate [1/s]; NaN where the viscosity is."""
+    return _where_known(eta, heat.rate)
+
+
+@units(None, "Pa*s", returns="W", latex=r"\text{{by the heat balance}}")
+def loss_of(heat: CycleHeat, eta: Array) -> Array:
+    """Power loss [W]; NaN where the viscosity is."""
+    return _where_known(eta, heat.loss)
+
+
+@units(None, "Pa*s", returns="m**3/s", latex=r"\text{{by the heat balance}}")
+def side_flow_of(heat: CycleHeat, eta: Array) -> Array:
+    """Flow that the journal's motion displaces [m³/s]; NaN where the viscosity is."""
+    return _where_known(eta, heat.side_flow)
+
+
+@units(None, "Pa*s", returns="m**3/s", latex=r"\text{{by the heat balance}}")
+def feed_flow_of(heat: CycleHeat, eta: Array) -> Array:
+    """Flow that the supply pressure drives [m³/s]; NaN where the viscosity is."""
+    return _where_known(eta, heat.feed_flow)
+
+
+def warmed_duty(duty: Duty, feeding: Feeding, eta: Array) -> FedDuty:
+    """The duty, whose scale is that of 1 Pa s, at a viscosity [Pa s]."""
+    return fed_duty(replace(duty, scale=duty.scale / eta), feeding, np.full(2, np.nan))
+
+
+@units(None, "1", "1", "Pa*s", "K", "K", None, "kg/m**3", "K", returns="Pa*s")
+def viscosity_at_150(
+    law: str, A: Array, B: Array, a: Array, b: Array, offset: Array, eta: Array, rho_ref: Array, T_ref: Array
+) -> Array:
+    """Viscosity at low shear and 150 °C, by the law `walther` or `vogel`, or as given [Pa s].
+
+    Parameters
+    ----------
+    law
+        Whose constants count.
+    A, B
+        Walther's intercept and slope [-].
+    a, b, offset
+        Vogel's factor [Pa s], slope and offset [K].
+    eta
+        The viscosity, if it is given, else NaN [Pa s].
+    rho_ref, T_ref
+        Density [kg/m³] at a temperature [K].
+    """
+    factor = a if law == "vogel" else np.full_like(np.asarray(a, float), np.nan)
+    return viscosity_at(np.asarray(HTHS_TEMPERATURE), A, B, factor, b, offset, eta, rho_ref, T_ref)[()]
+
+
+@units("Pa*s", "Pa*s", "1", None, returns="1", latex=r"\frac{{{0}-{2}\,{1}}}{{(1-{2})\,{1}}}")
+def left_by_HTHS(hths: Array, hot: Array, endless: Array, eta: Array) -> Array:
+    """Of what shear can take at 150 °C, what 1e6 1/s leave; NaN for an oil that does not thin [-].
+
+    Parameters
+    ----------
+    hths
+        HTHS viscosity, NaN if none is given [Pa s].
+    hot
+        Viscosity at low shear and 150 °C [Pa s].
+    endless
+        Share that endless shear leaves [-].
+    eta
+        The viscosity of the film, if it is given: then it does not thin [Pa s].
+    """
+    left = (hths - endless * hot) / ((1 - endless) * hot)
+    return np.where(np.isnan(eta), left, np.nan)[()]
+
+
+def groove_alone(D: Array, W: Array, width: Array, start: Array, extent: Array) -> Feeding:
+    """A groove in the sleeve, and no hole; see `Feeding`."""
+    none = np.full_like(np.asarray(D, float), np.nan)
+    return Feeding(D, W, width, start, extent, none, none, none, none, none, none)
