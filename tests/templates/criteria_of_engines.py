@@ -5,7 +5,8 @@ Each: template, criterion, what differs from the example, limits given, verdict,
 
 from math import pi, sqrt
 
-ENGINE, ROLLING = ("engine", 2), ("rolling_bearing_life", 1)
+ENGINE, ROLLING, BURNT = ("engine", 2), ("rolling_bearing_life", 1), ("combustion_cycle", 1)
+COLD = {"heat_release": "0 J", "inlet_closes": "180 deg"}  # a polytrope of 1.32 from 0.95 bar, by 10.5
 STEADY = {"radial_load": "10 kN", "axial_load": "0 N", "reliability": 0.9}  # on 55.3 and 31.5 kN
 HOURS = 5.53**3 * 1e6 / (60 * 3000)
 NO_GAS = {"gas_cycle": "none", "cylinder_offset": "0 mm", "crank_angle_step": "30 deg"}
@@ -26,4 +27,6 @@ CASES = [
     (ROLLING, "life", STEADY, {"required_life": "1000 h"}, "not_met", HOURS, 1000),
     (ROLLING, "static_safety", STEADY, {"required_static_safety": 2}, "met", 3.15, 2),
     (ROLLING, "static_safety", STEADY, {"required_static_safety": 4}, "not_met", 3.15, 4),
+    (BURNT, "peak_pressure", COLD, {"permissible_peak_pressure": "25 bar"}, "met", 0.95 * 10.5**1.32, 25),
+    (BURNT, "peak_pressure", COLD, {"permissible_peak_pressure": "20 bar"}, "not_met", 0.95 * 10.5**1.32, 20),
 ]

@@ -16,6 +16,7 @@ from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
 
 Vectors = NDArray[np.complex128]
+_VANISHES = 1e-12
 
 
 @dataclass(frozen=True)
@@ -65,28 +66,36 @@ def mains_ascend(mains: Array) -> Truth:
     return np.ndim(mains) == 1 and np.size(mains) > 1 and bool(np.all(np.diff(mains) > 1e-6))
 
 
+def _without_rounding(part: Array, vectors: Vectors) -> Array:
+    """A part of vectors over the cycle, with zero where no more than rounding of the largest is left."""
+    if not np.ndim(vectors):
+        return np.asarray(part)
+    largest = np.abs(vectors).max(axis=-1, keepdims=True)
+    return np.where(np.abs(part) <= _VANISHES * largest, 0.0, part)
+
+
 @units(None, returns="N")
 def along_x(forces: Vectors) -> Array:
     """The part of forces along x [N]."""
-    return np.asarray(forces.real)
+    return _without_rounding(forces.real, forces)
 
 
 @units(None, returns="N")
 def along_y(forces: Vectors) -> Array:
     """The part of forces along y [N]."""
-    return np.asarray(forces.imag)
+    return _without_rounding(forces.imag, forces)
 
 
 @units(None, returns="N*m")
 def moment_about_x(couple: Vectors) -> Array:
     """The moment about x [N m] of forces that give ΣzF: that is −Σz F_y."""
-    return np.asarray(-couple.imag)
+    return _without_rounding(-couple.imag, couple)
 
 
 @units(None, returns="N*m")
 def moment_about_y(couple: Vectors) -> Array:
     """The moment about y [N m] of forces that give ΣzF: that is Σz F_x."""
-    return np.asarray(couple.real)
+    return _without_rounding(couple.real, couple)
 
 
 @units(None, returns="N")
@@ -100,7 +109,9 @@ def greatest_at(forces: Vectors, theta: Array) -> Array:
     """The crank angle at which each load is greatest [rad]."""
     if not np.ndim(forces):
         return np.array(np.nan)
-    return np.asarray(theta[np.argmax(np.abs(forces), axis=-1)])
+    size = np.abs(forces)
+    first = np.argmax(size >= size.max(axis=-1, keepdims=True) * (1 - 1e-9), axis=-1)
+    return np.asarray(theta[first])
 
 
 @units(None, returns="1")
@@ -122,11 +133,12 @@ def relative_change(elastic: Vectors, determinate: Vectors) -> Array:
 
 @units(None, None, "m", returns="1")
 def left_over(reactions: Vectors, loads: ShaftLoads, mains: Array) -> Array:
-    """The largest force or moment left over at any angle, over the sum of the sizes of what balances."""
+    """The largest force or moment left over at any angle, over the sum of the sizes; 0 below 1e-12."""
     size = np.abs(loads.forces).sum(axis=-2)
     size = np.where(size > 0, size, 1.0)
     force = np.abs(reactions.sum(axis=-2) + loads.forces.sum(axis=-2)) / size
     middle, half = mains.mean(), np.ptp(mains) / 2
     arms = (loads.places - middle)[:, None]
     moment = ((mains - middle)[:, None] * reactions).sum(axis=-2) + (arms * loads.forces).sum(axis=-2)
-    return np.asarray(np.maximum(force, np.abs(moment) / (size * half)).max(axis=-1))[()]
+    left = np.asarray(np.maximum(force, np.abs(moment) / (size * half)).max(axis=-1))
+    return np.where(left < _VANISHES, 0.0, left)[()]

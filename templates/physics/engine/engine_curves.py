@@ -54,18 +54,22 @@ class Parts:
 
     def resultant(self) -> Vectors:
         """Σ F, (…, K)."""
-        total = self.pistons.sum(axis=-2)
-        for forces, _ in self.rotors:
-            total = total + forces.sum(axis=-2)
-        return np.asarray(total)
+        return self._sum(None)
 
     def couple(self, reference: Array) -> Vectors:
         """Σ (z − z₀) F, (…, K)."""
-        reference = np.asarray(reference)[..., None]
-        total = ((self.cylinder_places - reference)[..., None] * self.pistons).sum(axis=-2)
-        for forces, places in self.rotors:
-            total = total + ((places - reference)[..., None] * forces).sum(axis=-2)
-        return np.asarray(total)
+        return self._sum(reference)
+
+    def _sum(self, reference: Array | None) -> Vectors:
+        """The sum over all parts, each times its arm; zero where only rounding is left."""
+        total, size = np.zeros((), complex), np.zeros(())
+        for forces, places in ((self.pistons, self.cylinder_places), *self.rotors):
+            arm = 1.0 if reference is None else (places - np.asarray(reference)[..., None])[..., None]
+            total = total + (arm * forces).sum(axis=-2)
+            size = size + np.abs(arm * forces).sum(axis=-2)
+        least = 1e-12 * np.max(size, axis=-1, keepdims=True)
+        x = np.where(np.abs(total.real) <= least, 0.0, total.real)
+        return np.asarray(x + 1j * np.where(np.abs(total.imag) <= least, 0.0, total.imag))
 
 
 def piston_shaking(reciprocating: Array, omega: Array, motion: RodMotion, bank: Array) -> Vectors:
@@ -94,7 +98,9 @@ def running_energy(theta: Array, T: Array) -> Array:
     swing = T - T.mean(axis=-1, keepdims=True)
     step = theta[1] - theta[0]
     inner = (swing[..., 1:] + swing[..., :-1]) * (step / 2)
-    return np.concatenate([np.zeros_like(swing[..., :1]), np.cumsum(inner, axis=-1)], axis=-1)
+    energy = np.concatenate([np.zeros_like(swing[..., :1]), np.cumsum(inner, axis=-1)], axis=-1)
+    least = 1e-12 * np.abs(energy).max(axis=-1, keepdims=True)
+    return np.where(np.abs(energy) <= least, 0.0, energy)
 
 
 @dataclass(frozen=True)

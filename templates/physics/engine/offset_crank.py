@@ -21,6 +21,9 @@ from numpy.typing import NDArray
 from templates.core.arrays import Array, Truth
 from templates.core.language.declare import units
 
+_ROUNDING = 2e-14
+"""Sines and cosines below it are those of dead centres and right angles."""
+
 
 @dataclass(frozen=True)
 class OffsetCrank:
@@ -69,12 +72,12 @@ class RodMotion:
     @cached_property
     def sin(self) -> Array:
         """Sine of the crank angle."""
-        return np.sin(self.alpha)
+        return _exact(np.sin(self.alpha))
 
     @cached_property
     def cos(self) -> Array:
         """Cosine of the crank angle."""
-        return np.cos(self.alpha)
+        return _exact(np.cos(self.alpha))
 
     @cached_property
     def _share(self) -> Array:
@@ -120,6 +123,11 @@ class RodMotion:
         """x″ [m]."""
         swing = self.cos * self.phi1 / self.cos_phi**2
         return -self.crank.r[..., None] * (self.cos - self.sin * self.tan_phi + swing)
+
+
+def _exact(value: Array) -> Array:
+    """Zero where no more than rounding is left, so that it makes no load at a dead centre."""
+    return np.where(np.abs(value) < _ROUNDING, 0.0, value)
 
 
 @dataclass(frozen=True)

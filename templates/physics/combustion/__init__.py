@@ -1,0 +1,1 @@
+"""Combustion in a cylinder."""
