@@ -179,8 +179,8 @@ class Cylinder(Template):
 
     def ladder(self) -> tuple[str, ...]:
         """The levels for which the rod is known well enough."""
-        is_known = not np.isnan(np.asarray(self.I_3)).all()
-        return self.levels if is_known else self.levels[:1]
+        known = not np.isnan(np.asarray(self.I_3)).all()
+        return self.levels if known else self.levels[:1]
 
     @shared
     def steps(self) -> Array:
