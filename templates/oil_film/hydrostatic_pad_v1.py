@@ -157,6 +157,21 @@ class HydrostaticPad(Template):
         """A pump of constant flow has one."""
         return (self.restrictor != CONSTANT_FLOW) | ~np.isnan(self.Q_p)
 
+    @require("capillary_length", warning="unused_input", remedy="leave it out, or take capillary")
+    def capillary_counts(self) -> Truth:
+        """A capillary has a length; an orifice or a constant flow has none."""
+        return (self.restrictor == CAPILLARY) | np.isnan(self.l_c)
+
+    @require("restrictor_diameter", warning="unused_input", remedy="leave it out, or take another restrictor")
+    def restrictor_counts(self) -> Truth:
+        """A constant flow needs no restrictor."""
+        return (self.restrictor != CONSTANT_FLOW) | np.isnan(self.d_r)
+
+    @require("pump_flow", warning="unused_input", remedy="leave it out, or take constant_flow")
+    def pump_counts(self) -> Truth:
+        """The pump's flow counts where it is constant."""
+        return (self.restrictor == CONSTANT_FLOW) | np.isnan(self.Q_p)
+
     @formula("cm**2", "effective area", symbol="A_e", gt=0, source=HAMROCK)
     def A_e(self) -> Array:
         return effective_area(self.D, self.D_0, self.d_0, self.d)

@@ -213,6 +213,22 @@ class TestInputs:
         warnings = answer({"dynamic_viscosity": "0.1 mPa*s"}).warnings
         assert {"land_reynolds_number", "capillary_reynolds_number"} <= {one.name for one in warnings}
 
+    @pytest.mark.parametrize(
+        ("raw", "unused"),
+        [
+            ({}, set()),
+            (ORIFICE, set()),
+            (PUMP, set()),
+            ({"pump_flow": "1 l/min"}, {"pump_flow"}),
+            ({"restrictor": "orifice"}, {"capillary_length"}),
+            ({**PUMP, "restrictor_diameter": "1 mm", "capillary_length": "80 mm"},
+             {"restrictor_diameter", "capillary_length"}),
+        ],
+    )  # fmt: skip
+    def test_property_inputs_of_another_restrictor_are_warned_of(self, raw, unused):
+        codes = {one.name for one in answer(raw).warnings if one.code == "unused_input"}
+        assert codes == unused
+
     @pytest.mark.parametrize("kind", RESTRICTORS)
     @pytest.mark.parametrize("count", [2_000, pytest.param(100_000, marks=pytest.mark.slow)])
     def test_property_whole_range_is_finite_or_refused(self, kind, count):
