@@ -110,16 +110,28 @@ def test_every_step_bears_its_load_keeps_its_oil_and_is_complementary() -> None:
         before = after
 
 
-def test_a_cell_half_covered_is_covered_by_half() -> None:
+def test_nodes_see_the_edges_of_pockets_before_the_next_node() -> None:
+    """Nodes every 10°, a pocket from -12° to 12°: the nodes at ±20° are 8° away from it."""
     mesh = supplied_mesh(0.5, 36, 4, (0.3,))
-    share = kernel.covered(mesh, np.array([[0.0, np.radians(10.0), 0.3]]))
+    held, ahead, behind = kernel.covered(mesh, np.array([[0.0, np.radians(12.0), 0.3]]))
     inside = mesh.zeta[:-1] <= 0.3
-    assert share[[0, 1, 35]][:, inside] == pytest.approx(
-        np.array([[1.0], [0.5], [0.5]]) * np.ones(inside.sum())
-    )
-    assert share[2:35].max() == 0
-    assert share[:, ~inside].max() == 0
-    assert kernel.covered(mesh, np.array([[1.0, np.pi, 0.3]]))[:, inside].min() == 1
+    assert (held[[35, 0, 1]][:, inside] == 1).all()
+    assert held.sum() == 3 * inside.sum()
+    assert ahead[34][inside] == pytest.approx(10 / 8 - 1)
+    assert behind[2][inside] == pytest.approx(10 / 8 - 1)
+    assert np.count_nonzero(ahead) == np.count_nonzero(behind) == inside.sum()
+    assert kernel.covered(mesh, np.array([[1.0, np.pi, 0.3]]))[0][:, inside].min() == 1
+
+
+def test_an_edge_feeds_as_the_straight_pressure_between_it_and_the_node() -> None:
+    """Wherever the edge lies in the step, a node with P = 0 takes H³ (P_s − 0)/d for each unit of width."""
+    mesh, e = supplied_mesh(0.5, 36, 4, (0.3,)), np.zeros(2)
+    none, step = np.zeros((36, 4)), np.radians(10.0)
+    for d in np.radians([0.5, 3.0, 9.9]):
+        seen = kernel.covered(mesh, np.array([[0.0, 2 * step - d, 0.3]]))
+        held = np.where(seen[0] > 0, 0.7, 0.0)  # at the pressure of the pocket
+        *_, loss = kernel.balances(mesh, e, held, none + 1, seen, 0.7, 1.0, none)
+        assert loss[0, 2, 0] == pytest.approx(-0.7 / d * mesh.width[0], rel=1e-3)
 
 
 def test_angle_turned_is_the_integral_of_the_speed() -> None:
@@ -149,9 +161,11 @@ def test_least_gap_lies_between_the_nodes_and_across_the_end_of_the_cycle() -> N
         assert (angle - place + np.pi) % (2 * np.pi) - np.pi == pytest.approx(0, abs=2e-3)
 
 
-def test_a_film_thins_like_one_over_n_and_a_settling_one_does_not() -> None:
+def test_a_film_that_is_squeezed_out_thins_and_a_settling_one_does_not() -> None:
     n = np.arange(1, EARLIEST + 1)
     assert thins(list(1 / n))
+    assert thins(list(n**-0.5))
+    assert not thins(list(0.1 + n**-0.5 / 5))
     assert not thins(list(1 / n[:-1]))
     assert not thins(list(0.1 + 0.2 * 0.8**n))
     assert not thins(list(0.1 + 0.01 * (-1.0) ** n))

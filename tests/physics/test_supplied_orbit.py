@@ -128,14 +128,27 @@ def test_curves_are_of_one_cycle_and_the_oil_is_kept() -> None:
 
 
 def test_hole_under_the_load_starves() -> None:
-    """The film thins like 1/n, and 24 cycles on the coarse mesh say so."""
-    supply = Supply((Pocket(np.radians(-10.0), np.radians(10.0), 0.85),), 0.2)
-    orbit = constant(1.0, 0.4, supply)
+    """The pin hole of a two-stroke big end, under the load for most of the cycle: its film thins at last."""
+    duty = random_duty(17, 40)
+    orbit = supplied_orbit(duty.load, duty.sliding, duty.ratio, duty.supply)
     assert orbit.verdict is Verdict.STARVED
-    assert orbit.under_load == 1
-    assert orbit.reason.startswith("starved: the hole stays under the load, within 60° of it for 100 %")
+    assert orbit.under_load > 0.7
+    assert orbit.reason.startswith("starved: the hole stays under the load, within 60° of it for ")
     assert len(orbit.cycles) == 1
     assert sum(orbit.cycles) <= COARSE.most
+
+
+def test_a_pocket_in_the_load_line_settles_where_the_static_film_bears_the_load() -> None:
+    """A pocket from -30° to -10° of the load: two discretisations, load within 2 %, attitude within 0.2°."""
+    pocket = Pocket(np.radians(-20.0), np.radians(10.0), 0.85)
+    orbit = constant(1.0, 0.4, Supply((pocket,), 0.2), (COARSE, FINE))
+    assert orbit.verdict is Verdict.REPEATING
+    assert orbit.under_load == 1
+    attitude = np.arctan2(*orbit.eps[::-1, -1])
+    fed = replace(pocket, centre=pocket.centre - attitude)
+    So, same = static(float(np.hypot(*orbit.eps[:, -1])), 0.4, fed, 0.2)
+    assert So == pytest.approx(1.0, rel=0.02)
+    assert same == pytest.approx(attitude, abs=np.radians(0.2))
 
 
 def test_a_journal_that_floats_on_its_supply_is_not_called_starved() -> None:

@@ -5,6 +5,10 @@ In the frame of the mesh the shear flow vanishes. A cell balances, with 12 times
 .. math:: 12\,\partial_\theta(\alpha H) = \partial_\varphi(H^3\partial_\varphi P)
     + (D/B)^2\,\partial_\zeta(H^3\partial_\zeta P) + \text{feed}, \quad P\ge0,\ 1-\alpha\ge0,\ P(1-\alpha)=0
 
+A node in a pocket is held at its pressure. Where a pocket's edge lies at a distance d before the next node, oil
+flows from there, by the conductance of the step times step/d: nothing snaps between nodes, and the place of the
+edge counts to second order.
+
 Conductances around are the inverse of the mean of H^-3 between two nodes, by Simpson's rule. Per cell the
 complementarity (active set: the smaller of pressure and void is 0; or the function of Fischer and Burmeister)
 has two slopes, by pressure and by void, and the larger is eliminated. The matrix that is left has dominant
@@ -25,28 +29,33 @@ SETTLED = 3e-5
 """Last change of the eccentricity over the gap, and imbalance of a cell over what a full one stores [-]."""
 LEAVES = 0.3
 """An iteration leaves this share of the gap."""
+NEAREST = 1e4
+"""Conductance that holds a node at the pressure of its pocket, over that of the cell [-]."""
 
 
 @compiled
 def covered(mesh: Mesh, places: Array) -> Array:
-    """Share of each cell that lies in a pocket, (n, m).
+    """How the nodes see the pockets, (3, n, m): 1 in a pocket, and the nearness of an edge ahead and behind.
+
+    The nearness is step/d − 1 with d the distance to an edge that lies before the next node; 0 if none does.
 
     places: (k, 3) centre in the mesh [rad], half angle [rad] and half length [-] of each pocket.
     """
     n, m = mesh.order.size, mesh.width.size
-    step, share = 2 * np.pi / n, np.zeros((n, m))
+    step, seen = 2 * np.pi / n, np.zeros((3, n, m))
     for pocket in range(places.shape[0]):
         centre, half, length = places[pocket, 0], places[pocket, 1], places[pocket, 2]
-        reach = min(half, np.pi + step)
         for i in range(n):
             off = (i * step - centre + np.pi) % (2 * np.pi) - np.pi
-            part = min(off + step / 2, reach) - max(off - step / 2, -reach)
-            if half >= np.pi:
-                part = step
+            inside = 1.0 if half >= np.pi or abs(off) <= half else 0.0
+            ahead, behind = (-half - off) % (2 * np.pi), (off - half) % (2 * np.pi)
             for j in range(m):
-                if part > 0 and mesh.zeta[j] <= length + 1e-9:
-                    share[i, j] = max(share[i, j], min(part / step, 1.0))
-    return share
+                if mesh.zeta[j] <= length + 1e-9:
+                    seen[0, i, j] = max(seen[0, i, j], inside)
+                    if inside == 0:
+                        seen[1, i, j] = max(seen[1, i, j], step / max(ahead, step / NEAREST) - 1)
+                        seen[2, i, j] = max(seen[2, i, j], step / max(behind, step / NEAREST) - 1)
+    return seen
 
 
 @compiled
@@ -196,8 +205,14 @@ def displacement(a: float, b: float, c: float, d: float, x: float, y: float) -> 
 
 
 @compiled
+def edges(around: Array, seen: Array, i: int, j: int) -> float:
+    """Conductance from a node to the edges of pockets beside it, beyond that to the nodes there."""
+    return float(around[i] * seen[1, i, j] + around[i - 1] * seen[2, i, j])
+
+
+@compiled
 def balances(
-    mesh: Mesh, e: Array, P: Array, void: Array, share: Array, supply: float, store: float, rest: Array
+    mesh: Mesh, e: Array, P: Array, void: Array, seen: Array, supply: float, store: float, rest: Array
 ) -> tuple[tuple[Array, Array], Array, Array, Array, Array]:
     """Conductances around and across, A, T, that of the feed, and loss of oil with slopes by e, (3, n, m)."""
     n, m = P.shape
@@ -208,13 +223,17 @@ def balances(
         lost(mesh, around[d], across[d], P, loss[d])
     for i in range(n):
         for j in range(m):
-            feeding[i, j] = share[i, j] / (1.0001 - share[i, j]) * A[i, j]
+            feeding[i, j] = NEAREST * A[i, j]
+            if seen[0, i, j] == 0:
+                feeding[i, j] = edges(around[0], seen, i, j) * mesh.width[j]
             A[i, j] += feeding[i, j]
             T[i, j] = store * gap[0, i] * mesh.width[j]
             loss[0, i, j] += T[i, j] * (1 - void[i, j]) + rest[i, j] * mesh.width[j] * 24 * np.pi / n
             loss[0, i, j] -= feeding[i, j] * (supply - P[i, j])
             for d in range(1, 3):
                 loss[d, i, j] += store * gap[d, i] * mesh.width[j] * (1 - void[i, j])
+                if seen[0, i, j] == 0:
+                    loss[d, i, j] -= edges(around[d], seen, i, j) * mesh.width[j] * (supply - P[i, j])
     return (around[0], across[0]), A, T, feeding, loss
 
 
@@ -265,7 +284,7 @@ def displaced(
 
 @compiled
 def solved(
-    mesh: Mesh, state: tuple[Array, Array, Array], S: Array, share: Array, supply: float,
+    mesh: Mesh, state: tuple[Array, Array, Array], S: Array, seen: Array, supply: float,
     rate: float, rest: Array, mass: float, inertia: Array, smooth: bool,
 ) -> tuple[bool, Array, Array, Array, float, float]:  # fmt: skip
     """Whether Newton's method settled; then eccentricity, pressure and void, feed and side flow times 24.
@@ -278,7 +297,7 @@ def solved(
     n, m = P.shape
     store = 24 * np.pi / n * rate
     for _ in range(MOST):
-        flows, A, T, feeding, loss = balances(mesh, e, P, void, share, supply, store, rest)
+        flows, A, T, feeding, loss = balances(mesh, e, P, void, seen, supply, store, rest)
         law = complement(P, void, A, T, smooth)
         alpha, beta, P0, v0 = law
         k = responses(mesh, flows, A, T, feeding, loss, law)

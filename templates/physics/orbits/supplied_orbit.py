@@ -39,7 +39,7 @@ class Verdict(StrEnum):
     WANDERING = "wandering"
     """The least gap repeats to `repeat_error` only, 3 % at most."""
     STARVED = "starved"
-    """The film thins like 1/n with the cycle n, or none is left and the pockets are under the load."""
+    """The film thins like 1/sqrt(n) with the cycle n or faster, or none is left under the load."""
     UNSETTLED = "unsettled"
     """No orbit was found: the least gap changes by more than 3 % from cycle to cycle without thinning, as
     where the supply lifts a journal more than its load presses it; or no film bears the load."""
@@ -62,6 +62,9 @@ FINE = Meshing(128, 6, np.radians(2.0), 24)
 """The mesh of the result; more around where the least gap is thin."""
 RESOLVED, MOST_AROUND = 0.3, 384
 """Largest width of a cell over that of the least gap, sqrt(2 (1 − eps)), up to so many cells [-]."""
+
+THIN, MORE_ROWS = 0.002, 4
+"""Least gap below which a mesh after the first has so many more rows across [-]."""
 
 
 @dataclass(frozen=True)
@@ -166,7 +169,8 @@ def supplied_orbit(
     for number, meshing in enumerate(meshes):
         gap = min(runs[-1].gaps, default=0.0) if runs and refined else 1.0
         around = max(meshing.around, _cells(gap))
-        mesh = supplied_mesh(ratio, around, meshing.across, supply.edges, supply.grooved, max(gap, THINNEST))
+        across = meshing.across + (MORE_ROWS if gap < THIN else 0)
+        mesh = supplied_mesh(ratio, around, across, supply.edges, supply.grooved, max(gap, THINNEST))
         state = start(mesh, duty) if not runs else transferred(runs[-1].mesh, mesh, runs[-1].states[-1])
         progress = _Progress(number, meshes)
         runs.append(run_in(mesh, duty, state, meshing.step, meshing.most, progress))

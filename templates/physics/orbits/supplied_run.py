@@ -1,8 +1,7 @@
 """Cycles of a supplied film on one mesh, until they repeat or the film is seen to lose its oil.
 
 A fed bearing forgets its start fast: most repeat after 3 to 6 cycles. Two kinds do not. Where all the oil
-must enter under the load, none does: the film thins like 1/n with the cycle n. From cycle 12 to 24 it then
-falls by half, but by little where an orbit settles (`STARVING`). And where the journal crosses a space
+must enter under the load, little does: the film thins like 1/sqrt(n) with the cycle n, or faster (`thins`). And where the journal crosses a space
 without oil and meets the film on the other side, the place of the impact may change from cycle to cycle by
 more than a step, although the least gap does not; so the mean of the change over the cycle is taken.
 
@@ -34,9 +33,8 @@ DRIFTS = 0.02
 WANDERS = 0.03
 """Largest change of the least gap in `RECENT` cycles of an orbit that `repeat_error` goes with [-]."""
 RECENT = 3
-STARVING, EARLIEST = 0.5, 24
-"""A film starves whose least gap falls, from half of the cycles to all of them, by more than this power of
-their number; from this cycle on [-]."""
+STARVING, EARLIEST = 0.15, 24
+"""A film starves whose least gap tends to less than this share of the last one; judged from this cycle on [-]."""
 
 _SAMPLES = 361
 
@@ -131,13 +129,18 @@ def returns(turned: float, within: float = 0.02) -> bool:
 
 
 def thins(gaps: list[float]) -> bool:
-    """Whether the least gaps of all cycles on a mesh fall like 1/n or faster at last."""
+    """Whether the least gaps of all cycles on a mesh fall towards none, like 1/sqrt(n) or faster.
+
+    A film that no oil enters is squeezed out: under a constant load its gap falls like 1/sqrt(n) with the
+    cycle n. A line in 1/sqrt(n) through the later half of the gaps then ends near zero; that of an orbit which
+    settles ends near its gap.
+    """
     n = len(gaps)
     if n < EARLIEST:
         return False
-    half = n // 2
-    fell = min(gaps[half - 2 : half]) / max(gaps[-2:])
-    return bool(np.log(fell) > STARVING * np.log(n / half))
+    late = np.array(gaps[n // 2 :])
+    slope, limit = np.polyfit(np.arange(n // 2 + 1, n + 1) ** -0.5, late, 1)
+    return bool(slope > 0 and limit < STARVING * late[-1])
 
 
 def in_frame(duty: Duty, states: list[State]) -> tuple[Array, Array]:
