@@ -5,9 +5,9 @@ In the frame of the mesh the shear flow vanishes. A cell balances, with 12 times
 .. math:: 12\,\partial_\theta(\alpha H) = \partial_\varphi(H^3\partial_\varphi P)
     + (D/B)^2\,\partial_\zeta(H^3\partial_\zeta P) + \text{feed}, \quad P\ge0,\ 1-\alpha\ge0,\ P(1-\alpha)=0
 
-A node in a pocket is held at its pressure. Where a pocket's edge lies at a distance d before the next node, oil
-flows from there, by the conductance of the step times step/d: nothing snaps between nodes, and the place of the
-edge counts to second order.
+A node in a pocket is held at its pressure. Where a pocket's edge lies at a distance d before the next node,
+oil flows from there, by the conductance of the step times step/d: nothing snaps between nodes, and the place
+of the edge counts to second order.
 
 Conductances around are the inverse of the mean of H^-3 between two nodes, by Simpson's rule. Per cell the
 complementarity (active set: the smaller of pressure and void is 0; or the function of Fischer and Burmeister)

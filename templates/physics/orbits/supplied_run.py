@@ -1,9 +1,10 @@
 """Cycles of a supplied film on one mesh, until they repeat or the film is seen to lose its oil.
 
 A fed bearing forgets its start fast: most repeat after 3 to 6 cycles. Two kinds do not. Where all the oil
-must enter under the load, little does: the film thins like 1/sqrt(n) with the cycle n, or faster (`thins`). And where the journal crosses a space
-without oil and meets the film on the other side, the place of the impact may change from cycle to cycle by
-more than a step, although the least gap does not; so the mean of the change over the cycle is taken.
+must enter under the load, little does: the film thins like 1/sqrt(n) with the cycle n, or faster (`thins`).
+And where the journal crosses a space without oil and meets the film on the other side, the place of the
+impact may change from cycle to cycle by more than a step, although the least gap does not; so the mean of the
+change over the cycle is taken.
 
 Where the mesh, and with it the oil, has made half a turn after a cycle, as with cycles of 360°, the film that
 the load meets is that of the last but one cycle: then two changes in a row must be small.
@@ -34,7 +35,8 @@ WANDERS = 0.03
 """Largest change of the least gap in `RECENT` cycles of an orbit that `repeat_error` goes with [-]."""
 RECENT = 3
 STARVING, EARLIEST = 0.15, 24
-"""A film starves whose least gap tends to less than this share of the last one; judged from this cycle on [-]."""
+"""A film starves whose least gap tends to less than this share of the last one; judged from this cycle on
+[-]."""
 
 _SAMPLES = 361
 
@@ -132,8 +134,8 @@ def thins(gaps: list[float]) -> bool:
     """Whether the least gaps of all cycles on a mesh fall towards none, like 1/sqrt(n) or faster.
 
     A film that no oil enters is squeezed out: under a constant load its gap falls like 1/sqrt(n) with the
-    cycle n. A line in 1/sqrt(n) through the later half of the gaps then ends near zero; that of an orbit which
-    settles ends near its gap.
+    cycle n. A line in 1/sqrt(n) through the later half of the gaps then ends near zero; that of an orbit
+    which settles ends near its gap.
     """
     n = len(gaps)
     if n < EARLIEST:
