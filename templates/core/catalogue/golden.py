@@ -7,6 +7,7 @@ exists is never overwritten: a change to a released version is a new version.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from templates.core.language.spec import Choice
 from templates.core.language.template import Template
 
 STEPS = (0.9, 1.1)  # every numeric input in turn, around the example
+DIGITS = 3  # significant digits of a recorded number beyond the precision to which it is compared
 
 
 def record(cls: type[Template], more: Iterable[Mapping[str, Any]] = ()) -> dict[str, Any]:
@@ -67,12 +69,40 @@ def freeze(cls: type[Template], folder: Path) -> Path:
     path = golden_file(cls, folder)
     further = folder / "more" / path.name
     more = json.loads(further.read_text(encoding="utf-8")) if further.exists() else []
-    text = json.dumps(record(cls, more), indent=1, ensure_ascii=False, allow_nan=False)
+    text = _as_text(record(cls, more))
     folder.mkdir(parents=True, exist_ok=True)
     with path.open("x", encoding="utf-8") as file:
-        file.write(text + "\n")
+        file.write(text)
     mark_released(cls)
     return path
+
+
+def _as_text(content: Mapping[str, Any]) -> str:
+    """A record as JSON with a line for each case; numbers with `DIGITS` more than its precision asks for."""
+    lists = {name: value for name, value in content.items() if isinstance(value, list)}
+    parts = [f"{_json(name)}: {_json(value)}" for name, value in content.items() if name not in lists]
+    for name, cases in lists.items():
+        lines = [_json(_shortened(case, content["precision"])) for case in cases]
+        parts.append(f"{_json(name)}: [" + ",".join(f"\n {line}" for line in lines) + "\n]")
+    return "{\n" + ",\n".join(parts) + "\n}\n"
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def _shortened(case: Mapping[str, Any], precision: float) -> dict[str, Any]:
+    """A case whose outputs have no more digits than a comparison needs."""
+    digits = DIGITS - math.floor(math.log10(case.get("precision", precision)))
+    return {**case, "outputs": _to(digits, case["outputs"])} if "outputs" in case else dict(case)
+
+
+def _to(digits: int, value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _to(digits, one) for name, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_to(digits, one) for one in value]
+    return float(f"{value:.{digits}g}") if isinstance(value, float) else value
 
 
 def mark_released(cls: type[Template]) -> Path | None:

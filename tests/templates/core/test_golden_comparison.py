@@ -1,11 +1,12 @@
 """When two results of a golden record agree: texts exactly, numbers to their precision, shapes too."""
 
 import copy
+import json
 import math
 
 import pytest
 
-from templates.core.catalogue.golden import record
+from templates.core.catalogue.golden import _as_text, record
 from templates.core.checking.golden import _equal, differences
 from templates.core.language.template import Template, formula, given
 
@@ -58,3 +59,16 @@ def test_a_level_is_held_to_its_own_precision_and_the_others_to_that_of_the_clas
     assert not any("precision" in case for case in kept["cases"])
     kept[of][0]["outputs"]["size"] *= 1 + off
     assert len(list(differences(Marched, kept))) == different
+
+
+def test_a_written_record_has_the_digits_that_a_comparison_needs_and_a_line_for_each_case():
+    kept = record(Marched)
+    kept["cases"][0]["outputs"]["size"] = 4 * (1 + math.pi * 1e-13)
+    kept["cases"][0]["inputs"]["length"] = 2 * (1 + math.pi * 1e-13)
+    text = _as_text(kept)
+    read = json.loads(text)
+    assert read["cases"][0] == {"inputs": kept["cases"][0]["inputs"], "outputs": {"size": 4.0}}
+    assert list(differences(Marched, read)) == []
+    read["cases"][0]["outputs"]["size"] *= 1 + 1e-8
+    assert len(list(differences(Marched, read))) == 1
+    assert sum(line.startswith(" {") for line in text.splitlines()) == len(kept["cases"]) + 1
