@@ -34,9 +34,9 @@ from scipy.stats import binom
 from benchmarks.supplied_duties import RandomDuty, random_duty
 from templates.core.arrays import Array
 from templates.physics.orbits.cyclic_film import CycleFilm, Duty
-from templates.physics.orbits.fed_cycle import FedDuty, FedOrbit, fed_film, fed_orbit
-from templates.physics.orbits.feeding import Feeding, feed_under_load
-from templates.physics.orbits.supplied_orbit import Verdict
+from templates.physics.supplied.fed_cycle import FedDuty, FedOrbit, fed_film, fed_orbit
+from templates.physics.supplied.feeding import Feeding, feed_under_load
+from templates.physics.supplied.supplied_orbit import Verdict
 
 KEPT = Path("benchmarks/results/film_cycle_ensemble.jsonl")
 FILE = Path("templates/oil_film/oil_film_cycle_v2.accuracy.json")

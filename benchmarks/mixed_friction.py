@@ -15,8 +15,8 @@ import numpy as np
 from templates.core.language.evaluate import evaluate
 from templates.oil_film.mixed_friction_v1 import MixedFriction
 from templates.physics.films.film_map import mapped_film
-from templates.physics.films.flow_factors import rough_journal
 from templates.physics.journals.mixed_journal import AveragedFilms
+from templates.physics.roughness.flow_factors import rough_journal
 
 
 def flow_factors() -> None:

@@ -1,6 +1,6 @@
 """Random duties of supplied bearings: loads of engines and Fourier loads, with every kind of supply.
 
-Dimensionless, as `templates/physics/orbits/supplied_orbit.py` takes them. Half of the duties are engines:
+Dimensionless, as `templates/physics/supplied/supplied_orbit.py` takes them. Half of the duties are engines:
 a big end or a main bearing of an idealised two- or four-stroke cylinder, seen from the block; the other half
 are Fourier loads with or without a firing. Load number 0.3 … 105, B/D 0.15 … 1.2, supply pressure 0.02 … 1.
 """
@@ -11,7 +11,7 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.physics.orbits.journal_orbit import CyclicLoad
-from templates.physics.orbits.supply import Pocket, Supply
+from templates.physics.supplied.supply import Pocket, Supply
 
 SUPPLIES = ("pin_hole", "sleeve_hole", "slot", "half_groove", "full_groove")
 GROOVES = ("half_groove", "full_groove")

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.supplied_duties import GROOVES, SUPPLIES, RandomDuty, random_duty
-from templates.physics.orbits.supplied_orbit import COARSE, FINE, Meshing, SuppliedOrbit, supplied_orbit
+from templates.physics.supplied.supplied_orbit import COARSE, FINE, Meshing, SuppliedOrbit, supplied_orbit
 
 RESULTS = Path("benchmarks/results/supplied_orbits.json")
 SEED, DUTIES, EVERY = 17, 300, 5

@@ -48,8 +48,8 @@ from templates.physics.orbits.cyclic_film import (
     largest_load,
     mean_speed,
 )
-from templates.physics.orbits.fed_cycle import FedDuty, FedOrbit, fed_film, fed_orbit
-from templates.physics.orbits.feeding import Feeding, is_back, within_bearing
+from templates.physics.supplied.fed_cycle import FedDuty, FedOrbit, fed_film, fed_orbit
+from templates.physics.supplied.feeding import Feeding, is_back, within_bearing
 
 BOOKER = "Booker 1965"
 CROSS = "Cross 1965"

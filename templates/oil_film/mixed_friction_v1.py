@@ -18,7 +18,6 @@ from templates.core.language.template import (
     text,
 )
 from templates.groups.oil import Oil
-from templates.physics.films.asperities import contact_scale
 from templates.physics.journals.lubrication_regime import film_parameter, lubrication_regime
 from templates.physics.journals.mixed_journal import (
     FULL_FILM,
@@ -39,6 +38,7 @@ from templates.physics.journals.mixed_journal import (
     speed_at_gap,
 )
 from templates.physics.numerics.arrays import spread
+from templates.physics.roughness.asperities import contact_scale
 
 GREENWOOD = "Greenwood, Tripp 1970"
 STRIBECK = "Stribeck 1902"

@@ -30,15 +30,15 @@ from templates.physics.orbits.cyclic_film import (
     largest_load,
     mean_speed,
 )
-from templates.physics.orbits.fed_cycle import BOUNDARY, FedDuty, FedOrbit, fed_duty, fed_film, fed_orbit
-from templates.physics.orbits.feeding import (
+from templates.physics.pads.slider_film import spread
+from templates.physics.supplied.fed_cycle import BOUNDARY, FedDuty, FedOrbit, fed_duty, fed_film, fed_orbit
+from templates.physics.supplied.feeding import (
     Feeding,
     feed_under_load,
     is_back,
     supply_kind,
     within_bearing,
 )
-from templates.physics.pads.slider_film import spread
 
 BOOKER = "Booker 1965"
 STARVED = (

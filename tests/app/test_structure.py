@@ -1,5 +1,7 @@
 """The structure of `app`, as the script counts it."""
 
+from pathlib import Path
+
 from benchmarks.structure import arrows, named, upward, words
 
 VAGUE = frozenset({"told", "found", "known", "made", "dear", "anew", "mend"})
@@ -34,3 +36,10 @@ def test_vague_names_are_counted_wherever_they_are_given(tmp_path):
     text = "def made(found): known = found\nclass Told: _anew = 1\nit.mend = 2\nprint(told, known=1)\n"
     (tmp_path / "some.py").write_text(text, encoding="utf-8")
     assert named(VAGUE, tmp_path) == {"some.py": 6}
+
+
+def test_a_folder_of_physics_has_at_most_15_files():
+    folders = [folder for folder in Path("templates/physics").iterdir() if (folder / "__init__.py").exists()]
+    assert len(folders) > 10
+    counts = {folder.name: len(list(folder.glob("*.py"))) - 1 for folder in folders}
+    assert {name: count for name, count in counts.items() if count > 15} == {}

@@ -10,8 +10,8 @@ from templates.core.language.evaluate import evaluate
 from templates.oil_film.oil_film_cycle_v2 import OilFilmCycle
 from templates.oil_film.oil_film_v2 import OilFilm
 from templates.physics.orbits.grooved_mobility import Groove
-from templates.physics.orbits.supplied_mesh import supplied_mesh
 from templates.physics.orbits.turning import turning
+from templates.physics.supplied.supplied_mesh import supplied_mesh
 
 D, PSI, ETA, OMEGA, RATIO = 0.1, 1e-3, 0.02, 300.0, 0.5
 COUNT = 24

@@ -8,7 +8,8 @@ from templates.physics.films.film_measures import force
 from templates.physics.films.long_bearing import (
     force_Swift_Stieber,
     load_Swift_Stieber,
-    peak_pressure_Swift_Stieber,
+    pressure_Swift_Stieber,
+    rupture_Swift_Stieber,
 )
 from templates.physics.films.reynolds import extrapolated_film, static_field, static_film
 from templates.physics.films.short_bearing import (
@@ -62,7 +63,8 @@ def test_long_bearing_is_approached_as_stated(eps: float) -> None:
     """Physics.md 1.2: as 1 − 0.93 D/B; at B/D 20 within what the next term leaves."""
     film, _ = extrapolated_film(eps, 20.0)
     assert film.So / load_Swift_Stieber(eps) == pytest.approx(1 - 0.93 / 20, abs=0.03)
-    assert film.P_max == pytest.approx(peak_pressure_Swift_Stieber(eps), rel=1e-3)
+    as_wide_as_where_it_ruptures = 2 * np.pi - rupture_Swift_Stieber(eps)
+    assert film.P_max == pytest.approx(pressure_Swift_Stieber(eps, as_wide_as_where_it_ruptures), rel=1e-3)
 
 
 def test_long_bearing_converges_in_width() -> None:

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from templates.physics.orbits import supplied_kernel as kernel
 from templates.physics.orbits.journal_orbit import CyclicLoad
-from templates.physics.orbits.supplied_march import Duty, State, TurnedAngle, marched, start, stepped
-from templates.physics.orbits.supplied_mesh import supplied_mesh
-from templates.physics.orbits.supplied_run import EARLIEST, least_gap, thins
-from templates.physics.orbits.supply import Pocket, Supply
+from templates.physics.supplied import supplied_kernel as kernel
+from templates.physics.supplied.supplied_march import Duty, State, TurnedAngle, marched, start, stepped
+from templates.physics.supplied.supplied_mesh import supplied_mesh
+from templates.physics.supplied.supplied_run import EARLIEST, least_gap, thins
+from templates.physics.supplied.supply import Pocket, Supply
 
 HOLE = Supply((Pocket(2.0, np.radians(15), 0.3, on_journal=True),), 0.2)
 

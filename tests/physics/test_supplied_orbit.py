@@ -11,7 +11,7 @@ from templates.core.progress import reporting
 from templates.physics.cavities.cavitating_film import cavitating_film
 from templates.physics.cavities.cavitating_network import Groove
 from templates.physics.orbits.journal_orbit import CyclicLoad
-from templates.physics.orbits.supplied_orbit import (
+from templates.physics.supplied.supplied_orbit import (
     COARSE,
     FINE,
     Meshing,
@@ -19,7 +19,7 @@ from templates.physics.orbits.supplied_orbit import (
     Verdict,
     supplied_orbit,
 )
-from templates.physics.orbits.supply import Pocket, Supply
+from templates.physics.supplied.supply import Pocket, Supply
 
 QUICK = (replace(COARSE, around=48), replace(COARSE, step=np.radians(3.0)))
 ANGLE = np.arange(72) * np.pi / 36

@@ -104,12 +104,6 @@ def perturbed_equations(
     )
 
 
-def source_equations(mesh: Mesh, source: Array) -> Equations:
-    """The derivative of `film_equations` for a change of the motion: a source alone."""
-    nothing = np.zeros_like(mesh.phi)
-    return Equations(nothing[1:], nothing, source, mesh.zeta)
-
-
 def rotation(H_mid: Array) -> Array:
     """What shear flow brings to each node, −6 dH over its cell; a constant in H_mid is of no account.
 

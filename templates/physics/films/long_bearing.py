@@ -159,22 +159,6 @@ def load_Swift_Stieber(eps: Array) -> Array:
     return np.hypot(*force_Swift_Stieber(eps))
 
 
-def attitude_Swift_Stieber(eps: Array) -> Array:
-    """Angle between load and narrowest gap of the freely rupturing film [rad].
-
-    Parameters
-    ----------
-    eps
-        Relative eccentricity, 0 … 1 − 1e-7 [-].
-
-    References
-    ----------
-    Swift 1932; Stieber 1933.
-    """
-    along, across = force_Swift_Stieber(eps)
-    return np.arctan2(across, along)
-
-
 def pressure_Swift_Stieber(eps: Array, gamma: Array) -> Array:
     r"""Pressure P = p psi²/(eta omega) at Sommerfeld's angle, zero beyond the rupture [-].
 
@@ -198,18 +182,3 @@ def pressure_Swift_Stieber(eps: Array, gamma: Array) -> Array:
     s2, sin, cos, cos_end = (1 - eps) * (1 + eps), np.sin(gamma), np.cos(gamma), np.cos(end)
     bracket = 2 * (sin - gamma * cos_end) + eps * (2 * cos_end * sin - gamma - sin * cos)
     return np.where(gamma < end, 3 * eps * bracket / (s2**1.5 * (1 - eps * cos_end)), 0.0)
-
-
-def peak_pressure_Swift_Stieber(eps: Array) -> Array:
-    """Largest pressure P = p psi²/(eta omega), where the gap equals that of the rupture [-].
-
-    Parameters
-    ----------
-    eps
-        Relative eccentricity, 0 … 1 − 1e-7 [-].
-
-    References
-    ----------
-    Swift 1932; Stieber 1933.
-    """
-    return pressure_Swift_Stieber(eps, 2 * np.pi - rupture_Swift_Stieber(eps))

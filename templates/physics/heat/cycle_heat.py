@@ -34,9 +34,9 @@ from templates.physics.journals.shear_thinning import (
     viscosity_Cross_1965,
 )
 from templates.physics.orbits.cyclic_film import Duty, cycle_of, weights
-from templates.physics.orbits.fed_cycle import FedDuty, FedOrbit, fed_duty, fed_film, fed_orbit
-from templates.physics.orbits.feeding import AROUND, Feeding
 from templates.physics.orbits.turning import turning
+from templates.physics.supplied.fed_cycle import FedDuty, FedOrbit, fed_duty, fed_film, fed_orbit
+from templates.physics.supplied.feeding import AROUND, Feeding
 
 LEVELS = ("mobility_short", "mobility", "mobility_grooved")
 """Those of `fed_cycle` that are cheap enough to be solved at many viscosities."""

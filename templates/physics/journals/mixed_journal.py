@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 
 from templates.core.arrays import Array
 from templates.core.language.declare import on_paper, units
-from templates.physics.films.asperities import contact_integrals, splined_summit_integral
 from templates.physics.films.film_map import NARROWEST, WIDEST, mapped_film
-from templates.physics.films.flow_factors import rough_journal
 from templates.physics.numerics.arrays import ECCENTRICITY_LIMIT
 from templates.physics.numerics.roots import root_between
 from templates.physics.pads.slider_film import interpolated
+from templates.physics.roughness.asperities import contact_integrals, splined_summit_integral
+from templates.physics.roughness.flow_factors import rough_journal
 
 Indices = NDArray[np.int64]
 """Numbers of bearings in a row."""

@@ -8,8 +8,8 @@ from templates.core.language.evaluate import evaluate
 from templates.oil_film.journal_friction_v1 import JournalFriction
 from templates.oil_film.mixed_friction_v1 import MixedFriction
 from templates.oil_film.oil_film_v2 import OilFilm
-from templates.physics.films.flow_factors import rough_journal
 from templates.physics.journals.mixed_journal import LEVELS, AveragedFilms
+from templates.physics.roughness.flow_factors import rough_journal
 
 SMOOTH = {"journal_roughness": "0 um", "bearing_roughness": "0 um"}
 WET = {"oil_temperature": None, "dynamic_viscosity": "20 mPa*s"}

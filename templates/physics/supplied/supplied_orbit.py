@@ -14,10 +14,10 @@ import numpy as np
 from templates.core.arrays import Array
 from templates.core.progress import report
 from templates.physics.orbits.journal_orbit import CyclicLoad
-from templates.physics.orbits.supplied_march import Duty, State, gap_at, start
-from templates.physics.orbits.supplied_mesh import Mesh, carried, supplied_mesh
-from templates.physics.orbits.supplied_run import WANDERS, Ending, Run, in_frame, least_gap, returns, run_in
-from templates.physics.orbits.supply import Supply
+from templates.physics.supplied.supplied_march import Duty, State, gap_at, start
+from templates.physics.supplied.supplied_mesh import Mesh, carried, supplied_mesh
+from templates.physics.supplied.supplied_run import WANDERS, Ending, Run, in_frame, least_gap, returns, run_in
+from templates.physics.supplied.supply import Supply
 
 MASS = 2.5e-4
 """Mass of the journal m c Omega psi²/(B D eta), c radial: it regularises where the film is empty [-]."""

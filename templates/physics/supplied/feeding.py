@@ -12,8 +12,8 @@ import numpy as np
 from templates.core.arrays import Array, Mask, Truth
 from templates.core.language.declare import units
 from templates.physics.orbits.cyclic_film import Duty, cycle_of, weights
-from templates.physics.orbits.supply import LONGEST, Pocket, Supply
 from templates.physics.orbits.turning import turning
+from templates.physics.supplied.supply import LONGEST, Pocket, Supply
 
 UNDER_LOAD = np.pi / 3
 """A hole nearer than this to the load's direction lies under the load [rad]."""

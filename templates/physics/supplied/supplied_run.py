@@ -21,8 +21,8 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.physics.orbits.step_bound import least_between
-from templates.physics.orbits.supplied_march import Duty, State, marched
-from templates.physics.orbits.supplied_mesh import Mesh
+from templates.physics.supplied.supplied_march import Duty, State, marched
+from templates.physics.supplied.supplied_mesh import Mesh
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -20,7 +20,6 @@ import numpy as np
 from templates.core.arrays import Array, Mask
 from templates.core.language.declare import on_paper
 from templates.physics.orbits.cyclic_film import CycleFilm, Duty, cycle_of, weights
-from templates.physics.orbits.feeding import Feeding, supply_of
 from templates.physics.orbits.grooved_mobility import (
     Groove,
     Passing,
@@ -31,9 +30,10 @@ from templates.physics.orbits.journal_orbit import CyclicLoad, Orbit, periodic_o
 from templates.physics.orbits.mobility_law import MapLaw, ShortLaw
 from templates.physics.orbits.mobility_map import NARROWEST, WIDEST, mapped_film_under_load
 from templates.physics.orbits.short_mobility import short_film_under_load
-from templates.physics.orbits.supplied_orbit import SuppliedOrbit, Verdict, supplied_orbit
-from templates.physics.orbits.supply import Supply
 from templates.physics.orbits.turning import turning
+from templates.physics.supplied.feeding import Feeding, supply_of
+from templates.physics.supplied.supplied_orbit import SuppliedOrbit, Verdict, supplied_orbit
+from templates.physics.supplied.supply import Supply
 
 LEVELS = ("mobility_short", "mobility", "mobility_grooved", "supplied")
 BOUNDARY = {
@@ -198,15 +198,6 @@ def fed_duty(duty: Duty, feeding: Feeding, pressure: Array) -> FedDuty:
     share = np.where(feeding.grooved, feeding.groove_width / feeding.W, 0.0)
     supply = supply_of(feeding, pressure) if np.size(pressure) == 1 else None
     return FedDuty(duty, share, feeding.groove_start, feeding.groove_extent, supply)
-
-
-def load_passes(fed: FedDuty) -> Array:
-    """The share of the cycle in which the load passes the groove, s of `mobility_grooved` in the mean [-]."""
-    cases = _cases("mobility_grooved", fed)
-    load, sleeve = cases.load, cases.passing.sleeve
-    direction = np.arctan2(load.S[1], load.S[0]) - sleeve.at(load.angle, sleeve.swing)
-    covered = cases.passing.groove.covers(direction) @ weights(load.angle, load.period) / load.period
-    return np.asarray(covered.reshape(cases.points))[()]
 
 
 def _cases(level: str, fed: FedDuty) -> _Cases:

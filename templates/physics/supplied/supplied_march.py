@@ -10,8 +10,8 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.physics.orbits.journal_orbit import CyclicLoad
-from templates.physics.orbits.supplied_mesh import Mesh
-from templates.physics.orbits.supply import Supply
+from templates.physics.supplied.supplied_mesh import Mesh
+from templates.physics.supplied.supply import Supply
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -149,7 +149,7 @@ def start(mesh: Mesh, duty: Duty) -> State:
 
 def stepped(mesh: Mesh, duty: Duty, states: list[State], h: float) -> State | None:
     """The state after a step: of second order if it can be, by the active set if it can be."""
-    from templates.physics.orbits.supplied_kernel import covered, solved  # numba takes a second
+    from templates.physics.supplied.supplied_kernel import covered, solved  # numba takes a second
 
     last = states[-1]
     theta = last.theta + h
@@ -209,6 +209,9 @@ def marched(
         if size > RETAKEN and h > SMALLEST * step * (1 + 1e-9) and left > h:
             h = max(h / 2, SMALLEST * step)
             continue
-        h = min(max(h * float(np.clip(1 / max(size, 1e-9), 0.5, 2.0)), SMALLEST * step), step)
+        if size > 1:
+            h = max(h / 2, SMALLEST * step)
+        elif size < 0.5:
+            h = min(2 * h, step)
         states.append(after)
     return states, halvings, True

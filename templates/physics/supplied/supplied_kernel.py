@@ -21,7 +21,7 @@ import numpy as np
 
 from templates.core.arrays import Array
 from templates.physics.numerics.compiled import compiled
-from templates.physics.orbits.supplied_mesh import Mesh
+from templates.physics.supplied.supplied_mesh import Mesh
 
 MOST = 25
 """Iterations of Newton's method."""

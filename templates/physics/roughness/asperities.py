@@ -40,11 +40,6 @@ def summit_integral(u: Array) -> Array:
     return gamma(3.5) / np.sqrt(2 * np.pi) * np.exp(-np.square(u) / 4) * pbdv(-3.5, u)[0]
 
 
-def summit_fit(u: Array) -> Array:
-    """The fit 4.4086e-5 (4 − u)^6.804 to F_{5/2}, 0 from u = 4 on, which is common in the literature [-]."""
-    return 4.4086e-5 * np.maximum(4 - np.asarray(u), 0) ** 6.804
-
-
 @cache
 def _logarithm() -> CubicSpline:
     """Ln F_{5/2} over 0 … FARTHEST, to 1e-9."""

@@ -1,0 +1,1 @@
+"""What rough faces do to a film: summits in contact, and flow factors."""
