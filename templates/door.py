@@ -23,7 +23,7 @@ import pint
 
 from templates.core.catalogue.finding import Catalogue, find
 from templates.core.errors import Fault, InvalidInputs, unknown_name
-from templates.core.language.evaluate import Answer, evaluate, evaluate_at_level
+from templates.core.language.evaluate import Answer, criterion_warnings, evaluate, evaluate_at_level
 from templates.core.language.intake import Input
 from templates.core.language.ledger import Notice
 from templates.core.language.levels import at_level
@@ -154,7 +154,7 @@ class Calculation:
         self.template = template
         self._answers: dict[str, Answer] = dict(answers or {})
         self._complete = answers is not None  # a tolerance chose the level for these outputs and no others
-        self._warnings = list(warnings)
+        self._warnings, self._errors = list(warnings), dict(error or {})
         self.error = Errors(self, error or {})
         self.level = level if self._complete else template.level or None
 
@@ -176,7 +176,9 @@ class Calculation:
     @property
     def warnings(self) -> list[Notice]:
         """What to know of the results computed so far: the name, a code and a sentence each."""
-        return list(self._warnings)
+        if self._complete:
+            return list(self._warnings)
+        return [*self._warnings, *criterion_warnings(self.template, self._answers, self._errors)]
 
     def answer(self, name: str) -> Answer:
         """Return a result as the service would: a value in its unit, or none with the reason.
@@ -192,6 +194,7 @@ class Calculation:
                 raise InvalidInputs([Fault(name, "not_computed", detail)])
             answers, errors, self._warnings = evaluate_at_level(self.template, [name])
             self._answers |= answers
+            self._errors |= errors
             self.error.update({output: _plain(error) for output, error in errors.items()})
         return self._answers[name]
 

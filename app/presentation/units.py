@@ -19,7 +19,8 @@ US = {
     "J": "ft*lbf", "l/min": "gallon/min", "MPa*m/s": "psi*ft/min",
     "Pa*s": "reyn", "mPa*s": "ureyn", "N*m/rad": "lbf*inch/rad", "kN*m/rad": "lbf*inch/rad",
     "mm**2/s": "inch**2/s", "MPa/mm": "psi/inch", "cm**2": "inch**2", "cm**3/s": "inch**3/s",
-    "mm**4": "inch**4", "1/mm**3": "1/inch**3", "1/N": "1/lbf",
+    "mm**4": "inch**4", "1/mm**3": "1/inch**3", "1/N": "1/lbf", "cm**3": "inch**3",
+    "kN/mm": "lbf/inch", "1/MPa": "1/psi", "um/GPa": "inch/psi", "s/m**2": "s/inch**2",
 }  # fmt: skip
 """The unit that stands for a declared one; others, such as rpm, are used there as well."""
 

@@ -115,7 +115,9 @@ class EngineMotion(EngineBalance):
         """Sum of place times force of all that moves [N m], complex."""
         return self.moving.couple(self.z_0)
 
-    @profile("bar", "gas pressure", along=CYCLE, axes=2, symbol="p", latex=r"p\left(\theta-\varphi\right)")
+    @profile(
+        "bar", "gas pressure", along=CYCLE, axes=2, symbol="p_{i}", latex=r"p\left(\theta-\varphi_{i}\right)"
+    )
     def p(self) -> Array:
         """In each cylinder."""
         return pressures(self.gas, self.layout, self.motion, self.theta)

@@ -195,11 +195,21 @@ def serving(settings: Settings):
             assert time.monotonic() < end, "the server takes too long to start"
             time.sleep(0.02)
         port = server.servers[0].sockets[0].getsockname()[1]
+        prepared(f"http://127.0.0.1:{port}")
         yield Served(f"http://127.0.0.1:{port}", app, settings)
     finally:
         server.should_exit = True
         thread.join(PATIENCE)
         assert not thread.is_alive(), "the server did not stop"
+
+
+def prepared(url: str) -> None:
+    """Have a server in this process prepare its routes, as FastAPI does at the first request.
+
+    Two servers in threads would do so at the same time otherwise, and `warnings.catch_warnings`, by which
+    FastAPI silences Pydantic there, belongs to the whole process.
+    """
+    httpx.get(f"{url}/there/is/no/such/page", timeout=PATIENCE, trust_env=False)
 
 
 def on_the_database_of_tests(settings: Settings) -> Settings:

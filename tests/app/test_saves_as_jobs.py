@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import httpx
 import pytest
-from patience import until
+from patience import patient, until
 from serving import API, ServerProcess, alive, faults, folder_of_models, problem, serving, settled
 from sleeping import folder_of_sleeper
 
@@ -201,7 +201,7 @@ def test_who_leaves_a_save_stops_it_and_nothing_is_written(http, log):
     count = lambda: len(http.get(DESIGNS, params={"limit": 500}).json()["items"])  # noqa: E731
     before, key = count(), {"Idempotency-Key": "left"}
     with pytest.raises(httpx.ReadTimeout):
-        http.post(DESIGNS, json=sleeping(60), headers=key, timeout=1.0)
+        http.post(DESIGNS, json=sleeping(120), headers=key, timeout=patient(2.0))
     (pid,) = begun(log)
     until(lambda: alive(pid), lambda living: not living)
     assert count() == before

@@ -17,6 +17,8 @@ METRIC_THERE_TOO = {
     "rpm",
     "Hz",
     "s",
+    "1/s",
+    "h",
     "K",
     "1/K",
     "W/K",

@@ -25,7 +25,12 @@ set -e
 mount --make-rprivate /
 mount --bind "$1" /media && mount -o remount,bind,ro /media
 shift
-for folder in $1; do mount -t tmpfs tmpfs "$folder"; done
+exec 3<"$1" 4<"$2"
+for folder in $3; do mount -t tmpfs tmpfs "$folder"; done
+for kept in 3 4; do
+    if [ ! -d "$1" ]; then mkdir -p "$1" && mount --bind /proc/self/fd/$kept "$1"; fi
+    shift
+done
 shift
 mount -o remount,bind,ro /
 if touch /root/by_hand /var/by_hand 2>/dev/null; then echo "the root can be written" >&2; exit 99; fi
@@ -60,7 +65,8 @@ class Stack:
         program, *rest = arguments or service["command"]
         assert program == "crankwright"
         words = [sys.executable, "-m", "app", *(PLACES.get(word, word) for word in rest)]
-        return ["unshare", "-m", "sh", "-c", SCRIPT, "by_hand", str(self.tls), folders, *words]
+        kept = [str(ROOT), sys.prefix]  # program and environment, where a folder in memory would hide them
+        return ["unshare", "-m", "sh", "-c", SCRIPT, "by_hand", str(self.tls), *kept, folders, *words]
 
     def run(self, name, *arguments, **more):
         """Run a command in a service's container, to its end."""

@@ -333,6 +333,18 @@ def evaluate_at_level(
     return answers, errors, [*standing, *_noticed([Rung(template, None)])]
 
 
+def criterion_warnings(
+    template: Template, answers: Mapping[str, Answer], errors: Mapping[str, Any]
+) -> list[Notice]:
+    """The warnings of those criteria whose outputs are among these answers of a template at its level."""
+    if not template.declared_criteria:
+        return []
+    measured, level = accuracy(type(template)), template.level or None
+    with np.errstate(all="ignore"):
+        judgements = judged(Evaluated(template, answers, errors, measured, level=level))
+    return list(warned(type(template), judgements))
+
+
 def _noticed(rungs: list[Rung]) -> list[Notice]:
     """The warnings of all levels, each once."""
     noticed = (notice for rung in rungs for notice in rung.template.ledger.warnings)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from benchmarks.torsion import THROW
-from benchmarks.torsion_levels import TRUTH, found_by, random_throws, shaft_of, truth
+from benchmarks.torsion_levels import TRUTH, outputs_by, random_throws, shaft_of, truth
 from cad.analysis.analyse import AnalysisRequest, analyse
 from cad.analysis.mesh import make_grid
 from cad.analysis.solid import read_solid
@@ -38,7 +38,7 @@ def test_property_it_does_so_where_an_end_is_slender(ends: tuple[str, float, flo
     step, shaft = regenerate("crankshaft", 1, parameters).step, Crankshaft.from_si(parameters).shaft()
     assert shaft is not None
     grid = make_grid(read_solid(step, shaft), replace(TRUTH, sharp=0.04))
-    true = found_by(grid, 4, shaft, ["stiffness"])["stiffness"]
+    true = outputs_by(grid, 4, shaft, ["stiffness"])["stiffness"]
     for level in ("coarse", "default"):
         result = analyse(step, shaft, AnalysisRequest(level=level), ["stiffness"], lambda done, what: None)
         reported = result.outputs["stiffness"]
