@@ -28,7 +28,7 @@ shift
 exec 3<"$1" 4<"$2"
 for folder in $3; do mount -t tmpfs tmpfs "$folder"; done
 for kept in 3 4; do
-    if [ ! -d "$1" ]; then mkdir -p "$1" && mount --bind /proc/self/fd/$kept "$1"; fi
+    if [ ! -d "$1" ]; then mkdir -p "$1"; mount -c --bind "/proc/self/fd/$kept" "$1"; fi
     shift
 done
 shift
