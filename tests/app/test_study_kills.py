@@ -30,7 +30,8 @@ from app.cli import main
 KILLS = int(os.environ.get("CRANKWRIGHT_TEST_KILLS", "10"))
 SEED = int(os.environ.get("CRANKWRIGHT_TEST_SEED", "14"))
 VARY = {"length": {"between": ["0 mm", "10 mm"]}}
-SAMPLE = {"method": "sample", "points": 800_000, "vary": VARY, "outputs": [OUT]}
+SAMPLE = {"method": "sample", "points": 1_000_000, "vary": VARY, "outputs": [OUT]}
+SAMPLES = [{**SAMPLE, "seed": seed} for seed in range(5)]
 SEARCH = {"method": "optimise", "vary": VARY, "minimise": [OUT], "hold": ["long_enough"]}
 HELD = {**TWICE, "criteria": {"long_enough": {"require": f"{OUT} >= 5 mm"}}}
 CUBES = {
@@ -38,7 +39,7 @@ CUBES = {
     "parameters": {"size": "9 mm", "extra": "1 mm", "length": "= size + extra + cube.mass * 1 mm/kg"},
     "models": {"cube": {"id": "moody", "version": 1, "parameters": {"size": "= size"}}},
 }
-SIZES = [10 + number / 8 for number in range(max(40, 3 * KILLS))]
+SIZES = [10 + number / 8 for number in range(max(160, 3 * KILLS))]
 SOLIDS = {
     "method": "grid",
     "vary": {
@@ -51,7 +52,7 @@ SOLIDS = {
 REST = {"template": "double", "version": 1, "inputs": {"length": "= 10 mm - length"}}
 PAIR = {**HELD, "steps": {**TWICE["steps"], "rest": REST}}
 FRONT = {**SEARCH, "minimise": [OUT, "rest.twice_the_length"]}
-STUDIES = {"rows": (HELD, [SAMPLE, SEARCH]), "front": (PAIR, [FRONT]), "solids": (CUBES, [SOLIDS])}
+STUDIES = {"rows": (HELD, [*SAMPLES, SEARCH]), "front": (PAIR, [FRONT]), "solids": (CUBES, [SOLIDS])}
 
 
 def work_done(data):
