@@ -188,7 +188,7 @@ def _size(last: State, after: State, step: float) -> float:
 def marched(
     mesh: Mesh, duty: Duty, begin: State, step: float, say: Callable[[float], None]
 ) -> tuple[list[State], int, bool]:
-    """One cycle: its states, the first of them where it began; how often a step was halved; whether it ended.
+    """One cycle: its states, the first where it began; halvings of steps that failed; whether it ended.
 
     say: is given the share of the cycle that is done, before each step.
     """
