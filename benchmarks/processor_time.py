@@ -1,4 +1,4 @@
-"""Processor time by /proc: of a process with all that descends from it, and of the whole machine."""
+"""Processor time and memory by /proc: of a process with its descendants, and of the machine."""
 
 from __future__ import annotations
 
@@ -33,13 +33,32 @@ class Cores:
 
 def used(pid: int) -> float:
     """What a process, its living descendants and the children that it has waited for have used [s]."""
-    processes = {
-        int(place.name): _fields(place) for place in Path("/proc").iterdir() if place.name.isdecimal()
-    }
+    processes = _processes()
+    return sum(_seconds(fields) for one in _family(pid, processes) if (fields := processes.get(one)))
+
+
+def proportional_megabytes(pid: int) -> float:
+    """Memory of a process and its living descendants; what several share is divided among them [MB]."""
+    return sum(_proportional(one) for one in _family(pid, _processes())) / 1e6
+
+
+def _processes() -> dict[int, list[int]]:
+    return {int(place.name): _fields(place) for place in Path("/proc").iterdir() if place.name.isdecimal()}
+
+
+def _family(pid: int, processes: dict[int, list[int]]) -> set[int]:
     family, new = {pid}, {pid}
     while new := {one for one, fields in processes.items() if fields and fields[_PARENT] in new} - family:
         family |= new
-    return sum(_seconds(fields) for one in family if (fields := processes.get(one)))
+    return family
+
+
+def _proportional(pid: int) -> float:
+    with suppress(OSError):
+        for line in Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines():
+            if line.startswith("Pss:"):
+                return 1024.0 * int(line.split()[1])
+    return 0.0
 
 
 def _seconds(fields: list[int]) -> float:

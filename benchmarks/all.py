@@ -1,0 +1,65 @@
+"""Every line of issue 20's table, with its aim: `python -m benchmarks.all [films elements serving shell]`.
+
+Each kind of work runs in a process of its own, one after the other, on one thread of BLAS. Processor time
+decides, as other work of the machine disturbs it least; figures by the clock say so. The whole takes less
+than 15 minutes on two idle cores. Prints a table in Markdown and, if all was measured, writes
+benchmarks/results/all.json.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict
+from datetime import UTC, datetime
+from importlib import import_module
+from multiprocessing import get_context
+from pathlib import Path
+
+from benchmarks.service_rows import commit, machine
+from benchmarks.speed.figures import Figure
+
+RESULTS = Path("benchmarks/results/all.json")
+KINDS = ("shell", "serving", "films", "elements")
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
+
+
+def figures(kind: str) -> list[Figure]:
+    """The figures of one kind of work."""
+    measured: list[Figure] = import_module(f"benchmarks.speed.{kind}").figures()
+    return measured
+
+
+def main(kinds: list[str]) -> None:
+    """Measure, print and keep."""
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    begin, load = time.perf_counter(), os.getloadavg()
+    print("| work | measured | aim | | how |\n|---|---|---|---|---|")
+    rows: list[Figure] = []
+    for kind in kinds:
+        with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+            measured = pool.submit(figures, kind).result()
+        print("\n".join(figure.line() for figure in measured), flush=True)
+        rows += measured
+    minutes = (time.perf_counter() - begin) / 60
+    print(f"\n{minutes:.1f} minutes; load average before {load[0]:.2f}, after {os.getloadavg()[0]:.2f}")
+    if tuple(kinds) == KINDS:
+        kept = {
+            "date": datetime.now(UTC).isoformat(timespec="seconds"),
+            "commit": commit(),
+            "machine": machine(),
+            "load_average": {"before": load, "after": os.getloadavg()},
+            "minutes": round(minutes, 1),
+            "figures": [{**asdict(row), "is_met": row.is_met} for row in rows],
+        }
+        RESULTS.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    named = sys.argv[1:] or list(KINDS)
+    if unknown := set(named) - set(KINDS):
+        raise SystemExit(f"no such kind of work: {', '.join(sorted(unknown))}; there are {', '.join(KINDS)}")
+    main(named)
