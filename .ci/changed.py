@@ -21,11 +21,15 @@ ROOT = Path(__file__).parents[1]
 HTTP = ("app/*routes*.py", "app/*schemas*.py", "app/*api/*.py", "app/api/problems.py", "app/*guard.py")
 WEB = ("app/*web/*.py", "app/*presentation/*.py", "app/web/*.js", "app/web/*.css", "app/web/*.html")
 ABOUT = {
+    "tests/app/test_analyses.py": ("app/solids/*.py", "app/api/routes/analyses.py", "cad/analysis/*.py"),
+    "tests/app/test_analyses_designs.py": ("app/solids/*.py", "app/designs/*.py", "cad/analysis/*.py"),
     "tests/app/test_crash.py": (
         *("app/*jobs/*.py", "app/*storage/*.py", "app/*designs/*.py", "app/*workers/*.py"),
         "app/*idempotency*.py",
     ),
     "tests/app/test_backup.py": ("app/*maintenance/*.py", "app/*storage/*.py"),
+    "tests/app/test_demo.py": ("app/demo.py", "app/cli.py", "app/__main__.py", "app/server.py"),
+    "tests/app/test_embedded_start.py": ("app/*.py", "pyproject.toml"),
     "tests/app/test_calculations_in_processes.py": (
         "app/*jobs/*.py",
         "app/*workers/*.py",
@@ -34,16 +38,16 @@ ABOUT = {
     "tests/app/test_saves_as_jobs.py": ("app/*jobs/*.py", "app/designs/*.py", "app/calculations/*.py"),
     "tests/app/test_old_database.py": ("app/*storage/*.py",),
     "tests/app/test_sheet_start.py": ("app/worksheets/*.py", "app/*storage/*.py"),
+    "tests/app/test_study_resumes.py": ("app/studies/*.py",),
+    "tests/app/test_team_templates.py": ("app/catalogue/*.py", "templates/core/checking/*.py"),
     "tests/app/test_stopping.py": ("app/server.py", "app/*jobs/*.py", "app/*workers/*.py"),
-    "tests/web/test_browser_properties.py": WEB,
-    "tests/web/test_elements.py": WEB,
-    "tests/web/test_newcomer.py": WEB,
     "tests/web/test_foreign_pages.py": ("app/*guard.py", "app/api/gate/*.py"),
     "tests/app/test_contract_at_length.py": HTTP,
     "tests/app/test_interface_at_length.py": HTTP,
     "tests/app/test_openapi_fuzz.py": HTTP,
 }
-"""Patterns of the files that a test of a whole server is about; `*` stands for folders too."""
+"""Patterns of the files that a test of a whole server is about; `*` stands for folders too. For one of the
+pages that is not named they are `WEB`."""
 ALWAYS = ("tests/physics/test_mobility_map.py", "tests/cad/analysis/test_torsion_reference.py")
 """What runs if nobody can say what changed: one file for each kind of solver."""
 CATALOGUE = "tests/templates/test_catalogue_properties.py"
@@ -112,16 +116,27 @@ def located(module: str, folder: Path) -> Iterator[str]:
     """Yield the files of a module: of a package of ours, or of a helper beside the test."""
     path = module.replace(".", "/")
     for place in (Path(), folder, Path("tests"), Path("tests/app")):
-        for file in (place / f"{path}.py", place / path / "__init__.py"):
-            if (ROOT / file).is_file():
-                yield file.as_posix()
+        for file in (f"{path}.py", f"{path}/__init__.py"):
+            if is_there(there := f"{place.as_posix()}/{file}".removeprefix("./")):
+                yield there
+
+
+@cache
+def is_there(file: str) -> bool:
+    """Whether we have this file."""
+    return (ROOT / file).is_file()
+
+
+def about(test: str) -> tuple[str, ...]:
+    """Return the patterns of the files that a test of a whole server is about; none for another test."""
+    return ABOUT.get(test, WEB if test.startswith("tests/web/") else ())
 
 
 def is_related(test: str, files: Iterable[str]) -> bool:
     """Whether a slow test file should run after changes of these files."""
-    if test in ABOUT:
+    if patterns := about(test):
         helpers = {file for file in reach(test) if file.startswith("tests/")}
-        return any(file in helpers or fnmatch(file, pattern) for file in files for pattern in ABOUT[test])
+        return any(file in helpers or fnmatch(file, pattern) for file in files for pattern in patterns)
     reached = reach(test)
     return any(file in reached or is_named(file, test, reached) for file in files)
 

@@ -1,10 +1,13 @@
 """The command line, and the fork servers of servers, forked from what has imported them.
 
 `python -m app serve` takes seconds to import the geometry kernel, and so does each fork server of a server;
-a fork takes none of them. All else is the same. `test_demo.py` and `test_version_0_1.py` start the real
-command. Fork servers whose modules are imported in no time, as in `test_workers.py`, are real ones too.
+a fork takes none of them. All come from one process in each worker of pytest, which has imported what the
+command line and all fork servers need. All else is the same. `test_embedded_start.py`, the slow run of
+`test_demo.py` and `test_version_0_1.py` start the real command. Fork servers whose modules are imported in no
+time, as in `test_workers.py`, are real ones too.
 """
 
+import importlib
 import os
 import select
 import subprocess
@@ -17,19 +20,30 @@ import origins
 from app.workers import isolated
 
 LONG = ("app.calculations.warm", "cad.models")  # what takes seconds to import
+KERNEL = {*LONG, "cad.model"}  # one of these is among the modules of each fork server that takes so long
+PRELOAD = ("app.cli", *LONG)
 
 
 class Forked(origins.Forked):
-    """A process of the command line, in a session of its own."""
+    """A process of the command line, in a session of its own.
 
-    def __init__(self, arguments, environment, log: Path) -> None:
-        request = {"arguments": list(map(str, arguments)), "environment": environment}
+    With `call`, `module:name`, it calls that function of tests instead, with arguments and descriptors.
+    """
+
+    def __init__(self, arguments, environment, log: Path, call: str = "", descriptors=()) -> None:
+        request = {"arguments": list(map(str, arguments)), "environment": environment, "call": call}
         with log.open("ab") as errors:
-            super().__init__("forked:run_command", ("app.cli", *LONG), request, [errors.fileno()])
+            super().__init__("forked:run", PRELOAD, request, [errors.fileno(), *descriptors])
 
 
-def run_command(request, errors: int) -> None:
-    """Do what `python -m app` does."""
+def run(request, *descriptors: int) -> None:
+    """Become the command line, or a fork server."""
+    become = run_forkserver if "modules" in request else run_command
+    become(request, *descriptors)
+
+
+def run_command(request, errors: int, *descriptors: int) -> None:
+    """Do what `python -m app` does, or what the request calls."""
     from app.__main__ import main
 
     os.setsid()
@@ -37,20 +51,22 @@ def run_command(request, errors: int) -> None:
     os.dup2(errors, 2)
     os.close(errors)
     sys.argv = ["crankwright", *request["arguments"]]
-    own = origins.own_origin(
-        run_forkserver
-    )  # a descendant, so that its forks are seen to end with this process
+    own = origins.own_origin(run)  # a descendant, so that its forks are seen to end with this process
     origins.origin = lambda function, preload: own
     isolated.launch = launch_forkserver
-    main()
+    module, _, name = request["call"].partition(":")
+    if module:
+        sys.exit(getattr(importlib.import_module(module), name)(*request["arguments"], *descriptors))
+    else:
+        main()
 
 
 def launch_forkserver(preload, channel: int, lifeline: int, environment, launch=isolated.launch):
     """Take the place of `isolated.launch`: fork what would import for seconds."""
-    if set(LONG).isdisjoint(preload):
+    if KERNEL.isdisjoint(preload):
         return launch(preload, channel, lifeline, environment)
     request = {"path": sys.path, "modules": list(preload), "environment": {**environment, **os.environ}}
-    return ForkedForkServer("forked:run_forkserver", tuple(preload), request, [channel, lifeline])
+    return ForkedForkServer("forked:run", PRELOAD, request, [channel, lifeline])
 
 
 class ForkedForkServer(origins.Forked):

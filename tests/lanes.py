@@ -13,6 +13,9 @@ SERVED = "served"  # every test that needs the server of tests/app/conftest.py
 TEAM = "team"  # every test that needs PostgreSQL, an S3 server or Dask, of which one worker has each
 PAGES = "pages"  # every test that needs the server or the browser of tests/web/conftest.py
 
+TOGETHER = {"tests/test_lanes.py": "tests/test_mutation.py"}
+"""Files in the group of another: these two read the imports of all our files, once."""
+
 LONGEST = (PAGES, SERVED, TEAM, "tests/templates/test_catalogue_properties.py")
 """Groups that begin first, the longest in front."""
 
@@ -26,7 +29,7 @@ def group_of(item):
         return TEAM
     if file.startswith("tests/app/") and "served" in item.fixturenames:
         return SERVED
-    return file
+    return TOGETHER.get(file, file)
 
 
 def name_group(item):

@@ -1,6 +1,5 @@
 """Which tests run together, which slow ones after a change, and how tests wait."""
 
-import importlib.util
 import os
 import shutil
 import subprocess
@@ -13,10 +12,9 @@ import pytest
 from lanes import PAGES, SERVED, group_of, rank
 from patience import until
 
+from benchmarks.mutation.related import changed
+
 ROOT = Path(__file__).parents[1]
-SPEC = importlib.util.spec_from_file_location("changed", ROOT / ".ci" / "changed.py")
-changed = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(changed)
 
 
 def item(file, *fixtures):
@@ -32,6 +30,7 @@ def item(file, *fixtures):
         (item("tests/app/test_designs.py", "http", "served"), SERVED),
         (item("tests/app/test_jobs.py"), "tests/app/test_jobs.py"),
         (item("tests/physics/test_oil.py"), "tests/physics/test_oil.py"),
+        (item("tests/test_lanes.py"), "tests/test_mutation.py"),
     ],
 )
 def test_tests_of_one_server_or_one_file_share_a_worker(test, group):
@@ -40,7 +39,7 @@ def test_tests_of_one_server_or_one_file_share_a_worker(test, group):
 
 @pytest.mark.skipif("PYTEST_XDIST_WORKER" not in os.environ, reason="needs pytest-xdist: pytest -n 2")
 def test_the_scheduler_reads_the_group(request):
-    assert request.node.nodeid.endswith("@tests/test_lanes.py")
+    assert request.node.nodeid.endswith("@tests/test_mutation.py")
 
 
 def test_servers_begin_first():
@@ -89,7 +88,14 @@ def test_a_test_of_a_whole_server_is_about_files_that_exist():
     for test in changed.ABOUT:
         assert test in changed.slow_files()
         assert changed.is_related(test, files)
-        assert not changed.is_related(test, ["app/demo.py"])
+        assert not changed.is_related(test, ["app/web/static/icon.svg"])
+
+
+def test_a_slow_test_of_the_pages_is_about_the_pages():
+    pages = {test for test in changed.slow_files() if test.startswith("tests/web/")} - changed.ABOUT.keys()
+    assert len(pages) > 10
+    assert pages <= set(changed.selection(["app/web/static/design.js"]))
+    assert pages & set(changed.selection(["app/designs/service.py"])) == set()
 
 
 @pytest.mark.skipif(shutil.which("git") is None, reason="needs git")

@@ -116,6 +116,7 @@ class TestAnswer:
         unloaded = asked(http, bar(20, 12), outputs=["stiffness"])
         assert loaded["outputs"]["stiffness"] == unloaded["outputs"]["stiffness"]
 
+    @pytest.mark.slow
     def test_a_stress_is_found_once_for_all_levels(self, http):
         """Its mesh is refined until it settles, whatever the level. A second search takes other seconds."""
         stress = {"outputs": ["maximum_stress"]}

@@ -225,6 +225,7 @@ class TestLoad:
 
 
 class TestRuns:
+    @pytest.mark.slow
     def test_an_iteration_through_an_analysis(self, http):
         """A bar as thick as its own stiffness says."""
         document = {

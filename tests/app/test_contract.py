@@ -24,7 +24,7 @@ SEED = seeded(11)
 CONFIGURATION = SchemathesisConfig.from_path(Path(__file__).parents[2] / "schemathesis.toml")
 INTERFACE = schemathesis.openapi.from_dict(description(), config=CONFIGURATION)
 QUICK = settings(
-    max_examples=8,
+    max_examples=5,
     database=None,
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),

@@ -1,8 +1,9 @@
-"""The paper's demonstration by the command that the README names, once, in a process of its own."""
+"""The paper's demonstration: its service is a fork here; the slow lane runs the command of the README."""
 
 import re
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import click
@@ -10,20 +11,42 @@ import pytest
 from cadquery import importers
 from click.testing import CliRunner
 from patience import patient
+from serving import ServerProcess
 
 from app import cli, demo
+from app.client import Client
 
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.fixture(scope="module")
-def shown(tmp_path_factory):
-    """What the demonstration prints, and its folder."""
-    data = tmp_path_factory.mktemp("demo")
+def by_command(data):
+    """What the command of the README prints, in a process of its own, as does its service."""
     command = [sys.executable, "-m", "app", "demo", "--data", str(data)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, timeout=patient(120), check=False)
     assert done.returncode == 0, done.stderr.decode()
-    return done.stdout.decode(), data
+    return done.stdout.decode()
+
+
+@contextmanager
+def forked_service(data, **options):
+    with ServerProcess(data) as server, Client(server.url) as client:
+        yield client
+
+
+def by_fork(data):
+    """What the same command prints in this process; its service has imported nothing."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(demo, "service", forked_service)
+        done = CliRunner().invoke(cli.main, ["demo", "--data", str(data)])
+    assert done.exit_code == 0, done.output
+    return done.output
+
+
+@pytest.fixture(scope="module", params=[by_fork, pytest.param(by_command, marks=pytest.mark.slow)])
+def shown(request, tmp_path_factory):
+    """What the demonstration prints, and its folder."""
+    data = tmp_path_factory.mktemp("demo") / "data"
+    return request.param(data), data
 
 
 def row(text, name):

@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import httpx
+import pytest
 from patience import patient
 from serving import API
 
@@ -40,6 +41,7 @@ sys.meta_path[sys.meta_path.index(PathFinder)] = Absent
 '''
 
 
+@pytest.mark.slow
 def test_the_embedded_service_asks_for_no_extra_and_does_its_work(tmp_path, request, monkeypatch):
     """In an interpreter of its own: what tests have imported is not there."""
     for name in [name for name in os.environ if name.startswith("CRANKWRIGHT_")]:

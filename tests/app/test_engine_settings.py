@@ -1,11 +1,12 @@
 """Where jobs run by CRANKWRIGHT_ENGINE: what is refused at the start, and what the default does without."""
 
-import subprocess
-import sys
+import os
 
 import pytest
 from click.testing import CliRunner
+from forked import Forked
 from pydantic import ValidationError
+from serving import PATIENCE
 
 from app import machines
 from app.cli import main
@@ -92,12 +93,10 @@ def test_commands_say_what_is_wrong(arguments, environment, said, monkeypatch):
     assert said in result.output
 
 
-def test_local_workers_load_nothing_of_it():
+def test_local_workers_load_nothing_of_it(tmp_path):
     """Pint imports `dask`, where that is installed; what carries jobs is `distributed`."""
-    code = (
-        "import sys; from contextlib import ExitStack; import app.assembly; import app.cli\n"
-        "from app.settings import Settings; from app.workers.started import started_workers\n"
-        "with ExitStack() as stack: started_workers(Settings(), stack)\n"
-        "assert 'distributed' not in sys.modules"
+    log = tmp_path / "log"
+    service = Forked(
+        [tmp_path / "data", "distributed"], dict(os.environ), log, call="unburdened:served_without"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=100)
+    assert service.wait(PATIENCE) == 0, log.read_text()

@@ -2,17 +2,16 @@
 
 import asyncio
 import json
+import os
 import signal
 import socket
-import subprocess
-import sys
 import threading
-from pathlib import Path
 from types import SimpleNamespace
 
 import httpx
 import pytest
 from fastapi import FastAPI
+from forked import Forked
 from patience import GLANCE, patient
 
 from app.api.gate.streams import Streams
@@ -184,63 +183,21 @@ def test_a_finished_job_tells_its_state_and_ends(client, jobs, database):
     assert [(name, data["state"]) for name, data in events] == [("done", "done")]
 
 
-SERVER = """
-import sys
-from contextlib import asynccontextmanager
-from pathlib import Path
-from types import SimpleNamespace
-import uvicorn
-from fastapi import FastAPI
-from app.api.routes.jobs import router
-from app.catalogue.catalogues import Catalogues
-from app.jobs.service import Jobs
-from app.jobs.shutdown import on_stop_signal
-from app.settings import Settings
-from app.storage.database import Database
-from app.api.gate.streams import Streams
-from app.workers.inline import Inline
-from cad.catalogue import models
-from templates.door import built_in
-
-@asynccontextmanager
-async def lifespan(app):
-    database = Database(sys.argv[1])
-    jobs = Jobs(database, Inline(), Settings(), lambda error: {})
-    app.state.services = SimpleNamespace(
-        jobs=jobs, streams=Streams(most=5, most_of_client=5), catalogues=Catalogues(built_in(), models())
-    )
-    with on_stop_signal(jobs.drain):
-        yield
-    jobs.stop()
-    database.close()
-    print("stopped in order", flush=True)
-
-app = FastAPI(lifespan=lifespan)
-app.include_router(router)
-uvicorn.run(app, fd=int(sys.argv[2]), log_level="warning")
-"""
-
-
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_a_watcher_does_not_keep_the_server_from_stopping(jobs, database, url, number):
-    id = put(jobs, database)
+def test_a_watcher_does_not_keep_the_server_from_stopping(jobs, database, url, tmp_path, number):
+    id, log = put(jobs, database), tmp_path / "log"
     with socket.create_server(("127.0.0.1", 0)) as listener:
-        port = listener.getsockname()[1]
-        command = [sys.executable, "-c", SERVER, url, str(listener.fileno())]
-        server = subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, pass_fds=[listener.fileno()],
-            cwd=Path(__file__).parents[2],
-        )  # fmt: skip
+        port, descriptors = listener.getsockname()[1], [listener.fileno()]
+        server = Forked([url], dict(os.environ), log, call="watched:serve_jobs", descriptors=descriptors)
         try:
             with httpx.stream(
-                "GET", f"http://127.0.0.1:{port}/api/v1/jobs/{id}/events", timeout=60
+                "GET", f"http://127.0.0.1:{port}/api/v1/jobs/{id}/events", timeout=patient(60)
             ) as watched:
                 lines = watched.iter_lines()
                 assert next(lines) == "event: queued"
                 server.send_signal(number)
                 assert list(lines)[-1] == ""
-            out, _ = server.communicate(timeout=20)
+            server.wait(patient(20))
         finally:
             server.kill()
-            server.communicate()
-    assert b"stopped in order" in out
+    assert "stopped in order" in log.read_text()

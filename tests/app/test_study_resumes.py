@@ -1,5 +1,6 @@
 """A study goes on after its server stopped: no row is lost or doubled, same bytes."""
 
+import pytest
 from patience import patient, until
 from serving import API, folder_of_models, serving
 from study_helpers import OUT, TWICE, begun, chunks, connected, content, done, ended, new_design
@@ -12,6 +13,7 @@ SAMPLE = {"method": "sample", "points": 800_000, "vary": VARY, "outputs": [OUT]}
 SEARCH = {"method": "optimise", "vary": VARY, "minimise": [OUT], "hold": ["long_enough"]}
 
 
+@pytest.mark.slow
 def test_a_stopped_study_goes_on_with_the_same_bytes(tmp_path):
     settings = Settings(data=tmp_path / "data", template_folders=(folder_of_models(tmp_path / "own"),))
     hasty = settings.model_copy(update={"drain_seconds": 0.5})  # the stop lets no job end

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 from patience import patient, until
 from serving import API, DOUBLE, MOODY, created, faults, moody, patched, problem, revision, serving
-from sleeping import folder_of_sleeper
+from sleeping import ALARM, folder_of_sleeper
 
 from app.catalogue.catalogues import loaded
 from app.cli import main
@@ -242,14 +242,17 @@ class TestReload:
         until(lambda: process("1 ms") and log.exists())
         begun = len(log.read_text().split())
         answers = []
-        thread = threading.Thread(target=lambda: answers.append(process("4 s")))
+        thread = threading.Thread(target=lambda: answers.append(process("60 s")))
         thread.start()
         until(lambda: len(log.read_text().split()) > begun)
         digest = http.get(sleeper).json()["digest"]
         file.write_text(file.read_text().replace("return np.float64(os.getpid())", "return np.float64(-1)"))
         until(lambda: http.get(sleeper).json()["digest"] != digest)
         assert not answers, "it still runs"
+        alarm = own / "sleeper" / ALARM
+        alarm.touch()
         thread.join()
+        alarm.unlink()
         assert answers[0] > 0
         assert answers[0] != os.getpid()
         assert process("1 ms") == -1, "a process that calculated by the old file calculates by the new one"
@@ -273,6 +276,7 @@ class TestReload:
         again = http.post(build, json=parameters, headers={"Prefer": "wait=60"}).json()
         assert again["artifacts"] == old["artifacts"]
 
+    @pytest.mark.slow
     def test_an_import_without_end_holds_up_nobody_for_long(self, http, own):
         """The service answers while the file is checked; then the file is quarantined."""
         file = own / "double_v11.py"

@@ -1,13 +1,13 @@
 """Traces: what a collector gets for a change of a design, and that nothing is loaded without the setting."""
 
-import subprocess
-import sys
+import os
 from collections import Counter
 
 import httpx
 import pytest
 from click.testing import CliRunner
 from collecting import collecting, spans_in
+from forked import Forked
 from serving import API, PATIENCE, folder_of_models, moody, serving
 
 from app import machines
@@ -89,18 +89,15 @@ def test_spans_hold_nothing_of_paths_and_queries(spans):
     assert not [span for span in spans if SECRET in str(span)]
 
 
-def test_without_the_setting_nothing_is_loaded(tmp_path):
-    """FastAPI itself loads the interface of OpenTelemetry, where that is installed; what sends is its SDK."""
-    code = (
-        "import sys, app.cli; from fastapi.testclient import TestClient; from pathlib import Path\n"
-        "from app.main import create_app; from app.settings import Settings\n"
-        f"with TestClient(create_app(Settings(data=Path({str(tmp_path)!r}))), base_url='http://localhost') "
-        "as http:\n    assert http.get('/healthz').status_code == 200\n"
-        "names = 'opentelemetry.sdk', 'opentelemetry.exporter', 'app.observation.traces', "
-        "'app.api.gate.tracing'\n"
-        "assert not [name for name in names if name in sys.modules]"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=100)
+UNUSED = ("opentelemetry.sdk", "opentelemetry.exporter", "app.observation.traces", "app.api.gate.tracing")
+
+
+@pytest.mark.parametrize(("names", "code"), [(UNUSED, 0), (("app.main", *UNUSED), 1)])
+def test_without_the_setting_nothing_is_loaded(tmp_path, names, code):
+    log = tmp_path / "log"
+    service = Forked([tmp_path / "data", *names], dict(os.environ), log, call="unburdened:served_without")
+    assert service.wait(PATIENCE) == code, log.read_text()
+    assert ("loaded: app.main\n" in log.read_text()) == (code == 1)
 
 
 @pytest.mark.parametrize(

@@ -62,6 +62,7 @@ def terminated(cluster, url):
         return len(ended.fetchall())
 
 
+@pytest.mark.slow
 def test_all_events_of_another_process_come_in_order_while_connections_are_ended(
     cluster, own_postgres, request
 ):

@@ -51,6 +51,7 @@ def run(kept, monkeypatch):
     return run
 
 
+@pytest.mark.slow
 def test_a_restored_backup_is_served_and_clean(kept, run, cluster, object_store, tmp_path, s3):
     settings, before = kept
     archive = tmp_path / "backup.tar.gz"

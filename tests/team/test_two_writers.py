@@ -274,6 +274,7 @@ def test_a_killed_server_leaves_its_job_to_the_other_one(own_postgres, tmp_path)
             assert until(job, lambda job: job[0] == "failed", seconds=60)[1:3] == (2, 1)
 
 
+@pytest.mark.slow
 def test_a_database_that_is_down_answers_503_and_is_found_again(tmp_path):
     cluster = Cluster()
     try:

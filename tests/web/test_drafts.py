@@ -20,6 +20,7 @@ def load(page):
     return page.get_by_label("Radial load")
 
 
+@pytest.mark.slow
 def test_two_tabs_keep_their_own_drafts(watched, open_design):
     one, other = open_design, Watched(watched.page.context.new_page(), watched.url).page
     other.goto(one.url)

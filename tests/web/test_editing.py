@@ -108,6 +108,7 @@ def throw(http):
     return f"/designs/{response.json()['id']}"
 
 
+@pytest.mark.slow
 def test_analyses_and_iterations_are_added_changed_and_removed_without_json(watched, http, throw):
     page = watched.page
     page.set_viewport_size({"width": 390, "height": 800})

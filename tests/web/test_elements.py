@@ -102,6 +102,7 @@ def analyses(http):
     return sum(job["kind"] == "analysis" for job in jobs)
 
 
+@pytest.mark.slow
 def test_nothing_is_found_twice_and_what_is_known_is_shown_without_a_script(watched, plain, http):
     answer = asked(http, outputs=["stiffness", "torsional_frequency", "surface"])
     jobs = analyses(http)

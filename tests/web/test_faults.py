@@ -71,6 +71,7 @@ def test_the_bar_for_saving_covers_no_field_that_has_the_focus(open_design):
                 assert page.evaluate(hidden) <= 0, page.evaluate("document.activeElement.name")
 
 
+@pytest.mark.slow
 def test_results_of_before_are_marked_until_the_input_is_possible_again(watched, open_design):
     page = open_design
     for path in (None, "/templates/oil_film/1"):

@@ -178,6 +178,7 @@ def test_a_name_of_another_site_that_leads_here(browser, served, http, paper):
     assert state(http, paper) == before
 
 
+@pytest.mark.slow
 def test_the_documentation_works_under_its_policy(watched, http):
     page = watched.page
     watched.open("/docs")

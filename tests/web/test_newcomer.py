@@ -141,6 +141,7 @@ def test_a_change_by_somebody_else_is_shown_and_ours_is_kept(watched, http):
     assert (inputs["radial_load"], inputs["speed"]) == ("31 kN", "4000 rpm")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("plotted")
 def test_the_pressure_is_painted_on_the_bore(watched):
     page = created(watched, "shell")

@@ -51,6 +51,7 @@ def test_which_clearance_gives_two_micrometres_at_7000_rpm(bearing, watched, htt
     assert [fault for fault in watched.faults() if "422" not in str(fault)] == []
 
 
+@pytest.mark.slow
 def test_what_a_tolerance_of_the_clearance_does_to_the_film(bearing, watched):
     page = bearing
     page.get_by_label("Diametral clearance").fill("55 +/- 5 um")
@@ -67,6 +68,7 @@ def test_what_a_tolerance_of_the_clearance_does_to_the_film(bearing, watched):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_which_width_costs_least_power(bearing, watched, http):
     page, place = bearing, bearing.url
     page.get_by_role("link", name="New study").click()

@@ -140,6 +140,7 @@ def test_the_drawing_links_to_steps_and_says_the_same_as_a_list(opened):
     expect(opened.locator("[data-fold=film]")).to_have_attribute("open", "")
 
 
+@pytest.mark.slow
 def test_a_narrow_page_scrolls_the_drawing_inside_its_panel(browser, served, paper):
     context = browser.new_context(viewport={"width": 390, "height": 844}, color_scheme="dark")
     page = context.new_page()

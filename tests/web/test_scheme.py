@@ -31,6 +31,7 @@ def test_the_system_decides_unless_somebody_chose(dark, served, http):
     assert dark.evaluate(PAPER) == DARK
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("plotted")
 def test_the_dark_scheme_can_be_chosen_and_a_report_stays_white(watched, http):
     place = from_example(http, "oil_film/1")
@@ -49,6 +50,7 @@ def test_the_dark_scheme_can_be_chosen_and_a_report_stays_white(watched, http):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_dark_pages_have_enough_contrast(dark, served, http):
     for path in (from_example(http, "oil_film/2"), "/templates/oil_film/1"):
         dark.goto(served.url + path, wait_until="networkidle")

@@ -73,6 +73,7 @@ def pressed_before(watched, toleranced, release):
     return page
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
 def test_the_button_works_in_place_before_its_script_is_there(watched, toleranced):
     page = pressed_before(watched, toleranced, lambda route: route.continue_())
@@ -81,6 +82,7 @@ def test_the_button_works_in_place_before_its_script_is_there(watched, tolerance
     expect(page.locator(f'[data-scattered="{FILM}"]')).to_contain_text("2.6573")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CHROMIUM, reason="needs Debian's package chromium")
 def test_the_button_opens_its_page_where_its_script_never_comes(watched, toleranced):
     page = pressed_before(watched, toleranced, lambda route: route.abort())

@@ -134,7 +134,7 @@ def test_a_downloaded_table_is_taken_back_without_a_new_revision(watched, http, 
     assert "results: verdict" in [cell.value for cell in sheet[1]]
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("scheme", [pytest.param("light", marks=pytest.mark.slow), "dark"])
 def test_the_table_has_no_serious_fault_of_accessibility(watched, two, scheme):
     watched.page.emulate_media(color_scheme=scheme)
     watched.open(two, wait_until="networkidle")
@@ -143,6 +143,7 @@ def test_the_table_has_no_serious_fault_of_accessibility(watched, two, scheme):
     assert [(one["id"], one["nodes"][0]["target"]) for one in serious] == []
 
 
+@pytest.mark.slow
 def test_faulty_cells_of_a_file_are_shown_in_place(watched, http, shell):
     page = watched.page
     watched.open(shell)

@@ -169,7 +169,7 @@ HIDDEN = """() => {
 
 
 @pytest.mark.usefixtures("plotted")
-@pytest.mark.parametrize("size", [(1440, 900), (1024, 768)])
+@pytest.mark.parametrize("size", [pytest.param((1440, 900), marks=pytest.mark.slow), (1024, 768)])
 def test_the_part_stays_in_view_and_hides_nothing_that_has_the_focus(watched, two_steps, size):
     """The picture alone stays; its parameters pass below it, without a scrollbar of their own."""
     page = watched.page
@@ -186,6 +186,7 @@ def test_the_part_stays_in_view_and_hides_nothing_that_has_the_focus(watched, tw
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("plotted")
 def test_two_steps_are_short_and_verdict_and_part_stay_in_view(watched, two_steps):
     page = watched.page
@@ -223,7 +224,7 @@ def test_a_link_of_the_verdict_unfolds_its_step_and_the_fold_is_kept(watched, tw
     )
 
 
-@pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
+@pytest.mark.parametrize("size", [pytest.param((1440, 900), marks=pytest.mark.slow), (390, 844)])
 def test_the_governing_criterion_stands_on_the_first_screen(browser, served, two_steps, size):
     width, height = size
     context = browser.new_context(viewport={"width": width, "height": height})

@@ -176,8 +176,15 @@ def test_the_next_version_is_held_against_the_released_one(watched, http):
     assert watched.faults() == []
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [1440, 390])
+@pytest.mark.parametrize(
+    ("width", "scheme"),
+    [
+        (1440, "light"),
+        (390, "dark"),
+        pytest.param(1440, "dark", marks=pytest.mark.slow),
+        pytest.param(390, "light", marks=pytest.mark.slow),
+    ],
+)
 def test_the_pages_are_accessible_wide_and_narrow_light_and_dark(browser, served, http, scheme, width):
     place = stored(http, f"axe_{scheme}_{width}", f'{SHEET}q [MPa] = F + D "wrong"\n')
     context = browser.new_context(viewport={"width": width, "height": 844}, color_scheme=scheme)

@@ -2,6 +2,7 @@
 
 import re
 
+import pytest
 from playwright.sync_api import expect
 from test_newcomer import step_diameters
 
@@ -11,6 +12,7 @@ given p [MPa] "permitted pressure" (example 12 MPa)
 D [mm] = sqrt(F * p) "bearing diameter\""""
 
 
+@pytest.mark.slow
 def test_a_newcomer_writes_a_worksheet_that_drives_a_part(watched, tmp_path):
     page = watched.page
     watched.open("/")
