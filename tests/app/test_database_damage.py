@@ -1,10 +1,12 @@
 """A damaged database is refused at the start, with the page; damage that shows later ends all writing."""
 
 import os
+import shutil
 import sqlite3
 
 import pytest
 from click.testing import CliRunner
+from components import migrated_file
 from sqlalchemy import select, update
 
 from app.cli import main
@@ -14,30 +16,35 @@ from app.storage.database import Database
 from app.storage.errors import CommitFailed, DatabaseDamaged
 from app.storage.identity import now
 from app.storage.integrity import faults, marker_of, refuse_damage
-from app.storage.migrations import migrate
 from app.storage.tables import BuildRow, DesignRow
 
 PAGE = 4096
 
 
+@pytest.fixture(scope="module")
+def filled(tmp_path_factory):
+    """A database with enough rows that every table of the test has several pages."""
+    path = tmp_path_factory.mktemp("filled") / "crankwright.sqlite"
+    shutil.copy(migrated_file(), path)
+    database = Database(f"sqlite:///{path}")
+    for number in range(300):
+        row = DesignRow(id=f"{number:024x}", name="n" * 100, created=now(), head=0)
+        database.write(lambda session, row=row: session.add(row))
+    parameters = {"text": "p" * 9000}  # more than a page: it overflows
+    build = BuildRow(key="k", model="m", version=1, parameters=parameters, measurements={}, created=now())
+    database.write(lambda session: session.add(build))
+    database.close()
+    with sqlite3.connect(path) as connection:
+        connection.execute("PRAGMA journal_mode = delete")
+    connection.close()
+    return path
+
+
 class TestDatabase:
     @pytest.fixture
-    def file(self, tmp_path):
-        """A database with enough rows that every table of the test has several pages."""
-        path = tmp_path / "crankwright.sqlite"
-        migrate(f"sqlite:///{path}")
-        database = Database(f"sqlite:///{path}")
-        for number in range(300):
-            row = DesignRow(id=f"{number:024x}", name="n" * 100, created=now(), head=0)
-            database.write(lambda session, row=row: session.add(row))
-        parameters = {"text": "p" * 9000}  # more than a page: it overflows
-        build = BuildRow(key="k", model="m", version=1, parameters=parameters, measurements={}, created=now())
-        database.write(lambda session: session.add(build))
-        database.close()
-        with sqlite3.connect(path) as connection:
-            connection.execute("PRAGMA journal_mode = delete")
-        connection.close()
-        return path
+    def file(self, filled, tmp_path):
+        """A copy of it, to be damaged."""
+        return shutil.copy(filled, tmp_path / "crankwright.sqlite")
 
     def pages(self, path):
         """The pages that hold something: page → name of its table or index."""
