@@ -21,6 +21,7 @@ US = {
     "mm**2/s": "inch**2/s", "MPa/mm": "psi/inch", "cm**2": "inch**2", "cm**3/s": "inch**3/s",
     "mm**4": "inch**4", "1/mm**3": "1/inch**3", "1/N": "1/lbf", "cm**3": "inch**3",
     "kN/mm": "lbf/inch", "1/MPa": "1/psi", "um/GPa": "inch/psi", "s/m**2": "s/inch**2",
+    "N*m*s/rad": "lbf*inch*s/rad",
 }  # fmt: skip
 """The unit that stands for a declared one; others, such as rpm, are used there as well."""
 

@@ -1,0 +1,168 @@
+"""What is read from a forced response: torque, stress and twist of the shafts, heat, angles, speeds.
+
+A vibratory value is half the swing of the curve that all orders make together. Adding their amplitudes gives
+more, by up to a factor of 2.5: they do not peak at one angle.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import on_paper, units
+from templates.physics.torsion.forced_train import Response
+from templates.physics.torsion.torque_harmonics import half_swing
+
+SUMMED = "solved numerically by one linear system for each speed and order, and the curve of their sum"
+
+
+def _across(values: Array) -> Array:
+    """(…, speed, member) as (…, member, speed)."""
+    return np.asarray(np.swapaxes(values, -1, -2))
+
+
+@on_paper(SUMMED)
+@units(None, returns="N*m")
+def vibratory_torque(response: Response) -> Array:
+    """Of the shafts [N m], (…, S, V)."""
+    return _across(half_swing(np.swapaxes(response.shaft_torque, -1, -2)))
+
+
+@on_paper(SUMMED)
+@units(None, returns="rad")
+def vibratory_twist(response: Response) -> Array:
+    """Of the shafts [rad], (…, S, V)."""
+    return _across(half_swing(np.swapaxes(response.twist, -1, -2)))
+
+
+@on_paper(SUMMED)
+@units(None, returns="rad")
+def vibratory_angle(response: Response) -> Array:
+    """Of the inertias [rad], (…, n, V)."""
+    return _across(half_swing(np.swapaxes(response.angles, -1, -2)))
+
+
+@units("N*m", "m**3", returns="Pa", latex=r"\frac{{{0}}}{{{1}}}")
+def stress_of(torque: Array, section: Array) -> Array:
+    """Shear stress [Pa] of torques [N m; ..., shaft, speed]; 0 where a shaft has a section modulus of 0."""
+    modulus = np.asarray(section)[..., None] if np.ndim(section) else np.asarray(section)
+    return np.asarray(torque / np.where(modulus == 0, np.inf, modulus))
+
+
+@on_paper("solved numerically by one linear system for each speed and order")
+@units(None, returns="N*m")
+def amplitudes_of_orders(response: Response) -> Array:
+    """Amplitude of each order of the shafts' torque [N m], (…, S, V, H)."""
+    return np.moveaxis(np.abs(response.shaft_torque), -1, -3)
+
+
+@units("N*m", returns="N*m", latex=r"\max_{{n}}{0}")
+def largest_of_torques(torque: Array) -> Array:
+    """The largest over the speeds [N m], (…, S)."""
+    return np.asarray(torque.max(axis=-1))
+
+
+@units("Pa", returns="Pa", latex=r"\max_{{n}}{0}")
+def largest_of_stresses(stress: Array) -> Array:
+    """The largest over the speeds [Pa], (…, S)."""
+    return np.asarray(stress.max(axis=-1))
+
+
+@units("rad", returns="rad", latex=r"\max_{{n}}{0}")
+def largest_of_angles(angle: Array) -> Array:
+    """The largest over the speeds [rad], (…, member)."""
+    return np.asarray(angle.max(axis=-1))
+
+
+@units("N*m", "rad/s", returns="rad/s", latex=r"\arg\max_{{n}}{0}")
+def speed_of_largest(torque: Array, speeds: Array) -> Array:
+    """The speed [rad/s] at which each shaft's torque (…, S, V) is largest, (…, S)."""
+    at = np.argmax(torque, axis=-1)
+    each = np.broadcast_to(np.asarray(speeds)[..., None, :], torque.shape)
+    chosen = np.take_along_axis(each, at[..., None], axis=-1)[..., 0]
+    return np.where(np.isnan(torque).any(axis=-1), np.nan, chosen)
+
+
+@units("N*m", "N*m", "1", returns="1", latex=r"\arg\max_{{h}}{1}")
+def order_of_largest(torque: Array, amplitudes: Array, orders: Array) -> Array:
+    """The order that is largest where each shaft's torque is largest, (…, S)."""
+    at = np.argmax(torque, axis=-1)[..., None, None]
+    there = np.take_along_axis(amplitudes, np.broadcast_to(at, (*at.shape[:-1], orders.size)), axis=-2)
+    largest = orders[np.argmax(there[..., 0, :], axis=-1)]
+    return np.where(np.isnan(torque).any(axis=-1), np.nan, largest)
+
+
+@units("N*m", returns="N*m", latex=r"\max_{{s}}{0}")
+def torque_envelope(torque: Array) -> Array:
+    """The largest of all shafts [N m], (…, V)."""
+    return np.asarray(torque.max(axis=-2))
+
+
+@units("Pa", returns="Pa", latex=r"\max_{{s}}{0}")
+def stress_envelope(stress: Array) -> Array:
+    """The largest of all shafts [Pa], (…, V)."""
+    return np.asarray(stress.max(axis=-2))
+
+
+@units(
+    None,
+    returns="W",
+    latex=r"\sum_{{h}}\tfrac12\left|\Delta\Phi\right|^2 h\omega\left(k\eta+h\omega c\right)",
+)
+def heat_of_shafts(response: Response) -> Array:
+    """Power that damping of the shafts turns to heat [W], (…, S, V)."""
+    return _across(response.shaft_power)
+
+
+@units("W", returns="W", latex=r"\max_{{n}}{0}")
+def largest_of_powers(power: Array) -> Array:
+    """The largest over the speeds [W], (…, S)."""
+    return np.asarray(power.max(axis=-1))
+
+
+@units(None, returns="W", latex=r"\sum_{{h}}\tfrac12\left|\Phi\right|^2\left(h\omega\right)^2c")
+def loss_of_inertias(response: Response) -> Array:
+    """Power that damping to the ground takes from the inertias [W], (…, n, V)."""
+    return _across(response.ground_power)
+
+
+@units(None, returns="W", latex=r"\sum_{{h}}\tfrac12 h\omega\,\mathrm{{Im}}\left(\Phi^*T\right)")
+def power_put_in(response: Response) -> Array:
+    """Power that the varying torque puts in [W], (…, V)."""
+    return response.power_in
+
+
+@units("W", "W", returns="W", latex=r"\sum{0}+\sum{1}")
+def power_lost(shafts: Array, inertias: Array) -> Array:
+    """Power that all damping takes [W], (…, V)."""
+    return np.asarray(shafts.sum(axis=-2) + inertias.sum(axis=-2))
+
+
+@units(
+    "W",
+    "W",
+    None,
+    returns="1",
+    latex=r"\max_{{n}}\frac{{\left|{0}-{1}\right|}}{{\tfrac12\sum h\omega\left|\Phi T\right|}}",
+)
+def power_error(put_in: Array, lost: Array, response: Response) -> Array:
+    """Difference of the powers over the apparent power, the largest of all speeds, (…)."""
+    size = response.apparent_power
+    return np.asarray((np.abs(put_in - lost) / np.where(size == 0, 1, size)).max(axis=-1))
+
+
+@units(None, "1", returns="rad/s", latex=r"h\omega\left|\Phi_{{{1}}}\right|")
+def speed_spectrum(response: Response, number: Array) -> Array:
+    """Amplitude of each order of the angular speed of one inertia, numbered from 1 [rad/s], (…, V, H)."""
+    return np.asarray(response.frequency * np.abs(response.angles[..., int(number) - 1]))
+
+
+@units(
+    None, "1", "rad/s", returns="1", latex=r"\frac{{\omega_{{max}}-\omega_{{min}}}}{{\overline{{\omega}}}}"
+)
+def irregularity(response: Response, number: Array, speeds: Array) -> Array:
+    """Swing of the angular speed of one inertia, numbered from 1, over its mean speed, (…, V)."""
+    at = int(number) - 1
+    layout = response.train.layout
+    mean = np.abs(np.asarray(speeds) * layout.speeds[at] / layout.speeds[response.train.crank])
+    return np.asarray(2 * half_swing(1j * response.frequency * response.angles[..., at]) / mean)

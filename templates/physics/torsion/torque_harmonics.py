@@ -1,0 +1,161 @@
+"""Harmonics of the torque of one cylinder, and the swing of a curve that is the sum of harmonics.
+
+A torque over one cycle is its mean plus Re Σ c e^{ihθ}, with orders h per turn of the crank: whole ones in
+two strokes, halves as well in four. The cylinder that fires at φ has the harmonics of the first one, which
+fires at φ₁, times e^{−ih(φ−φ₁)}.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from templates.core.arrays import Array
+from templates.core.language.declare import units
+
+Phasors = NDArray[np.complex128]
+TURN = 2 * np.pi
+MOST_ANGLES = 20_000
+_EVEN = 1e-6  # of a step
+_NOISE = 1e-14  # of the largest harmonic; smaller ones are rounding
+_BLOCK = 2_000_000  # samples of curves that are held at a time
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """Orders (H,), harmonics of gas [N m] and of inertia [N m s²], (…, H), of one cylinder."""
+
+    orders: Array
+    gas: Phasors
+    inertia: Phasors
+
+    def of_cylinders(self, speeds: Array, factors: Array, firing: Array) -> Phasors:
+        """Harmonics of each cylinder [N m], (…, V, H, N), at speeds [rad/s], (…, V)."""
+        behind = firing - firing[..., :1]
+        phase = np.exp(-1j * self.orders[:, None] * behind[..., None, None, :])
+        gas = self.gas[..., None, :, None] * np.asarray(factors)[..., None, None, :]
+        inertia = self.inertia[..., None, :, None] * np.asarray(speeds)[..., :, None, None] ** 2
+        return np.asarray((gas + inertia) * phase)
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """Crank angles of one cycle at equal steps: the first [rad], how many, and strokes 2 or 4."""
+
+    first: float
+    count: int
+    strokes: int
+
+
+def cycle_of(theta: Array) -> Cycle | None:
+    """The cycle of crank angles [rad], (K,), without a last point that repeats the first; None if none."""
+    if np.ndim(theta) != 1 or not 8 <= theta.size <= MOST_ANGLES:
+        return None
+    step = float(theta[-1] - theta[0]) / (theta.size - 1)
+    if step <= 0 or np.abs(np.diff(theta) - step).max() > _EVEN * step:
+        return None
+    for strokes in (2, 4):
+        points = strokes / 2 * TURN / step
+        count = round(points)
+        if abs(points - count) < 1e-3 and count in (theta.size, theta.size - 1):
+            return Cycle(float(theta[0]), count, strokes)
+    return None
+
+
+@units("rad", returns="1")
+def is_one_cycle(theta: Array) -> bool:
+    """Whether crank angles [rad] rise in equal steps over one cycle of one or two turns."""
+    return cycle_of(theta) is not None
+
+
+@units("rad", "N*m", returns="1")
+def closes(theta: Array, T: Array) -> bool:
+    """Whether a last point of a torque [N m; ..., angle] that repeats the first angle has its torque."""
+    cycle = cycle_of(theta)
+    if cycle is None or np.ndim(T) == 0 or np.shape(T)[-1] != cycle.count + 1:
+        return True
+    apart = np.abs(T[..., -1] - T[..., 0])
+    return bool(np.all(~(apart > _EVEN * np.abs(T).max(axis=-1))))
+
+
+@units("rad", "1", returns="1")
+def resolves(theta: Array, highest: Array) -> bool:
+    """Whether a cycle has more than two points for each period of the highest order, and this order."""
+    cycle = cycle_of(theta)
+    return cycle is None or 1 <= _lines(cycle, highest) < cycle.count / 2
+
+
+def _lines(cycle: Cycle, highest: Array) -> int:
+    """How many orders there are up to the highest."""
+    return int(np.floor(float(highest) * cycle.strokes / 2 + 1e-9))
+
+
+def excitation(theta: Array, gas: Array, inertia: Array, reference: Array, highest: Array) -> Excitation:
+    """The harmonics of one cylinder; a torque that is not given is none.
+
+    `inertia` is the torque [N m] at the speed `reference` [rad/s]; it grows with the square of the speed.
+    """
+    cycle = cycle_of(theta)
+    assert cycle is not None  # a rule refuses others
+    orders = orders_of(theta, highest)
+    squared = 1.0 if np.all(np.isnan(reference)) else np.asarray(reference)[..., None] ** 2
+    return Excitation(
+        orders, _harmonics(gas, cycle, orders), np.asarray(_harmonics(inertia, cycle, orders) / squared)
+    )
+
+
+def _harmonics(T: Array, cycle: Cycle, orders: Array) -> Phasors:
+    if np.ndim(T) == 0:
+        return np.zeros(orders.shape, complex)
+    spectrum = np.fft.rfft(T[..., : cycle.count], axis=-1)[..., 1 : orders.size + 1] * (2 / cycle.count)
+    size = np.abs(spectrum)
+    noise = _NOISE * np.abs(T).max(axis=-1, keepdims=True)
+    return np.asarray(np.where(size <= noise, 0, spectrum) * np.exp(-1j * orders * cycle.first))
+
+
+def half_swing(amplitudes: Phasors) -> Array:
+    """Half the swing over the cycle of Re Σ c e^{ikx}, k = 1 … H, of amplitudes (…, H).
+
+    The curve is sampled at least sixteen times in each period of its highest order; Newton's method leads
+    from the largest and the smallest sample to the extremes beside them.
+    """
+    flat = amplitudes.reshape(-1, amplitudes.shape[-1])
+    lines = flat.shape[-1]
+    samples = 1 << int(np.ceil(np.log2(max(64, 16 * lines))))
+    rows = max(1, _BLOCK // samples)
+    swings = np.empty(len(flat))
+    for start in range(0, len(flat), rows):
+        part = flat[start : start + rows]
+        spectrum = np.zeros((len(part), samples // 2 + 1), complex)
+        spectrum[:, 1 : lines + 1] = part * (samples / 2)
+        curve = np.fft.irfft(spectrum, samples, axis=-1)
+        highest = _extreme(part, curve)
+        lowest = _extreme(-part, -curve)
+        swings[start : start + rows] = (highest + lowest) / 2
+    return swings.reshape(amplitudes.shape[:-1])
+
+
+def _extreme(amplitudes: Phasors, curve: Array) -> Array:
+    """The largest value of each curve, (R,), by two of Newton's steps from its largest sample."""
+    at = np.argmax(curve, axis=-1)
+    largest = np.take_along_axis(curve, at[:, None], axis=-1)[:, 0]
+    step = TURN / curve.shape[-1]
+    k = np.arange(1, amplitudes.shape[-1] + 1)
+    x = at * step
+    for _ in range(2):
+        turned = amplitudes * np.exp(1j * k * x[:, None])
+        slope, bend = -(turned.imag @ k), -(turned.real @ k**2)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            way = np.where(bend < 0, -slope / bend, 0.0)
+        x = x + np.clip(way, -step, step)
+    return np.maximum(largest, (amplitudes * np.exp(1j * k * x[:, None])).real.sum(axis=-1))
+
+
+@units("rad", "1", returns="1", latex=r"\frac{{2 j}}{{z}}\le{1}")
+def orders_of(theta: Array, highest: Array) -> Array:
+    """The orders up to the highest, (H,): whole ones in two strokes, halves as well in four."""
+    cycle = cycle_of(theta)
+    assert cycle is not None  # a rule refuses others
+    return np.arange(1, _lines(cycle, highest) + 1) * 2 / cycle.strokes

@@ -1,0 +1,208 @@
+"""How inertias, shafts and gears are joined: what belongs together, and how fast each inertia turns.
+
+Inertias are numbered from 1; a shaft to 0 ends at the ground. A gear makes the angle of its second inertia
+`ratio` times that of its first, so all angles are B q with one q for each inertia that no gear drives.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from templates.core.arrays import Array, Integers
+from templates.core.language.declare import units
+
+GROUND = -1
+MOST_INERTIAS, MOST_SHAFTS = 100, 300
+_SAME = 1e-9  # mean speeds that agree to this are one
+
+
+def listed(values: Array) -> Array:
+    """A list as given; empty where it is not given."""
+    return np.zeros(0) if np.ndim(values) == 0 else np.asarray(values)
+
+
+def numbered(values: Array) -> Integers:
+    """Numbers from 1 as places from 0; the ground is −1."""
+    return np.asarray(listed(values), dtype=np.int64) - 1
+
+
+@dataclass(frozen=True)
+class TrainLayout:
+    """Which inertias the shafts (S, 2) and the gears (G, 2) join, from 0; ratios (G,)."""
+
+    count: int
+    shafts: Integers
+    gears: Integers
+    ratios: Array
+
+    @cached_property
+    def difference(self) -> Array:
+        """Twist of each shaft by the angles of the inertias, (S, n)."""
+        matrix = np.zeros((len(self.shafts), self.count))
+        for row, (first, second) in zip(matrix, self.shafts, strict=True):
+            row[first] += 1
+            if second != GROUND:
+                row[second] -= 1
+        return matrix
+
+    @cached_property
+    def reduction(self) -> Array:
+        """B, (n, q): the angles of all inertias by those that no gear drives."""
+        drivers = {second: (first, ratio) for (first, second), ratio in self._driven()}
+        free = [i for i in range(self.count) if i not in drivers]
+        columns = {inertia: column for column, inertia in enumerate(free)}
+        matrix = np.zeros((self.count, len(free)))
+        for inertia in range(self.count):
+            ratio, at = 1.0, inertia
+            while at in drivers:
+                at, step = drivers[at]
+                ratio *= step
+            matrix[inertia, columns[at]] = ratio
+        return matrix
+
+    @cached_property
+    def speeds(self) -> Array:
+        """Mean speed of each inertia over that of the first, (n,); NaN where nothing joins it."""
+        joined: defaultdict[int, list[tuple[int, float]]] = defaultdict(list)
+        for (first, second), ratio in self._turning():
+            joined[first].append((second, ratio))
+            joined[second].append((first, 1 / ratio))
+        speeds, waiting = np.full(self.count, np.nan), [0]
+        speeds[0] = 1.0
+        while waiting:
+            at = waiting.pop()
+            new = [(other, ratio) for other, ratio in joined[at] if np.isnan(speeds[other])]
+            for other, ratio in new:
+                speeds[other] = speeds[at] * ratio
+            waiting += [other for other, _ in new]
+        return speeds
+
+    @property
+    def turns_freely(self) -> bool:
+        """Whether all shafts and gears keep the mean speeds of the inertias that they join."""
+        return all(
+            abs(self.speeds[second] - ratio * self.speeds[first]) <= _SAME * abs(self.speeds[second])
+            for (first, second), ratio in self._turning()
+            if not np.isnan(self.speeds[first])
+        )
+
+    @property
+    def has_gear_loop(self) -> bool:
+        """Whether gears drive an inertia twice, or in a circle."""
+        drivers = {int(second): int(first) for first, second in self.gears}
+        if len(drivers) < len(self.gears):
+            return True
+        clear: set[int] = set()
+        for start in drivers:
+            at, path = start, set[int]()
+            while at in drivers and at not in clear:
+                if at in path:
+                    return True
+                path.add(at)
+                at = drivers[at]
+            clear |= path
+        return False
+
+    def _driven(self) -> list[tuple[tuple[int, int], float]]:
+        pairs = ((int(first), int(second)) for first, second in self.gears)
+        return list(zip(pairs, self.ratios.tolist(), strict=True))
+
+    def _turning(self) -> list[tuple[tuple[int, int], float]]:
+        """What makes inertias turn together: shafts between two of them, and gears."""
+        shafts = [((int(i), int(j)), 1.0) for i, j in self.shafts if j != GROUND]
+        return [*shafts, *self._driven()]
+
+
+def train_layout(
+    J: Array, first: Array, second: Array, drivers: Array, driven: Array, ratios: Array
+) -> TrainLayout | None:
+    """The layout; None where lists do not fit or name what does not exist, which other rules refuse."""
+    count = np.shape(J)[-1]
+    if not (
+        are_few(J, first, drivers)
+        and are_pairs(first, second)
+        and name_inertias(J, first, second)
+        and are_gears(drivers, driven, ratios)
+        and name_inertias(J, drivers, driven)
+        and np.all(listed(driven) > 0)
+    ):
+        return None
+    shafts = np.stack([numbered(first), numbered(second)], axis=-1)
+    gears = np.stack([numbered(drivers), numbered(driven)], axis=-1)
+    return TrainLayout(count, shafts, gears, listed(ratios))
+
+
+@units("kg*m**2", "1", "1", returns="1")
+def are_few(J: Array, first: Array, drivers: Array) -> bool:
+    """Whether there are no more inertias, shafts and gears than are calculated."""
+    return (
+        np.shape(J)[-1] <= MOST_INERTIAS
+        and np.size(first) <= MOST_SHAFTS
+        and np.size(drivers) <= MOST_INERTIAS
+    )
+
+
+@units("1", "1", returns="1")
+def are_pairs(first: Array, second: Array) -> bool:
+    """Whether two lists have one number for each shaft."""
+    return np.ndim(first) == 1 and np.shape(first) == np.shape(second)
+
+
+@units("1", "N*m/rad", returns="1")
+def have_stiffness(first: Array, k: Array) -> bool:
+    """Whether each shaft has a stiffness [N m/rad; ..., shaft]."""
+    return np.shape(k)[-1:] == np.shape(first)[-1:]
+
+
+@units("kg*m**2", "1", "1", returns="1")
+def name_inertias(J: Array, first: Array, second: Array) -> bool:
+    """Whether two lists of numbers name inertias that exist, and never the same one twice."""
+    one, other = listed(first), listed(second)
+    count = np.shape(J)[-1]
+    exist = np.all(one <= count) and np.all(other <= count)
+    return bool(exist and (one.shape != other.shape or np.all(one != other)))
+
+
+@units("1", "1", "1", returns="1")
+def are_gears(drivers: Array, driven: Array, ratios: Array) -> bool:
+    """Whether three lists describe gears, or none is given."""
+    given = [np.shape(one) for one in (drivers, driven, ratios)]
+    return given[0] == given[1] == given[2] and len(given[0]) <= 1 and bool(np.all(listed(ratios) != 0))
+
+
+@units(None, returns="1")
+def has_no_loop(layout: TrainLayout | None) -> bool:
+    """Whether gears drive each inertia once at most, and not in a circle."""
+    return layout is None or not layout.has_gear_loop
+
+
+@units(None, returns="1")
+def is_joined(layout: TrainLayout | None) -> bool:
+    """Whether shafts and gears join all inertias."""
+    return layout is None or bool(np.all(np.isfinite(layout.speeds)))
+
+
+@units(None, returns="1")
+def turns_freely(layout: TrainLayout | None) -> bool:
+    """Whether the train turns without twisting its shafts."""
+    return layout is None or layout.turns_freely
+
+
+@units("kg*m**2", "1", returns="1")
+def exist(J: Array, numbers: Array) -> bool:
+    """Whether one list of numbers, or nothing, names inertias that exist."""
+    return np.ndim(numbers) <= 1 and bool(np.all(~(np.asarray(numbers) > np.shape(J)[-1])))
+
+
+@units(None, "1", returns="1")
+def turn_alike(layout: TrainLayout | None, numbers: Array) -> bool:
+    """Whether the excited inertias have one mean speed."""
+    places = numbered(numbers)
+    if layout is None or places.size == 0 or np.any(places >= layout.count):
+        return True
+    speeds = layout.speeds[places]
+    return bool(np.all(~(np.abs(speeds - speeds[0]) > _SAME * np.abs(speeds[0]))))
