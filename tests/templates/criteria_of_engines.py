@@ -3,9 +3,29 @@
 Each: template, criterion, what differs from the example, limits given, verdict, value and limit.
 """
 
-from math import pi, sqrt
+from math import cos, pi, sqrt
 
 ENGINE, ROLLING, BURNT = ("engine", 2), ("rolling_bearing_life", 1), ("combustion_cycle", 1)
+TWIST = ("forced_torsion", 1)
+# One inertia on a shaft to the ground in resonance at 200 rad/s: 1 N m over a loss factor of 0.01.
+TONE = {
+    **dict.fromkeys([
+        "shaft_damping", "gear_from", "gear_to", "gear_ratios", "absolute_damping", "propeller_inertia",
+        "propeller_torque", "propeller_speed", "inertia_torque", "inertia_speed",
+    ]),
+    "inertias": {"value": [0.5], "unit": "kg*m**2"}, "shaft_from": [1], "shaft_to": [0],
+    "shaft_stiffness": {"value": [20], "unit": "kN*m/rad"}, "loss_factors": [0.01],
+    "section_moduli": {"value": [5], "unit": "cm**3"}, "excited_inertias": [1],
+    "firing_angles": {"value": [0], "unit": "deg"}, "highest_order": 1, "observed_inertia": 1,
+    "crank_angle": {"value": list(range(0, 360, 45)), "unit": "deg"},
+    "gas_torque": {"value": [cos(pi / 4 * i) for i in range(8)], "unit": "N*m"},
+    "speeds": {"value": [100, 200], "unit": "rad/s"},
+}  # fmt: skip
+RESONANT = sqrt(1 + 0.01**2) / 0.01  # N m
+OUTSIDE, INSIDE = (
+    {"lowest_running_speed": "0 rpm", "highest_running_speed": highest}
+    for highest in ("1000 rpm", "3000 rpm")
+)
 COLD = {"heat_release": "0 J", "inlet_closes": "180 deg"}  # a polytrope of 1.32 from 0.95 bar, by 10.5
 STEADY = {"radial_load": "10 kN", "axial_load": "0 N", "reliability": 0.9}  # on 55.3 and 31.5 kN
 HOURS = 5.53**3 * 1e6 / (60 * 3000)
@@ -27,6 +47,14 @@ CASES = [
     (ROLLING, "life", STEADY, {"required_life": "1000 h"}, "not_met", HOURS, 1000),
     (ROLLING, "static_safety", STEADY, {"required_static_safety": 2}, "met", 3.15, 2),
     (ROLLING, "static_safety", STEADY, {"required_static_safety": 4}, "not_met", 3.15, 4),
+    (TWIST, "torque", TONE, {"permissible_vibratory_torque": "101 N*m"}, "met", RESONANT, 101),
+    (TWIST, "torque", TONE, {"permissible_vibratory_torque": "99 N*m"}, "not_met", RESONANT, 99),
+    (TWIST, "stress", TONE, {"permissible_vibratory_stress": "21 MPa"}, "met", RESONANT / 5, 21),
+    (TWIST, "stress", TONE, {"permissible_vibratory_stress": "19 MPa"}, "not_met", RESONANT / 5, 19),
+    (TWIST, "heat", TONE, {"permissible_shaft_heat": "0.6 W"}, "met", 200 / (2 * 200), 0.6),
+    (TWIST, "heat", TONE, {"permissible_shaft_heat": "0.4 W"}, "not_met", 200 / (2 * 200), 0.4),
+    (TWIST, "separation", TONE, OUTSIDE, "met", 200 * 30 / pi - 500, 500),
+    (TWIST, "separation", TONE, INSIDE, "not_met", 200 * 30 / pi - 1500, 1500),
     (BURNT, "peak_pressure", COLD, {"permissible_peak_pressure": "25 bar"}, "met", 0.95 * 10.5**1.32, 25),
     (BURNT, "peak_pressure", COLD, {"permissible_peak_pressure": "20 bar"}, "not_met", 0.95 * 10.5**1.32, 20),
 ]

@@ -132,7 +132,7 @@ def power_put_in(response: Response) -> Array:
     return response.power_in
 
 
-@units("W", "W", returns="W", latex=r"\sum{0}+\sum{1}")
+@units("W", "W", returns="W", latex=r"\sum {0}+\sum {1}")
 def power_lost(shafts: Array, inertias: Array) -> Array:
     """Power that all damping takes [W], (…, V)."""
     return np.asarray(shafts.sum(axis=-2) + inertias.sum(axis=-2))

@@ -153,7 +153,7 @@ def _extreme(amplitudes: Phasors, curve: Array) -> Array:
     return np.maximum(largest, (amplitudes * np.exp(1j * k * x[:, None])).real.sum(axis=-1))
 
 
-@units("rad", "1", returns="1", latex=r"\frac{{2 j}}{{z}}\le{1}")
+@units("rad", "1", returns="1", latex=r"\frac{{2 j}}{{z}}\le {1}")
 def orders_of(theta: Array, highest: Array) -> Array:
     """The orders up to the highest, (H,): whole ones in two strokes, halves as well in four."""
     cycle = cycle_of(theta)

@@ -29,7 +29,7 @@ def _rows(train: Train) -> Array:
 def natural_frequencies(train: Train) -> Array:
     """Natural angular frequencies [rad/s], ascending, (…, q); 0 for what turns without twist."""
     rows = _rows(train)
-    is_finite = np.isfinite(rows).all(axis=(-2, -1), keepdims=True)
+    is_finite = np.asarray(np.isfinite(rows).all(axis=(-2, -1), keepdims=True))
     values = np.linalg.svd(np.where(is_finite, rows, 0), compute_uv=False)[..., ::-1]
     values = np.where(values <= _ROUNDING * values[..., -1:], 0, values)
     return np.where(is_finite[..., 0], values, np.nan)
@@ -40,7 +40,7 @@ def natural_frequencies(train: Train) -> Array:
 def mode_shapes(train: Train) -> Array:
     """Angles of all inertias in the modes, (…, q, n), each with 1 as its largest entry."""
     rows = _rows(train)
-    is_finite = np.isfinite(rows).all(axis=(-2, -1), keepdims=True)
+    is_finite = np.asarray(np.isfinite(rows).all(axis=(-2, -1), keepdims=True))
     free = np.linalg.svd(np.where(is_finite, rows, 0), full_matrices=False)[2][..., ::-1, :]
     values = natural_frequencies(train)
     for point in np.ndindex(free.shape[:-2]):
