@@ -56,6 +56,11 @@ def test_servers_begin_first():
             "tests/cad/test_cranks_random.py",
         ),
         ("cad/step.py", "tests/cad/analysis/test_stress.py", "tests/physics/test_film_map.py"),
+        (
+            "templates/physics/supplied/supplied_march.py",
+            "tests/templates/test_golden_at_length.py",
+            "tests/cad/test_cranks_random.py",
+        ),
         ("cad/models/crank_throw_v1.py", "tests/cad/test_cranks_random.py", "tests/app/test_crash.py"),
         ("templates/oil_film/oil_film_v2.py", changed.CATALOGUE, "tests/cad/test_cranks_random.py"),
         ("app/storage/database.py", "tests/app/test_crash.py", "tests/physics/test_film_map.py"),

@@ -179,7 +179,7 @@ def test_hatch_stays_within_its_outline() -> None:
         assert abs((b[1] - a[1]) - (b[0] - a[0])) < 1e-9  # at 45°
 
 
-@pytest.mark.parametrize("backwards", [False, True])
+@pytest.mark.parametrize("backwards", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_the_order_of_sets_does_not_show(
     example: Build, dxf: bytes, monkeypatch: pytest.MonkeyPatch, backwards: bool
 ) -> None:

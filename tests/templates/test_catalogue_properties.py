@@ -29,6 +29,10 @@ GOLDEN = Path(__file__).parents[1] / "golden"
 BUILT_IN = find([Path(templates.__file__).parent], Template)
 EVERY = [pytest.param(cls, id=f"{cls.id}-{cls.version}") for cls in chain(BUILT_IN, models())]
 every_template = pytest.mark.parametrize("cls", EVERY)
+SAMPLED = {("cycle_heat_balance", 1): 9}
+"""Of these versions one golden case in so many: test_golden_at_length.py calculates the others."""
+SLOW_LEVELS = {("oil_film_cycle", 1, "transient"), ("oil_film_cycle", 2, "supplied")}
+"""Levels of which one golden case takes seconds: that file calculates them too."""
 
 SNAKE_CASE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
@@ -174,7 +178,7 @@ class TestGolden:
         )
         assert json.loads(release_file(cls).read_text(encoding="utf-8")) == digests(cls)
         assert len(record["cases"]) > len(cls.inputs)
-        for case in record["cases"]:
+        for case in record["cases"][:: SAMPLED.get((cls.id, cls.version), 1)]:
             check_case(cls, case, record["precision"])
 
     @every_template
@@ -183,7 +187,8 @@ class TestGolden:
         recorded = {case["level"] for case in cases["levels"]}
         assert recorded == set(cls.levels) - {cls.default_level}
         for case in cases["levels"]:
-            check_case(cls, case, case.get("precision", cases["precision"]))
+            if (cls.id, cls.version, case["level"]) not in SLOW_LEVELS:
+                check_case(cls, case, case.get("precision", cases["precision"]))
 
 
 def check_case(cls, case, precision):
