@@ -71,9 +71,15 @@ def cavitating_film(
 
 
 def solved_ring(
-    eps: float, ratio: float, grooves: list[Groove], ambient: float = 0.0, around: int = 128, across: int = 16
+    eps: float,
+    ratio: float,
+    grooves: list[Groove],
+    ambient: float = 0.0,
+    around: int = 128,
+    across: int = 16,
+    near: SolvedRing | None = None,
 ) -> SolvedRing:
-    """Solve the static film with cavities, from a coarse mesh to the requested one.
+    """Solve the static film with cavities, from a film nearby or from coarse meshes to the requested one.
 
     Parameters
     ----------
@@ -89,6 +95,8 @@ def solved_ring(
         Intervals around.
     across
         Intervals across half the width.
+    near
+        A solved film of almost the same place: the start, which saves the coarse meshes.
 
     Raises
     ------
@@ -99,9 +107,9 @@ def solved_ring(
     require(np.asarray(len(grooves) > 0), "grooves: at least one must feed the film")
     pressures = np.array([ambient, *(groove.P for groove in grooves)])
     require((pressures >= 0) & np.isfinite(pressures), "pressures must be 0 or more above that of the cavity")
-    solved: SolvedRing | None = None
     meshes = [(max(around >> k, _COARSEST[0]), max(across >> k, _COARSEST[1])) for k in (3, 2, 1, 0)]
-    for n, m in dict.fromkeys(meshes):
+    solved = near
+    for n, m in dict.fromkeys(meshes if near is None else meshes[-1:]):
         ring = grooved_ring(eps, ratio, grooves, n, m)
         network, fed = fed_network(ring, grooves, ambient)
         solution = cavitation(network, None if solved is None else _interpolated(solved, ring))

@@ -7,12 +7,15 @@ gap changes the factors around alone.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_array, diags_array, eye_array, kron
+from numpy.typing import NDArray
+from scipy.sparse import csc_array
 
 from templates.core.arrays import Array, Mask
 from templates.physics.cavities.cavitation import Network
 from templates.physics.films.film_equations import dual_widths, midpoints
 from templates.physics.films.film_mesh import gap, ring_mesh
+
+Numbers = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -103,12 +106,31 @@ def perturbed_flows(ring: Ring, change: Array, change_mid: Array) -> tuple[csc_a
 
 def _flows(ring: Ring, cube_mid: Array, cube: Array, H_mid: Array) -> tuple[csc_array, csc_array]:
     """What nodes lose by pressure and by shear, for H³ between and at the nodes and H between them."""
-    n, dual = ring.phi.size - 1, dual_widths(ring.zeta)
-    step = csc_array((np.ones(n), (np.arange(n), np.arange(1, n + 1) % n)), shape=(n, n)) - eye_array(n)
-    axial = eye_array(dual.size - 1, dual.size, k=1) - eye_array(dual.size - 1, dual.size)
-    conductance = cube * dual_widths(ring.phi) / ring.ratio**2
-    conductance[0] += conductance[-1]
-    around = kron(step.T @ diags_array(cube_mid / np.diff(ring.phi)) @ step, diags_array(dual))
-    across = kron(diags_array(conductance[:-1]), axial.T @ diags_array(1 / np.diff(ring.zeta)) @ axial)
-    shear = kron(-step.T @ diags_array(6 * H_mid), diags_array(dual))
-    return csc_array(around + across), csc_array(shear)
+    n, m, dual = ring.phi.size - 1, ring.zeta.size, dual_widths(ring.zeta)
+    node = np.arange(n * m).reshape(n, m)
+    ahead = np.roll(node, -1, axis=0)
+    cell = cube * dual_widths(ring.phi) / ring.ratio**2
+    cell[0] += cell[-1]
+    around = (cube_mid / np.diff(ring.phi))[:, None] * dual
+    across = cell[:-1, None] / np.diff(ring.zeta)
+    shear = 6 * H_mid[:, None] * dual
+    by_pressure = [*_exchanged(node, ahead, around), *_exchanged(node[:, :-1], node[:, 1:], across)]
+    return _assembled(by_pressure, n * m), _assembled([(node, node, shear), (ahead, node, -shear)], n * m)
+
+
+def _exchanged(one: Numbers, other: Numbers, conductance: Array) -> list[tuple[Numbers, Numbers, Array]]:
+    """What two neighbours lose to each other: entries (row, column, value)."""
+    return [
+        (one, one, conductance),
+        (other, other, conductance),
+        (one, other, -conductance),
+        (other, one, -conductance),
+    ]
+
+
+def _assembled(entries: list[tuple[Numbers, Numbers, Array]], count: int) -> csc_array:
+    """The matrix of all entries; those at one place add."""
+    row, column, value = (
+        np.concatenate([part.ravel() for part in parts]) for parts in zip(*entries, strict=True)
+    )
+    return csc_array((value, (row, column)), shape=(count, count))

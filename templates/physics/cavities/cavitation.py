@@ -18,10 +18,11 @@ H. G. Elrod, Trans. ASME J. Lubr. Technol. 103, 1981, p. 350.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_array, diags_array
+from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
 from templates.core.arrays import Array, Mask
+from templates.physics.cavities.column_scaled import ColumnScaledSum
 
 _MOST_STEPS = 200
 _ACCURACY = 1e-11
@@ -80,6 +81,7 @@ def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Ca
     A, T = network.A[free][:, free], network.T[free][:, free]
     scale = np.stack([A.diagonal(), T.diagonal()])
     by_P, by_void = csc_array(A / scale[0]), csc_array(T / scale[1])
+    slopes = ColumnScaledSum.of(by_P, by_void)
     P, void = start if start is not None else (np.zeros(free.size), np.zeros(free.size))
     P, void = np.where(free, P, network.P_fixed), np.where(free, void, 0.0)
     flow = max(float(np.abs(network.T.data).max()), float(np.abs(network.A @ P).max()))
@@ -91,21 +93,24 @@ def cavitation(network: Network, start: tuple[Array, Array] | None = None) -> Ca
         if max(worst, np.abs(fischer).max()) < _ACCURACY * flow:
             P[free], void[free] = np.where(pair[0] >= pair[1], pair * [[1], [0]], pair * [[0], [1]]) / scale
             return Cavitation(P, void, step, float(np.abs(network.loss(P, void)[free]).max()) / flow)
-        P[free], void[free] = (pair + _newton_step(by_P, by_void, loss, pair, fischer)) / scale
+        P[free], void[free] = (pair + _newton_step(slopes, by_P, by_void, loss, pair, fischer)) / scale
     raise ArithmeticError("the cavities' extent did not settle")
 
 
-def _newton_step(by_P: csc_array, by_void: csc_array, loss: Array, pair: Array, fischer: Array) -> Array:
+def _newton_step(
+    slopes: ColumnScaledSum, by_P: csc_array, by_void: csc_array, loss: Array, pair: Array, fischer: Array
+) -> Array:
     """Changes of pressure and void, (2, N), from loss + A dP − T dvoid = 0 and the changed complementarity.
 
     Where the film is full dvoid is eliminated, in the cavity dP: the larger slope divides.
     """
     full = pair[0] >= pair[1]
-    slopes = 1 - pair / np.maximum(np.hypot(*pair), np.finfo(float).tiny)
-    ratio, rest = slopes.min(axis=0) / slopes.max(axis=0), -fischer / slopes.max(axis=0)
-    matrix = by_P * np.where(full, 1, -ratio) - by_void * np.where(full, -ratio, 1)
-    matrix = matrix + diags_array(np.where(full, _DAMPING, -_DAMPING))
+    dependence = 1 - pair / np.maximum(np.hypot(*pair), np.finfo(float).tiny)
+    ratio, rest = dependence.min(axis=0) / dependence.max(axis=0), -fischer / dependence.max(axis=0)
+    matrix = slopes.scaled(
+        np.where(full, 1, -ratio), np.where(full, ratio, -1), np.where(full, _DAMPING, -_DAMPING)
+    )
     right = -loss - by_P @ np.where(full, 0, rest) + by_void @ np.where(full, rest, 0)
-    kept = splu(csc_array(matrix)).solve(right)
+    kept = splu(matrix).solve(right)
     eliminated = rest - ratio * kept
     return np.where(full, [kept, eliminated], [eliminated, kept])

@@ -6,6 +6,7 @@ which their stiffness makes up for what the load still lacks. No answer, where t
 more than the load, or the search has not come to rest after 20 films.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -167,9 +168,9 @@ class Search:
         nearest to rest is taken.
         """
         place, longest, before = self.start(), _LONGEST, np.zeros(2)
-        best, nearest = None, _HUNTED
+        best, nearest, ring = None, _HUNTED, None
         for _ in range(_STEPS):
-            ring = self.solved(place, _COARSE)
+            ring = self.solved(place, _COARSE, ring)
             lack = self.lack(place, linear_film(ring))
             distance = float(np.hypot(*lack.step)) / min(1.0, float(np.hypot(*place.y)))
             if distance <= nearest:
@@ -191,9 +192,13 @@ class Search:
         attitude = mapped_film(eps, np.array(self.ratio))["attitude"]
         return Place(np.arctanh(eps) * np.array([np.cos(attitude), np.sin(attitude)]))
 
-    def solved(self, place: Place, mesh: tuple[int, int]) -> SolvedRing:
-        """The film at a place."""
-        return solved_ring(place.eps, self.ratio, self.feed.placed(place.attitude), 0.0, *mesh)
+    def solved(self, place: Place, mesh: tuple[int, int], near: SolvedRing | None) -> SolvedRing:
+        """The film at a place, from one nearby if there is one that leads to it."""
+        grooves = self.feed.placed(place.attitude)
+        if near is not None:
+            with suppress(ArithmeticError):
+                return solved_ring(place.eps, self.ratio, grooves, 0.0, *mesh, near)
+        return solved_ring(place.eps, self.ratio, grooves, 0.0, *mesh)
 
     def lack(self, place: Place, film: LinearFilm) -> Lack:
         """What the film there lacks; `film` is in axes of the line of centres."""
@@ -223,7 +228,7 @@ class Search:
 
         Load and peak converge with order 2, shear and flow, which see the front, with 1.
         """
-        finer = self.solved(place, _FINE)
+        finer = self.solved(place, _FINE, ring)
         coarse, fine, linear = measured(ring), measured(finer), linear_film(finer)
         force = linear.force + (linear.force - linear_film(ring).force) / 3
         final = place.moved(self.lack(place, replace(linear, force=force)).step)

@@ -1,0 +1,38 @@
+"""Newton's matrix on one pattern, and a start from a film nearby: the same numbers with less work."""
+
+import numpy as np
+import pytest
+from scipy.sparse import csc_array, diags_array, random_array
+
+from templates.physics.cavities.cavitating_film import measured, solved_ring
+from templates.physics.cavities.cavitating_network import Groove
+from templates.physics.cavities.column_scaled import ColumnScaledSum
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_sum_on_one_pattern_is_that_of_scipy(seed):
+    rng = np.random.default_rng(seed)
+    first, second = (csc_array(random_array((30, 30), density=0.1, rng=rng)) for _ in range(2))
+    total = ColumnScaledSum.of(first, second)
+    for _ in range(2):  # the second time on the values of the first
+        a, b, d = rng.normal(size=(3, 30))
+        wanted = (first @ diags_array(a) + second @ diags_array(b) + diags_array(d)).toarray()
+        assert total.scaled(a, b, d).toarray() == pytest.approx(wanted, rel=1e-14, abs=1e-300)
+
+
+def test_entries_at_one_place_add():
+    twice = csc_array(([1.0, 2.0], ([0, 0], [1, 1])), shape=(2, 2))
+    total = ColumnScaledSum.of(twice, csc_array((2, 2)))
+    assert total.scaled(np.ones(2), np.ones(2), np.zeros(2)).toarray().tolist() == [[0, 3], [0, 0]]
+
+
+@pytest.mark.parametrize(
+    "grooves", [[Groove(np.pi, 0.0, P=0.1)], [Groove(2.0, 0.3, P=0.4), Groove(-1.9, 0.3, P=0.4)]]
+)
+def test_a_film_from_one_nearby_is_that_from_coarse_meshes(grooves):
+    near = solved_ring(0.6, 0.5, grooves, 0.0, 64, 8)
+    started, alone = (
+        measured(solved_ring(0.65, 0.5, grooves, 0.0, 128, 16, start)) for start in (near, None)
+    )
+    for name in ("So", "attitude", "P_max", "friction", "side_flow", "supply_flow"):
+        assert getattr(started, name) == pytest.approx(getattr(alone, name), rel=1e-9), name
