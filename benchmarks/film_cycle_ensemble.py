@@ -1,11 +1,13 @@
 """How far the cheap levels of `oil_film_cycle` 2 may be from level supplied: bounds from random duties.
 
-    python -m benchmarks.film_cycle_ensemble run            marches duties until every band has enough
+    python -m benchmarks.film_cycle_ensemble run            marches 60 duties in every band
+    python -m benchmarks.film_cycle_ensemble more           marches 93 duties in every band
     python -m benchmarks.film_cycle_ensemble check          the same with another seed, 100 of each supply
     python -m benchmarks.film_cycle_ensemble write          makes the accuracy file from what there is
     python -m benchmarks.film_cycle_ensemble ratios         smallest films of mobility_grooved over supplied
+    python -m benchmarks.film_cycle_ensemble page           the tables of docs/oil_film_cycle.md
 
-`run` and `check` take seconds a duty, hours in all; each duty is one line of
+`run`, `more` and `check` take 1 to 2 s a duty in the mean, some 20 s; each duty is one line of
 benchmarks/results/film_cycle_ensemble.jsonl, written when it is done, and a run goes on where it was stopped.
 `run half_groove` does one kind of supply alone. `write` prints how often the bounds hold with the other seed.
 
@@ -13,17 +15,20 @@ Half of the duties are random engines, half Fourier loads with firings (`supplie
 extend over 120° to 240°. Holes are well placed: under the load, within 60° of its direction, for a tenth of
 the cycle at most. In every band of load number and B/D the bound is an order statistic, a one-sided tolerance
 bound: it is not below the 95 % quantile of the error with a confidence of 95 %. The largest of 59 duties is
-the first that is. An error is relative to the answer of the level, of a curve to its largest value; what the
-marched orbit itself lacks of repeating is added. A duty that starves has an infinite error. Pressures have no
-bound: that of level supplied is not converged where a starved film ends in an impact. Angles have none: of
-two films nearly alike, now one, now the other is the smallest.
+the first that is; of 93 it is the second largest, so that one may starve. How many are marched does not
+depend on what they show: 60 in every band, then 93. A bound is rounded up. An error is relative to the answer
+of the level, of a curve to its largest value; what the marched orbit itself lacks of repeating is added. A
+duty that starves has an infinite error. Pressures have no bound: that of level supplied is not converged
+where a starved film ends in an impact. Angles have none: of two films nearly alike, now one, now the other is
+the smallest.
 """
 
 import json
 import sys
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
+from math import ceil, floor, log10
 from pathlib import Path
 from time import process_time
 from typing import Any
@@ -31,172 +36,34 @@ from typing import Any
 import numpy as np
 from scipy.stats import binom
 
-from benchmarks.supplied_duties import RandomDuty, random_duty
+from benchmarks.film_cycle_duties import (
+    BANDS,
+    CHEAP,
+    ENOUGH,
+    FRESH,
+    KINDS,
+    LOADS,
+    MORE,
+    OTHER_SEED,
+    OUTPUTS,
+    SEED,
+    WIDTHS,
+    Line,
+    band,
+    drawn,
+    fed,
+    kept,
+    march,
+)
 from templates.core.arrays import Array
-from templates.physics.orbits.cyclic_film import CycleFilm, Duty
-from templates.physics.supplied.fed_cycle import FedDuty, FedOrbit, fed_film, fed_orbit
-from templates.physics.supplied.feeding import Feeding, feed_under_load
-from templates.physics.supplied.supplied_orbit import Verdict
+from templates.physics.orbits.cyclic_film import cycle_of
+from templates.physics.orbits.turning import turning
+from templates.physics.supplied.fed_cycle import FedDuty, fed_film, fed_orbit
 
-KEPT = Path("benchmarks/results/film_cycle_ensemble.jsonl")
 FILE = Path("templates/oil_film/oil_film_cycle_v2.accuracy.json")
-KINDS = {
-    "half_groove": ("half_groove",),
-    "full_groove": ("full_groove",),
-    "pin_hole": ("pin_hole",),
-    "sleeve_hole": ("sleeve_hole", "slot"),
-}
-"""Kinds of supply that have bounds, and their names in `supplied_duties`."""
-LOADS, WIDTHS = [0.3, 6.0, 105.0], [0.15, 0.4, 1.2]
-"""Bands of load number and B/D."""
-ENOUGH, FRESH = 60, 100
-SEED, OTHER_SEED = 1, 2
 QUANTILE, CONFIDENCE = 0.95, 0.95
-CLEAR = 0.1
-"""Share of the cycle for which a well placed hole is under the load at most."""
-CHEAP = ("mobility_short", "mobility", "mobility_grooved")
-OUTPUTS = ("minimum_film_thickness", "maximum_eccentricity", "film_thickness", "eccentricity_x",
-           "eccentricity_y", "power_loss", "side_flow")  # fmt: skip
 WITHOUT = ("maximum_pressure", "peak_pressure")
-
-
-def drawn(seed: int, kind: str) -> Iterator[tuple[int, RandomDuty]]:
-    """Numbered duties of a kind of supply."""
-    number = 0
-    while True:
-        names = KINDS[kind]
-        duty = random_duty(seed, number, names[number // 2 % len(names)])
-        rng = np.random.default_rng([seed, number, 1])
-        if kind == "half_groove":
-            (pocket,) = duty.supply.pockets
-            half = float(rng.uniform(np.pi / 3, 2 * np.pi / 3))
-            duty = replace(duty, supply=replace(duty.supply, pockets=(replace(pocket, half_angle=half),)))
-        if kind.endswith("groove") or (moved := well_placed(duty, rng)):
-            yield number, duty if kind.endswith("groove") else moved
-        number += 1
-
-
-def well_placed(duty: RandomDuty, rng: np.random.Generator) -> RandomDuty | None:
-    """The duty with its hole where it is seldom under the load; None where twenty places are not."""
-    (pocket,) = duty.supply.pockets
-    for centre in rng.uniform(-np.pi, np.pi, 20):
-        supply = replace(duty.supply, pockets=(replace(pocket, centre=float(centre)),))
-        moved = replace(duty, supply=supply)
-        if under_load(moved) <= CLEAR:
-            return moved
-    return None
-
-
-def fed(duty: RandomDuty) -> FedDuty:
-    """The same as templates know it; everything is dimensionless: the crank turns at 1, F is S."""
-    load, one = duty.load, np.float64(1.0)
-    journal, sleeve = load.w[0] + duty.sliding / 2, load.w[0] - duty.sliding / 2
-    asked = Duty(load.angle, *load.S[:, 0], journal, sleeve, np.zeros(1), one, one, np.float64(duty.ratio))
-    (pocket,) = duty.supply.pockets
-    share = pocket.half_length if duty.fed_by.endswith("groove") else 0.0
-    start, extent = pocket.centre - pocket.half_angle, 2 * pocket.half_angle
-    return FedDuty(asked, *(np.float64(v) for v in (share, start, extent)), duty.supply)
-
-
-def under_load(duty: RandomDuty) -> float:
-    """The share of the cycle for which the hole is under the load."""
-    (pocket,) = duty.supply.pockets
-    none, length = np.float64(np.nan), np.float64(pocket.half_length)
-    hole = (length, np.float64(pocket.half_angle), np.float64(pocket.centre))
-    no_hole = (none, none, none)
-    holes = (*no_hole, *hole) if pocket.on_journal else (*hole, *no_hole)
-    one = np.float64(1.0)
-    return float(feed_under_load(fed(duty).duty, Feeding(one, one, none, none, none, *holes)))
-
-
-def values(orbit: FedOrbit, film: CycleFilm) -> dict[str, Array]:
-    """What the levels are compared by."""
-    compared = (
-        1 - orbit.eps_max,
-        orbit.eps_max,
-        orbit.gap,
-        orbit.eps_x,
-        orbit.eps_y,
-        film.loss,
-        film.side_flow,
-    )
-    return {name: np.asarray(value) for name, value in zip(OUTPUTS, compared, strict=True)}
-
-
-def compared(kind: str, number: int, seed: int, duty: RandomDuty) -> dict[str, Any]:
-    """One duty at every level: a line of the record."""
-    asked, begin = fed(duty), process_time()
-    orbit = fed_orbit("supplied", asked)
-    marched = orbit.marched
-    assert marched is not None
-    seconds = process_time() - begin
-    line = {
-        "seed": seed, "kind": kind, "number": number, "load": duty.kind,
-        "S": digits(np.hypot(*duty.load.S).max()), "b": digits(duty.ratio),
-        "verdict": marched.verdict.value, "repeat": digits(marched.repeat_error),
-        "cycles": list(marched.cycles), "seconds": round(seconds, 2), "gap": digits(marched.least_gap),
-    }  # fmt: skip
-    if marched.verdict is Verdict.STARVED:
-        return line
-    truth = values(orbit, fed_film("supplied", asked, orbit))
-    line["errors"] = {}
-    for level in CHEAP:
-        if level == "mobility_grooved" and not duty.fed_by.endswith("groove"):
-            continue
-        cheap = fed_orbit(level, asked)
-        cheap_values = values(cheap, fed_film(level, asked, cheap))
-        line["errors"][level] = [digits(error(cheap_values[n], truth[n])) for n in OUTPUTS]
-    return line
-
-
-def error(value: Array, truth: Array) -> float:
-    """Relative to what was found; NaN where nothing was."""
-    return float(np.abs(value - truth).max() / np.abs(value).max())
-
-
-def digits(value: Any) -> float | None:
-    """Four digits; None where there is no value."""
-    return float(f"{float(value):.4g}") if np.isfinite(value) else None
-
-
-def kept() -> list[dict[str, Any]]:
-    """The lines of the record."""
-    if not KEPT.exists():
-        return []
-    return [json.loads(line) for line in KEPT.read_text(encoding="utf-8").splitlines()]
-
-
-def band(S: float, b: float) -> tuple[int, int]:
-    """The band of a load number and B/D."""
-    row, column = np.searchsorted(LOADS, S, side="right") - 1, np.searchsorted(WIDTHS, b, side="right") - 1
-    return min(max(int(row), 0), len(LOADS) - 2), min(max(int(column), 0), len(WIDTHS) - 2)
-
-
-def march(seed: int, kinds: list[str]) -> None:
-    """March duties until every band has enough, with the other seed until there are enough in all."""
-    lines = [line for line in kept() if line["seed"] == seed]
-    done = {(line["kind"], line["number"]) for line in lines}
-    for kind in kinds:
-        counts: Counter[tuple[int, int]] = Counter()
-        for number, duty in drawn(seed, kind):
-            place = band(float(np.hypot(*duty.load.S).max()), duty.ratio)
-            if enough(counts, seed):
-                break
-            if seed == SEED and counts[place] >= ENOUGH:
-                continue
-            counts[place] += 1
-            if (kind, number) in done:
-                continue
-            line = compared(kind, number, seed, duty)
-            with KEPT.open("a", encoding="utf-8") as file:
-                file.write(json.dumps(line, separators=(",", ":")) + "\n")
-
-
-def enough(counts: Counter[tuple[int, int]], seed: int) -> bool:
-    """Whether a kind of supply has enough duties."""
-    if seed == SEED:
-        return len(counts) == (len(LOADS) - 1) * (len(WIDTHS) - 1) and min(counts.values()) >= ENOUGH
-    return counts.total() >= FRESH
+SMALLEST = OUTPUTS[0]
 
 
 def bound(errors: list[float]) -> float | None:
@@ -206,10 +73,18 @@ def bound(errors: list[float]) -> float | None:
     if high.size == 0:
         return None
     largest = float(np.sort(errors)[high[0] - 1])
-    return float(f"{largest:.2g}") if np.isfinite(largest) else None
+    return rounded_up(largest) if np.isfinite(largest) else None
 
 
-def at_band(lines: list[dict[str, Any]], level: str, output: str) -> list[float]:
+def rounded_up(value: float) -> float:
+    """To two digits, never down."""
+    if value <= 0:
+        return 0.0
+    digit = 10.0 ** (floor(log10(value)) - 1)
+    return float(f"{ceil(value / digit * (1 - 1e-12)) * digit:.2g}")
+
+
+def at_band(lines: list[Line], level: str, output: str) -> list[float]:
     """Errors of an output, with what the orbit lacks of repeating; infinite where there is none."""
     rows = []
     for line in lines:
@@ -222,7 +97,7 @@ def at_band(lines: list[dict[str, Any]], level: str, output: str) -> list[float]
 Table = list[list[float | None]]
 
 
-def tables(lines: list[dict[str, Any]]) -> dict[str, dict[str, dict[str, Table]]]:
+def tables(lines: list[Line]) -> dict[str, dict[str, dict[str, Table]]]:
     """Bounds by kind of supply, level and output, in every band."""
     result: dict[str, dict[str, dict[str, Table]]] = {}
     for kind in KINDS:
@@ -243,9 +118,7 @@ def unknown() -> Table:
     return [[None] * (len(WIDTHS) - 1) for _ in LOADS[1:]]
 
 
-def coverage(
-    stated_tables: dict[str, dict[str, dict[str, Table]]], lines: list[dict[str, Any]]
-) -> dict[str, Any]:
+def coverage(stated_tables: dict[str, dict[str, dict[str, Table]]], lines: list[Line]) -> dict[str, Any]:
     """Of the duties of another seed, in how many each stated bound holds, by kind and level."""
     held: dict[str, Any] = {}
     for kind, levels in stated_tables.items():
@@ -307,7 +180,7 @@ def write() -> None:
             print(kind, level, shares)
 
 
-def costs(level: str, lines: list[dict[str, Any]]) -> dict[str, float]:
+def costs(level: str, lines: list[Line]) -> dict[str, float]:
     """Processor time of one point [s]: the median of the marches, or of a duty at this level."""
     if level == "supplied":
         return {"single": round(float(np.median([line["seconds"] for line in lines])), 2)} if lines else {}
@@ -318,34 +191,91 @@ def costs(level: str, lines: list[dict[str, Any]]) -> dict[str, float]:
     return {"single": round((process_time() - begin) / 10, 5)}
 
 
+def lifted(asked: FedDuty) -> FedDuty:
+    """The same with the load less what the supply pressure bears, at rest, in the groove and over its lands.
+
+    Over the lands beside the groove the pressure falls evenly to that of the ends: the groove counts with its
+    width and half of theirs.
+    """
+    duty, supply = asked.duty, asked.supply
+    assert supply is not None
+    (pocket,) = supply.pockets
+    turned = turning(duty.angle, cycle_of(duty.angle), np.reshape(duty.omega_B, (1, -1)))
+    middle = pocket.centre + turned.at(duty.angle, turned.swing)[0]
+    force = supply.pressure * (1 + pocket.half_length) / 2 * np.sin(pocket.half_angle)
+    borne_x, borne_y = force * np.cos(middle), force * np.sin(middle)
+    return replace(asked, duty=replace(duty, F_x=duty.F_x - borne_x, F_y=duty.F_y - borne_y))
+
+
 def ratios() -> None:
     """Print the smallest film of level mobility_grooved over that of level supplied, of all kept duties."""
-    for kind in ("half_groove", "full_groove"):
-        lines = {line["number"]: line for line in kept() if line["kind"] == kind and line["seed"] == SEED}
-        marched = {number: line for number, line in lines.items() if "errors" in line}
-        listed = []
-        for number, duty in drawn(SEED, kind):
-            if number > max(lines, default=-1):
+    for kind, seed in product(("half_groove", "full_groove"), (SEED, OTHER_SEED)):
+        films = {
+            line["number"]: line["gap"]
+            for line in kept()
+            if line["kind"] == kind and line["seed"] == seed and "errors" in line
+        }
+        plain: list[float] = []
+        less: list[float] = []
+        for number, duty in drawn(seed, kind):
+            if number > max(films, default=-1):
                 break
-            if number in marched:
-                film = 1 - fed_orbit("mobility_grooved", fed(duty)).eps_max
-                listed.append(float(film) / marched[number]["gap"])
-        if listed:
-            low, middle, high = np.quantile(listed, [0.025, 0.5, 0.975])
-            near = np.mean([0.75 <= ratio <= 1.25 for ratio in listed])
-            quantiles = f"2.5 %, median, 97.5 %: {low:.2f}, {middle:.2f}, {high:.2f}"
-            print(f"{kind}: {len(listed)} duties; {quantiles}; {near:.0%} within 0.75 to 1.25")
+            if number in films:
+                for listed, asked in ((plain, fed(duty)), (less, lifted(fed(duty)))):
+                    film = 1 - fed_orbit("mobility_grooved", asked).eps_max
+                    listed.append(float(film) / films[number])
+        for name, listed in (("", plain), (", load less what the supply bears", less)):
+            if listed:
+                print(f"{kind}, seed {seed}{name}: {spread(np.array(listed))}")
+
+
+def spread(listed: Array) -> str:
+    """Quantiles, and the share near 1."""
+    low, middle, high = np.nanquantile(listed, [0.025, 0.5, 0.975])
+    near = float(((listed >= 0.75) & (listed <= 1.25)).mean())
+    quantiles = f"2.5 %, median, 97.5 %: {low:.2f}, {middle:.2f}, {high:.2f}"
+    return f"{listed.size} duties; {quantiles}; {100 * near:.1f} % within 0.75 to 1.25"
+
+
+def page() -> None:
+    """Print what docs/oil_film_cycle.md shows: verdicts, bounds of the smallest film, how many hold."""
+    lines = kept()
+    first = [line for line in lines if line["seed"] == SEED]
+    measured, fresh = tables(first), [line for line in lines if line["seed"] == OTHER_SEED]
+    held = coverage(measured, fresh)
+    for kind in KINDS:
+        for name, own in (("", first), (", other seed", fresh)):
+            ends = Counter(line["verdict"] for line in own if line["kind"] == kind)
+            print(f"{kind}{name}: {ends.total()} duties {dict(ends)}")
+    names = [f"{LOADS[i]:g}–{LOADS[i + 1]:g}, {WIDTHS[j]:g}–{WIDTHS[j + 1]:g}" for i, j in places()]
+    print("| supply | level | " + " | ".join(names) + " | holds, smallest film | fewest of any output |")
+    print("|---" * (BANDS + 4) + "|")
+    for kind, levels in measured.items():
+        for level, outputs in levels.items():
+            cells = [
+                "null" if v is None else f"{v:g}" for i, j in places() for v in [outputs[SMALLEST][i][j]]
+            ]
+            counts = held.get(kind, {}).get(level, {})
+            least = min(counts.values(), key=lambda two: two[0] / two[1], default=[0, 0])
+            smallest = counts.get(SMALLEST, [0, 0])
+            cells += [f"{good} of {of}" for good, of in (smallest, least)]
+            print(f"| {kind} | `{level}` | " + " | ".join(cells) + " |")
+
+
+def places() -> list[tuple[int, int]]:
+    """Rows and columns of the bands."""
+    return [(i, j) for i in range(len(LOADS) - 1) for j in range(len(WIDTHS) - 1)]
 
 
 def main() -> None:
-    """Run, check, write or print ratios."""
+    """Run, check, write or print."""
     task, *kinds = sys.argv[1:] or ["write"]
-    if task == "write":
-        write()
-    elif task == "ratios":
-        ratios()
+    marches = {"run": (SEED, ENOUGH), "more": (SEED, MORE), "check": (OTHER_SEED, FRESH)}
+    if task in marches:
+        seed, most = marches[task]
+        march(seed, kinds or list(KINDS), most)
     else:
-        march({"run": SEED, "check": OTHER_SEED}[task], kinds or list(KINDS))
+        {"write": write, "ratios": ratios, "page": page}[task]()
 
 
 if __name__ == "__main__":

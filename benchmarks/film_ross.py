@@ -2,7 +2,8 @@
 
     python -m benchmarks.film_ross [prototype.py]
 
-ROSS 3.1 is installed from PyPI into build/ross, an environment of its own. Its bearing is given the same film
+ROSS is installed from PyPI into build/ross, an environment of its own (CRANKWRIGHT_ROSS names another folder,
+and the release that stands there is kept). Its bearing is given the same film
 as ours: one land of 360° that begins at the widest gap, constant viscosity, the eccentricity held, its
 default mesh. Errors of the load are against our solution extrapolated from 1024 × 128. ROSS's time is
 that of its constructor, which finds stiffness and damping too; ours is given without and with them.
@@ -14,8 +15,6 @@ import json
 import os
 import subprocess
 import sys
-import warnings
-from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from shutil import which
@@ -25,17 +24,16 @@ from typing import Any
 import numpy as np
 
 from benchmarks.film_cost import seconds
+from benchmarks.film_ross_answer import POINTS
 from templates.physics.films.film_dynamics import plain_coefficients
 from templates.physics.films.film_map import mapped_film
 from templates.physics.films.reynolds import extrapolated_film, static_film
 
 RELEASE = "ross-rotordynamics==3.1.0"
-ENVIRONMENT = Path("build/ross")
+ENVIRONMENT = Path(os.environ.get("CRANKWRIGHT_ROSS", "build/ross"))
 RESULTS = Path("benchmarks/results/film.json")
-POINTS = [(0.1, 1.0), (0.5, 0.5), (0.8, 1.0), (0.95, 1.0), (0.99, 1.0)]
 MESH = 64, 8
 PROTOTYPE_MESHES = [(60, 8), (120, 12), (180, 18), (240, 24), (360, 40), (480, 48)]
-DIAMETER, CLEARANCE, VISCOSITY, SPEED = 0.1, 1e-4, 0.02, 300.0
 INSTALL_SECONDS, ANSWER_SECONDS = 900, 300
 
 
@@ -45,9 +43,10 @@ class NoAnswerError(Exception):
 
 def main() -> None:
     """Measure, print and keep."""
-    results: dict[str, Any] = {}
+    results: dict[str, Any] = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
     try:
         python = environment()
+        results["ROSS"] = release(python)
         results["ROSS, plain journal, default mesh"] = ross_rows(answers(python))
     except NoAnswerError as reason:
         results["ROSS, plain journal, default mesh"] = f"no answer: {reason}"
@@ -67,11 +66,19 @@ def environment() -> Path:
         If it cannot be installed.
     """
     python = ENVIRONMENT / "bin" / "python"
+    if "CRANKWRIGHT_ROSS" in os.environ and python.exists():
+        return python
     if not python.exists():
         run([interpreter(), "-m", "venv", str(ENVIRONMENT)], INSTALL_SECONDS)
     install = [str(python), "-m", "pip", "install", "--quiet", "--only-binary=:all:"]
     run([*install, "--ignore-requires-python", RELEASE], INSTALL_SECONDS)
     return python
+
+
+def release(python: Path) -> str:
+    """The release of ROSS that is installed."""
+    asked = "from importlib.metadata import version; print(version('ross-rotordynamics'))"
+    return run([str(python), "-c", asked], ANSWER_SECONDS).strip()
 
 
 def interpreter() -> str:
@@ -109,43 +116,8 @@ def answers(python: Path) -> list[dict[str, float]]:
     NoAnswerError
         If it gave none.
     """
-    printed = run([str(python), "-m", "benchmarks.film_ross", "--answer"], ANSWER_SECONDS)
+    printed = run([str(python), "-m", "benchmarks.film_ross_answer"], ANSWER_SECONDS)
     return list(json.loads(printed.splitlines()[-1]))
-
-
-def answer() -> None:
-    """Print ROSS's load and time at each point; runs in its environment."""
-    warnings.simplefilter("ignore")
-    rows = []
-    for eps, ratio in POINTS:
-        ross_load(eps, ratio)
-        rows.append({"So": ross_load(eps, ratio), "time": seconds(lambda e=eps, b=ratio: ross_load(e, b))})  # type: ignore[misc]
-    print(json.dumps(rows))
-
-
-def ross_load(eps: float, ratio: float) -> float:
-    """Sommerfeld number of ROSS's plain journal bearing, its land beginning at the widest gap."""
-    viscosity = {f"liquid_viscosity{k}": VISCOSITY for k in (1, 2)}
-    oil = {"liquid_density": 860.0, "liquid_specific_heat": 1950.0, "liquid_thermal_conductivity": 0.13}
-    bearing = import_module("ross.bearings.plain_journal").PlainJournal(
-        n=0,
-        pad_axial_length=ratio * DIAMETER,
-        journal_diameter=DIAMETER,
-        radial_clearance=CLEARANCE,
-        n_pads=1,
-        pad_arc=np.radians(359.9999),
-        oil_supply_temperature=323.15,
-        speed=[SPEED],
-        fys_load=-1e4,
-        lubricant=viscosity | {"temperature1": 313.15, "temperature2": 373.15} | oil,
-        oil_flow_v=1e-2,
-        thermal_type=None,
-        equilibrium_type="match_eccentricity",
-        initial_position=(-eps, 0.0),
-    )
-    film = bearing._results.outputs[0]
-    load = np.hypot(np.squeeze(film["fx_hydro"]), np.squeeze(film["fy_hydro"]))
-    return float(load * (2 * CLEARANCE / DIAMETER) ** 2 / (ratio * DIAMETER**2 * VISCOSITY * SPEED))
 
 
 def ross_rows(ross: list[dict[str, float]]) -> list[dict[str, float | str]]:
@@ -203,4 +175,4 @@ def percent(share: float) -> float:
 
 
 if __name__ == "__main__":
-    answer() if sys.argv[1:] == ["--answer"] else main()
+    main()

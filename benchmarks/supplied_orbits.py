@@ -1,8 +1,13 @@
 """Level `supplied` on random duties: how marches end, what they cost, and what a finer mesh changes.
 
     nice python -m benchmarks.supplied_orbits ensemble [duties]     marches, 300 unless given
-    nice python -m benchmarks.supplied_orbits finer [duties]        every fifth of them twice as fine
+    nice python -m benchmarks.supplied_orbits finer [duties]        a fifth of them twice as fine
+    nice python -m benchmarks.supplied_orbits why                   those that miss: cycles, mesh or step
     python -m benchmarks.supplied_orbits                            prints the tables
+
+`finer` takes two of ten, engines and Fourier loads of every kind of supply alike. `why` marches each duty
+whose least gap changes by more than 2 % three times more, from its result: further cycles of the same march,
+twice the cells with the same step, half the step with the same cells.
 
 Every duty is written to benchmarks/results/supplied_orbits.json as soon as it is marched, and is not marched
 again. Processor seconds are those of one process on the machine named in the results, without compiling.
@@ -19,10 +24,23 @@ from typing import Any
 import numpy as np
 
 from benchmarks.supplied_duties import GROOVES, SUPPLIES, RandomDuty, random_duty
-from templates.physics.supplied.supplied_orbit import COARSE, FINE, Meshing, SuppliedOrbit, supplied_orbit
+from templates.physics.supplied.supplied_orbit import (
+    COARSE,
+    FINE,
+    MORE_ROWS,
+    THIN,
+    Meshing,
+    SuppliedOrbit,
+    Verdict,
+    supplied_orbit,
+)
 
 RESULTS = Path("benchmarks/results/supplied_orbits.json")
-SEED, DUTIES, EVERY = 17, 300, 5
+SEED, DUTIES = 17, 300
+MISS = 0.02
+"""Change of the least gap by a finer mesh of which the cause is looked for [-]."""
+FILMS = (Verdict.REPEATING.value, Verdict.WANDERING.value)
+"""Verdicts that report a film."""
 Row = dict[str, Any]
 
 
@@ -56,12 +74,41 @@ def row(duty: RandomDuty) -> Row:
     }
 
 
-def finer(duty: RandomDuty, kept: Row) -> Row:
-    """The least gap with twice the cells around and across, and half the step."""
+def sampled(number: int) -> bool:
+    """Whether a duty is one of two in ten; in five tens there is each supply with each kind of load once."""
+    return number // 10 % 5 == number % 5
+
+
+def continued(duty: RandomDuty, kept: Row, cells: int = 1, steps: int = 1) -> Row:
+    """The march of a kept duty, then one with so many times the cells, around and across, and the steps."""
     base = replace(FINE, around=kept["around"])
-    twice = Meshing(2 * base.around, 2 * base.across, base.step / 2, base.most)
-    orbit, seconds = marched(duty, (COARSE, base, twice))
-    return {"least_gap": orbit.least_gap, "verdict": orbit.verdict.value, "seconds": seconds}
+    across = cells * base.across
+    if kept["least_gap"] < THIN:  # the orbit adds as many rows to every mesh
+        across += (cells - 1) * MORE_ROWS
+    orbit, seconds = marched(
+        duty, (COARSE, base, Meshing(cells * base.around, across, base.step / steps, base.most))
+    )
+    return {
+        "least_gap": orbit.least_gap,
+        "P_max": float(orbit.P_max.max()),
+        "verdict": orbit.verdict.value,
+        "cycles": list(orbit.cycles),
+        "seconds": seconds,
+    }
+
+
+def why(duty: RandomDuty, kept: Row) -> dict[str, Row]:
+    """What more cycles, more cells and smaller steps change alone."""
+    return {
+        "cycles": continued(duty, kept),
+        "cells": continued(duty, kept, cells=2),
+        "steps": continued(duty, kept, steps=2),
+    }
+
+
+def change(kept: Row, other: Row) -> float:
+    """Of the least gap, relative [-]."""
+    return float(kept["least_gap"] / other["least_gap"] - 1)
 
 
 def results() -> dict[str, Any]:
@@ -75,18 +122,24 @@ def results() -> dict[str, Any]:
 def run(what: str, duties: int) -> None:
     """March what is not kept yet."""
     kept = results()
+    rows = kept["duties"]
     marched(random_duty(SEED, 1))  # compiles
     for number in range(duties):
-        rows, duty = kept["duties"], random_duty(SEED, number)
-        if what == "ensemble" and str(number) not in rows:
+        duty, own = random_duty(SEED, number), rows.get(str(number))
+        if what == "ensemble" and own is None:
             rows[str(number)] = row(duty)
-        elif what == "finer" and number % EVERY == 0 and "finer" not in rows.get(str(number), {"finer": 0}):
-            if rows[str(number)]["verdict"] == "starved":
-                continue
-            rows[str(number)]["finer"] = finer(duty, rows[str(number)])
+        elif what == "finer" and own and sampled(number) and own["verdict"] in FILMS and "finer" not in own:
+            own["finer"] = continued(duty, own, cells=2, steps=2)
+        elif what == "why" and own and missed(own) and "why" not in own:
+            own["why"] = why(duty, own)
         else:
             continue
         RESULTS.write_text(json.dumps(kept, indent=1, default=str) + "\n", encoding="utf-8")
+
+
+def missed(kept: Row) -> bool:
+    """Whether a finer mesh changes the least gap by more than `MISS`."""
+    return "finer" in kept and abs(change(kept, kept["finer"])) > MISS
 
 
 def tables(rows: list[Row]) -> None:
@@ -106,11 +159,27 @@ def tables(rows: list[Row]) -> None:
     print(f"largest repeat error: wandering {max(wandering, default=0):.1e}, grooves {max(grooved):.1e}")
     starved = [r["under_load"] for r in rows if r["verdict"] == "starved"]
     print("hole under the load, starved duties: " + " ".join(f"{share:.2f}" for share in sorted(starved)))
-    change = np.array([abs(r["least_gap"] / r["finer"]["least_gap"] - 1) for r in rows if "finer" in r])
-    if change.size:
-        within = [float((change <= limit).mean()) for limit in (0.02, 0.05)]
-        print(f"least gap against twice as fine, {change.size} duties: median {np.median(change):.4f}, "
-              f"2 % {within[0]:.3f}, 5 % {within[1]:.3f}, largest {change.max():.4f}")  # fmt: skip
+    finer_tables(rows)
+
+
+def finer_tables(rows: list[Row]) -> None:
+    """The change by a finer mesh, for each supply and in all; what changes the worst."""
+    for name in (*SUPPLIES, "all"):
+        changes = np.array([
+            abs(change(r, r["finer"])) for r in rows if "finer" in r and name in ("all", r["fed_by"])
+        ])  # fmt: skip
+        if changes.size:
+            within = [int((changes <= limit).sum()) for limit in (0.02, 0.05)]
+            print(f"least gap against twice as fine, {name}: {changes.size} duties, median "
+                  f"{np.median(changes):.4f}, {within[0]} within 2 %, {within[1]} within 5 %, "
+                  f"largest {changes.max():.4f}")  # fmt: skip
+    for number, kept in results()["duties"].items():
+        if missed(kept):
+            alone = {cause: f"{change(kept, other):+.4f}" for cause, other in kept.get("why", {}).items()}
+            print(f"duty {number}: {kept['kind']}, {kept['fed_by']}, S {kept['S']:.3g}, B/D "
+                  f"{kept['ratio']:.2f}, gap {kept['least_gap']:.4f}, hole under the load "
+                  f"{kept['under_load']:.2f}, cycles {kept['cycles']}, change "
+                  f"{change(kept, kept['finer']):+.4f}, alone {alone}")  # fmt: skip
 
 
 if __name__ == "__main__":
