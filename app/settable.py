@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
-from pydantic import ValidationError
-from pydantic_core import ErrorDetails
-from pydantic_settings import SettingsError
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 
 class SettableCommands(click.Group):
@@ -15,11 +17,23 @@ class SettableCommands(click.Group):
         """Run the command."""
         try:
             return super().invoke(ctx)
-        except SettingsError as error:
-            message = f"{error}; a list is written as JSON, such as '[\"crank.example\"]'"
-            raise click.ClickException(message) from None
-        except ValidationError as error:
-            raise click.ClickException("\n".join(map(_wrong_setting, error.errors()))) from None
+        except ValueError as error:
+            if message := _wrong_settings(error):
+                raise click.ClickException(message) from None
+            raise
+
+
+def _wrong_settings(error: ValueError) -> str:
+    """What is wrong with the settings; empty for another error."""
+    # Pydantic is imported here: a command without settings, such as `--version`, does without it.
+    from pydantic import ValidationError
+    from pydantic_settings import SettingsError
+
+    if isinstance(error, SettingsError):
+        return f"{error}; a list is written as JSON, such as '[\"crank.example\"]'"
+    if isinstance(error, ValidationError):
+        return "\n".join(map(_wrong_setting, error.errors()))
+    return ""
 
 
 def _wrong_setting(error: ErrorDetails) -> str:

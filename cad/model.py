@@ -11,21 +11,25 @@ Beyond them it says four things, and only the first of them draws:
 - `example`: a valid set of parameters.
 
 Shapes are drawn in millimetres, z along the shaft, +y towards the crown.
+
+This module does not import the kernel: a calculation asks whether a template is a model, and draws none.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import isclose
-from typing import ClassVar
-
-from cadquery import Location, Shape
+from typing import TYPE_CHECKING, ClassVar
 
 from cad.errors import GeometryError
 from cad.shaft import STEEL_DENSITY, Shaft
-from cad.surfaces import Seen
 from templates.core.language.template import Array, Template
+
+if TYPE_CHECKING:
+    from cadquery import Location, Shape
+
+    from cad.surfaces import Seen
 
 Colour = tuple[float, float, float]
 
@@ -40,6 +44,12 @@ def material_named(name: str, density: float) -> str:
     return f"{name} ({density:.6g} kg/m³)" if name else f"{density:.6g} kg/m³"
 
 
+def _at_origin() -> tuple[Location, ...]:
+    from cadquery import Location
+
+    return (Location(),)
+
+
 @dataclass(frozen=True)
 class Part:
     """One solid of a model, at one or several places."""
@@ -49,7 +59,7 @@ class Part:
     volume: float  # [mm³], in closed form
     colour: Colour = STEEL
     density: float = STEEL_DENSITY  # [kg/m³]
-    places: tuple[Location, ...] = (Location(),)
+    places: tuple[Location, ...] = field(default_factory=_at_origin)
     tolerance: float = 1e-6  # of the volume, relative; larger only where the closed form approximates
     shaped_by: tuple[str, ...] = ()  # the parameters to name if it fails; all of them, if it does not say
     material: str = ""  # its name, such as "CuSn8"; steel, if it does not say and has the density of steel

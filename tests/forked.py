@@ -21,7 +21,7 @@ from app.workers import isolated
 
 LONG = ("app.calculations.warm", "cad.models")  # what takes seconds to import
 KERNEL = {*LONG, "cad.model"}  # one of these is among the modules of each fork server that takes so long
-PRELOAD = ("app.cli", *LONG)
+PRELOAD = ("app.cli", "app.serve_command", *LONG)
 
 
 class Forked(origins.Forked):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +13,10 @@ from app.plain import Json, JsonObject
 from templates.core.catalogue.digests import content_digest, digest
 from templates.core.language.evaluate import Answer, Echo, Evaluation
 from templates.core.language.ledger import Notice
-from templates.core.language.solve import Jump, Root, Solution, TracedCurve
 from templates.core.language.template import Template
+
+if TYPE_CHECKING:
+    from templates.core.language.solve import Jump, Root, Solution, TracedCurve
 
 _identities: dict[type[Template], JsonObject] = {}
 

@@ -17,7 +17,7 @@ from app.workers.local import LocalProcesses
 from cad.model import CadModel
 from templates.core.language.template import Template
 
-PRELOAD = ("cad.model", "templates.core.checking.check", "app.catalogue.checking")
+PRELOAD = ("cad.surfaces", "cad.model", "templates.core.checking.check", "app.catalogue.checking")
 
 
 @click.command("check-template")

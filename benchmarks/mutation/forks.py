@@ -21,7 +21,7 @@ from benchmarks.mutation import ROOT
 
 OURS = {"app", "cad", "templates", "benchmarks", "tests"}
 MEMORY = 12 << 30  # bytes of addresses, for a mutant that fills all of it
-USED = "import sys, app.cli, httpx, hypothesis, pytest, scipy.integrate, scipy.optimize; print(*sys.modules)"
+USED = "import sys, app.main, httpx, hypothesis, pytest, scipy.integrate, scipy.optimize; print(*sys.modules)"
 """Prints the modules that the program and most tests import."""
 REWRITTEN = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
 """Options of pytest: they say that Hypothesis, which is imported already, asserts as it is written."""

@@ -137,7 +137,7 @@ class TestServe:
     def served_with(self, monkeypatch):
         """The options of each server that would have started."""
         served = []
-        monkeypatch.setattr("app.cli.server.run", lambda app, settings: served.append(settings))
+        monkeypatch.setattr("app.serve_command.server.run", lambda app, settings: served.append(settings))
         return served
 
     @pytest.mark.parametrize("host", ["127.0.0.1", "127.3.2.1", "::1", "localhost"])

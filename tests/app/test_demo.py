@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from patience import patient
 from serving import ServerProcess
 
-from app import cli, demo
+from app import cli, demo, demo_command, serve_command
 from app.client import Client
 
 ROOT = Path(__file__).parents[2]
@@ -96,8 +96,8 @@ def test_its_data_are_where_serve_looks(monkeypatch, folder):
     if folder != "crankwright-data":
         monkeypatch.setenv("CRANKWRIGHT_DATA", folder)
     shown_in, served_from = [], []
-    monkeypatch.setattr(cli, "demonstrate", shown_in.append)
-    monkeypatch.setattr(cli, "DataFolder", lambda data: served_from.append(data) or stop())
+    monkeypatch.setattr(demo_command, "demonstrate", shown_in.append)
+    monkeypatch.setattr(serve_command, "DataFolder", lambda data: served_from.append(data) or stop())
     for command in ("demo", "serve"):
         CliRunner().invoke(cli.main, [command])
     assert shown_in == served_from == [Path(folder)]

@@ -103,7 +103,7 @@ def test_revoking_a_key_names_those_that_end_with_it_and_the_list_says_who_made_
 
 
 def test_serve_beyond_this_machine_wants_a_key(tmp_path, monkeypatch, run):
-    monkeypatch.setattr("app.cli.server.run", lambda app, settings: None)
+    monkeypatch.setattr("app.serve_command.server.run", lambda app, settings: None)
     serve = ["serve", "--host", "0.0.0.0", "--data", str(tmp_path / "data")]
     refused = CliRunner().invoke(main, serve)
     assert refused.exit_code != 0

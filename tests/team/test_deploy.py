@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli import main
+from app.cli import COMMANDS
 from app.settings import Settings
 
 DEPLOY = Path(__file__).parents[2] / "docs" / "deploy"
@@ -37,7 +37,7 @@ def test_variables_are_settings_and_commands_are_commands(services):
         names = {name for name in service["environment"] if name.startswith("CRANKWRIGHT_")}
         assert names <= known
         assert service["command"][0] == "crankwright"
-        assert service["command"][1] in main.commands
+        assert service["command"][1] in COMMANDS
 
 
 def test_only_the_proxy_is_reached_from_outside(services):

@@ -11,7 +11,6 @@ import click
 
 from app.hosts import is_loopback
 from app.machines import EXAMPLE, FILES, LOCAL, TEAM, is_installed
-from app.settable import SettableCommands
 from app.settings import Settings
 
 _BOOT = (
@@ -52,17 +51,8 @@ def scheduler_command(host: str, port: int) -> None:
     _become("scheduler", host, str(port))
 
 
-@click.group(cls=SettableCommands)
-def machines() -> None:
-    """The commands of this module alone: they start without the geometry kernel, which others import."""
-
-
-for _command in (worker_command, scheduler_command):
-    machines.add_command(_command)
-
-
 def _become(module: str, *args: str) -> NoReturn:
-    """Turn this process into another, without what the command line has imported, as the geometry kernel."""
+    """Turn this process into another, which imports nothing but its own modules."""
     command = [sys.executable, "-c", _BOOT.format(module), json.dumps(sys.path), *args]
     sys.stdout.flush()
     os.execv(sys.executable, command)

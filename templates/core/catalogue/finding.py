@@ -96,8 +96,17 @@ class Catalogue(Generic[T]):
         return iter(self.versions.values())
 
 
-def find(folders: Iterable[Path], base: type[T], kind: str = "template") -> Catalogue[T]:
+def find(
+    folders: Iterable[Path],
+    base: type[T],
+    kind: str = "template",
+    *,
+    id: str | None = None,
+    version: int | None = None,
+) -> Catalogue[T]:
     """Import every versioned file below the folders and collect what it declares, if that is a `base`.
+
+    With an `id` or a `version` it imports only files that have them in their names.
 
     Raises
     ------
@@ -106,7 +115,8 @@ def find(folders: Iterable[Path], base: type[T], kind: str = "template") -> Cata
     """
     versions: dict[tuple[str, int], type[T]] = {}
     for path in sorted(file for folder in folders for file in folder.rglob("*_v*.py")):
-        if not VERSIONED.match(path.stem):
+        match = VERSIONED.match(path.stem)
+        if not match or id not in (None, match[1]) or version not in (None, int(match[2])):
             continue
         cls = declared_in(_usable(path), path)
         if not issubclass(cls, base):
