@@ -28,7 +28,7 @@ from app.designs.climbing_rows import decide_rows
 from app.designs.document import Document
 from app.designs.graph import Catalogues
 from app.designs.net import Net
-from app.designs.reference import Reference
+from app.reference import Reference
 from cad.catalogue import models
 from templates.core.arrays import Array
 from templates.core.judging.comparison import MET, NOT_MET, UNDECIDED

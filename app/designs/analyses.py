@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from app.designs.document import Model
-from app.designs.reference import Reference
+from app.reference import Reference
 from app.solids.questions import Question, faults, in_order, no_shaft, question
 from cad.analysis.kinds import KINDS
 from cad.inspect import MEASURES

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from app.designs.network import Block, Graph
-from app.designs.reference import Reference
+from app.reference import Reference
 from app.schemas.designs import Proposal
 from templates.core.language.spec import Choice, Curve, Profile, Table, Text
 from templates.core.units.units import compatible, unit

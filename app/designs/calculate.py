@@ -15,9 +15,9 @@ from app.calculations.size import points, spanned
 from app.designs.calculation import DEFERRED, Analysed, Calculation, Measured, Measures, Outputs
 from app.designs.memory import memory
 from app.designs.network import Block, Cell, Graph, Node, Solid, SolidAnalysis
-from app.designs.reference import Reference
 from app.designs.size import limit_operations, limit_values
 from app.plain import Raw
+from app.reference import Reference
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.language.evaluate import Evaluation

@@ -10,8 +10,8 @@ import numpy as np
 
 from app.designs.analyses import measured_unit
 from app.designs.network import Graph, Node, SolidAnalysis
-from app.designs.reference import Reference
 from app.plain import Json
+from app.reference import Reference
 from app.solids.questions import Question
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText

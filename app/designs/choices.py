@@ -12,8 +12,8 @@ from typing import TypeVar
 
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document, Version
-from app.designs.reference import Reference
 from app.plain import Raw
+from app.reference import Reference
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import FaultyText, UnknownTemplate, unknown_name
 from templates.core.language.spec import Choice

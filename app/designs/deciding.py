@@ -20,8 +20,8 @@ from app.designs.calculate import recalculated
 from app.designs.calculation import Calculation
 from app.designs.judging import Judging
 from app.designs.network import Block
-from app.designs.reference import Reference
 from app.designs.shifting import levels_of
+from app.reference import Reference
 from templates.core.judging.judgement import Judgement
 from templates.core.judging.summary import worst_first
 from templates.core.language.levels import accuracy, next_levels

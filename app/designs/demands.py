@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from app.designs.document import Document, WrittenCriterion
 from app.designs.network import Block, Demand, Network
-from app.designs.reference import Reference
+from app.reference import Reference
 from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
 from templates.core.judging.criterion import Criterion as Checked
 from templates.core.judging.criterion import Described, read_comparison, read_criterion
@@ -37,21 +37,22 @@ def read_demands(document: Document, blocks: Mapping[str, Block]) -> tuple[dict[
 
 def _is_unread(name: str, document: Document, blocks: Mapping[str, Block]) -> bool:
     """Whether a criterion is one of a step whose template is not known, which is a fault of its own."""
-    step, dot, _ = name.partition(".")
-    return bool(dot) and step in document.steps and step not in blocks
+    criterion = Reference.parse(name)
+    is_of_step = criterion.output is not None and criterion.block in document.steps
+    return is_of_step and criterion.block not in blocks
 
 
 def _require_subject(name: str, written: WrittenCriterion, blocks: Mapping[str, Block]) -> None:
     """Refuse a criterion of no template, and one of the design that demands nothing."""
-    step, dot, inside = name.partition(".")
-    if not dot:
+    criterion = Reference.parse(name)
+    if criterion.output is None:
         if written.require is None:
             form = "give `require`, such as film.minimum_film_thickness >= 3 um"
             raise FaultyText("missing", f"a criterion of the design compares two values: {form}")
         return
-    block = blocks.get(step)
-    names = [criterion.name for criterion in block.cls.declared_criteria] if block else []
-    if inside not in names:
+    block = blocks.get(criterion.block)
+    names = [declared.name for declared in block.cls.declared_criteria] if block else []
+    if criterion.member not in names:
         there = [f"{b.name}.{c.name}" for b in blocks.values() for c in b.cls.declared_criteria]
         detail = unknown_name(name, there, "criterion").detail if there else "no template here has criteria"
         raise FaultyText("unknown_name", f"{detail}; a criterion of the design has no dot in its name")

@@ -8,7 +8,7 @@ from typing import Literal
 
 from app.designs.analyses import measured_names, measured_unit
 from app.designs.network import LIMITS, Block, Cell, Graph
-from app.designs.reference import Reference
+from app.reference import Reference
 from app.schemas.networks import DesignNetwork, NetworkBlock, NetworkName, NetworkRelation
 from templates.core.language.spec import Choice, Declaration
 from templates.core.units.relation import is_relation
@@ -92,8 +92,8 @@ def _names(graph: Graph) -> Iterator[NetworkName]:
         for tail, formula in block.cls.formulas.items():
             yield _declared(f"{block.name}.{tail}", "output", formula)
         for tail in measured_names(block.analyses) if block.is_model else ():
-            name = f"{block.name}.{tail}"
-            yield _name(name, "measure", _words(tail), measured_unit(Reference.parse(name)))
+            measure = Reference.parse(f"{block.name}.{tail}")
+            yield _name(str(measure), "measure", _words(measure), measured_unit(measure))
 
 
 Role = Literal["parameter", "input", "output", "measure"]
@@ -107,10 +107,10 @@ def _name(name: str, role: Role, words: str, unit_text: str) -> NetworkName:
     return NetworkName(name=name, role=role, words=words, unit=unit_text, dimension=_dimension(unit_text))
 
 
-def _words(tail: str) -> str:
-    """What a measure is called: `torsion.stiffness` is the stiffness of the analysis torsion."""
-    kind, _, output = tail.rpartition(".")
-    return f"{output.replace('_', ' ')}, {kind} analysis" if kind else f"{output.replace('_', ' ')}, measured"
+def _words(measure: Reference) -> str:
+    """What a measure is called: `throw.torsion.stiffness` is the stiffness of the analysis torsion."""
+    origin = f"{measure.analysis} analysis" if measure.analysis else "measured"
+    return f"{measure.own_name.replace('_', ' ')}, {origin}"
 
 
 @lru_cache(maxsize=1024)

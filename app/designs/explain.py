@@ -8,8 +8,8 @@ from app.calculations import rendering
 from app.designs.analyses import measured_unit
 from app.designs.calculate import Calculation
 from app.designs.network import Block, Cell, Solid, SolidAnalysis
-from app.designs.reference import Reference
 from app.plain import JsonObject
+from app.reference import Reference
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Derived, Formula
 from templates.core.paper.expressions import relation_latex

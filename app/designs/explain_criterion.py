@@ -9,9 +9,9 @@ from app.designs.calculation import Calculation
 from app.designs.document import Document
 from app.designs.explain import Explainer, explain, full_name, model_parameters, shown
 from app.designs.judging import Judging
-from app.designs.reference import Reference
 from app.designs.subjects import Subject
 from app.plain import JsonObject
+from app.reference import Reference
 from app.storage.errors import NotFound
 from templates.core.judging.criterion import Limit
 from templates.core.units.relation import Relation

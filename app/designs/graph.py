@@ -18,9 +18,9 @@ from app.designs.document import Document, Model, Step, Version
 from app.designs.kinds import checked_kinds
 from app.designs.network import LIMITS, Block, Cell, Graph, Network, Node, limits_of
 from app.designs.ordering import ordered
-from app.designs.reference import Reference
 from app.designs.size import has_relation, too_many_relations
 from app.plain import Raw
+from app.reference import Reference
 from templates.core.catalogue.finding import Catalogue
 from templates.core.errors import Fault, FaultyText, InvalidInputs, UnknownTemplate, unknown_names
 from templates.core.judging.limits import GivenLimit, read_limits

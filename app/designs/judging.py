@@ -12,10 +12,10 @@ import numpy as np
 from app.calculations.size import spanned
 from app.designs.calculation import Calculation
 from app.designs.network import Block, Demand
-from app.designs.reference import Reference
 from app.designs.shifting import NOTHING, Shifting, Upstream
 from app.designs.size import limit_operations, limit_values
 from app.designs.subjects import Subject, subjects
+from app.reference import Reference
 from templates.core.errors import FaultyText, TemplateError, listed
 from templates.core.judging.bands import Estimate
 from templates.core.judging.criterion import Criterion

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from app.designs.network import Cell, Network
-from app.designs.reference import Reference
+from app.reference import Reference
 from templates.core.errors import Fault, FaultyText
 from templates.core.language.spec import Choice
 from templates.core.units.operations import Kind

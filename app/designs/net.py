@@ -17,7 +17,6 @@ from app.designs.analyses import measured_unit
 from app.designs.document import Document
 from app.designs.graph import build_graph, raise_if
 from app.designs.network import Graph
-from app.designs.reference import Reference
 from app.designs.row_design import MOST_ROWS, Levels, RowDesign, Rows, Wanted
 from app.designs.row_judging import JudgedColumn
 from app.designs.row_levels import Levelling
@@ -26,6 +25,7 @@ from app.designs.row_refusals import Refusal
 from app.designs.row_table import Table
 from app.designs.rows_needed import is_member, solids_in_the_way
 from app.designs.subjects import Subject, subjects
+from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import unknown_names
 from templates.core.units.quantity import read_any

@@ -13,8 +13,8 @@ from functools import cached_property
 
 from app.designs.analyses import is_measured, measured_names, measured_unit, used
 from app.designs.document import WrittenCriterion
-from app.designs.reference import Reference
 from app.plain import Raw
+from app.reference import Reference
 from app.solids.questions import Question
 from cad.model import CadModel
 from templates.core.judging.criterion import Criterion as Judged

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 
 from app.designs.calculation import Calculation
 from app.designs.network import Block, Cell, Graph
-from app.designs.reference import Reference
 from app.designs.row_design import Wanted
 from app.designs.rows_needed import Needs, is_member, needs
+from app.reference import Reference
 from templates.core.errors import FaultyText
 
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
 from app.designs.graph import Graph, build_graph, raise_if
-from app.designs.reference import Reference
 from app.designs.variants.table import Overrides, applied, is_place, places
 from app.plain import Raw
+from app.reference import Reference
 from templates.core.errors import Fault, FaultyText, unknown_name, unknown_names
 from templates.core.language.spec import Choice, Table
 from templates.core.units.quantity import read, read_any

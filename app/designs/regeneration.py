@@ -17,7 +17,6 @@ from app.designs.errors import NotConverged
 from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.naming import named
 from app.designs.recent import Prepared, Recent
-from app.designs.reference import Reference
 from app.designs.service import REGENERATE, analysed, built
 from app.designs.starting import starts
 from app.designs.variants import stored as variants
@@ -27,6 +26,7 @@ from app.designs.variants.settling import Describe, Settling, plain_problem
 from app.designs.variants.together import Available, together
 from app.jobs.service import Completion, Job, JobContext, JobFailed
 from app.plain import Json, JsonObject
+from app.reference import Reference
 from app.solids.builds import Builds
 from app.solids.finding import Analysing
 from app.storage.database import Database

@@ -11,11 +11,11 @@ from typing import TypeVar
 import numpy as np
 
 from app.designs.network import LIMITS, Block, Graph
-from app.designs.reference import Reference
 from app.designs.row_pass import Question, RowPass
 from app.designs.rows_needed import Needs, Varying, needs, varying
 from app.designs.step_rows import LevelMoved
 from app.designs.subjects import Subject
+from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, unknown_name, unknown_names
 from templates.core.language import spec

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.designs.columns import Column, Indices, scattered
-from app.designs.reference import Reference
 from app.designs.row_pass import RowPass
 from app.designs.rows_needed import is_member
 from app.designs.step_rows import Part, StepRows
+from app.reference import Reference
 from templates.core.arrays import Mask
 from templates.core.judging.bands import Estimate
 from templates.core.language.criteria import Evaluated, estimate_of

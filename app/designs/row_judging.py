@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from app.designs.columns import Column
 from app.designs.network import LIMITS
-from app.designs.reference import Reference
 from app.designs.row_estimates import RowEstimate, estimate_rows
 from app.designs.row_pass import RowPass
 from app.designs.row_shifting import NONE, RowShifting
 from app.designs.subjects import Subject
+from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import FaultyText
 from templates.core.judging.bands import Shift

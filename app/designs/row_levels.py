@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from app.designs.columns import Column
 from app.designs.network import Block
-from app.designs.reference import Reference
 from app.designs.row_design import Levels, RowDesign, Rows, Wanted
 from app.designs.row_pass import RowPass
 from app.designs.step_rows import Part, StepRows
+from app.reference import Reference
 from templates.core.arrays import Array, Mask
 from templates.core.language.levels import Accuracy, accuracy
 

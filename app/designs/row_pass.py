@@ -9,12 +9,12 @@ import numpy as np
 
 from app.designs.columns import Column, stacked
 from app.designs.network import Block, Cell, Graph
-from app.designs.reference import Reference
 from app.designs.row_items import related, wrong_index
 from app.designs.row_refusals import Refusal, refusal_of_text
 from app.designs.rows_needed import Needs, Varying
 from app.designs.step_rows import StepRows, step_rows
 from app.plain import Raw
+from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Choice

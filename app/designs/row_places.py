@@ -10,11 +10,11 @@ import numpy as np
 from app.designs.analyses import is_measured
 from app.designs.document import Document
 from app.designs.network import Block, Cell, Graph
-from app.designs.reference import Reference
 from app.designs.row_lists import rank_of
 from app.designs.row_pass import literal
 from app.designs.rows_needed import Varying
 from app.plain import Raw
+from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, FaultyText, InvalidInputs, unknown_name
 from templates.core.language.intake import Input

@@ -16,12 +16,12 @@ import numpy as np
 from app.calculations.cost import EXPENSIVE, estimated_seconds
 from app.designs.columns import Column
 from app.designs.network import Block, Cell, Node
-from app.designs.reference import Reference
 from app.designs.row_estimates import RowEstimate, estimate_rows
 from app.designs.row_pass import RowPass
 from app.designs.rows_needed import is_member
 from app.designs.shifting import LONGEST_SHIFTING, MOST_SHIFTED
 from app.plain import Raw
+from app.reference import Reference
 from templates.core.arrays import Mask
 from templates.core.units.quantity import Typed
 

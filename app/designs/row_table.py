@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.designs.columns import Column
-from app.designs.reference import Reference
 from app.designs.row_judging import JudgedColumn, RowCodes, RowJudging
 from app.designs.row_pass import RowPass
 from app.designs.row_refusals import Refusal
 from app.designs.subjects import Subject
+from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
 

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from app.designs.network import Block, Cell, Graph, Node, Solid, SolidAnalysis
-from app.designs.reference import Reference
+from app.reference import Reference
 from templates.core.errors import Fault
 
 

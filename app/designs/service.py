@@ -19,7 +19,6 @@ from app.designs.errors import StaleRevision
 from app.designs.graph import Graph, build_graph, raise_if
 from app.designs.news import note_revision
 from app.designs.recent import Prepared, Recent
-from app.designs.reference import Reference
 from app.designs.repository import Written
 from app.designs.starting import starts
 from app.designs.variants import stored as variants
@@ -28,6 +27,7 @@ from app.designs.variants.outcome import Outcome
 from app.designs.variants.together import Available
 from app.jobs.service import Jobs
 from app.plain import Json, JsonObject, Raw
+from app.reference import Reference
 from app.schemas.designs import Proposal
 from app.solids import analysis_rows as analyses
 from app.solids import rows

@@ -18,7 +18,7 @@ from app.calculations.cost import EXPENSIVE, estimated_seconds
 from app.designs.calculate import recalculated
 from app.designs.calculation import Calculation
 from app.designs.network import Block, Cell
-from app.designs.reference import Reference
+from app.reference import Reference
 from templates.core.errors import TemplateError
 from templates.core.judging.bands import Estimate, Shift
 from templates.core.judging.judging import Absent

@@ -14,11 +14,11 @@ from app.designs.graph import build_graph
 from app.designs.judging import judged
 from app.designs.net import Net
 from app.designs.overriding import changed
-from app.designs.reference import Reference
 from app.designs.solving import DesignRoots, Wanted, roots_of_design
 from app.designs.starting import starts
 from app.designs.tasks import DesignTask
 from app.designs.variants.table import applied
+from app.reference import Reference
 from app.schemas.answers import Quantity, Shown, Values, Warning
 from app.schemas.bounded import Bounded, at_most
 from app.schemas.criteria import Word

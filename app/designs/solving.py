@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.designs.net import Net, Table
-from app.designs.reference import Reference
+from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, InvalidInputs
 from templates.core.language.meaning import Meaning

@@ -20,14 +20,13 @@ def stamp(session: Session, model: RevisionModelRow) -> Stamp:
     """The stamp of a built model: always the same, because a revision never changes."""
     revision = repository.revision(session, model.design_id, model.number)
     build = rows.build(session, model.build_key or "")
-    variant, dot, name = model.name.rpartition(".")
     return Stamp(
         design=revision.document["name"],
-        model=name,
+        model=model.own_name,
         revision=model.number,
         date=revision.created[:19],  # UTC, to the second
         materials=_materials(build) if build else {},
-        variant=variant if dot else None,
+        variant=model.variant,
         is_only=len(revision.document["models"]) == 1,
     )
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from app.designs.analyses import measured_unit
 from app.designs.document import Document
 from app.designs.graph import raise_if
-from app.designs.reference import Reference
 from app.plain import Raw
+from app.reference import Reference
 from templates.core.errors import Fault, FaultyText
 from templates.core.units.quantity import Value, read
 from templates.core.units.units import unit

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from app.designs.network import Block, Demand, Graph
-from app.designs.reference import Reference
+from app.reference import Reference
 from templates.core.judging.criterion import Criterion, Missing
 
 

@@ -12,10 +12,10 @@ from app.designs.document import Document
 from app.designs.graph import build_graph
 from app.designs.judging import judged
 from app.designs.network import Block, Cell
-from app.designs.reference import Reference
 from app.designs.starting import starts
 from app.impact.outcome import Judged, Outcome
 from app.impact.solids import Solids
+from app.reference import Reference
 from templates.core.errors import InvalidInputs
 from templates.core.language.spec import Choice, Table, Text
 from templates.core.units.units import Value, unit

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.impact.outcome import Outcome, is_temperature
+from app.reference import Reference
 from app.schemas.answers import Quantity
 from app.schemas.impact import MarginLost, OutputMoved, ParameterMoved, VerdictMoved
 from templates.core.arrays import Array
@@ -70,7 +71,7 @@ def difference(before: Outcome, after: Outcome, variant: str | None) -> Differen
 
 
 def _is_of_waiting(name: str, outcome: Outcome) -> bool:
-    return name.partition(".")[0] in outcome.waiting
+    return Reference.parse(name).block in outcome.waiting
 
 
 def _named(name: str, variant: str | None) -> dict[str, str]:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
-from app.designs.reference import Reference
 from app.plain import Raw
+from app.reference import Reference
 from app.storage.tables import canonical_json
 from templates.core.errors import FaultyText
 from templates.core.language.intake import Input

@@ -9,9 +9,9 @@ from pydantic_core import from_json
 
 from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
-from app.designs.reference import Reference
 from app.designs.tasks import CatalogueTask
 from app.impact.solids import Solids
+from app.reference import Reference
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,6 @@ from app.designs.columns import Indices
 from app.designs.document import Document
 from app.designs.net import Net
 from app.designs.network import Block, Graph
-from app.designs.reference import Reference
 from app.designs.row_design import RowDesign, Rows, Wanted
 from app.designs.row_judging import RowJudging
 from app.designs.row_pass import RowPass
@@ -24,6 +23,7 @@ from app.designs.rows_needed import is_member
 from app.designs.step_rows import LevelMoved, StepRows
 from app.designs.subjects import Subject
 from app.impact.outcome import Judged, Outcome
+from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, TemplateError
 from templates.core.judging.comparison import WORST_FIRST

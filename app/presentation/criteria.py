@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from app.presentation import numbers
+from app.reference import Reference
 
 WORDS = {"met": "met", "not_met": "not met", "undecided": "undecided", "not_checked": "not checked"}
 _SIGN = re.compile(r"^(.*?)\s*(>=|<=)\s*(.*)$", re.DOTALL)
@@ -140,11 +141,11 @@ def plain_name(text: str) -> str:
 
 def step_of(criterion: Judged) -> str:
     """The block whose value is judged, by the name of the criterion or by what it requires."""
-    block, dot, _ = criterion.name.partition(".")
-    if dot:
-        return block
-    block, dot, _ = sides(criterion.require)[0].strip().partition(".")
-    return block if dot and block.isidentifier() else ""
+    name = Reference.parse(criterion.name)
+    if name.output is not None:
+        return name.block
+    value = Reference.parse(sides(criterion.require)[0].strip())
+    return value.block if value.output is not None and value.block.isidentifier() else ""
 
 
 def title(criterion: Judged) -> str:

@@ -11,6 +11,7 @@ from markupsafe import Markup
 from app.presentation import numbers
 from app.presentation.bidi import balanced, bare
 from app.presentation.sparkline import course
+from app.reference import Reference
 from templates.core.paper.mathml import mathml
 
 PAGES = Path(__file__).with_name("pages")
@@ -58,6 +59,7 @@ def environment(folder: Path) -> Environment:
         "rough": numbers.rough,
         "in_line": numbers.in_line,
         "course": course,
+        "reference": Reference.parse,
     }
     jinja.filters.update(filters)
     return jinja

@@ -12,7 +12,14 @@ from app.identity.acting import ACTING, BUILT_IN
 from app.plain import Json, JsonObject
 from app.storage.clock import operated
 from app.storage.identity import now
-from app.storage.tables import ApprovalRow, ArtifactRow, BuildRow, DesignRow, RevisionModelRow
+from app.storage.tables import (
+    ApprovalRow,
+    ArtifactRow,
+    BuildRow,
+    DesignRow,
+    RevisionModelRow,
+    variant_of,
+)
 from app.storage.upserts import upsert
 
 
@@ -110,6 +117,6 @@ def is_signed(session: Session, key: str) -> bool:
 
 def _use(design: str, number: int, model: str, head: int) -> Mapping[str, Json]:
     """A use of a build; a dot in the name of the model stands behind that of a variant."""
-    variant = model.partition(".")[0] if "." in model else None
+    variant = variant_of(model)
     more = {} if variant is None else {"variant": variant}
     return {"design": design, "revision": number, "current": number == head, **more}

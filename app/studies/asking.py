@@ -9,9 +9,9 @@ from math import prod
 import numpy as np
 
 from app.designs.net import Net
-from app.designs.reference import Reference
 from app.designs.slopes import Local
 from app.plain import Raw
+from app.reference import Reference
 from app.studies.methods.points import Grid, LatinHypercube, Points, Sobol
 from app.studies.methods.search import scanned
 from app.studies.methods.sensitivity import MorrisPoints, SobolPoints

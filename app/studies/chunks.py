@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.designs.net import Refusal, Table
-from app.designs.reference import Reference
+from app.reference import Reference
 from app.studies.archive import AnyArray, packed
 from app.studies.row_solids import Solids, Wanting
 from app.studies.task import Prepared, Task, prepared

@@ -8,9 +8,9 @@ from itertools import islice
 import numpy as np
 
 from app.designs.net import Net
-from app.designs.reference import Reference
 from app.designs.variant_sheets.grid import MOST_FAULTS, refuse
 from app.plain import Raw
+from app.reference import Reference
 from app.studies.asking import single, too_long
 from app.studies.schemas import MOST_ROWS, MOST_VARIED
 from templates.core.arrays import Array

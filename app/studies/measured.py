@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from app.designs.analyses import is_measured
 from app.designs.calculate import Calculation
-from app.designs.reference import Reference
 from app.designs.service import Designs
 from app.plain import JsonObject
+from app.reference import Reference
 from templates.core.errors import FaultyText
 
 

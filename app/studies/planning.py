@@ -10,8 +10,8 @@ import numpy as np
 
 from app.designs.document import Document
 from app.designs.net import Table
-from app.designs.reference import Reference
 from app.plain import JsonObject
+from app.reference import Reference
 from app.studies.asking import Asked
 from app.studies.chunks import Levels, called, placed
 from app.studies.estimating import estimated

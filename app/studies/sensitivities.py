@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from app.designs.reference import Reference
 from app.designs.slopes import Local, slope_in
+from app.reference import Reference
 from app.schemas.answers import Quantity
 from app.schemas.studies import Index
 from app.studies.methods.points import Points

@@ -21,6 +21,7 @@ from app.identity.usage import note_bytes
 from app.jobs.errors import JobFinished, JobNotFound
 from app.jobs.service import Jobs
 from app.plain import JsonObject
+from app.reference import Reference
 from app.schemas.jobs import State
 from app.solids.analyses import ANALYSIS
 from app.solids.models import BUILD
@@ -235,7 +236,8 @@ def patch_of(document: JsonObject, units: Mapping[str, str], values: Mapping[str
     patch: JsonObject = {}
     for name, value in values.items():
         quantity = {"value": float(unit(units[name]).from_si(value)), "unit": units[name]}
-        block, _, member = name.partition(".")
+        reference = Reference.parse(name)
+        block, member = reference.block, reference.member
         if not member:
             patch.setdefault("parameters", {})[name] = quantity
             continue

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from app.designs.document import Document
-from app.designs.reference import Reference
 from app.plain import Raw
+from app.reference import Reference
 from templates.core.units.relation import is_relation
 
 

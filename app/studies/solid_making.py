@@ -17,10 +17,10 @@ from app.designs.document import Document
 from app.designs.graph import build_graph, raise_if
 from app.designs.net import Refusal
 from app.designs.network import Graph
-from app.designs.reference import Reference
 from app.designs.row_refusals import refusal_of
 from app.designs.service import analysed, built
 from app.jobs.service import JobContext
+from app.reference import Reference
 from app.solids.builds import Builds
 from app.solids.finding import Analysing
 from app.solids.questions import in_order

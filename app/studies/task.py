@@ -12,9 +12,9 @@ from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
 from app.designs.graph import raise_if
 from app.designs.net import Net
-from app.designs.reference import Reference
 from app.designs.tasks import DesignTask
 from app.plain import JsonObject
+from app.reference import Reference
 from app.storage.tables import canonical_json
 from app.studies.asking import Asked, asked_of
 from app.studies.row_solids import RowSolids, iterated, measures_of_rows

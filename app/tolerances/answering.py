@@ -7,7 +7,7 @@ from math import ceil, log2
 
 import numpy as np
 
-from app.designs.reference import Reference
+from app.reference import Reference
 from app.schemas import tolerances as answers
 from app.schemas.answers import Quantity
 from app.tolerances import shares as indices

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from app.designs.network import Graph
-from app.designs.reference import Reference
 from app.designs.subjects import Subject, subjects
+from app.reference import Reference
 from templates.core.judging.criterion import Criterion
 
 

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 from app.designs.network import Cell, Graph
-from app.designs.reference import Reference
+from app.reference import Reference
 from app.schemas.answers import Warning
 from app.tolerances.factors import Factor
 from templates.core.errors import Fault

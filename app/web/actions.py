@@ -15,6 +15,7 @@ from pydantic import JsonValue
 from app.api.gate.access import FORM_TOKEN
 from app.api.reading import FORM_TYPES, NotForm, check_type
 from app.presentation.typed import value_of
+from app.reference import Reference
 from app.schemas.designs import Design, Proposals
 from app.web.api import Api, Refused, TheApi, read
 from app.web.blocks import Refusal
@@ -157,9 +158,9 @@ async def auto_map(id: Id, request: Request, api: TheApi) -> Response:
     chosen = [item for item in proposed if typed.get(f"map.{item.target}")]
     patch: Patch = {"models": {}}
     for item in chosen:
-        model, _, parameter = item.target.partition(".")
-        within = inner(inner(patch["models"], model), "parameters")
-        within[parameter] = item.relation
+        target = Reference.parse(item.target)
+        within = inner(inner(patch["models"], target.block), "parameters")
+        within[target.member] = item.relation
     if chosen:
         await _change(api, id, typed.get("revision", ""), patch, "mapped as proposed")
     return go(f"/designs/{id}")

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
+from app.reference import Reference
 from app.schemas.networks import DesignNetwork, NetworkBlock, NetworkRelation
 
 LETTER = 6.7  # width, of 11 px in a fixed pitch
@@ -213,11 +214,11 @@ def _backward(start: tuple[float, float], end: tuple[float, float], bottom: floa
 
 
 def _block(name: str) -> str:
-    return name.partition(".")[0]
+    return Reference.parse(name).block
 
 
 def _tail(name: str) -> str:
-    return name.partition(".")[2]
+    return Reference.parse(name).member
 
 
 def _set(one: NetworkRelation) -> str:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pydantic import JsonValue
 
 from app.presentation.typed import text_of, value_of
+from app.reference import Reference
 from app.schemas.declared import Declared, properties
 from app.schemas.library import LibraryRow, LibraryTable, LibraryTables
 from app.schemas.templates import Template
@@ -88,7 +89,7 @@ def with_rows(fields: Sequence[Field], tables: Sequence[LibraryTable]) -> list[F
 
 def _tail(name: str) -> str:
     """The name of an input without that of its step."""
-    return name.rpartition(".")[2]
+    return Reference.parse(name).own_name
 
 
 def _filling(name: str, tables: Sequence[LibraryTable]) -> Iterator[tuple[str, str]]:

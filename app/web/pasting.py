@@ -9,6 +9,7 @@ from dataclasses import replace
 from math import isfinite
 
 from app.calculations.tables import TableColumn, read_table
+from app.reference import Reference
 from app.schemas.tables import ChosenColumn, PastedTable, ReadColumn, ReadTable, TableField
 from templates.core.errors import FaultyText, InvalidInputs, excerpt
 from templates.core.language.meaning import api_name
@@ -89,7 +90,7 @@ def _likeness(column: TableColumn, field: TableField) -> float:
     """From 0, nothing in common or another kind of quantity, to 1: the same name."""
     if column.unit and not compatible(unit(column.unit).base, unit(field.unit).base):
         return 0.0
-    own, name = _words(column.name), field.name.rpartition(".")[2]
+    own, name = _words(column.name), Reference.parse(field.name).own_name
     if api_name(column.name) == name or _plain(column.name) == _plain(re.sub(r"\\[a-z]+", "", field.symbol)):
         return 1.0
     others = _words(name) | _words(field.words)
@@ -133,7 +134,7 @@ def _unit_fault(column: TableColumn, field: TableField) -> Iterator[str]:
 
 
 def _said(name: str) -> str:
-    return excerpt(name.rpartition(".")[2].replace("_", " "))
+    return excerpt(Reference.parse(name).own_name.replace("_", " "))
 
 
 def _adjusted(

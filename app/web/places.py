@@ -8,6 +8,7 @@ from math import inf
 
 from app.presentation import numbers
 from app.presentation.typed import text_of
+from app.reference import Reference
 from app.schemas.designs import Design, Preview, RevisionWorksheet
 from app.schemas.networks import DesignNetwork, NetworkName
 
@@ -82,7 +83,7 @@ def related(design: Design) -> list[str]:
     return [
         f"{name} {text}"
         for name, text in _typed(design)
-        if text.startswith("=") and name.partition(".")[0] not in design.models
+        if text.startswith("=") and Reference.parse(name).block not in design.models
     ]
 
 

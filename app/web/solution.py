@@ -10,6 +10,7 @@ import httpx
 
 from app.presentation import numbers
 from app.presentation.units import System
+from app.reference import Reference
 from app.reports.charts import Chart, Series, svg
 from app.schemas.evaluations import Jump, Root, TracedCurve
 from app.web.api import Api, Refused
@@ -62,7 +63,7 @@ class Drawing:
         curve = self.curve
         x = [float(value) for value in curve.x.value]
         y = [None if value is None else float(value) for value in _list(curve.y.value)]
-        words = self.target.rpartition(".")[2].replace("_", " ")
+        words = Reference.parse(self.target).own_name.replace("_", " ")
         across = [root.value for root in self.roots]
         series = [
             Series(words, x, y),

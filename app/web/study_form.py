@@ -10,6 +10,7 @@ from pydantic import JsonValue
 
 from app.designs.variants.names import BASE, natural
 from app.presentation.typed import text_of, value_of
+from app.reference import Reference
 from app.schemas.criteria import Criterion
 from app.schemas.designs import Design, Preview, RevisionWorksheet
 from app.schemas.networks import DesignNetwork, NetworkName
@@ -203,15 +204,15 @@ def _by_step(named: list[NetworkName]) -> dict[str, list[NetworkName]]:
     """Outputs by their steps, in the order of the design."""
     groups: dict[str, list[NetworkName]] = {}
     for name in named:
-        groups.setdefault(name.name.partition(".")[0], []).append(name)
+        groups.setdefault(Reference.parse(name.name).block, []).append(name)
     return groups
 
 
 def _words(criterion: str, require: str) -> set[str]:
     """The names in a criterion, with the step in front where it belongs to a template."""
-    step, is_of_step, _ = criterion.rpartition(".")
+    name = Reference.parse(criterion)
     bare = require.replace(">=", " ").replace("<=", " ").split()
-    return {f"{step}.{word}" if is_of_step else word for word in bare}
+    return {f"{name.block}.{word}" if name.output else word for word in bare}
 
 
 def again(typed: Mapping[str, str], refused: Refused) -> Typed:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fastapi import Request, Response
 
 from app.presentation import numbers
+from app.reference import Reference
 from app.schemas.criteria import Criterion
 from app.schemas.designs import Design, RevisionWorksheet
 from app.schemas.studies import Best, Index, Study, StudyList, StudyRows
@@ -66,8 +67,8 @@ def _limits(study: Study, criteria: list[Criterion]) -> dict[str, list[float]]:
 def _sides(one: Criterion) -> tuple[str, str]:
     """What a criterion judges, an output with its step in front, and the text of its limit."""
     left, _, right = (side.strip() for side in one.require.replace(">=", "<=").partition("<="))
-    step, is_of_step, _ = one.name.rpartition(".")
-    return f"{step}.{left}" if is_of_step and left.isidentifier() else left, right
+    name = Reference.parse(one.name)
+    return f"{name.block}.{left}" if name.output and left.isidentifier() else left, right
 
 
 def _limit_of(study: Study, one: Criterion) -> tuple[str, float] | None:

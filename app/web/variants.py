@@ -11,6 +11,7 @@ from app.designs.variant_sheets.writing import page_columns, rows_of
 from app.designs.variants.names import BASE
 from app.presentation.criteria import Line, line
 from app.presentation.typed import text_of
+from app.reference import Reference
 from app.schemas.designs import Design
 from app.schemas.networks import DesignNetwork
 from app.schemas.variants import VariantResult, VariantsOut
@@ -204,12 +205,13 @@ def _cell(grid: Grid, row: int, at: int, title: str, hint: str, faults: Mapping[
 
 def _own(design: Design, place: str) -> str:
     """The design's own value of a place, as typed; empty where it sets none."""
-    block, _, name = place.partition(".")
-    if not name:
+    reference = Reference.parse(place)
+    block, member = reference.block, reference.member
+    if not member:
         return text_of(design.parameters.get(place))
     if block in design.steps:
-        return text_of(design.steps[block].inputs.get(name))
-    return text_of(design.models[block].parameters.get(name)) if block in design.models else ""
+        return text_of(design.steps[block].inputs.get(member))
+    return text_of(design.models[block].parameters.get(member)) if block in design.models else ""
 
 
 def _criteria(out: VariantsOut) -> tuple[list[str], list[str]]:
@@ -227,7 +229,7 @@ def _titles(out: VariantsOut, names: Sequence[str]) -> list[str]:
     """Headings of criteria; those that judge the same value are distinguished by their names."""
     titles = [_title(out, name) for name in names]
     return [
-        f"{title} ({name.rpartition('.')[2].replace('_', ' ')})" if titles.count(title) > 1 else title
+        f"{title} ({Reference.parse(name).own_name.replace('_', ' ')})" if titles.count(title) > 1 else title
         for name, title in zip(names, titles, strict=True)
     ]
 

@@ -9,7 +9,7 @@ from app.designs.calculate import calculate
 from app.designs.document import Document
 from app.designs.graph import Catalogues, build_graph
 from app.designs.net import Net
-from app.designs.reference import Reference
+from app.reference import Reference
 from cad.catalogue import models
 from templates.core.errors import InvalidInputs
 from templates.core.units.units import unit

@@ -9,7 +9,7 @@ from app.designs import regeneration
 from app.designs.document import Iteration
 from app.designs.errors import NotConverged
 from app.designs.recent import Prepared
-from app.designs.reference import Reference
+from app.reference import Reference
 from app.designs.regeneration import Regeneration
 
 MOST = 50

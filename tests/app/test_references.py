@@ -9,7 +9,7 @@ from app.designs.calculate import calculate, resume
 from app.designs.document import Document
 from app.designs.graph import Catalogues, build_graph
 from app.designs.network import Block, Solid, SolidAnalysis
-from app.designs.reference import Reference
+from app.reference import Reference
 from cad.catalogue import models
 
 THROW = {

@@ -8,7 +8,7 @@ from app.designs.calculate import calculate
 from app.designs.document import Document, merge
 from app.designs.drives import network_of
 from app.designs.net import Net
-from app.designs.reference import Reference
+from app.reference import Reference
 from templates.core.judging.comparison import WORST_FIRST
 
 RELATED = {"permissible_film": "= share * least"}

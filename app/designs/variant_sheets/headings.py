@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from app.reference import Reference
+
 
 def place_named(heading: str, places: Collection[str]) -> str:
     """The place that a heading names, by its whole name or in the words of its input; else the heading.
@@ -13,7 +15,7 @@ def place_named(heading: str, places: Collection[str]) -> str:
     if heading in places:
         return heading
     words = joined(heading.lower())
-    named = [place for place in places if words in (place.lower(), place.rpartition(".")[2].lower())]
+    named = [place for place in places if words in (place.lower(), Reference.parse(place).own_name.lower())]
     return named[0] if len(named) == 1 else heading
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from app.designs.network import Cell, Network
-from app.designs.reference import Reference
 from app.designs.variant_sheets.reading import Units
 from app.designs.variants.table import places
+from app.reference import Reference
 from templates.core.errors import FaultyText
 from templates.core.language.spec import Choice
 from templates.core.units.quantity import read_any

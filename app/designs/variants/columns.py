@@ -6,10 +6,10 @@ from app.catalogue.catalogues import Catalogues
 from app.designs.document import Document
 from app.designs.graph import Graph, build_graph
 from app.designs.network import Cell
-from app.designs.reference import Reference
 from app.designs.variants.outcome import base_unit
 from app.designs.variants.table import places
 from app.plain import JsonObject
+from app.reference import Reference
 from app.schemas.answers import Shown
 from app.schemas.variants import VariantColumn
 from templates.core.errors import FaultyText

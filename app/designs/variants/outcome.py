@@ -13,10 +13,10 @@ from app.designs.calculation import Calculation
 from app.designs.document import Document
 from app.designs.judging import judged
 from app.designs.network import Graph
-from app.designs.reference import Reference
 from app.designs.results import ModelState
 from app.designs.variants.names import dotted
 from app.plain import Json, JsonObject, Raw
+from app.reference import Reference
 from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText
 from templates.core.judging.judgement import Judgement

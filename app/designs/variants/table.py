@@ -7,9 +7,9 @@ from itertools import chain
 
 from app.designs.document import Document, Model, Step
 from app.designs.network import Graph, Network
-from app.designs.reference import Reference
 from app.designs.variants.names import RESERVED
 from app.plain import Raw
+from app.reference import Reference
 from templates.core.errors import Fault, FaultyText, unknown_names
 from templates.core.units.quantity import read, read_any
 from templates.core.units.relation import is_relation

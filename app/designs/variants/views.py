@@ -87,7 +87,7 @@ class _Table:
     def of(cls, session: Session, row: RevisionRow) -> _Table:
         models: dict[str, list[RevisionModelRow]] = {BASE: list(row.models)}
         for model in row.variant_models:
-            models.setdefault(model.name.partition(".")[0], []).append(model)
+            models.setdefault(model.variant or BASE, []).append(model)
         keys = {model.build_key for group in models.values() for model in group if model.build_key}
         stored = (row.results or {}).get("variants", {})
         return cls(row, stored, models, rows.builds(session, keys), rows.artifacts_of(session, keys))
@@ -121,7 +121,7 @@ class _Table:
 
     def _model(self, row: RevisionModelRow, failures: Mapping[str, Json]) -> VariantModel:
         build = self.builds.get(row.build_key or "")
-        problem = failures.get(row.name.rpartition(".")[2])
+        problem = failures.get(row.own_name)
         parts: JsonObject = {"problem": problem} if problem else {}
         if build is not None:
             parts["measurements"] = measures.measurements(**build.measurements).plain()

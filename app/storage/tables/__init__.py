@@ -2,7 +2,13 @@
 
 from app.storage.tables.approvals import ApprovalRow, CommentRow
 from app.storage.tables.base import NAMING, Base, JsonText, NotWritten, canonical_json
-from app.storage.tables.designs import DesignRow, DesignTagRow, RevisionModelRow, RevisionRow
+from app.storage.tables.designs import (
+    DesignRow,
+    DesignTagRow,
+    RevisionModelRow,
+    RevisionRow,
+    variant_of,
+)
 from app.storage.tables.jobs import CounterRow, EventRow, JobRow
 from app.storage.tables.people import ApiKeyRow, PrincipalRow, SessionRow, StorageRow, UsageRow
 from app.storage.tables.records import AuditRow, IdempotencyRow
@@ -38,4 +44,5 @@ __all__ = [
     "UsageRow",
     "WorksheetVersionRow",
     "canonical_json",
+    "variant_of",
 ]

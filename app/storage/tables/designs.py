@@ -80,3 +80,18 @@ class RevisionModelRow(Base):
     relations: Mapped[JsonObject]
     # No foreign key: the key follows from the parameters and is known before the build is made.
     build_key: Mapped[str | None] = mapped_column(index=True)
+
+    @property
+    def variant(self) -> str | None:
+        """The variant that the model belongs to; None of a model of the design itself."""
+        return variant_of(self.name)
+
+    @property
+    def own_name(self) -> str:
+        """The name of the model within the design or the variant."""
+        return self.name.rpartition(".")[2]
+
+
+def variant_of(model: str) -> str | None:
+    """The variant in the name of a model, such as `main_2.shell`; None where it names none."""
+    return model.rpartition(".")[0] or None

@@ -31,3 +31,8 @@ class Reference:
     def member(self) -> str:
         """The name within the block: `radial_load`, `torsion.stiffness`; empty for a parameter."""
         return f"{self.analysis}.{self.output}" if self.analysis else self.output or ""
+
+    @property
+    def own_name(self) -> str:
+        """The name alone, without the block and the analysis that it belongs to: `stiffness`, `scale`."""
+        return self.block if self.output is None else self.output
