@@ -9,8 +9,8 @@ from app.designs import regeneration
 from app.designs.document import Iteration
 from app.designs.errors import NotConverged
 from app.designs.recent import Prepared
-from app.reference import Reference
 from app.designs.regeneration import Regeneration
+from app.reference import Reference
 
 MOST = 50
 
