@@ -68,28 +68,34 @@ def extrapolated_film(eps: float, ratio: float, around: int = 128, across: int =
     The film extrapolated with order 2, and the difference between it and the finer solution:
     an estimate of that solution's error.
     """
-    coarse = static_film(eps, ratio, around, across)
-    fine = static_film(eps, ratio, 2 * around, 2 * across)
+    if eps == 0:
+        coarse, fine = (static_film(eps, ratio, k * around, k * across) for k in (1, 2))
+    else:
+        first = static_field(eps, ratio, around, across)
+        coarse, fine = measure(first), measure(static_field(eps, ratio, 2 * around, 2 * across, first))
     values = [(getattr(coarse, f.name), getattr(fine, f.name)) for f in fields(Film)]
     return Film(*(f + (f - c) / 3 for c, f in values)), Film(*((f - c) / 3 for c, f in values))
 
 
-def static_field(eps: float, ratio: float, around: int = 128, across: int = 16) -> Field:
-    """Solve for the pressure, from a coarse mesh to the requested one."""
+def static_field(
+    eps: float, ratio: float, around: int = 128, across: int = 16, coarser: Field | None = None
+) -> Field:
+    """Solve for the pressure, from the solution on half as many intervals or from a coarse mesh."""
     require_film(np.asarray(eps), np.asarray(ratio))
     mesh = journal_mesh(eps, ratio, around, across)
-    equations, solution = _nested(eps, ratio, mesh)
+    equations, solution = _nested(eps, ratio, mesh, None if coarser is None else coarser.rupture)
     return Field(eps, ratio, mesh, equations, solution)
 
 
-def _nested(eps: float, ratio: float, mesh: Mesh) -> tuple[Equations, Rupture]:
+def _nested(
+    eps: float, ratio: float, mesh: Mesh, coarser: Rupture | None = None
+) -> tuple[Equations, Rupture]:
     """Solve with the start taken from the next coarser mesh, as long as there is one."""
     n, m = mesh.phi.size - 1, mesh.zeta.size - 1
-    start = None
-    if min(n // _COARSEST[0], m // _COARSEST[1]) > 1 and n % 2 == m % 2 == 0:
-        start = finer(_nested(eps, ratio, mesh.coarser())[1].film)
+    if coarser is None and min(n // _COARSEST[0], m // _COARSEST[1]) > 1 and n % 2 == m % 2 == 0:
+        _, coarser = _nested(eps, ratio, mesh.coarser())
     equations = journal_equations(eps, ratio, mesh)
-    return equations, rupture(equations, start)
+    return equations, rupture(equations, None if coarser is None else finer(coarser.film))
 
 
 def journal_equations(eps: float, ratio: float, mesh: Mesh) -> Equations:
