@@ -1,6 +1,7 @@
 """The matrix of the film equations in banded form, and its solution where the film bears pressure."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,11 @@ class Banded:
     """The rows of nodes around the bearing in the order of their unknowns."""
     shape: tuple[int, int]
     """Shape of the node arrays, fixed nodes included."""
+
+    @cached_property
+    def couplings(self) -> NDArray[np.intp]:
+        """Distances from the diagonal at which there is anything; the other bands are filled by factors only."""
+        return np.flatnonzero(self.bands[1:].any(axis=1)) + 1
 
     def solve(self, inside: Mask, b: Array) -> Array:
         """Solve A P = b at the nodes inside and P = 0 at the others.
@@ -41,20 +47,20 @@ class Banded:
         if count:
             right = b[self.order, :-1].reshape(film.size, -1)[:count]
             unknowns = np.zeros((film.size, right.shape[1]))
-            unknowns[:count] = _solve_masked(self.bands[:, :count], film[:count], right)
+            unknowns[:count] = _solve_masked(self.bands[:, :count], self.couplings, film[:count], right)
             P[self.order, :-1] = unknowns.reshape(P[self.order, :-1].shape)
         return P
 
 
-def _solve_masked(bands: Array, film: Mask, right: Array) -> Array:
+def _solve_masked(bands: Array, couplings: NDArray[np.intp], film: Mask, right: Array) -> Array:
     """Solve with the rows and columns outside the film replaced by those of the unit matrix."""
-    bands = bands[: film.size] * film
-    for offset in np.flatnonzero(bands[1:].any(axis=1)) + 1:
-        bands[offset, : film.size - offset] *= film[offset:]
-        bands[offset, film.size - offset :] = 0
-    bands[0] += ~film
+    inside = np.zeros_like(bands, order="F")  # as LAPACK has it: another order would be copied
+    inside[0] = np.where(film, bands[0], 1.0)
+    for offset in couplings[couplings < film.size]:
+        end = film.size - offset
+        inside[offset, :end] = bands[offset, :end] * (film[:end] & film[offset:])
     solution = solveh_banded(
-        bands, right * film[:, None], overwrite_ab=True, overwrite_b=True, lower=True, check_finite=False
+        inside, right * film[:, None], overwrite_ab=True, overwrite_b=True, lower=True, check_finite=False
     )
     return np.asarray(solution)
 
