@@ -24,7 +24,7 @@ class Banded:
 
     @cached_property
     def couplings(self) -> NDArray[np.intp]:
-        """Distances from the diagonal at which there is anything; the other bands are filled by factors only."""
+        """Distances from the diagonal of bands that are not empty; factors fill the others."""
         return np.flatnonzero(self.bands[1:].any(axis=1)) + 1
 
     def solve(self, inside: Mask, b: Array) -> Array:
