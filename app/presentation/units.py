@@ -22,6 +22,7 @@ US = {
     "mm**4": "inch**4", "1/mm**3": "1/inch**3", "1/N": "1/lbf", "cm**3": "inch**3",
     "kN/mm": "lbf/inch", "1/MPa": "1/psi", "um/GPa": "inch/psi", "s/m**2": "s/inch**2",
     "N*m*s/rad": "lbf*inch*s/rad",
+    "MPa/kN": "psi/lbf", "MPa/(kN*m)": "psi/(lbf*ft)",
 }  # fmt: skip
 """The unit that stands for a declared one; others, such as rpm, are used there as well."""
 

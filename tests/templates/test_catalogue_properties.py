@@ -20,7 +20,7 @@ from templates.core.errors import InvalidInputs
 from templates.core.language import dimensions
 from templates.core.language.evaluate import evaluate, is_reported
 from templates.core.language.intake import is_single
-from templates.core.language.spec import Choice, Curve, Derived, Given, Profile, Text
+from templates.core.language.spec import Choice, Curve, Derived, Given, Profile, Table, Text
 from templates.core.language.template import Template
 from templates.core.paper import report
 from templates.core.paper.schema import describe, inputs_schema
@@ -294,7 +294,7 @@ def starting(cls):
 
 
 def spread(declared, value, rng, size):
-    if isinstance(declared, (Choice, Curve)) or declared.meaning.integer or is_single(declared):
+    if isinstance(declared, (Choice, Curve, Table)) or declared.meaning.integer or is_single(declared):
         return value
     return value * rng.uniform(0.98, 1.02, size)
 
@@ -305,7 +305,7 @@ def extremes(cls, rng, size):
 
 def extreme(declared, value, rng, size):
     """Near the example, decades away, at and beside the bounds, zero, negative, tiny and huge."""
-    if isinstance(declared, (Choice, Curve)) or is_single(declared):
+    if isinstance(declared, (Choice, Curve, Table)) or is_single(declared):
         return value
     bounds = declared.meaning.domain_si
     limits = [x for x in (vars(bounds).values() if bounds else ()) if x is not None]
@@ -358,7 +358,9 @@ def at_points(cls, name, answer, size):
 def point(declared, value, i):
     """One of the points that an input spans; a curve is the same at all of them here."""
     is_array = (
-        isinstance(value, dict) and isinstance(value["value"], list) and not isinstance(declared, Curve)
+        isinstance(value, dict)
+        and isinstance(value["value"], list)
+        and not isinstance(declared, (Curve, Table))
     )
     return {**value, "value": value["value"][i]} if is_array else value
 

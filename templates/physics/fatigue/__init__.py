@@ -1,0 +1,1 @@
+"""Fatigue under stresses of any direction that repeat: tensors, criteria, counting, strength."""

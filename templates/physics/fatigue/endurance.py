@@ -1,0 +1,123 @@
+r"""What a steel part bears for ever, and between 1000 cycles and there: Marin's factors, notch sensitivity.
+
+The factors are those of the 10th edition of Shigley; the 11th has others. None is taken above 1 (the book's
+size factor reaches 1.11 below 7.6 mm).
+
+References
+----------
+R. G. Budynas, J. K. Nisbett: Shigley's Mechanical Engineering Design, 10th ed. 2015, sections 6-7 to 6-10.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.special import ndtri
+
+from templates.core.arrays import Array, Truth
+from templates.core.language.declare import units
+
+MPA = 1e6
+KSI = 6.894757293168361e6
+INCH = 0.0254
+
+SURFACES = {
+    "polished": (1.0, 0.0),
+    "ground": (1.58, -0.085),
+    "machined": (4.51, -0.265),
+    "hot_rolled": (57.7, -0.718),
+    "forged": (272.0, -0.995),
+}
+"""Factor and exponent of the ultimate strength in MPa."""
+
+BENDING, AXIAL = "bending", "axial"
+_LOADINGS = {BENDING: 1.0, AXIAL: 0.85}
+_HIGHEST = 1400 * MPA
+_SMALL, _MIDDLE = 2.79e-3, 51e-3
+_ADDED = 345 * MPA  # σ_F' less the ultimate strength (50 ksi), steels up to 500 HB
+FIRST, KNEE = 1e3, 1e6
+
+
+@units("Pa", returns="Pa", latex=r"\min\left(\tfrac12\,{0},700\,\mathrm{{MPa}}\right)")
+def specimen_limit(ultimate: Array) -> Array:
+    """The endurance limit [Pa] of a rotating, polished specimen of this ultimate strength [Pa]."""
+    return 0.5 * np.minimum(ultimate, _HIGHEST)
+
+
+@units(None, "Pa", returns="1", latex=r"k_{{\mathrm{{surface}}}}\left({1}\right)")
+def surface_factor(surface: str, ultimate: Array) -> Array:
+    """k_a [1] = a S^b of a surface, S the ultimate strength [Pa] in MPa; at most 1."""
+    factor, exponent = SURFACES[surface]
+    return np.minimum(factor * (ultimate / MPA) ** exponent, 1.0)
+
+
+@units("m", returns="1", latex=r"k_{{\mathrm{{size}}}}\left({0}\right)")
+def size_factor(d: Array) -> Array:
+    """k_b [1] of a diameter [m]: 1.24 d^-0.107 up to 51 mm, then 1.51 d^-0.157; at most 1, 1 if not given."""
+    mm = np.maximum(np.where(np.isnan(d), _SMALL, d), _SMALL) * 1e3
+    factor = np.where(mm <= _MIDDLE * 1e3, 1.24 * mm**-0.107, 1.51 * mm**-0.157)
+    return np.where(np.isnan(d), 1.0, np.minimum(factor, 1.0))[()]
+
+
+@units(None, returns="1", latex=r"1\ \text{{or}}\ 0.85\ \text{{(axial)}}")
+def loading_factor(loading: str) -> Array:
+    """k_c [1]: 1 in bending, 0.85 axially; shear is in the criterion, so torsion has none."""
+    return np.float64(_LOADINGS[loading])  # type: ignore[return-value]
+
+
+@units("1", returns="1", latex=r"1-0.08\,z\left({0}\right)")
+def reliability_factor(reliability: Array) -> Array:
+    """k_e [1] = 1 - 0.08 z, z the normal quantile of the reliability: limits scatter by 8 %."""
+    return 1 - 0.08 * ndtri(reliability)
+
+
+@units("Pa", returns="Pa", latex=r"{0}+345\,\mathrm{{MPa}}")
+def strength_coefficient(ultimate: Array) -> Array:
+    """The fatigue strength coefficient [Pa] of steel up to 500 HB, of its ultimate strength [Pa]."""
+    return ultimate + _ADDED
+
+
+@units("Pa", returns="1", latex=r"\frac{{\sigma_F'}}{{{0}}}\left(2\cdot10^{{3}}\right)^{{b}}")
+def share_at_1000_cycles(ultimate: Array) -> Array:
+    """Share f [1]: what of the ultimate strength [Pa] a reversed amplitude is that is borne for 1000 cycles.
+
+    σ_F' = S_u + 345 MPa, and a line through σ_F' and the specimen's limit at 10⁶ cycles (equation 6-10).
+    """
+    first = strength_coefficient(ultimate)
+    b = -np.log(first / specimen_limit(ultimate)) / np.log(2 * KNEE)
+    return first / ultimate * (2 * FIRST) ** b
+
+
+@units("Pa", returns="m", latex=r"a_{{\mathrm{{Neuber}}}}\left({0}\right)")
+def neuber_length(ultimate: Array) -> Array:
+    """Neuber's a [m] in bending, of the ultimate strength [Pa]; NaN beyond 1750 MPa, where the fit ends.
+
+    The fit is √a in √in, of the strength in ksi.
+    """
+    S = ultimate / KSI
+    root = 0.246 - 3.08e-3 * S + 1.51e-5 * S**2 - 2.67e-8 * S**3
+    return np.where(root > 0, root**2 * INCH, np.nan)[()]
+
+
+@units("m", "m", returns="1", latex=r"\left(1+\sqrt{{\frac{{{0}}}{{{1}}}}}\right)^{{-1}}")
+def notch_sensitivity_Neuber(length: Array, radius: Array) -> Array:
+    """Sensitivity q [1] of a notch radius [m], by Neuber's length [m]; NaN where one is missing."""
+    return 1 / (1 + np.sqrt(length / radius))
+
+
+@units("1", "1", returns="1", latex=r"\frac{{1+{1}\left({0}-1\right)}}{{{0}}}")
+def notch_support(K_t: Array, q: Array) -> Array:
+    """K_f/K_t [1]: how much of a local stress counts in fatigue; 1 where notch or sensitivity is missing."""
+    share = (1 + q * (K_t - 1)) / K_t
+    return np.where(np.isnan(share), 1.0, share)[()]
+
+
+@units("Pa", "Pa", "1", returns="1", latex=r"\frac{{\lg\left({1}/{0}\right)}}{{\lg {2}-3}}")
+def slope_of_line(at_1000: Array, endurance: Array, knee: Array) -> Array:
+    """The exponent b [1] of the line from 1000 cycles to the endurance limit at the knee."""
+    return np.log(endurance / at_1000) / np.log(knee / FIRST)
+
+
+@units("1", "1", returns="1")
+def both_or_none(K_t: Array, other: Array) -> Truth:
+    """Whether a stress concentration comes with what its sensitivity needs."""
+    return np.isnan(K_t) | ~np.isnan(other)

@@ -1,0 +1,123 @@
+r"""Stress tensors over a cycle: superposed from those of unit loads, and which tensor carries them.
+
+A tensor is its components xx, yy, zz, xy, yz, xz [Pa], as tables of finite elements write them. Linear
+elasticity: the stress of loads that act together is the sum of their tensors, sigma(theta) = sum over the
+loads of load(theta) times the tensor of a unit of it. Equivalent stresses do not add.
+
+References
+----------
+R. von Mises: Mechanik der festen Körper im plastisch-deformablen Zustand. Göttinger Nachrichten, 1913.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from templates.core.arrays import Array, Truth
+from templates.core.language.declare import units
+
+COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
+Rows = tuple[tuple[float, ...], ...]
+
+_WEIGHTS = np.sqrt(np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0]))
+"""Of components in the length of a tensor: a shear stands in it twice."""
+
+PROPORTIONAL = 0.95
+"""The share of one tensor in a history from which on a sign may be given to an equivalent stress."""
+
+_PURE_SHEAR = 1e-6  # |p1 + p3| of the length of a tensor: neither tension nor compression leads
+
+
+def is_given(load: Array) -> bool:
+    """Whether a load is given."""
+    return not bool(np.isnan(load).all())
+
+
+@units(None, None, returns="1")
+def go_together(loads: Sequence[Array], stresses: Sequence[Rows]) -> Truth:
+    """Whether every load has its stresses, and all stresses their load."""
+    return all(is_given(load) == bool(rows) for load, rows in zip(loads, stresses, strict=True))
+
+
+@units(None, returns="1")
+def has_any(stresses: Sequence[Rows]) -> Truth:
+    """Whether there is any table of stresses."""
+    return any(len(rows) > 0 for rows in stresses)
+
+
+@units(None, returns="1")
+def same_points(stresses: Sequence[Rows]) -> Truth:
+    """Whether all tables of stresses have the same number of points."""
+    return len({len(rows) for rows in stresses if rows}) < 2
+
+
+@units(None, returns="1")
+def changes(loads: Sequence[Array]) -> Truth:
+    """Whether at least one load is a curve, of two values or more."""
+    return any(np.ndim(load) > 0 and np.shape(load)[-1] > 1 for load in loads)
+
+
+def superposed(loads: Sequence[Array], stresses: Sequence[Rows]) -> Array:
+    """The stress tensors [..., point, angle, 6] [Pa] of loads [..., angle] and of their units [point, 6].
+
+    A load is in its SI unit, its stresses in Pa for each of these. One point without stress where the inputs
+    do not go together, which is refused elsewhere.
+    """
+    if not (has_any(stresses) and same_points(stresses) and go_together(loads, stresses)):
+        return np.zeros((1, 1, len(COMPONENTS)))
+    parts = [
+        np.atleast_1d(load)[..., None, :, None] * np.asarray(rows)[:, None, :]
+        for load, rows in zip(loads, stresses, strict=True)
+        if rows
+    ]
+    return np.sum(np.broadcast_arrays(*parts), axis=0)
+
+
+def as_matrices(tensors: Array) -> Array:
+    """Tensors [..., 6] as symmetric matrices [..., 3, 3]."""
+    xx, yy, zz, xy, yz, xz = np.moveaxis(tensors, -1, 0)
+    return np.stack([np.stack(row, -1) for row in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))], -2)
+
+
+def von_mises_1913(tensors: Array) -> Array:
+    """The equivalent stress [Pa] of tensors [..., 6]."""
+    xx, yy, zz, xy, yz, xz = np.moveaxis(tensors, -1, 0)
+    apart = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return np.sqrt(apart / 2 + 3 * (xy**2 + yz**2 + xz**2))
+
+
+def leading_tensor(tensors: Array) -> tuple[Array, Array]:
+    """The tensor of length 1 [..., 6] that carries most of a history [..., angle, 6], and its share [1].
+
+    The share is that of the sum of the squares of all tensors; 1 where nothing acts. The sign of the tensor
+    is such that its principal stress of the larger amount is tension; of pure shear it is either.
+    """
+    weighted = tensors * _WEIGHTS
+    gram = np.einsum("...ai,...aj->...ij", weighted, weighted)
+    values, vectors = np.linalg.eigh(gram)
+    total = np.sum(np.maximum(values, 0), axis=-1)
+    share = np.where(total > 0, values[..., -1] / np.where(total > 0, total, 1.0), 1.0)
+    tensor = vectors[..., -1] / _WEIGHTS
+    lead = _leading_principal(tensor)
+    return tensor * np.where(lead < 0, -1.0, 1.0)[..., None], share
+
+
+def signed_von_mises(tensors: Array) -> Array:
+    """The equivalent stress [..., angle] [Pa] of a history, negative where the leading tensor turns round.
+
+    Only for a history that one tensor carries. Pure shear has no sign of its own: its mean counts as tension.
+    """
+    tensor, _ = leading_tensor(tensors)
+    along = np.einsum("...ai,...i->...a", tensors * _WEIGHTS**2, tensor)
+    signed = np.where(along < 0, -1.0, 1.0) * von_mises_1913(tensors)
+    middle = signed.max(axis=-1) + signed.min(axis=-1)
+    turned = (np.abs(_leading_principal(tensor)) <= _PURE_SHEAR) & (middle < 0)
+    return np.where(turned[..., None], -signed, signed)
+
+
+def _leading_principal(tensor: Array) -> Array:
+    """p1 + p3 [1] of tensors of length 1: positive where tension leads, 0 in pure shear."""
+    principal = np.linalg.eigvalsh(as_matrices(tensor))
+    return np.asarray(principal[..., 0] + principal[..., 2])
