@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from criteria_of_engines import CASES as OF_ENGINES
 from criteria_of_pads import CASES as OF_PADS
+from criteria_of_shafts import CASES as OF_SHAFTS
 
 from templates.core.judging.judging import judge
 from templates.core.language import levels
@@ -61,6 +62,7 @@ CHAIN, THROW, FATIGUE = ("torsional_vibration", 1), ("crank_stiffness", 1), ("fa
 
 CASES = [
     *OF_ENGINES,
+    *OF_SHAFTS,
     *OF_PADS,  # criterion, what differs from the example, limits given, verdict, value and limit by hand
     # The paper prints 3.2449 µm for its example; the bound of its error is 24 %.
     (FILM_1, "film", {}, {"smallest_permissible_film": "2.5 um"}, "met", 3.2449, 2.5),
