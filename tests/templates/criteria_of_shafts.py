@@ -1,4 +1,4 @@
-"""Cases of the criteria of `crank_stiffness` 2 and `fatigue_life` 2, for `test_criteria_of_families`: by hand.
+"""Cases of the criteria of shafts' second versions, for `test_criteria_of_families`: by hand.
 
 Each: template, criterion, what differs from the example, limits given, verdict, value and limit.
 """
