@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from templates.core.arrays import Array
+from templates.core.arrays import Array, Integers
 from templates.core.language.declare import units
 
 Phasors = NDArray[np.complex128]
@@ -20,6 +20,7 @@ TURN = 2 * np.pi
 MOST_ANGLES = 20_000
 _EVEN = 1e-6  # of a step
 _NOISE = 1e-14  # of the largest harmonic; smaller ones are rounding
+_LOW = 0.02  # of the sum of all amplitudes: more than the curve rises above a sample beside its peak
 _BLOCK = 2_000_000  # samples of curves that are held at a time
 
 
@@ -118,11 +119,13 @@ def _harmonics(T: Array, cycle: Cycle, orders: Array) -> Phasors:
 def half_swing(amplitudes: Phasors) -> Array:
     """Half the swing over the cycle of Re Σ c e^{ikx}, k = 1 … H, of amplitudes (…, H).
 
-    The curve is sampled at least sixteen times in each period of its highest order; Newton's method leads
-    from the largest and the smallest sample to the extremes beside them.
+    The curve is sampled at least sixteen times in each period of its highest order. Parabolas through the
+    samples rank its peaks, and Newton's method leads to the largest and the smallest.
     """
-    flat = amplitudes.reshape(-1, amplitudes.shape[-1])
-    lines = flat.shape[-1]
+    lines = amplitudes.shape[-1]
+    if lines == 1:
+        return np.abs(amplitudes[..., 0])
+    flat = amplitudes.reshape(-1, lines)
     samples = 1 << int(np.ceil(np.log2(max(64, 16 * lines))))
     rows = max(1, _BLOCK // samples)
     swings = np.empty(len(flat))
@@ -138,10 +141,9 @@ def half_swing(amplitudes: Phasors) -> Array:
 
 
 def _extreme(amplitudes: Phasors, curve: Array) -> Array:
-    """The largest value of each curve, (R,), by two of Newton's steps from its largest sample."""
-    at = np.argmax(curve, axis=-1)
-    largest = np.take_along_axis(curve, at[:, None], axis=-1)[:, 0]
+    """The largest value of each curve, (R,), by two of Newton's steps from the sample at its top."""
     step = TURN / curve.shape[-1]
+    at = _tops(curve, _LOW * np.abs(amplitudes).sum(axis=-1))
     k = np.arange(1, amplitudes.shape[-1] + 1)
     x = at * step
     for _ in range(2):
@@ -150,7 +152,24 @@ def _extreme(amplitudes: Phasors, curve: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):
             way = np.where(bend < 0, -slope / bend, 0.0)
         x = x + np.clip(way, -step, step)
-    return np.maximum(largest, (amplitudes * np.exp(1j * k * x[:, None])).real.sum(axis=-1))
+    return np.maximum(curve.max(axis=-1), (amplitudes * np.exp(1j * k * x[:, None])).real.sum(axis=-1))
+
+
+def _tops(curve: Array, low: Array) -> Integers:
+    """Where the peak of each curve, (R, N), is, by parabolas; none is more than `low` above its sample."""
+    largest = curve.max(axis=-1)
+    is_high = curve >= (largest - low)[:, None]
+    is_high[np.isnan(largest), 0] = True
+    row, at = np.nonzero(is_high)
+    here, before, after = curve[row, at], curve[row, at - 1], curve[row, (at + 1) % curve.shape[-1]]
+    bend = 2 * here - before - after
+    is_top = (here >= before) & (here >= after) & (bend > 0)
+    top = here + np.where(is_top, (after - before) ** 2 / (8 * np.where(is_top, bend, 1.0)), 0.0)
+    highest = np.maximum.reduceat(top, np.searchsorted(row, np.arange(len(curve))))
+    chosen = np.flatnonzero(top >= highest[row])[::-1]
+    tops = np.zeros(len(curve), dtype=np.int64)
+    tops[row[chosen]] = at[chosen]
+    return tops
 
 
 @units("rad", "1", returns="1", latex=r"\frac{{2 j}}{{z}}\le {1}")
