@@ -183,9 +183,10 @@ def build_of(client: Client, design: Design) -> str:
 
 
 def dimensions_of(client: Client, build: str) -> dict[str, Quantity]:
-    """The dimensions that the service measured on a build."""
+    """The dimensions of a single number that the service measured on a build."""
     measurements = client.build(build).measurements
-    return measurements.dimensions if measurements else {}
+    dimensions = measurements.dimensions if measurements else {}
+    return {name: size for name, size in dimensions.items() if isinstance(size, Quantity)}
 
 
 def saved(client: Client, design: Design, data: Path) -> Path:

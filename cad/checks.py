@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import isclose, isfinite
 
+import numpy as np
+
 from cad.errors import GeometryError
 from cad.inspect import Measured
-from cad.model import Box, CadModel, Part
+from cad.model import Box, CadModel, Dimension, Part
 from cad.step import Body
 from cad.surfaces import Seen
 
@@ -53,8 +55,10 @@ def check_box(model: CadModel, measured: Box) -> None:
         raise GeometryError("bounding_box", detail, model.inputs)
 
 
-def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, float]:
+def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, Dimension]:
     """Every parameter that the solid shows is the one requested; returns them as read back, by API name.
+
+    Of a list each item is; where one number stands for all items, each of them is that number.
 
     Raises
     ------
@@ -62,20 +66,17 @@ def check_dimensions(model: CadModel, seen: Mapping[str, Seen]) -> dict[str, flo
         `dimension`, naming the parameters that are not as requested.
     """
     try:
-        measured = {name: round(value, 9) for name, value in model.dimensions(seen).items()}
+        measured = {name: _rounded(value) for name, value in model.dimensions(seen).items()}
     except LookupError as error:
         detail = f"{model.id} does not show the surfaces from which its dimensions are read ({error})"
         raise GeometryError("dimension", detail, model.inputs) from error
     wanted = {name: _requested(model, name) for name in measured}
-    wrong = {
-        n: v
-        for n, v in measured.items()
-        if not isclose(v, wanted[n], rel_tol=1e-12, abs_tol=_DIMENSION_TOLERANCE)
-    }
+    wrong = {n: v for n, v in measured.items() if not _as_requested(v, wanted[n])}
     if wrong:
         unit = {name: model.inputs[name].meaning.unit for name in wrong}
         messages = (
-            f"{n} should be {wanted[n]:.9g} {unit[n]}, it is {v:.9g} {unit[n]}" for n, v in wrong.items()
+            f"{n} should be {_shown(wanted[n])} {unit[n]}, it is {_shown(v)} {unit[n]}"
+            for n, v in wrong.items()
         )
         raise GeometryError("dimension", "; ".join(messages), wrong)
     return measured
@@ -97,9 +98,30 @@ def _check_body(model: CadModel, part: Part, one: Measured) -> None:
         raise refuse("volume", f"should have a volume of {part.volume:.9g} mm³; it has {one.volume:.9g} mm³")
 
 
-def _requested(model: CadModel, name: str) -> float:
+def _requested(model: CadModel, name: str) -> Dimension:
     declared = model.inputs[name]
-    return float(declared.meaning.scale.from_si(getattr(model, declared.attribute)))
+    value: Dimension = np.asarray(declared.meaning.scale.from_si(getattr(model, declared.attribute))).tolist()
+    return value
+
+
+def _as_requested(measured: Dimension, wanted: Dimension) -> bool:
+    """Whether a dimension is the one requested; items of a list may all be requested by one number."""
+    if not isinstance(measured, list):
+        return not isinstance(wanted, list) and _close(measured, wanted)
+    each = wanted if isinstance(wanted, list) else [wanted] * len(measured)
+    return len(each) == len(measured) and all(map(_close, measured, each))
+
+
+def _close(one: float, other: float) -> bool:
+    return isclose(one, other, rel_tol=1e-12, abs_tol=_DIMENSION_TOLERANCE)
+
+
+def _rounded(value: Dimension) -> Dimension:
+    return [round(item, 9) for item in value] if isinstance(value, list) else round(value, 9)
+
+
+def _shown(value: Dimension) -> str:
+    return f"[{', '.join(map(_shown, value))}]" if isinstance(value, list) else f"{value:.9g}"
 
 
 def _box(box: Box) -> str:

@@ -2,7 +2,7 @@ r"""The header of a STEP file, in which a model says what it is: its id, version
 
 Written and read as ISO 10303-21 says: a quote is doubled, a backslash too, what is not ASCII is written as
 \X2\…\X0\, and no string of FILE_DESCRIPTION is longer than 256 characters, so each parameter has one of
-its own. The time is a fixed one: the same parameters must give the same bytes.
+its own, and a long list has several. The time is a fixed one: the same parameters must give the same bytes.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from cad.part21 import description, plain, quoted
 LONGEST_HEADER = 65536
 """How much of a file is searched for its header [bytes]; what `write_header` writes is a few thousand."""
 
+_LONGEST_PART = 180  # of a value in one string, beside its name
 _NO_TIME = "1970-01-01T00:00:00"
 _TITLE = re.compile(r"Crankwright ([a-z][a-z0-9_]{0,63}) version ([1-9][0-9]{0,8})")
 
@@ -38,7 +39,7 @@ class Header:
 def write_header(header: Header, schema: str, kernel: str) -> str:
     """The HEADER section, from `HEADER;` to `ENDSEC;`."""
     described = [header.title, f"build: {header.build}"]
-    described += [f"{name}: {value}" for name, value in header.parameters.items()]
+    described += [part for name, value in header.parameters.items() for part in _parts(name, value)]
     lines = ",\n  ".join(map(quoted, described))
     name = quoted(f"{header.model}_v{header.version}.step")
     return (
@@ -52,8 +53,26 @@ def read_header(step: bytes) -> Header | None:
     """What a STEP file says of itself, or None if it is not one of ours."""
     strings = [plain(string) for string in description(step[:LONGEST_HEADER].decode("latin-1"))]
     title = _TITLE.fullmatch(strings[0]) if strings else None
-    pairs = dict(s.partition(": ")[::2] for s in strings[1:])
+    pairs = _joined(strings[1:])
     if title is None or "build" not in pairs:
         return None
     build = pairs.pop("build")
     return Header(title[1], int(title[2]), pairs, build)
+
+
+def _parts(name: str, value: str) -> list[str]:
+    """A parameter as strings: one, or several of which all but the first repeat its name with a plus."""
+    first, *others = [value[at : at + _LONGEST_PART] for at in range(0, max(len(value), 1), _LONGEST_PART)]
+    return [f"{name}: {first}", *(f"{name}+: {other}" for other in others)]
+
+
+def _joined(strings: list[str]) -> dict[str, str]:
+    """Parameters from their strings."""
+    parts: dict[str, list[str]] = {}
+    for string in strings:
+        name, _, value = string.partition(": ")
+        if name.endswith("+") and name[:-1] in parts:
+            parts[name[:-1]].append(value)
+        else:
+            parts[name] = [value]
+    return {name: "".join(values) for name, values in parts.items()}

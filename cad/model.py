@@ -10,6 +10,8 @@ Beyond them it says four things, and only the first of them draws:
 - `dimensions(seen)`: its parameters, as they are read back from the surfaces of the finished STEP file.
 - `example`: a valid set of parameters.
 
+A parameter is one number, or a list where it is declared as a `curve`; never an array of points.
+
 Shapes are drawn in millimetres, z along the shaft, +y towards the crown.
 
 This module does not import the kernel: a calculation asks whether a template is a model, and draws none.
@@ -17,13 +19,18 @@ This module does not import the kernel: a calculation asks whether a template is
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from math import isclose
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
 
 from cad.errors import GeometryError
+from cad.lists import listed
 from cad.shaft import STEEL_DENSITY, Shaft
+from templates.core.errors import Fault
+from templates.core.language.spec import Curve, Declaration
 from templates.core.language.template import Array, Template
 
 if TYPE_CHECKING:
@@ -32,6 +39,8 @@ if TYPE_CHECKING:
     from cad.surfaces import Seen
 
 Colour = tuple[float, float, float]
+Dimension = float | list[float]
+"""A parameter as it is read back from a solid: a number, or a list."""
 
 STEEL: Colour = (0.62, 0.65, 0.70)
 BRIGHT_STEEL: Colour = (0.86, 0.88, 0.91)
@@ -118,9 +127,34 @@ class CadModel(Template):
         """Where the solid is held and loaded when it is analysed; None if it is no shaft."""
         return None
 
-    def dimensions(self, seen: Mapping[str, Seen]) -> dict[str, float]:
+    def dimensions(self, seen: Mapping[str, Seen]) -> Mapping[str, Dimension]:
         """Parameters by API name [mm, a count as 1], as far as the parts seen in the file show them."""
         raise NotImplementedError
+
+    @classmethod
+    def from_quantities(cls, raw: Mapping[str, Any], pending: Collection[str] = ()) -> Self:
+        """A model from what a user typed; of a list also its text, `[0, 180] deg`.
+
+        Raises
+        ------
+        InvalidInputs
+            Naming all that is wrong at once.
+        """
+        lists = {name for name, declared in cls.inputs.items() if isinstance(declared, Curve)}
+        read = {name: listed(value) if name in lists else value for name, value in raw.items()}
+        return super().from_quantities(read, pending)
+
+    def points(self) -> list[Fault]:
+        """What is wrong with it as one solid: arrays of points, which only the language takes."""
+        return [fault for name, d in self.inputs.items() if (fault := _of_points(name, d, vars(self)))]
+
+
+def _of_points(name: str, declared: Declaration, values: Mapping[str, Any]) -> Fault | None:
+    """The fault of an array where a model takes one number, or of a list of lists."""
+    if np.ndim(values.get(declared.attribute, 0.0)) <= int(isinstance(declared, Curve)):
+        return None
+    wanted = "one list of numbers" if isinstance(declared, Curve) else "a single value, not an array"
+    return Fault(name, "not_a_number", f"{declared.meaning.words}: a model takes {wanted}")
 
 
 def mm(length: Array | float) -> float:

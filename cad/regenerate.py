@@ -15,21 +15,28 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from cad.catalogue import models
 from cad.checks import check_bodies, check_box, check_dimensions
 from cad.errors import GeometryError
 from cad.header import Header
 from cad.inspect import bounding_box, look_at, measure, summarise
-from cad.model import CadModel
+from cad.lists import rounded, written
+from cad.model import CadModel, Dimension
 from cad.step import read_step, write_step
 from cad.step_text import KERNEL
 from templates.core.catalogue.digests import content_digest
 from templates.core.catalogue.loading import is_outside
+from templates.core.errors import InvalidInputs
 
 __all__ = [
     "Build", "as_quantities", "as_text", "build_key", "made_by", "regenerate", "regenerate_class",
     "regenerate_from_text",
 ]  # fmt: skip
+
+Value = float | str | list[float]
+"""A parameter: a number, a word, or a list."""
 
 Report = Callable[[float, str], None]
 
@@ -52,10 +59,10 @@ class Build:
     key: str
     model: str
     version: int
-    parameters: dict[str, float | str]  # SI, defaults included
+    parameters: dict[str, Value]  # SI, defaults included
     step: bytes
     measures: dict[str, float]  # in the units of `cad.inspect.MEASURES`
-    dimensions: dict[str, float]  # read back from the file, in the declared unit of each parameter
+    dimensions: dict[str, Dimension]  # read back from the file, in the declared unit of each parameter
     materials: dict[str, str]  # of every part
 
 
@@ -71,7 +78,7 @@ def as_text(model: CadModel) -> dict[str, str]:
     return dict(_canonical(model).texts)
 
 
-def as_quantities(model: CadModel) -> dict[str, dict[str, float | str]]:
+def as_quantities(model: CadModel) -> dict[str, dict[str, Value]]:
     """Every parameter in its declared unit, as in the STEP file: `{"value": 50.0, "unit": "mm"}`."""
     return {name: dict(quantity) for name, quantity in _canonical(model).quantities.items()}
 
@@ -86,15 +93,23 @@ class _Canonical:
     """The parameters of a model in the form that its key is made of."""
 
     texts: dict[str, str]
-    quantities: dict[str, dict[str, float | str]]
+    quantities: dict[str, dict[str, Value]]
     key: str
 
 
 def _canonical(model: CadModel) -> _Canonical:
-    """The canonical form of a model, made once and kept with the values that the model has computed."""
+    """The canonical form of a model, made once and kept with the values that the model has computed.
+
+    Raises
+    ------
+    InvalidInputs
+        If the model stands for several points.
+    """
     kept: _Canonical | None = vars(model).get(_KEPT)
     if kept is None:
-        texts, quantities = dict[str, str](), dict[str, dict[str, float | str]]()
+        if faults := model.points():
+            raise InvalidInputs(faults)
+        texts, quantities = dict[str, str](), dict[str, dict[str, Value]]()
         for name, si in model.inputs_si().items():
             texts[name], quantities[name] = _written(model, name, si)
         kept = vars(model)[_KEPT] = _Canonical(texts, quantities, _key(type(model), texts))
@@ -107,7 +122,7 @@ _KEPT = "canonical form"  # no name that a declaration can have
 def regenerate(
     model_id: str,
     version: int,
-    parameters: Mapping[str, float | str],
+    parameters: Mapping[str, Value],
     *,
     folders: Sequence[Path] = (),
     report: Report = ignore,
@@ -162,16 +177,19 @@ def regenerate_class(cls: type[CadModel], texts: Mapping[str, str], *, report: R
     return Build(key, cls.id, cls.version, _plain(model), step, measures, dimensions, materials)
 
 
-def _plain(model: CadModel) -> dict[str, float | str]:
-    """Every parameter in SI, as plain numbers and words."""
-    return {n: v if isinstance(v, str) else float(v) for n, v in model.inputs_si().items()}
+def _plain(model: CadModel) -> dict[str, Value]:
+    """Every parameter in SI, as plain numbers, words and lists."""
+    return {n: v if isinstance(v, str) else np.asarray(v).tolist() for n, v in model.inputs_si().items()}
 
 
-def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, float | str]]:
+def _written(model: CadModel, name: str, si: Any) -> tuple[str, dict[str, Value]]:
     """A parameter as text and as quantity, to twelve digits: free of the last digit's noise of conversion."""
     if isinstance(si, str):
         return si, {"value": si}
     meaning = model.inputs[name].meaning
+    if np.ndim(si):
+        values = np.asarray(meaning.scale.from_si(si)).tolist()
+        return written(values, meaning.unit), {"value": rounded(values), "unit": meaning.unit}
     number = f"{meaning.scale.from_si(float(si)):.12g}"
     text = number if meaning.unit == "1" else f"{number} {meaning.unit}"
     return text, {"value": float(number), "unit": meaning.unit}

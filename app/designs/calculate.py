@@ -22,7 +22,7 @@ from cad.model import CadModel
 from templates.core.errors import Fault, FaultyText, InvalidInputs
 from templates.core.language.evaluate import Evaluation
 from templates.core.language.request import read_request
-from templates.core.language.spec import Choice
+from templates.core.language.spec import Choice, Curve
 from templates.core.units.quantity import Typed, read, read_any
 from templates.core.units.relation import is_relation
 from templates.core.units.units import Value
@@ -291,7 +291,11 @@ def _prepared(result: Calculation, block: Block) -> Evaluation | None:
 
 
 def _refuse_arrays(result: Calculation, block: Block) -> None:
-    arrays = [n for n, cell in block.cells.items() if np.ndim(result.values.get(cell.name, 0.0))]
+    arrays = [
+        n
+        for n, cell in block.cells.items()
+        if np.ndim(result.values.get(cell.name, 0.0)) > int(isinstance(cell.declared, Curve))
+    ]
     if arrays:
         raise InvalidInputs(
             Fault(n, "not_a_number", "a model takes a single value, not an array") for n in arrays

@@ -17,7 +17,7 @@ from app.impact.outcome import Judged, Outcome
 from app.impact.solids import Solids
 from app.reference import Reference
 from templates.core.errors import InvalidInputs
-from templates.core.language.spec import Choice, Table, Text
+from templates.core.language.spec import Choice, Curve, Table, Text
 from templates.core.units.units import Value, unit
 
 
@@ -60,10 +60,10 @@ def _values(calculation: Calculation) -> Iterator[tuple[str, tuple[Value, str]]]
 
 
 def _parameters(calculation: Calculation) -> Iterator[tuple[str, tuple[float, str]]]:
-    """The parameters of models that are quantities [SI], and their units."""
+    """The parameters of models that are single quantities [SI], and their units."""
     for model, shape in calculation.shapes.items():
         for name, declared in shape.inputs.items():
-            if not isinstance(declared, (Choice, Table)):
+            if not isinstance(declared, (Choice, Curve, Table)):
                 value = float(getattr(shape, declared.attribute))
                 if not np.isnan(value):
                     yield f"{model}.{name}", (value, declared.meaning.unit)

@@ -27,7 +27,7 @@ from app.reference import Reference
 from templates.core.arrays import Array
 from templates.core.errors import Fault, TemplateError
 from templates.core.judging.comparison import WORST_FIRST
-from templates.core.language.spec import Choice, Given, Table, Text
+from templates.core.language.spec import Choice, Curve, Given, Table, Text
 from templates.core.language.template import Template
 
 
@@ -155,11 +155,11 @@ def _outputs(graph: Graph) -> Iterator[Reference]:
 
 
 def _parameters(graph: Graph) -> Iterator[Reference]:
-    """The parameters of models that are quantities."""
+    """The parameters of models that are single quantities."""
     for block in graph.blocks.values():
         if block.is_model:
             for name, declared in block.cls.inputs.items():
-                if not isinstance(declared, (Choice, Table)):
+                if not isinstance(declared, (Choice, Curve, Table)):
                     yield Reference(block.name, None, name)
 
 

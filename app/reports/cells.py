@@ -11,7 +11,7 @@ from app.presentation import numbers
 from app.presentation.numbers import in_line
 from app.presentation.typed import text_of
 from app.schemas.analyses import AnalysisOutput
-from app.schemas.answers import Quantity, Shown
+from app.schemas.answers import Quantity, Shown, Values
 from app.schemas.evaluations import Output, UsedInput
 from templates.core.units.units import compatible, unit
 
@@ -36,7 +36,7 @@ class Cell:
 
 NOTHING = Cell()
 
-Valued = Quantity | Shown | Output | UsedInput | AnalysisOutput
+Valued = Quantity | Values | Shown | Output | UsedInput | AnalysisOutput
 """What has a value and a unit."""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.schemas.answers import Answer, Quantity, Shown, Triple, Version
+from app.schemas.answers import Answer, Quantity, Shown, Triple, Values, Version
 
 
 class BoundingBox(Answer):
@@ -36,7 +36,9 @@ class Measurements(Answer):
     polar_inertia: Quantity | None = Field(
         None, description="about the z axis, in kg*m**2; builds of an older recipe do not have it"
     )
-    dimensions: dict[str, Quantity] = Field(description="the model's dimensions, read back from the solid")
+    dimensions: dict[str, Quantity | Values] = Field(
+        description="the model's dimensions, read back from the solid"
+    )
     materials: dict[str, str] | None = Field(
         None, description="of every part, with its density; builds of an older recipe do not have it"
     )

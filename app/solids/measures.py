@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from app.plain import Json, JsonObject
-from app.schemas.answers import Quantity, Triple
+from app.schemas.answers import Quantity, Triple, Values
 from app.schemas.solids import BoundingBox, Inertia, Measurements
 from cad.inspect import MEASURES
 from cad.model import CadModel
@@ -38,6 +38,12 @@ def measurements(
         mass=one("mass"),
         centre=along_axes("centre"),
         inertia=Inertia(**{axes: one(f"inertia_{axes}") for axes in ("xx", "yy", "zz", "xy", "xz", "yz")}),
-        dimensions={name: Quantity.model_validate(size) for name, size in dimensions.items()},
+        dimensions={name: _dimension(size) for name, size in dimensions.items()},
         **later,
     )
+
+
+def _dimension(size: Json) -> Quantity | Values:
+    """One number, or the items of a list."""
+    is_list = isinstance(size["value"], list)
+    return Values.model_validate(size) if is_list else Quantity.model_validate(size)

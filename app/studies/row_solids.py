@@ -154,12 +154,12 @@ class RowSolids:
         table = self.net({**rows, **result.columns}, references, levels=levels)
         result.levels |= table.levels
         columns = [table.columns[reference] for reference in references]
-        matrix = np.stack(columns, axis=-1) if columns else np.empty((len(result.waiting), 0))
+        matrix = _side_by_side(columns, len(result.waiting))
         there: Mask = np.asarray(np.isfinite(matrix).all(axis=1))
         for row in np.flatnonzero(~there & ~result.waiting).tolist():
             _refuse(result, [row], table.refusals.get(row, Refusal(model.name, "not_finite", NO_VALUE)))
         for values, numbers in _distinct(matrix, there):
-            texts = self._solid(model, dict(zip(names, values.tolist(), strict=True)))
+            texts = self._solid(model, dict(zip(names, _apart(values, columns), strict=True)))
             if isinstance(texts, Refusal):
                 _refuse(result, numbers, texts)
                 continue
@@ -174,7 +174,7 @@ class RowSolids:
                 for name, value in solid.measures:
                     result.columns[Reference.parse(f"{model.name}.{name}")][numbers] = value
 
-    def _solid(self, model: Block, values: Mapping[str, float]) -> Texts | Refusal:
+    def _solid(self, model: Block, values: Mapping[str, float | list[float]]) -> Texts | Refusal:
         """The parameters of a solid as text, or what is wrong with them."""
         words = {n: _word(cell.raw) for n, cell in model.cells.items() if n not in values}
         try:
@@ -183,6 +183,22 @@ class RowSolids:
             return refusal_of([fault.within(model.name) for fault in error.faults])
         assert isinstance(shape, CadModel), "what is measured is a model"
         return tuple(sorted(as_text(shape).items()))
+
+
+def _side_by_side(columns: Sequence[Array], count: int) -> Array:
+    """One row of numbers for each row; a list of k items takes k columns."""
+    parts = [np.reshape(column, (count, -1)) for column in columns]
+    return np.concatenate(parts, axis=1) if parts else np.empty((count, 0))
+
+
+def _apart(values: Array, columns: Sequence[Array]) -> list[float | list[float]]:
+    """One row of numbers as the values of its columns again: numbers and lists."""
+    ends = np.cumsum([column[0].size for column in columns])
+    parts = np.split(values, ends[:-1]) if columns else []
+    return [
+        part.tolist() if column.ndim > 1 else float(part[0])
+        for part, column in zip(parts, columns, strict=True)
+    ]
 
 
 def _word(raw: object) -> str:

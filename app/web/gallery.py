@@ -64,8 +64,8 @@ GALLERY = {
     ),
     "engine": Example(
         title="All bearings of a four-cylinder engine",
-        text="From gas pressure to the load of every main and big end, and a film in each of them: "
-        "change the bore of the cylinders, and see which bearing governs.",
+        text="From gas pressure to the load of every main and big end, a film in each of them, and the "
+        "crankshaft: change the bore of the cylinders, and see which bearing governs.",
         document=FOUR_CYLINDERS,
     ),
 }
@@ -81,4 +81,5 @@ def offered(templates: Iterable[TemplateSummary], models: Iterable[TemplateSumma
 def _uses(example: Example) -> set[tuple[str, Version]]:
     design = DesignIn.model_validate(example.document)
     uses: set[tuple[str, Version]] = {(step.template, step.version) for step in design.steps.values()}
-    return uses | ({(design.model.id, design.model.version)} if design.model else set())
+    models = [*design.models.values(), *([design.model] if design.model else [])]
+    return uses | {(model.id, model.version) for model in models}

@@ -1,4 +1,4 @@
-"""A design to start from: the loads of a four-cylinder engine, and a film in each of its nine bearings."""
+"""A design to start from: a four-cylinder engine, a film in each of its nine bearings, its crankshaft."""
 
 from __future__ import annotations
 
@@ -39,8 +39,24 @@ _ENGINE: dict[str, JsonValue] = {
     "web_thickness": "18 mm",
     "web_width": "80 mm",
 }
+_CRANKSHAFT: dict[str, JsonValue] = {
+    "pin_angles": "= engine.crankpin_angles",
+    "journal_diameter": "= engine.journal_diameter",
+    "journal_length": "= engine.main_positions[2] - engine.main_positions[1] - engine.crankpin_length"
+    " - 2 * engine.web_thickness",
+    "pin_diameter": "= engine.crankpin_diameter",
+    "pin_length": "= engine.crankpin_length",
+    "web_thickness": "= engine.web_thickness",
+    "web_width": "= engine.web_width",
+    "throw": "= engine.stroke / 2",
+    "fillet": "2.5 mm",
+    "oil_drilling_diameter": "5 mm",
+    "counterweight_radius": {"value": [72, 0, 0, 72, 72, 0, 0, 72], "unit": "mm"},
+    "flange_diameter": "90 mm",
+    "bolt_hole_diameter": "10 mm",
+}
 _OUTPUTS: list[JsonValue] = [
-    "layout", "mean_torque", "crankpin_load_max", "main_load_max", "elastic_main_load_max",
+    "layout", "crankpin_angles", "mean_torque", "crankpin_load_max", "main_load_max", "elastic_main_load_max",
     "elastic_difference", "governing_elastic_main",
 ]  # fmt: skip
 _MAINS: dict[str, JsonValue] = {f"main_{n}": {"bearing": f"{n}"} for n in range(1, 6)}
@@ -78,14 +94,17 @@ FOUR_CYLINDERS: dict[str, JsonValue] = {
             },
         },
     },
-    "model": {
-        "id": "plain_bearing",
-        "version": 1,
-        "parameters": {
-            "inner_diameter": "= film.bearing_diameter",
-            "width": "= film.bearing_width",
-            "shell": "half",
+    "models": {
+        "shell": {
+            "id": "plain_bearing",
+            "version": 1,
+            "parameters": {
+                "inner_diameter": "= film.bearing_diameter",
+                "width": "= film.bearing_width",
+                "shell": "half",
+            },
         },
+        "crankshaft": {"id": "crankshaft", "version": 2, "parameters": _CRANKSHAFT},
     },
     "variants": {**_MAINS, **_BIG_ENDS},
 }

@@ -72,13 +72,13 @@ class Throw:
 
     def solid(self) -> Shape:
         """Pin, webs and journals joined, then bored and drilled at once."""
-        web, front, rear = self._web(), self._journal(self.front), self._journal(self.rear)
-        parts = web, web.mirror("XY"), self._pin(), front.mirror("XY"), rear
+        web, front, rear = self.web(), self.journal_solid(self.front), self.journal_solid(self.rear)
+        parts = web, web.mirror("XY"), self.pin_solid(), front.mirror("XY"), rear
         whole = fuse(*parts, glue="partial")  # they touch and do not cross: half the time
         tools = [*self._bores()]
         return whole.cut(*tools) if tools else whole
 
-    def _web(self) -> Shape:
+    def web(self) -> Shape:
         """The web on +z."""
         plate = Solid.extrudeLinear(self.outline.wire(self.inner), [], Vector(0, 0, self.web_thickness))
         return cut(plate, self._wedge()) if self.inclination > 0 else plate
@@ -91,11 +91,11 @@ class Throw:
         """
         beyond = max([end.length for end in (self.front, self.rear) if end], default=0.0) + self.journal
         if self.journal_bore > 0:
-            yield _bore(self.journal_bore, self.journal_end + beyond, 0.0)
+            yield bore(self.journal_bore, self.journal_end + beyond, 0.0)
         if self.pin_bore > 0:
-            yield _bore(self.pin_bore, self.outer + self.journal_length / 2, self.outline.throw)
+            yield bore(self.pin_bore, self.outer + self.journal_length / 2, self.outline.throw)
         if self.drilling > 0:
-            yield self._drill()
+            yield self.drill()
 
     def _wedge(self) -> Solid:
         """What the inclination takes off the web on +z; it stands out into the air on all other sides."""
@@ -111,28 +111,29 @@ class Throw:
         section = polygon(*(Vector(x, -8 * room, z) for x, z in corners))
         return Solid.extrudeLinear(section, [], Vector(0, 16 * room, 0))
 
-    def _pin(self) -> Shape:
+    def pin_solid(self) -> Shape:
+        """The pin with a fillet at either end."""
         z, edge = self.inner, self.pin + self.fillet
-        lower = _fillet(self.pin, self.fillet, -z, 1)
-        upper = tuple(reversed(_fillet(self.pin, self.fillet, z, -1)))
+        lower = fillet_run(self.pin, self.fillet, -z, 1)
+        upper = tuple(reversed(fillet_run(self.pin, self.fillet, z, -1)))
         side: Run = (lower[-1], upper[0])
-        return _turned(
+        return turned(
             [((0, -z), (edge, -z)), lower, side, upper, ((edge, z), (0, z))], self.outline.throw, -1
         )
 
-    def _journal(self, end: End | None) -> Shape:
+    def journal_solid(self, end: End | None) -> Shape:
         """The journal on +z, with what lies beyond it."""
         z, top, radius = self.outer, self.journal_end, self.journal
-        root = _fillet(radius, self.fillet, z, 1)
+        root = fillet_run(radius, self.fillet, z, 1)
         beyond = (
             [(end.radius, top), (end.radius, top + end.length), (0.0, top + end.length)]
             if end
             else [(0.0, top)]
         )
         corners = [root[-1], (radius, top), *beyond]
-        return _turned([((0, z), root[0]), root, *pairwise(corners)], 0.0, 1)
+        return turned([((0, z), root[0]), root, *pairwise(corners)], 0.0, 1)
 
-    def _drill(self) -> Solid:
+    def drill(self) -> Solid:
         """What the oil drilling takes away, from beyond the pin to beyond the journal."""
         top, bottom = self.drilled
         way = bottom - top
@@ -142,18 +143,18 @@ class Throw:
         return Solid.makeCylinder(self.drilling, (way + over * 2).Length, top - over, way)
 
 
-def _fillet(radius: float, size: float, z: float, up: int) -> Run:
+def fillet_run(radius: float, size: float, z: float, up: int) -> Run:
     """The fillet between a face at z and a cylinder up (1) or down (-1) from it; a point if none."""
     middle = radius + size * _MIDDLE, z + up * size * _MIDDLE
     return (radius + size, z), middle, (radius, z + up * size)
 
 
-def _bore(radius: float, reach: float, x: float) -> Solid:
+def bore(radius: float, reach: float, x: float) -> Solid:
     """A cylinder along z through x, as far up as down."""
     return Solid.makeCylinder(radius, 2 * reach, Vector(x, 0, -reach), Vector(0, 0, 1))
 
 
-def _turned(runs: Sequence[Run], x: float, side: int) -> Solid:
+def turned(runs: Sequence[Run], x: float, side: int) -> Solid:
     """A closed outline of (distance from the axis, z) turned about the axis through x along z.
 
     Its seam lies on that side of the axis, towards x or against it: away from the mouth of the drilling.

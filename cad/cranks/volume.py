@@ -17,11 +17,11 @@ from cad.cranks.throw import End, Throw
 
 def volume(throw: Throw) -> float:
     """Webs, pin, journals and ends, less bores and drilling."""
-    ends = sum(_end(end, throw.journal_bore) for end in (throw.front, throw.rear) if end)
-    return 2 * _web(throw) + _pin(throw) + 2 * _journal(throw) + ends - drilling(throw)
+    ends = sum(end_volume(end, throw.journal_bore) for end in (throw.front, throw.rear) if end)
+    return 2 * web(throw) + pin(throw) + 2 * journal(throw) + ends - drilling(throw)
 
 
-def _web(t: Throw) -> float:
+def web(t: Throw) -> float:
     """A plate with two holes, less what its inclined face takes off."""
     slope = tan(t.inclination)
     at_pin = t.web_thickness - slope * max(t.outline.throw - t.incline_start, 0.0)
@@ -29,15 +29,18 @@ def _web(t: Throw) -> float:
     return t.outline.area * t.web_thickness - slope * t.outline.moment_beyond(t.incline_start) - bores
 
 
-def _pin(t: Throw) -> float:
+def pin(t: Throw) -> float:
+    """A pin with a fillet at either end."""
     return pi * (t.pin**2 - t.pin_bore**2) * t.pin_length + 2 * fillet(t.pin, t.fillet)
 
 
-def _journal(t: Throw) -> float:
+def journal(t: Throw) -> float:
+    """A journal with a fillet at one end."""
     return pi * (t.journal**2 - t.journal_bore**2) * t.journal_length + fillet(t.journal, t.fillet)
 
 
-def _end(end: End, bore: float) -> float:
+def end_volume(end: End, bore: float) -> float:
+    """A plain cylinder with a bore."""
     return pi * (end.radius**2 - bore**2) * end.length
 
 

@@ -12,7 +12,7 @@ FILM = "film.minimum_film_thickness"
 
 def steps(design):
     """The engine and one film, without variants and models."""
-    return {name: value for name, value in design.items() if name not in ("model", "variants")}
+    return {name: value for name, value in design.items() if name not in ("models", "variants")}
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +71,7 @@ def test_contradictions_of_an_engine_are_refused_by_name(http, change, names):
 
 
 def test_all_nine_bearings_are_variants_and_the_worst_governs(http):
-    design = created(http, {name: value for name, value in ENGINE.items() if name != "model"})
+    design = created(http, {name: value for name, value in ENGINE.items() if name != "models"})
     table = http.get(f"{API}/designs/{design['id']}/variants").json()
     assert len(table["variants"]) == 9, table
     thickness = {}

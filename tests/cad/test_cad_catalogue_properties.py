@@ -7,6 +7,7 @@ import subprocess
 import sys
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -18,9 +19,9 @@ from cad.errors import GeometryError
 from cad.header import read_header
 from cad.inspect import MEASURES
 from cad.model import CadModel
-from cad.regenerate import Build, as_text, build_key, regenerate
+from cad.regenerate import Build, Value, as_text, build_key, regenerate
 from templates.core.errors import InvalidInputs
-from templates.core.language.spec import Choice, Derived
+from templates.core.language.spec import Choice, Curve, Derived
 
 HOSTILE = [math.nan, math.inf, -math.inf, -1.0, 1e12]
 IN_ANOTHER_PROCESS = """
@@ -35,8 +36,8 @@ def test_example_builds_and_shows_its_parameters(model: type[CadModel], example:
     asked = model.from_quantities(model.example)
     for name, result in example.dimensions.items():
         declared = model.inputs[name]
-        wanted = declared.meaning.scale.from_si(getattr(asked, declared.attribute))
-        assert result == pytest.approx(wanted, abs=1e-6), name
+        wanted = np.asarray(declared.meaning.scale.from_si(getattr(asked, declared.attribute)))
+        assert result == pytest.approx(np.broadcast_to(wanted, np.shape(result)).tolist(), abs=1e-6), name
 
 
 def test_every_number_is_read_back(model: type[CadModel], example: Build) -> None:
@@ -90,7 +91,9 @@ def test_model_is_made_again_from_the_text_in_its_file(model: type[CadModel], ex
 def elsewhere() -> dict[str, str]:
     """The hashes of all models' examples, built in another process."""
     classes = list(models())
-    builds = [[cls.id, cls.version, cls.from_quantities(cls.example).inputs_si()] for cls in classes]
+    examples = (cls.from_quantities(cls.example).inputs_si() for cls in classes)
+    given = [{name: np.asarray(value).tolist() for name, value in one.items()} for one in examples]
+    builds = [[cls.id, cls.version, one] for cls, one in zip(classes, given, strict=True)]
     command = [sys.executable, "-c", IN_ANOTHER_PROCESS]
     done = subprocess.run(command, input=json.dumps(builds), capture_output=True, text=True, check=True)
     return dict(zip((f"{cls.id}_v{cls.version}" for cls in classes), done.stdout.split(), strict=True))
@@ -110,7 +113,8 @@ def test_bytes_are_the_same_each_time(model: type[CadModel], example: Build) -> 
 
 def test_noise_in_the_last_digit_is_the_same_build(model: type[CadModel], example: Build) -> None:
     lengths = {n: v for n, v in example.parameters.items() if model.inputs[n].meaning.unit == "mm"}
-    noisy = {**example.parameters, **{name: length * (1 + 4e-16) for name, length in lengths.items()}}
+    noisy = {n: (np.asarray(length) * (1 + 4e-16)).tolist() for n, length in lengths.items()}
+    noisy = {**example.parameters, **noisy}
     assert build_key(model.from_si(noisy)) == example.key
 
 
@@ -139,9 +143,14 @@ def test_wrong_box_is_noticed(model: type[CadModel], example: Build) -> None:
     assert refused.value.code == "bounding_box"
 
 
-def _between(declared: Any, share: float) -> float:
-    """A value [SI] within the declared bounds, `share` of the way up, counted in logarithms."""
+def _between(declared: Any, share: float) -> float | list[float]:
+    """A value [SI] within the declared bounds, `share` of the way up, counted in logarithms.
+
+    Of a list three items, evenly in the bounds, the first at `share` of the way up.
+    """
     bounds = declared.meaning.domain_si
+    if isinstance(declared, Curve):
+        return [bounds.ge + (bounds.le - bounds.ge) * ((share + n / 3) % 1) for n in range(3)]
     return float(bounds.ge ** (1 - share) * bounds.le**share)
 
 
@@ -155,7 +164,7 @@ def _refused(model: type[CadModel], chosen: dict[str, Any]) -> set[str]:
 
 
 @st.composite
-def parameters(draw: st.DrawFn, cls: type[CadModel]) -> dict[str, float | str]:
+def parameters(draw: st.DrawFn, cls: type[CadModel]) -> dict[str, Value]:
     """Parameters [SI] that are near what a model draws by default, and now and then absurd."""
     chosen: dict[str, Any] = {}
     for name, declared in cls.inputs.items():

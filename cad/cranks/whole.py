@@ -1,0 +1,162 @@
+"""A crankshaft of any number of throws: what is drawn, in millimetres, and its volume in closed form.
+
+z runs along the shaft; z = 0 is the middle of the first main journal, and the middle of each next one lies a
+pitch further on. x is the line of reference from which the angles of the pins count, towards y. The nose is
+at -z, the flange at +z.
+
+Each throw is drawn as `crank_throw` is, then turned and shifted. What turns is one outline, and the parts
+only touch in flat faces, so their volumes add; bores, drillings and bolt holes are cut from the whole at
+once. None of these meets another, except a drilling the bores of its own throw: the rules of the model see
+to that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, degrees, pi, sin
+
+from cadquery import Shape, Solid, Vector
+from cadquery.func import fuse
+
+from cad.cranks.support import reach
+from cad.cranks.throw import End, Throw, bore, fillet_run, turned
+from cad.cranks.volume import drilling, end_volume, fillet, journal, pin, web
+from cad.model import Box
+
+_AXIS = Vector(0, 0, 0), Vector(0, 0, 1)
+
+
+@dataclass(frozen=True)
+class Bolts:
+    """Blind holes with flat bottoms in the flange, evenly on a circle, the first on the line of reference."""
+
+    count: int
+    radius: float  # of a hole
+    circle: float  # radius
+    depth: float
+
+
+@dataclass(frozen=True)
+class Throws:
+    """One throw of the shaft: the same twice, but for the counterweights of its front and its rear web."""
+
+    front: Throw
+    rear: Throw
+    angle: float  # of its pin from the line of reference [rad]
+
+
+@dataclass(frozen=True)
+class WholeShaft:
+    """A shaft [mm]."""
+
+    throws: tuple[Throws, ...]
+    nose: End
+    flange: End
+    bolts: Bolts | None
+
+    @property
+    def like(self) -> Throw:
+        """A throw: all are alike but for their counterweights."""
+        return self.throws[0].front
+
+    @property
+    def pitch(self) -> float:
+        """From the middle of a main journal to that of the next one."""
+        t = self.like
+        return t.pin_length + 2 * t.web_thickness + t.journal_length
+
+    @cached_property
+    def mains(self) -> tuple[float, ...]:
+        """Where the middles of the main journals lie."""
+        return tuple(self.pitch * k for k in range(len(self.throws) + 1))
+
+    @property
+    def low(self) -> float:
+        """Where the nose ends."""
+        return -self.like.journal_length / 2 - self.nose.length
+
+    @property
+    def high(self) -> float:
+        """Where the flange ends."""
+        return self.mains[-1] + self.like.journal_length / 2 + self.flange.length
+
+    def solid(self) -> Shape:
+        """All parts joined, then bored and drilled at once."""
+        whole = fuse(*self._parts(), glue="partial")
+        tools = [*self._tools()]
+        return whole.cut(*tools) if tools else whole
+
+    def volume(self) -> float:
+        """In closed form; two fillets on each journal but the first and the last, which have one."""
+        t, count = self.like, len(self.throws)
+        webs = sum(web(one) for throw in self.throws for one in (throw.front, throw.rear))
+        inner = (count - 1) * (journal(t) + fillet(t.journal, t.fillet))
+        ends = end_volume(self.nose, t.journal_bore) + end_volume(self.flange, t.journal_bore)
+        holes = self.bolts.count * pi * self.bolts.radius**2 * self.bolts.depth if self.bolts else 0.0
+        return webs + count * (pin(t) - drilling(t)) + inner + 2 * journal(t) + ends - holes
+
+    def box(self) -> Box:
+        """Webs, counterweights, nose and flange together."""
+        ends = max(self.nose.radius, self.flange.radius)
+
+        def far(direction: float) -> float:
+            webs = (
+                reach(one.outline, direction - throw.angle)
+                for throw in self.throws
+                for one in (throw.front, throw.rear)
+            )
+            return max(ends, *webs)
+
+        low = -far(pi), -far(-pi / 2), self.low
+        return Box(low, (far(0.0), far(pi / 2), self.high))
+
+    def _parts(self) -> Iterator[Shape]:
+        """Nose with the first journal; throw after throw, each with the journal behind it."""
+        first = self.throws[0].front
+        nose = first.journal_solid(self.nose).mirror("XY")
+        yield nose.translate(Vector(0, 0, self.pitch / 2))
+        for number, throw in enumerate(self.throws):
+            last = number + 1 == len(self.throws)
+            behind = throw.rear.journal_solid(self.flange) if last else _journal(throw.rear)
+            parts = throw.front.web().mirror("XY"), throw.front.pin_solid(), throw.rear.web(), behind
+            for part in parts:
+                yield self._placed(part, number)
+
+    def _tools(self) -> Iterator[Shape]:
+        """What bores, drillings and bolt holes take away; each ends in the air, but for the bolt holes."""
+        t = self.like
+        if t.journal_bore > 0:
+            middle, half = (self.low + self.high) / 2, (self.high - self.low) / 2
+            yield bore(t.journal_bore, half + t.journal, 0.0).translate(Vector(0, 0, middle))
+        for number in range(len(self.throws)):
+            if t.pin_bore > 0:
+                through = bore(t.pin_bore, t.outer + t.journal_length / 2, t.outline.throw)
+                yield self._placed(through, number)
+            if t.drilling > 0:
+                yield self._placed(t.drill(), number)
+        if self.bolts:
+            yield from self._holes(self.bolts)
+
+    def _holes(self, bolts: Bolts) -> Iterator[Solid]:
+        bottom, length = self.high - bolts.depth, bolts.depth + bolts.radius
+        for number in range(bolts.count):
+            angle = 2 * pi * number / bolts.count
+            foot = Vector(bolts.circle * cos(angle), bolts.circle * sin(angle), bottom)
+            yield Solid.makeCylinder(bolts.radius, length, foot, Vector(0, 0, 1))
+
+    def _placed(self, part: Shape, number: int) -> Shape:
+        """A part of a throw, drawn about the middle of its pin, where that throw stands."""
+        middle = self.pitch * (number + 0.5)
+        part = part.rotate(*_AXIS, degrees(self.throws[number].angle))
+        return part.translate(Vector(0, 0, middle))
+
+
+def _journal(t: Throw) -> Shape:
+    """The journal on +z of a throw, up to the next web; its seam lies away from the mouth of the drilling."""
+    low, high = t.outer, t.journal_end
+    edge = t.journal + t.fillet
+    root = fillet_run(t.journal, t.fillet, low, 1)
+    top = tuple(reversed(fillet_run(t.journal, t.fillet, high, -1)))
+    return turned([((0, low), (edge, low)), root, (root[-1], top[0]), top, ((edge, high), (0, high))], 0.0, 1)

@@ -1,0 +1,249 @@
+"""The parameters of a shaft of many throws, read back from the surfaces of the finished solid.
+
+Each feature is recognised by its place, never by its expected size: the planes across the shaft are, in their
+order, the faces of the ends and of the webs. Where all throws share a dimension, each of them must show it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import atan2, degrees, hypot, pi, radians, remainder
+
+from cad.cranks.reading import Webs, stubs
+from cad.surfaces import Seen, Surface, Z
+
+_CLEAR = 1e-6  # [mm], and as the sine of an angle
+_ANGLE = 1e-8  # [rad]
+
+
+def alike(values: Iterable[float], what: str) -> float:
+    """The one value of a dimension that several features share.
+
+    Raises
+    ------
+    LookupError
+        If there is none, or they differ.
+    """
+    found = list(values)
+    if not found or max(found) - min(found) > 2 * _CLEAR:
+        raise LookupError(f"{what} alike; there are {found}")
+    return sum(found) / len(found)
+
+
+@dataclass(frozen=True)
+class ThrowSeen:
+    """A throw: its pin, and where the faces of its webs lie [mm], from front to rear."""
+
+    pin: Surface
+    faces: tuple[float, float, float, float]
+
+    @property
+    def angle(self) -> float:
+        """Of the pin, from x towards y [rad]."""
+        return atan2(self.pin.point.y, self.pin.point.x)
+
+    @property
+    def webs(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """From where to where its webs reach."""
+        return self.faces[:2], self.faces[2:]
+
+
+@dataclass(frozen=True)
+class ShaftSeen:
+    """What a shaft of many throws shows."""
+
+    seen: Seen
+
+    @cached_property
+    def beside(self) -> list[Surface]:
+        """Cylinders along the shaft that do not turn about its axis."""
+        return [c.turned(Z) for c in self.seen.cylinders if c.along(Z) and not c.about(Z)]
+
+    @cached_property
+    def throws(self) -> list[ThrowSeen]:
+        """The throws, from front to rear.
+
+        Each has four planes across the shaft. Before them lie the end of the nose and its shoulder, if it has
+        one; behind them at most three: shoulder of the flange, bottom of its holes, its end.
+
+        Raises
+        ------
+        LookupError
+            If there is none, or one without a pin.
+        """
+        levels = self.seen.levels(Z)
+        first = 1 + any(_spans(c, levels[0], levels[1]) for c in self.seen.about(Z))
+        found = []
+        for place in range(first, len(levels) - 4, 4):
+            outer, low, high, other = levels[place : place + 4]
+            pins = [c for c in self.beside if low - _CLEAR < c.reach[0] and c.reach[1] < high + _CLEAR]
+            if not pins:
+                raise LookupError(f"a pin between the webs at {low:.9g} and {high:.9g} mm")
+            found.append(ThrowSeen(max(pins, key=lambda c: c.diameter), (outer, low, high, other)))
+        if not found:
+            raise LookupError("a pin between two webs")
+        return found
+
+    @property
+    def ends(self) -> tuple[list[Surface], list[Surface]]:
+        """The cylinders about the shaft before the first web and behind the last, from the web on."""
+        first, last = self.throws[0].faces, self.throws[-1].faces
+        return stubs(self.seen, Webs((first[0], first[1], last[2], last[3])))
+
+    def common(self) -> dict[str, float]:
+        """The dimensions that all throws share."""
+        throws = self.throws
+        return {
+            **self._journals(),
+            "pin_diameter": alike((t.pin.diameter for t in throws), "pins"),
+            "pin_length": alike((t.faces[2] - t.faces[1] for t in throws), "pins"),
+            "throw": alike((hypot(t.pin.point.x, t.pin.point.y) for t in throws), "throws"),
+            "pin_bore": self._each(self._pin_bore, "pin bores"),
+            "web_thickness": alike((high - low for t in throws for low, high in t.webs), "webs"),
+            "web_width": self.web_width,
+            "fillet": self._fillet(),
+            "oil_drilling_diameter": self._drilling(),
+            "face_inclination": self._inclination(),
+        }
+
+    def _journals(self) -> dict[str, float]:
+        front, rear = (end[0] for end in self.ends)
+        first, last = self.throws[0].faces[0], self.throws[-1].faces[3]
+        lengths, diameters = [front.reach[1] + first, rear.reach[1] - last], [front.diameter, rear.diameter]
+        for before, behind in zip(self.throws[:-1], self.throws[1:], strict=True):
+            low, high = before.faces[3], behind.faces[0]
+            lengths.append(high - low)
+            diameters.append(max((c.diameter for c in self._about(low, high)), default=0.0))
+        return {
+            "journal_diameter": alike(diameters, "journals"),
+            "journal_length": alike(lengths, "journals"),
+            "journal_bore": self._each(self._journal_bore, "journal bores"),
+        }
+
+    def _about(self, low: float, high: float) -> list[Surface]:
+        """Cylinders about the shaft within a stretch of it."""
+        cylinders = self.seen.about(Z)
+        return [c for c in cylinders if low - _CLEAR < c.reach[0] and c.reach[1] < high + _CLEAR]
+
+    def _each(self, read: Callable[[ThrowSeen], float], what: str) -> float:
+        return alike(map(read, self.throws), what)
+
+    def _pin_bore(self, throw: ThrowSeen) -> float:
+        _, front, rear, _ = throw.faces
+        through = (c for c in self.beside if c.reach[0] < front - _CLEAR and rear + _CLEAR < c.reach[1])
+        return max((c.diameter for c in through), default=0.0)
+
+    def _journal_bore(self, throw: ThrowSeen) -> float:
+        """Diameter of the cylinder about the shaft that goes on through both of the outer faces."""
+        sizes = []
+        for face in (throw.faces[0], throw.faces[3]):
+            through = (
+                c for c in self.seen.about(Z) if c.reach[0] < face - _CLEAR < face + _CLEAR < c.reach[1]
+            )
+            sizes.append(max((c.diameter for c in through), default=0.0))
+        return alike(sizes, "journal bores")
+
+    @property
+    def web_width(self) -> float:
+        """Twice the distance of the sides of webs from the axis: of all planes along it none is nearer."""
+        along = (p for p in self.seen.planes if abs(p.direction.dot(Z)) < _CLEAR)
+        distances = [d for d in (abs(p.point.dot(p.direction)) for p in along) if d > _CLEAR]
+        if not distances:
+            raise LookupError("sides of webs")
+        return 2 * min(distances)
+
+    def _fillet(self) -> float:
+        tori = self.seen.tori
+        if tori and len(tori) != 4 * len(self.throws):
+            raise LookupError(f"four fillets for each throw; there are {len(tori)}")
+        return alike(tori, "fillets") if tori else 0.0
+
+    def _drilling(self) -> float:
+        askew = [c.diameter for c in self.seen.cylinders if not c.along(Z)]
+        if askew and len(askew) < len(self.throws):
+            raise LookupError(f"a drilling in each throw; there are {len(askew)}")
+        return alike(askew, "oil drillings") if askew else 0.0
+
+    def _inclination(self) -> float:
+        """Angle [deg] of the planes that are inclined to the shaft."""
+        normals = [p.direction for p in self.seen.planes]
+        leaning = [n for n in normals if min(hypot(n.x, n.y), abs(n.z)) > _CLEAR]
+        return (
+            alike((degrees(atan2(hypot(n.x, n.y), abs(n.z))) for n in leaning), "faces") if leaning else 0.0
+        )
+
+    def pin_angles(self, near: Sequence[float]) -> list[float]:
+        """Where the pins stand [deg], in that turn which is nearest to the angles wanted [deg]."""
+        seen = [degrees(throw.angle) for throw in self.throws]
+        if len(seen) != len(near):
+            raise LookupError(f"{len(near)} throws; there are {len(seen)}")
+        return [wanted + remainder(angle - wanted, 360) for angle, wanted in zip(seen, near, strict=True)]
+
+    def counterweights(self) -> list[float]:
+        """The radius of each web's counterweight [mm], 0 for none: as thick as the web, and wider than it."""
+        width = self.web_width
+        rims = ([c.diameter for c in self._about(*web)] for throw in self.throws for web in throw.webs)
+        return [max((d for d in rim if d > 1.01 * width), default=0.0) / 2 for rim in rims]
+
+    def counterweight_angle(self, radii: Sequence[float], near: float) -> float:
+        """The angle of all counterweights [deg]; flanks of several throws may lie on one plane.
+
+        A flank is a plane through the axis. The half angle is one at which each throw with a counterweight
+        has both flanks; of several such, which is rare, the one nearest to that wanted [deg].
+
+        Raises
+        ------
+        LookupError
+            If there is none.
+        """
+        normals = [p.direction for p in self.seen.planes if p.holds(Z) and abs(p.direction.z) < _CLEAR]
+        lines = [atan2(n.y, n.x) + pi / 2 for n in normals]
+        heavy = [t for k, t in enumerate(self.throws) if max(radii[2 * k : 2 * k + 2]) > 0]
+        candidates = {self._fold(line - heavy[0].angle) for line in lines}
+        shared = [
+            half
+            for half in candidates
+            if all(_shown(throw.angle + side * half, lines) for throw in heavy for side in (-1, 1))
+        ]
+        if not shared:
+            raise LookupError("flanks of counterweights")
+        return min((2 * degrees(half) for half in shared), key=lambda angle: abs(angle - near))
+
+    @staticmethod
+    def _fold(angle: float) -> float:
+        """The angle between two lines, at most a right one [rad]."""
+        return abs(remainder(angle, pi))
+
+    def bolts(self) -> dict[str, float]:
+        """The holes in the flange: how many, their diameter, circle and depth; none if there are none."""
+        end = self.seen.levels(Z)[-1]
+        behind = self.throws[-1].faces[3] - _CLEAR
+        holes = [c for c in self.beside if c.reach[0] > behind and abs(c.reach[1] - end) < _CLEAR]
+        if not holes:
+            return {"bolt_hole_diameter": 0.0}
+        self._check_spacing([atan2(h.point.y, h.point.x) for h in holes])
+        circle = alike((hypot(h.point.x, h.point.y) for h in holes), "bolt holes")
+        return {
+            "bolt_holes": float(len(holes)),
+            "bolt_hole_diameter": alike((h.diameter for h in holes), "bolt holes"),
+            "bolt_circle_diameter": 2 * circle,
+            "bolt_hole_depth": alike((h.reach[1] - h.reach[0] for h in holes), "bolt holes"),
+        }
+
+    @staticmethod
+    def _check_spacing(angles: Sequence[float]) -> None:
+        step = 2 * pi / len(angles)
+        if any(abs(remainder(angle, step)) > radians(1e-5) for angle in angles):
+            raise LookupError("bolt holes evenly on their circle")
+
+
+def _spans(cylinder: Surface, low: float, high: float) -> bool:
+    """Whether a cylinder reaches from one plane to another."""
+    return abs(cylinder.reach[0] - low) < _CLEAR and abs(cylinder.reach[1] - high) < _CLEAR
+
+
+def _shown(line: float, lines: Iterable[float]) -> bool:
+    """Whether a line through the axis is among others."""
+    return any(abs(remainder(line - other, pi)) < 100 * _ANGLE for other in lines)

@@ -1,0 +1,35 @@
+"""Parameters that are lists, as text: `[0, 180, 180, 0] deg` in STEP files, jobs and keys."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Any
+
+LONGEST_TEXT = 2000
+"""Longer texts are no list: what a client sends is read in time linear in its length, and this is enough."""
+
+_LIST = re.compile(r"\s*\[([^\[\]]*)\]\s*([^\[\]]*)")
+_NOISE = 12  # decimals of an item in its unit; a sine's rounding error stays below
+
+
+def written(values: Iterable[float], unit: str) -> str:
+    """A list as text: twelve digits, and no noise of the last digits about zero."""
+    inside = ", ".join(f"{number:.12g}" for number in rounded(values))
+    return f"[{inside}]" if unit == "1" else f"[{inside}] {unit}"
+
+
+def rounded(values: Iterable[float]) -> list[float]:
+    """The items as they are written, as numbers."""
+    return [float(f"{round(float(value), _NOISE) + 0.0:.12g}") for value in values]
+
+
+def listed(raw: Any) -> Any:
+    """A text that is a list as the quantity that it means; anything else as it is."""
+    if not isinstance(raw, str) or len(raw) > LONGEST_TEXT or not (match := _LIST.fullmatch(raw)):
+        return raw
+    try:
+        numbers = [float(item) for item in match[1].split(",")]
+    except ValueError:
+        return raw  # whoever reads it says what is wrong with it
+    return {"value": numbers, "unit": match[2].strip() or "1"}

@@ -1,0 +1,124 @@
+"""Parameters of a model that are lists, by the live interface: a shaft whose pins follow from an engine."""
+
+import pytest
+from serving import API, created, faults, patched, problem, revision
+
+from app.web.gallery import GALLERY
+
+SHAFT = f"{API}/models/crankshaft/versions/2"
+PLAIN = {"journal_diameter": "40 mm", "throw": "30 mm", "fillet": "0 mm"}
+WAIT = {"Prefer": "wait=60"}
+
+
+def engine(**inputs):
+    example = GALLERY["engine"].document["steps"]["engine"]
+    return {**example, "inputs": {**example["inputs"], "bore": "86 mm", **inputs}}
+
+
+def design(relation, **more):
+    parameters = {**PLAIN, "pin_angles": relation, **more}
+    model = {"id": "crankshaft", "version": 2, "parameters": parameters}
+    return {"name": "shaft", "steps": {"engine": engine()}, "models": {"shaft": model}}
+
+
+def angles(http, saved):
+    return revision(http, saved)["models"]["shaft"]["parameters"]["pin_angles"]
+
+
+def test_a_shaft_follows_the_layout_of_an_engine_and_its_change(http):
+    saved = created(http, design("= engine.crankpin_angles"))
+    assert angles(http, saved) == {"value": pytest.approx([0, 180, 180, 360], abs=360), "unit": "deg"}
+    first = revision(http, saved)["models"]["shaft"]
+    assert [value % 360 for value in first["parameters"]["pin_angles"]["value"]] == [0, 180, 180, 0]
+    measured = http.get(f"{API}/builds/{first['build']}").json()["measurements"]["dimensions"]
+    assert measured["pin_angles"] == first["parameters"]["pin_angles"]
+    assert measured["counterweight_radius"] == {"value": [0.0] * 8, "unit": "mm"}
+    changed = patched(http, saved, {"steps": {"engine": {"inputs": {"firing_order": [1, 2, 4, 3]}}}})
+    assert changed["state"] == "current"
+    assert sorted(value % 360 for value in angles(http, changed)["value"]) == [0, 0, 180, 180]
+
+
+def test_pin_angles_of_an_engine_are_those_of_its_shaft(http):
+    document = design("= engine.pin_angles")
+    pins = {"value": [0, 90, 270, 180], "unit": "deg"}
+    document["steps"]["engine"] = engine(pin_angles=pins)
+    saved = created(http, document)
+    assert angles(http, saved) == pins
+
+
+def test_single_pins_and_numbers_mix_in_a_list(http):
+    saved = created(http, design(["= engine.crankpin_angles[2]", "30 deg"]))
+    assert [value % 360 for value in angles(http, saved)["value"]] == [180, 30]
+
+
+@pytest.mark.parametrize(
+    ("relation", "name"),
+    [
+        ("= engine.crankpin_load_x", "shaft.pin_angles"),
+        ("= engine.speed", "shaft.pin_angles"),
+        ("30 deg", "shaft.pin_angles"),
+        ({"value": [[0, 90]], "unit": "deg"}, "shaft.pin_angles"),
+    ],
+)
+def test_what_is_no_list_of_angles_is_refused_by_name(http, relation, name):
+    answer = http.post(f"{API}/designs", json=design(relation))
+    assert answer.status_code == 422, answer.text
+    assert name in faults(answer)
+
+
+def test_a_list_for_a_single_parameter_is_refused(http):
+    document = design("= engine.crankpin_angles", throw="= engine.main_positions")
+    answer = http.post(f"{API}/designs", json=document)
+    assert faults(answer)["shaft.throw"] == "not_a_number"
+
+
+class TestOnItsOwn:
+    def test_text_and_object_are_one_build(self, http):
+        keys = set()
+        for pins in ("[0, 120] deg", {"value": [0, 120], "unit": "deg"}, ["0 deg", "120 deg"]):
+            body = {"parameters": {**PLAIN, "pin_angles": pins}, "artifacts": ["step"]}
+            answer = http.post(f"{SHAFT}/build", json=body, headers=WAIT)
+            assert answer.status_code == 200, answer.text
+            keys.add(answer.json()["build"])
+            assert answer.json()["parameters"]["pin_angles"] == {"value": [0, 120], "unit": "deg"}
+        assert len(keys) == 1
+
+    @pytest.mark.parametrize(
+        "parameters",
+        [
+            {"pin_angles": {"value": [[0], [1]], "unit": "deg"}},
+            {"pin_angles": {"value": [0], "unit": "deg"}, "throw": {"value": [30, 31], "unit": "mm"}},
+            {"pin_angles": {"value": [0] * 17, "unit": "deg"}},
+            {"pin_angles": "[" * 3000},
+        ],
+        ids=["lists of lists", "points", "too many", "brackets"],
+    )
+    def test_what_is_no_shaft_is_refused(self, http, parameters):
+        answer = http.post(f"{SHAFT}/build", json={"parameters": {**PLAIN, **parameters}}, headers=WAIT)
+        problem(answer, 422, "invalid-inputs")
+
+    def test_schema_says_that_it_is_a_list(self, http):
+        shown = http.get(SHAFT).json()["parameters"]["properties"]["pin_angles"]
+        assert shown["unit"] == "deg"
+        assert "list" in str(shown) or "array" in str(shown)
+
+    def test_page_shows_lists_and_takes_them_back(self, http):
+        page = http.get("/models/crankshaft/2")
+        assert page.status_code == 200
+        assert "pin angles" in page.text.lower()
+        answer = http.get("/models/crankshaft/2", params={
+            "journal_diameter": "40 mm", "pin_angles": "[0, 120, 240] deg", "throw": "30 mm",
+        })  # fmt: skip
+        assert answer.status_code == 200
+        assert "[0, 120, 240] deg" in answer.text
+        assert http.get("/models/crankshaft/2", params={"pin_angles": "[0] mm"}).status_code == 422
+
+
+def test_variants_may_have_pins_of_their_own(http):
+    document = design("= engine.crankpin_angles")
+    document["variants"] = {"twin": {"shaft.pin_angles": {"value": [0, 180], "unit": "deg"}}, "same": {}}
+    saved = created(http, document)
+    assert saved["state"] == "current", saved
+    shown = http.get(f"{API}/designs/{saved['id']}/variants").json()
+    assert {*shown["variants"]} >= {"twin", "same"}
+    assert "failed" not in str(shown), shown
