@@ -92,7 +92,8 @@ class ForcedTorsion(TorsionTrain):
     speed; inertia torque is that at inertia_speed, and grows with its square. A gas factor of 0 is a misfire.
     A last point that repeats the first is left out. The mean torque twists no shaft here.
     Vibratory torque, twist, stress and angle are half the swing of the sum of all orders up to highest_order.
-    Adding amplitudes would give more. Rows are shafts or inertias, columns speeds.
+    Adding amplitudes would give more. Rows are shafts or inertias, columns speeds. A power_balance_error
+    below 1e-12 is rounding, and shown as 0.
     A section modulus of 0 stands for a shaft whose stress is not asked for. No factor for notches.
     Critical speeds are those without damping, rows are orders, columns modes; those of modes at 0 Hz are 0.
     At most 100 inertias, 300 shafts, 100 cylinders and 2000 speeds.

@@ -146,9 +146,10 @@ def power_lost(shafts: Array, inertias: Array) -> Array:
     latex=r"\max_{{n}}\frac{{\left|{0}-{1}\right|}}{{\tfrac12\sum h\omega\left|\Phi T\right|}}",
 )
 def power_error(put_in: Array, lost: Array, response: Response) -> Array:
-    """Difference of the powers over the apparent power, the largest of all speeds, (…)."""
+    """Difference of the powers over the apparent power, the largest of all speeds, (…); 0 below 1e-12."""
     size = response.apparent_power
-    return np.asarray((np.abs(put_in - lost) / np.where(size == 0, 1, size)).max(axis=-1))
+    error = (np.abs(put_in - lost) / np.where(size == 0, 1, size)).max(axis=-1)
+    return np.where(error < 1e-12, 0.0, error)[()]
 
 
 @units(None, "1", returns="rad/s", latex=r"h\omega\left|\Phi_{{{1}}}\right|")

@@ -13,7 +13,7 @@ from templates.core.arrays import Array
 from templates.core.language.declare import on_paper, units
 from templates.physics.torsion.forced_train import Train
 
-_ROUNDING = 1e-12  # of the highest frequency: what is below is 0
+_ROUNDING = 1e-12  # of the highest frequency, of the largest angle: what is below is 0
 _TIE = 1 - 1e-9  # entries of a shape this near to the largest are as large
 
 
@@ -49,6 +49,7 @@ def mode_shapes(train: Train) -> Array:
     shapes = (free / np.sqrt(train.mass)[..., None, :]) @ train.layout.reduction.T
     size = np.abs(shapes)
     largest = size.max(axis=-1, keepdims=True)
+    shapes = np.where(size <= _ROUNDING * largest, 0, shapes)
     first = np.argmax(size >= _TIE * largest, axis=-1)[..., None]
     signed = shapes / (np.sign(np.take_along_axis(shapes, first, axis=-1)) * largest)
     return np.where(is_finite, signed, np.nan)
