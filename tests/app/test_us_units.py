@@ -22,6 +22,8 @@ METRIC_THERE_TOO = {
     "K",
     "1/K",
     "W/K",
+    "W/(m*K)",
+    "W/(m**2*K)",
     "kJ/(m**3*K)",
 }
 """Used in American drawings as well, or for heat, of which customary units are many and none is common."""

@@ -8,6 +8,12 @@ from math import pi
 HYDROSTATIC, THRUST, MIXED = ("hydrostatic_pad", 1), ("thrust_bearing", 1), ("mixed_friction", 1)
 GIVEN_OIL = {"supply_temperature": None, "dynamic_viscosity": "1 mPa*s"}
 ELASTIC, HEAT = ("elastic_film", 1), ("cycle_heat_balance", 1)
+WARM = ("thermal_film", 1)
+TINY = {
+    "dynamic_viscosity": "0.1 mPa*s", "diametral_clearance": "0.005 mm", "bearing_diameter": "5 mm",
+    "bearing_width": "5 mm", "radial_load": "15 N", "speed": "1000 rpm",
+}  # fmt: skip
+FAST = {"dynamic_viscosity": "1 mPa*s", "speed": "20000 rpm"}
 WATERY = {
     "kinematic_viscosity_1": "1 mm**2/s", "kinematic_viscosity_2": "0.6 mm**2/s", "hths_viscosity": None,
     "bearing_width": "6 mm",
@@ -58,6 +64,20 @@ CASES = [
     (HEAT, "temperature", {}, {"permissible_temperature": "90 degC"}, "not_met", 93.751210, 90),
     (HEAT, "temperature_rise", {}, {"permissible_temperature_rise": "8 K"}, "met", 7.5024198, 8),
     (HEAT, "temperature_rise", {}, {"permissible_temperature_rise": "7 K"}, "not_met", 7.5024198, 7),
+    (WARM, "film_exists", {}, {}, "met", 62.892908, 0.05),
+    (WARM, "film_exists", TINY, {}, "not_met", 0.045444698, 0.05),
+    (WARM, "own_film", {}, {"permissible_film": "60 um"}, "met", 62.892908, 60),
+    (WARM, "own_film", {}, {"permissible_film": "65 um"}, "not_met", 62.892908, 65),
+    (WARM, "pressure", {}, BABBITT, "met", 1.8252060, 20.6),
+    (WARM, "pressure", {}, {"permissible_pressure": "1.5 MPa"}, "not_met", 1.8252060, 1.5),
+    (WARM, "temperature", {}, BABBITT, "met", 47.967924, 150),
+    (WARM, "temperature", {}, {"permissible_temperature": "45 degC"}, "not_met", 47.967924, 45),
+    (WARM, "oil_temperature", {}, {"permissible_oil_temperature": "48 degC"}, "met", 47.967924, 48),
+    (WARM, "oil_temperature", {}, {"permissible_oil_temperature": "47 degC"}, "not_met", 47.967924, 47),
+    (WARM, "laminar", {}, {}, "met", 84.406854, 41.3 / 0.0029**0.5),
+    # rho U c_r/eta, with the density at 40 °C
+    (WARM, "laminar", FAST, {}, "not_met", 862.75 * 20000 * pi / 30 * 0.05 * 0.145e-3 / 1e-3,
+     41.3 / 0.0029**0.5),
     (MIXED, "full_film", {"speed": "600 rpm"}, {}, "met", 4.9008874, 3),
     (MIXED, "full_film", {}, {}, "not_met", 2.9660099, 3),
     (MIXED, "above_transition", {"speed": "600 rpm"}, {}, "met", 600, 304.596723),

@@ -1,0 +1,70 @@
+"""The mesh of a film between the two edges of its groove: around, and across half the width.
+
+Angles count from the load in the sense of rotation. The groove stands still, so the nodes do not move while
+the journal's place is looked for: the force has no steps. They are graded once to where the film is thin.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.films.film_equations import dual_widths
+from templates.physics.films.film_mesh import graded_across
+
+_FINE = 8000
+"""Places at which the density of nodes is integrated."""
+_INLET, _LAYER = 0.5, 0.01
+"""Weight and width [rad] of the finer mesh where fresh oil meets the warm walls."""
+
+
+@dataclass(frozen=True)
+class Arc:
+    """Nodes around × nodes across half the width; the first and the last around are edges of the groove."""
+
+    phi: Array
+    """(n + 1,) angles from the load, rising by less than a turn [rad]."""
+    zeta: Array
+    """(m + 1,) axial places, 0 (middle) … 1 (end)."""
+    ratio: float
+    """Width over diameter B/D [-]."""
+
+    @property
+    def around(self) -> Array:
+        """(n + 1,) lengths of the cells around the nodes, half cells at the groove [rad]."""
+        return dual_widths(self.phi)
+
+    @property
+    def across(self) -> Array:
+        """(m + 1,) the same across; their sum is 1."""
+        return dual_widths(self.zeta)
+
+
+def groove_arc(start: float, length: float, thin: tuple[float, float], ratio: float, n: int, m: int) -> Arc:
+    """Nodes from one edge of the groove around to the other.
+
+    Parameters
+    ----------
+    start
+        Angle of the groove's edge at which the film begins [rad].
+    length
+        From there to the other edge [rad].
+    thin
+        Relative eccentricity and angle of the narrowest gap, to which nodes are graded [-], [rad].
+    ratio
+        Width over diameter B/D [-].
+    n
+        Intervals around.
+    m
+        Intervals across half the width.
+    """
+    eps, attitude = thin
+    fine = start + np.linspace(0, length, _FINE + 1)
+    away = (fine - attitude + np.pi) % (2 * np.pi) - np.pi
+    width = min(np.sqrt((1 - eps) / (1 + eps)), 3 * ratio)
+    density = 1 + np.sqrt(1 - eps**2) / (1 - eps * np.cos(away)) + 1 / np.hypot(away, width)
+    density += _INLET / np.hypot(fine - start, _LAYER)
+    total = np.concatenate([[0.0], np.cumsum((density[1:] + density[:-1]) / 2)])
+    phi = np.interp(np.linspace(0, total[-1], n + 1), total, fine)
+    phi[[0, -1]] = start, start + length
+    return Arc(phi, graded_across(float(np.sqrt(1 - eps)) / ratio, m)[0], ratio)

@@ -1,0 +1,111 @@
+"""Where the journal lies in a film whose viscosity is given at every place: Newton's method with few films.
+
+Unknown is y, a vector along and ahead of the load as long as atanh(eps), so that near the wall a step of 1
+is one of the load's size. What is brought to zero is the logarithm of the force over the load and its angle
+from the load, which depend on y almost linearly. Slopes by differences once, then by Broyden's rule.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.thermal.arc import Arc
+from templates.physics.thermal.pressure import Gap, Pressed, gap_of, pressed
+
+FARTHEST = float(np.arctanh(0.9999))
+"""Length of y beyond which no journal is looked for."""
+_STEPS = 40
+_LONGEST = 0.7
+_DIFFERENCE = 1e-5
+_STALE = 0.3
+"""A step that leaves more than this share of what was lacking asks for new slopes."""
+
+
+class NoBalance(ArithmeticError):
+    """No film was found that bears the load, or none whose heat is carried off."""
+
+
+@dataclass
+class Placing:
+    """The search on one mesh; it keeps the last film and the slopes for the next search."""
+
+    arc: Arc
+    edges: Array
+    """(J + 1,) of the strips across."""
+    load: float
+    """So with the viscosity of the supply [-]."""
+    feed: tuple[float, float]
+    """P_s of the groove and its length over the width [-]."""
+    y: Array
+    """(2,) where the search begins and has ended."""
+    near: tuple[Array, Array] | None = None
+    slopes: Array | None = None
+
+    def placed(self, fluidity: Array, accuracy: float) -> Pressed:
+        """The film that bears the load with a fluidity (n + 1, J).
+
+        Raises
+        ------
+        NoBalance
+            If there is none, or the search has not come to rest.
+        """
+        film = self._film(fluidity, self.y)
+        lack, fresh = self._lack(film), False
+        for _ in range(_STEPS):
+            size = float(np.hypot(*lack))
+            if size < accuracy:
+                return film
+            if self.slopes is None:
+                self.slopes, fresh = self._differences(fluidity, lack), True
+            step = self._newton(lack)
+            step *= min(1.0, _LONGEST / float(np.hypot(*step)))
+            y = self.y + step
+            if not np.hypot(*y) < FARTHEST:
+                raise NoBalance("the journal all but touches")
+            film = self._film(fluidity, y)
+            after = self._lack(film)
+            if np.hypot(*after) > _STALE * size and not fresh:
+                self.slopes = None
+            else:
+                change = after - lack - self.slopes @ step
+                self.slopes, fresh = self.slopes + np.outer(change, step) / (step @ step), False
+            self.y, lack = y, after
+        raise NoBalance("the journal's place does not settle")
+
+    def _newton(self, lack: Array) -> Array:
+        """The step of y that would make up for what is lacking."""
+        try:
+            return np.asarray(-np.linalg.solve(np.asarray(self.slopes), lack))
+        except np.linalg.LinAlgError as failure:
+            raise NoBalance("the force does not depend on the journal's place") from failure
+
+    def _film(self, fluidity: Array, y: Array) -> Pressed:
+        """The film at a place, kept as the start of the next."""
+        gap: Gap = gap_of(self.arc, y, fluidity, self.edges, self.feed)
+        try:
+            film = pressed(gap, self.near)
+        except (ArithmeticError, RuntimeError) as failure:
+            if self.near is None:
+                raise NoBalance("the cavities do not settle") from failure
+            self.near = None
+            return self._film(fluidity, y)
+        self.near = film.P, film.void
+        return film
+
+    def _lack(self, film: Pressed) -> Array:
+        """Logarithm of force over load, and the angle between them."""
+        along, ahead = film.force
+        size = float(np.hypot(along, ahead))
+        if not (np.isfinite(size) and size > 0):
+            raise NoBalance("the film bears nothing")
+        return np.array([np.log(size / self.load), np.arctan2(ahead, along)])
+
+    def _differences(self, fluidity: Array, lack: Array) -> Array:
+        """(2, 2) slopes of what is lacking."""
+        kept = self.near
+        columns = []
+        for step in _DIFFERENCE * np.eye(2):
+            columns.append((self._lack(self._film(fluidity, self.y + step)) - lack) / _DIFFERENCE)
+            self.near = kept
+        return np.stack(columns, axis=1)

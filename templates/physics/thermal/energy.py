@@ -1,0 +1,264 @@
+r"""The energy equation of a film, around × across, for the mean over the width.
+
+.. math::
+    \rho c\,(u\,\partial_x T + v\,\partial_y T) = \partial_y(k\,\partial_y T)
+    + \eta\left[(\partial_y u)^2 + (\partial_y w)^2\right]
+
+Temperature does not vary across the width, where measured ones differ by little (Dowson, Hudson, Hunter,
+March 1966). Every term is its mean there, so that dissipation is the power that journal and supply put in,
+and what carries it off adds up to it. In a cavity the oil stands in streamers of the film's height:
+everything there counts by their share. Conduction around is left out.
+
+Finite volumes on the strips of `across`: upwind around, exponential across (Scharfetter, Gummel; Patankar).
+All of it is linear in T: one sparse solution, with the temperature of the groove and of the journal.
+
+In units of T: :math:`\delta = \eta_s\omega/(\rho c\,\psi^2)` for dissipation, :math:`\kappa = k/(\rho c\,
+\omega c_r^2)` for conduction across.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
+
+from templates.core.arrays import Array
+from templates.physics.thermal.pressure import Pressed
+
+
+@dataclass(frozen=True)
+class Heating:
+    """What heats a film and what cools it; temperatures in K."""
+
+    delta: float
+    """eta_s omega/(rho c psi²) [K]."""
+    kappa: float
+    """k/(rho c omega c_r²) [-]."""
+    wall: float
+    """Heat transfer of the bush, h_B/(rho c omega c_r); 0: adiabatic; infinite: held [-]."""
+    outside: float
+    """Temperature behind the bush [K]."""
+    supply: float
+    """That of the fresh oil [K]."""
+    journal: float
+    """That of the journal; NaN for one of no net heat [K]."""
+    carry_over: float = 1.0
+    """Share of the oil that arrives at the groove which goes on into the film [-]."""
+
+
+@dataclass(frozen=True)
+class Heated:
+    """A film's temperatures, and where its heat goes: each over rho c U c_r B [K]."""
+
+    T: Array
+    """(n + 1, J) at the nodes and strips; the groove's at the first and the last [K]."""
+    bush: Array
+    """(n + 1,) of the bush's surface, at the groove's edges that beside them [K]."""
+    journal: float
+    """Of the journal [K]."""
+    groove: float
+    """Of the oil that enters the film [K]."""
+    dissipated: float
+    by_side: float
+    """What leaves with the oil at the ends, above the supply's temperature."""
+    by_drain: float
+    """What leaves with arriving oil that does not go on."""
+    by_bush: float
+    by_journal: float
+    side: float
+    """Oil that leaves at the ends, over U c_r B [-]."""
+    fresh: float
+    """Oil that the groove takes from the supply, likewise [-]."""
+
+    @property
+    def residual(self) -> float:
+        """What is not accounted for, over the dissipation [-]."""
+        away = self.by_side + self.by_drain + self.by_bush + self.by_journal
+        return (self.dissipated - away) / self.dissipated
+
+
+@dataclass(frozen=True)
+class Carried:
+    """Oil that moves between the strips, over U c_r B, and what heats and cools them."""
+
+    around: Array
+    """(n, J) from node to node."""
+    side: Array
+    """(n − 1, J) that leaves at the ends."""
+    up: Array
+    """(n − 1, J − 1) from strip to strip towards the journal."""
+    heat: Array
+    """(n − 1, J) dissipation at the inner nodes, over delta."""
+    wet: Array
+    """(n − 1,) length of each inner node's cell that oil covers [rad]."""
+    near: Array
+    """(n − 1,) the same over the gap [rad]."""
+
+
+def carried(film: Pressed) -> Carried:
+    """Flows that conserve the oil of every strip, and the dissipation.
+
+    The half cells at the groove count with the nodes beside them: so the groove mixes, and nothing else.
+    """
+    gap, arc = film.gap, film.gap.arc
+    faces, nodes, fill = gap.faces, gap.nodes, film.fill
+    H, H_f, wet = gap.H_nodes, gap.H_faces, arc.around * film.fill
+    around = (H_f**3 * film.slopes)[:, None] * faces.by_pressure + (H_f * fill[:-1])[:, None] * faces.by_drag
+    gain = around[:-1] - around[1:]
+    share = nodes.by_pressure / -nodes.conductance[:, None]
+    side = gain.sum(axis=1)[:, None] * share[1:-1]
+    up = np.cumsum(gain - side, axis=1)[:, :-1]
+    return Carried(around, side, up, *(_inner(part) for part in (_dissipation(film, wet / H), wet, wet / H)))
+
+
+def _inner(values: Array) -> Array:
+    """Values of the inner nodes, with those at the groove added to the nodes beside it."""
+    inner = values[1:-1].copy()
+    inner[0] += values[0]
+    inner[-1] += values[-1]
+    return inner
+
+
+def _dissipation(film: Pressed, drag: Array) -> Array:
+    """By shear of drag, of the flow around and of that across; its sum is the work put in."""
+    gap, arc = film.gap, film.gap.arc
+    faces, nodes, step = gap.faces, gap.nodes, np.diff(arc.phi)
+    steep = (np.diff(film.P, axis=0) / step[:, None]) ** 2 @ arc.across
+    both = np.diff(film.P, axis=0) * (1 - film.void[:-1]) @ arc.across
+    of_faces = (gap.H_faces**3 * steep * step)[:, None] * faces.heat_of_pressure
+    of_faces = of_faces + (gap.H_faces * both)[:, None] * faces.heat_of_both
+    widths = np.diff(arc.zeta)
+    out = (np.diff(film.P, axis=1) / widths) ** 2 @ widths
+    out[[0, -1]] = 0.0
+    heat = drag[:, None] * nodes.heat_of_drag
+    heat = heat + (gap.H_nodes**3 * out * arc.around / arc.ratio**2)[:, None] * nodes.heat_of_pressure
+    heat[:-1] += of_faces / 2
+    heat[1:] += of_faces / 2
+    return np.asarray(heat)
+
+
+def heated(film: Pressed, heating: Heating, edges: Array) -> Heated:
+    """The temperatures of a film.
+
+    Raises
+    ------
+    RuntimeError
+        If nothing carries the heat off.
+    """
+    flow = carried(film)
+    system = _System(flow, heating, edges)
+    T = splu(system.matrix()).solve(system.right)
+    if not np.isfinite(T).all():
+        raise RuntimeError("nothing carries the heat off")
+    return system.read(T)
+
+
+class _System:
+    """The linear equations: T of the inner nodes' strips, then of the groove and of the journal."""
+
+    def __init__(self, flow: Carried, heating: Heating, edges: Array) -> None:
+        self.flow, self.heating = flow, heating
+        n, J = flow.around.shape
+        self.n, self.J, self.size = n, J, (n - 1) * J + 2
+        self.index = np.arange((n - 1) * J).reshape(n - 1, J)
+        self.groove, self.journal = self.size - 2, self.size - 1
+        conducting = heating.kappa * flow.near
+        half = np.diff(edges) / 2
+        self.between = conducting[:, None] / (half[1:] + half[:-1])
+        self.to_journal = conducting / half[-1]
+        wall = np.full(n - 1, np.inf) if np.isinf(heating.wall) else heating.wall * flow.wet
+        own = conducting / half[0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            self.share = np.where(np.isinf(wall), 1.0, wall / (wall + own))
+        self.to_bush = own * self.share
+        self.rows: list[Array] = []
+        self.columns: list[Array] = []
+        self.values: list[Array] = []
+        self.right = np.zeros(self.size)
+
+    def add(self, row: Array | int, column: Array | int, value: Array | float) -> None:
+        """Add to the matrix."""
+        parts = np.broadcast_arrays(row, column, value)
+        for kept, part in zip((self.rows, self.columns, self.values), parts, strict=True):
+            kept.append(part.ravel())
+
+    def flows(self, giver: Array | int, taker: Array | int, flow: Array) -> None:
+        """Heat that oil takes from one unknown to another; the giver's balance is written as a loss."""
+        self.add(giver, giver, flow)
+        self.add(taker, giver, -flow)
+
+    def matrix(self) -> csc_array:
+        """The matrix; sets the right side too."""
+        flow, heat = self.flow, self.heating
+        index = self.index
+        whole = np.concatenate([np.full((1, self.J), self.groove), index, np.full((1, self.J), self.groove)])
+        on, back = np.maximum(flow.around, 0), np.maximum(-flow.around, 0)
+        self.flows(whole[1:-1], whole[2:], on[1:])
+        self.flows(whole[1:-1], whole[:-2], back[:-1])
+        self.add(whole[1], self.groove, -on[0])
+        self.add(whole[-2], self.groove, -back[-1])
+        self.add(index, index, flow.side)
+        rise, fall = _exponential(flow.up, self.between)
+        self.flows(index[:, :-1], index[:, 1:], rise)
+        self.flows(index[:, 1:], index[:, :-1], fall)
+        self.add(index[:, 0], index[:, 0], self.to_bush)
+        self.add(index[:, -1], index[:, -1], self.to_journal)
+        self.add(index[:, -1], self.journal, -self.to_journal)
+        self.right[: self.groove] = heat.delta * flow.heat.ravel()
+        self.right[index[:, 0]] += self.to_bush * heat.outside
+        self._mixing(on, back)
+        self._journal()
+        rows, columns = (np.concatenate(part).astype(np.intp) for part in (self.rows, self.columns))
+        return csc_array((np.concatenate(self.values), (rows, columns)), shape=(self.size, self.size))
+
+    def _mixing(self, on: Array, back: Array) -> None:
+        """Oil that arrives mixes with the fresh one; `flows` has entered all of it, part may drain."""
+        heat = self.heating
+        entering, arriving = on[0].sum() + back[-1].sum(), on[-1].sum() + back[0].sum()
+        self.fresh = entering - heat.carry_over * arriving
+        self.drained = 1 - heat.carry_over
+        self.add(self.groove, self.groove, entering)
+        self.add(self.groove, self.index[-1], self.drained * on[-1])
+        self.add(self.groove, self.index[0], self.drained * back[0])
+        self.right[self.groove] = self.fresh * heat.supply
+
+    def _journal(self) -> None:
+        """Its temperature as given, or that without net heat."""
+        if np.isfinite(self.heating.journal):
+            self.add(self.journal, self.journal, 1.0)
+            self.right[self.journal] = self.heating.journal
+        else:
+            self.add(self.journal, self.journal, self.to_journal.sum())
+            self.add(self.journal, self.index[:, -1], -self.to_journal)
+
+    def read(self, solved: Array) -> Heated:
+        """Temperatures and where the heat goes."""
+        flow, heat = self.flow, self.heating
+        inner, groove, journal = solved[: self.groove].reshape(self.index.shape), *solved[self.groove :]
+        T = np.concatenate([np.full((1, self.J), groove), inner, np.full((1, self.J), groove)])
+        bush = self.share * heat.outside + (1 - self.share) * inner[:, 0]
+        above = inner - heat.supply
+        arriving = np.maximum(flow.around[-1], 0) @ above[-1] + np.maximum(-flow.around[0], 0) @ above[0]
+        return Heated(
+            T=T, bush=np.pad(bush, 1, mode="edge"), journal=float(journal), groove=float(groove),
+            dissipated=float(heat.delta * flow.heat.sum()),
+            by_side=float((flow.side * above).sum()),
+            by_drain=float(self.drained * arriving),
+            by_bush=float((self.to_bush * (inner[:, 0] - heat.outside)).sum()),
+            by_journal=float((self.to_journal * (inner[:, -1] - journal)).sum()),
+            side=float(flow.side.sum()), fresh=float(self.fresh),
+        )  # fmt: skip
+
+
+def _exponential(flow: Array, conduction: Array) -> tuple[Array, Array]:
+    """Coefficients of what goes up and down between strips: conduction × B(∓flow/conduction).
+
+    B(x) = x/(exp(x) − 1) is exact for a flow and a conduction that do not change between the two.
+    """
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        x = np.clip(np.where(conduction > 0, flow / conduction, np.sign(flow) * np.inf), -500, 500)
+        x = np.where(np.isnan(x), 0.0, x)
+        bernoulli = np.where(np.abs(x) < 1e-6, 1 - x / 2, x / np.expm1(x))
+    strong = np.abs(x) >= 500
+    down = np.where(strong, np.maximum(-flow, 0), conduction * bernoulli)
+    return np.asarray(down + flow), np.asarray(down)

@@ -1,0 +1,187 @@
+"""A film and its temperatures in balance with the load: one temperature for all of it, or one at each place.
+
+The temperatures are a fixed point: they set the viscosity, the viscosity sets the film that bears the load,
+and that film sets the temperatures. Anderson's acceleration takes some ten films. Beside it, on the same mesh
+and with the same feed, stands the film of one effective temperature as ISO 7902-1 has it.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.physics.films.film_map import mapped_film
+from templates.physics.films.film_map_inverse import mapped_eccentricity
+from templates.physics.thermal.across import strip_edges
+from templates.physics.thermal.anderson import Anderson
+from templates.physics.thermal.arc import Arc, groove_arc
+from templates.physics.thermal.bearing_place import NoBalance, Placing
+from templates.physics.thermal.energy import Heated, Heating, carried, heated
+from templates.physics.thermal.pressure import Pressed
+
+HOTTEST = 773.15
+"""Highest temperature that is looked for [K]."""
+FIELD, FINE = "field", "fine_field"
+MESHES = {FIELD: ((24, 4, 8), (48, 8, 12)), FINE: ((48, 8, 12), (96, 16, 24))}
+"""Of each level, with the mesh to start from: intervals around, across half the width, strips across."""
+_ROUNDS = 80
+_ACCURACY = 1e-8
+"""Change of temperature over its largest rise at which the search ends [-]."""
+_FORCE = 1e-9
+_LIGHTEST, _HEAVIEST = 0.05, 0.98
+"""Eccentricities between which a search begins [-]."""
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """A bearing, dimensionless but for its temperatures."""
+
+    So: float
+    """F psi²/(B D eta_s omega) with the viscosity of the supply [-]."""
+    ratio: float
+    """Width over diameter [-]."""
+    pressure: float
+    """Of the supply, p psi²/(eta_s omega) [-]."""
+    groove: tuple[float, float, float]
+    """Angle of its middle from the load, width around [rad], and length over the bearing's width [-]."""
+    heating: Heating
+    fluidity: Callable[[Array], Array]
+    """Viscosity of the supply over that at a temperature [K]."""
+
+    def arc(self, y: Array, mesh: tuple[int, int, int]) -> Arc:
+        """The film's mesh, graded to a place of the journal."""
+        centre, width, _ = self.groove
+        eps, attitude = float(np.tanh(np.hypot(*y))), float(np.arctan2(y[1], y[0]))
+        return groove_arc(
+            centre + width / 2, 2 * np.pi - width, (min(eps, _HEAVIEST), attitude), self.ratio, *mesh[:2]
+        )
+
+    def placing(self, y: Array, mesh: tuple[int, int, int]) -> Placing:
+        """A search on a mesh from a place."""
+        return Placing(self.arc(y, mesh), strip_edges(mesh[2]), self.So, (self.pressure, self.groove[2]), y)
+
+    def start(self) -> Array:
+        """Where a film of the supply's viscosity, fed along its widest gap, would have the journal."""
+        eps = mapped_eccentricity(np.asarray(self.So), np.asarray(self.ratio))
+        eps = np.clip(np.where(np.isnan(eps), _HEAVIEST, eps), _LIGHTEST, _HEAVIEST)
+        attitude = mapped_film(eps, np.asarray(self.ratio))["attitude"]
+        return np.asarray(np.arctanh(eps) * np.array([np.cos(attitude), np.sin(attitude)]))
+
+
+@dataclass(frozen=True)
+class OneTemperature:
+    """A film of one viscosity whose heat the side flow and the air carry off."""
+
+    T: float
+    """Effective temperature [K]."""
+    film: Pressed
+    placing: Placing
+
+
+@dataclass(frozen=True)
+class Warm:
+    """A film with its temperatures."""
+
+    film: Pressed
+    heated: Heated
+    rounds: int
+    """Films until the temperatures stood."""
+    placing: Placing
+    supply: float
+    """Temperature of the fresh oil [K]."""
+
+
+def one_temperature(bearing: Bearing, placing: Placing, T: float, step: float) -> OneTemperature:
+    """The effective temperature, by the secant from one guess [K] to another by at most `step` [K].
+
+    Raises
+    ------
+    NoBalance
+        If no film bears the load, or none below 500 °C carries its heat off.
+    """
+    shape = placing.arc.phi.size, placing.edges.size - 1
+
+    def missing(at: float) -> tuple[float, Pressed]:
+        fluidity = np.full(shape, float(bearing.fluidity(np.asarray(at))))
+        film = placing.placed(fluidity, _FORCE)
+        return _mean(film, bearing.heating) - at, film
+
+    lack, film = missing(T)
+    after = T + float(np.clip(0.5 * lack, -step, step))
+    for _ in range(_ROUNDS):
+        if abs(lack) < _ACCURACY * max(abs(T - bearing.heating.supply), 1.0):
+            return OneTemperature(T, film, placing)
+        if not after < HOTTEST:
+            break
+        found, film = missing(after)
+        slope = (found - lack) / (after - T) if after != T else -1.0
+        T, lack = after, found
+        after = T - float(np.clip(lack / min(slope, -0.3), -2 * step, 2 * step))
+    raise NoBalance("no temperature below 500 degC carries the heat off")
+
+
+def _mean(film: Pressed, heating: Heating) -> float:
+    """Mean of supply and outlet, by the heat that side flow and air carry off [K]."""
+    flow = carried(film)
+    side = float(flow.side.sum())
+    air = 0.0 if np.isinf(heating.wall) else 2 * np.pi * heating.wall
+    gained = heating.delta * float(flow.heat.sum()) + air * (heating.outside - heating.supply)
+    if not side + air > 0:
+        raise NoBalance("nothing carries the heat off")
+    return heating.supply + gained / (2 * side + air)
+
+
+def warm(bearing: Bearing, placing: Placing, T: Array) -> Warm:
+    """The film with a temperature at each place, from a guess (n + 1, J) [K].
+
+    Raises
+    ------
+    NoBalance
+        If there is none below 500 °C, or the temperatures do not settle.
+    """
+    heating, search = bearing.heating, Anderson()
+    given = [T for T in (heating.supply, heating.outside, heating.journal) if np.isfinite(T)]
+    coldest = min(given)
+    for rounds in range(1, _ROUNDS):
+        film = placing.placed(bearing.fluidity(T), _FORCE)
+        try:
+            found = heated(film, heating, placing.edges)
+        except RuntimeError as failure:
+            raise NoBalance("nothing carries the heat off") from failure
+        change = found.T - T
+        rise = max(float(np.abs(found.T - heating.supply).max()), 1e-3)
+        if float(np.abs(change).max()) < _ACCURACY * rise:
+            if not (found.T.max() < HOTTEST and found.T.min() > coldest - 1):
+                break
+            return Warm(film, found, rounds, placing, heating.supply)
+        T = np.clip(search.after(T, change), coldest, HOTTEST)
+    raise NoBalance("the temperatures do not settle below 500 degC")
+
+
+def both(bearing: Bearing, level: str) -> tuple[OneTemperature, tuple[Warm, Warm]]:
+    """The film of one temperature on the level's mesh, and that of all temperatures before and on it.
+
+    Raises
+    ------
+    NoBalance
+        If one of them is not found.
+    """
+    before, mesh = MESHES[level]
+    placing = bearing.placing(bearing.start(), before)
+    single = one_temperature(bearing, placing, bearing.heating.supply, 30.0)
+    placing = bearing.placing(placing.y, before)
+    T = np.full((placing.arc.phi.size, before[2]), single.T)
+    coarse = warm(bearing, placing, T)
+    finer = bearing.placing(coarse.placing.y, mesh)
+    fine = warm(bearing, finer, _carried_over(coarse, finer))
+    last = one_temperature(bearing, bearing.placing(single.placing.y, mesh), single.T, 0.5)
+    return last, (coarse, fine)
+
+
+def _carried_over(coarse: Warm, finer: Placing) -> Array:
+    """Temperatures of one mesh at the nodes and strips of another."""
+    T, arc = coarse.heated.T, coarse.placing.arc
+    middle, new = (((edges[1:] + edges[:-1]) / 2) for edges in (coarse.placing.edges, finer.edges))
+    columns = np.stack([np.interp(finer.arc.phi, arc.phi, strip) for strip in T.T], axis=1)
+    return np.stack([np.interp(new, middle, row) for row in columns])

@@ -1,0 +1,109 @@
+"""A journal bearing with its groove, its oil and what surrounds it, in SI."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import units
+from templates.physics.journals.oil import viscosity_at
+from templates.physics.thermal.energy import Heating
+from templates.physics.thermal.thermal_balance import Bearing
+
+
+@dataclass(frozen=True)
+class ThermalCase:
+    """A bearing with its oil, SI; arrays that broadcast together, NaN where something is not given."""
+
+    F: Array
+    """Load [N]."""
+    D: Array
+    W: Array
+    """Diameter and width [m]."""
+    psi: Array
+    """Relative clearance [-]."""
+    omega: Array
+    """Speed of the journal [rad/s]."""
+    pressure: Array
+    """Of the supply, above ambient [Pa]."""
+    angle: Array
+    """From the load to the groove's middle [rad]."""
+    extent: Array
+    """Of the groove around [rad]."""
+    length: Array
+    """Of the groove across, over the width [-]."""
+    carry_over: Array
+    """Share of the oil arriving at the groove that goes on [-]."""
+    supply: Array
+    """Temperature of the fresh oil [K]."""
+    heat_capacity: Array
+    """Of the oil per volume [J/(m³ K)]."""
+    conductivity: Array
+    """Of the oil [W/(m K)]."""
+    held: Array
+    """Temperature at which the bush is held, else NaN [K]."""
+    transfer: Array
+    """Heat transfer coefficient of the bush, else NaN [W/(m² K)]."""
+    ambient: Array
+    """Temperature behind it, else NaN [K]."""
+    journal: Array
+    """Temperature of the journal, NaN for one without net heat [K]."""
+    A: Array
+    B: Array
+    """Walther's intercept and slope [-]."""
+    a: Array
+    b: Array
+    offset: Array
+    """Vogel's factor, NaN with Walther's law [Pa s], slope and offset [K]."""
+    eta: Array
+    """Viscosity, if it does not follow from the temperature, else NaN [Pa s]."""
+    rho_ref: Array
+    T_ref: Array
+    """Density [kg/m³] at a temperature [K]."""
+
+    def viscosity(self, T: Array) -> Array:
+        """Dynamic viscosity [Pa s] at T [K]."""
+        return viscosity_at(
+            T, self.A, self.B, self.a, self.b, self.offset, self.eta, self.rho_ref, self.T_ref
+        )
+
+    def is_whole(self) -> bool:
+        """Whether everything is known that a film needs."""
+        needed = (self.F, self.D, self.W, self.psi, self.omega, self.pressure, self.viscosity(self.supply))
+        return bool(np.isfinite(needed).all())
+
+    def bearing(self) -> Bearing:
+        """One point, dimensionless."""
+        eta = float(self.viscosity(self.supply))
+        scale = eta * self.omega / self.psi**2
+        per_second = self.heat_capacity * self.omega
+        clearance = self.psi * self.D / 2
+        held, cooled = np.isfinite(self.held), np.isfinite(self.transfer) & np.isfinite(self.ambient)
+        wall = self.transfer / (per_second * clearance) if cooled else 0.0
+        outside = self.held if held else self.ambient if cooled else self.supply
+        heating = Heating(
+            float(scale / self.heat_capacity), float(self.conductivity / (per_second * clearance**2)),
+            np.inf if held else float(wall), float(outside), float(self.supply), float(self.journal),
+            float(self.carry_over),
+        )  # fmt: skip
+        return Bearing(
+            float(self.F / (self.D * self.W * scale)), float(self.W / self.D), float(self.pressure / scale),
+            (float(self.angle), float(self.extent), float(self.length)), heating,
+            self._thinner(eta),
+        )  # fmt: skip
+
+    def _thinner(self, eta: float) -> Callable[[Array], Array]:
+        """A viscosity [Pa s] over that at a temperature [K]; 0 where the oil is as good as stiff."""
+
+        def fluidity(T: Array) -> Array:
+            with np.errstate(over="ignore"):
+                return np.asarray(eta / self.viscosity(T))
+
+        return fluidity
+
+
+@units(None, "K", returns="Pa*s", latex=r"\eta\left({1}\right)")
+def warm_viscosity(case: ThermalCase, T: Array) -> Array:
+    """Viscosity of the case's oil at a temperature T [K]; NaN where that is [Pa s]."""
+    return np.where(np.isnan(T), np.nan, case.viscosity(T))[()]

@@ -1,0 +1,166 @@
+"""A journal bearing under static load whose film has a temperature at every place, in SI and for many points.
+
+Beside it stands what one effective temperature gives for the same bearing, by the same film.
+"""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from templates.core.arrays import Array
+from templates.core.language.declare import on_paper, units
+from templates.physics.thermal.mapped import mapped_values
+from templates.physics.thermal.thermal_balance import FIELD, FINE, OneTemperature, Warm, both
+from templates.physics.thermal.thermal_case import ThermalCase
+
+ONE = "one_temperature"
+LEVELS = (ONE, FIELD, FINE)
+ANGLES = np.radians(np.arange(0, 360, 5))
+"""From the load, at which the bush's temperature is given [rad]."""
+
+
+@dataclass(frozen=True)
+class WarmFilm:
+    """What the film does, at each point; dimensionless but for temperatures [K]."""
+
+    eps: Array
+    """Relative eccentricity; infinite where no film was found [-]."""
+    attitude: Array
+    """From the load to the narrowest gap [rad]."""
+    P_max: Array
+    """Largest pressure p psi²/(eta_s omega) [-]."""
+    T_max: Array
+    """Highest temperature in the film [K]."""
+    bush_max: Array
+    """Highest temperature of the bush's surface [K]."""
+    T_journal: Array
+    T_groove: Array
+    """Of the journal and of the oil that enters the film [K]."""
+    T_side: Array
+    """Mean of the oil that leaves at the ends [K]."""
+    torque: Array
+    """M psi/(B R² eta_s omega) [-]."""
+    side: Array
+    """Flow from the ends, over U c_r B [-]."""
+    dissipated: Array
+    by_oil: Array
+    by_bush: Array
+    by_journal: Array
+    """Heat that arises, and that leaves with oil, bush and journal, over rho c U c_r B [K]."""
+    residual: Array
+    """Heat not accounted for, over that which arises, 0 below 1e-9; NaN with one temperature [-]."""
+    mesh_error: Array
+    """Change of the smallest film from half the mesh [-]."""
+    mesh_change: Array
+    """Change of the largest temperature from half the mesh [K]."""
+    one_T: Array
+    """One effective temperature for the same bearing [K]."""
+    one_eps: Array
+    one_torque: Array
+    """Eccentricity and torque with it [-]."""
+    bush: Array
+    """(..., 72) temperature of the bush's surface at `ANGLES` [K]."""
+
+    def admitted(self, eps: Array) -> "WarmFilm":
+        """The same with NaN where eps was not admitted."""
+        none = np.isnan(eps)
+        each = {f.name: getattr(self, f.name) for f in fields(self)}
+        bush = np.where(np.asarray(none)[..., None], np.nan, each.pop("bush"))
+        kept = {name: np.where(none, np.nan, value)[()] for name, value in each.items()}
+        return replace(self, **kept, bush=bush)
+
+
+_ROUNDING = 1e-9
+_FIELD = "solved numerically by finite volumes of Dowson's generalised Reynolds and the energy equation"
+
+
+@on_paper(
+    {
+        ONE: "solved numerically by bracketing the heat balance of ISO 7902-1 with a map of films",
+        FIELD: _FIELD,
+        FINE: _FIELD,
+    }
+)
+def warm_film(level: str, case: ThermalCase) -> WarmFilm:
+    """The film of every point at a level: all at once with one temperature, else one after the other."""
+    if level == ONE:
+        return _of_one(case)
+    names = [field.name for field in fields(case)]
+    parts = np.broadcast_arrays(*(np.asarray(getattr(case, name), float) for name in names))
+    shape = parts[0].shape
+    values = {f.name: np.full(shape, np.nan) for f in fields(WarmFilm) if f.name != "bush"}
+    bush = np.full((*shape, ANGLES.size), np.nan)
+    for at in np.ndindex(shape):
+        point = ThermalCase(**{name: part[at] for name, part in zip(names, parts, strict=True)})
+        if not point.is_whole():
+            continue
+        try:
+            single, (coarse, fine) = both(point.bearing(), level)
+            found = _measured(single, coarse, fine)
+        except (ArithmeticError, RuntimeError, np.linalg.LinAlgError):
+            values["eps"][at] = np.inf
+            continue
+        for name, value in found.items():
+            values[name][at] = value
+        bush[at] = _around(fine)
+    return WarmFilm(**{name: value[()] for name, value in values.items()}, bush=bush)
+
+
+def _of_one(case: ThermalCase) -> WarmFilm:
+    """The film at level one_temperature; what that has not is NaN."""
+    values = mapped_values(case)
+    shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
+    none = np.full(shape, np.nan)
+    every = {f.name: values.get(f.name, none) for f in fields(WarmFilm) if f.name != "bush"}
+    whole = {name: np.broadcast_to(value, shape)[()] for name, value in every.items()}
+    return WarmFilm(**whole, bush=np.full((*shape, ANGLES.size), np.nan))
+
+
+def _measured(single: OneTemperature, coarse: Warm, fine: Warm) -> dict[str, float]:
+    """The single values of `WarmFilm`."""
+    film, heat, supply = fine.film, fine.heated, fine.supply
+    least, before = 1 - film.gap.eps, 1 - coarse.film.gap.eps
+    return {
+        "eps": film.gap.eps, "attitude": film.gap.attitude, "P_max": float(film.P.max()),
+        "T_max": max(float(heat.T.max()), float(heat.bush.max())), "bush_max": float(heat.bush.max()),
+        "T_journal": heat.journal,
+        "T_groove": heat.groove, "T_side": supply + heat.by_side / heat.side, "torque": film.torque,
+        "side": heat.side, "dissipated": heat.dissipated, "by_oil": heat.by_side + heat.by_drain,
+        "by_bush": heat.by_bush, "by_journal": _above_rounding(heat.by_journal, heat.dissipated),
+        "residual": _above_rounding(heat.residual, 1.0),
+        "mesh_error": abs(before / least - 1),
+        "mesh_change": abs(float(heat.T.max() - coarse.heated.T.max())),
+        "one_T": single.T, "one_eps": single.film.gap.eps, "one_torque": single.film.torque,
+    }  # fmt: skip
+
+
+def _above_rounding(value: float, size: float) -> float:
+    """A difference of numbers of a size, 0 where it is no more than their rounding."""
+    return value if abs(value) > _ROUNDING * size else 0.0
+
+
+def _around(warm: Warm) -> Array:
+    """Temperature of the bush's surface at `ANGLES`; in the groove that of its oil."""
+    phi = warm.placing.arc.phi
+    return np.interp(
+        phi[0] + (ANGLES - phi[0]) % (2 * np.pi), phi, warm.heated.bush, right=warm.heated.groove
+    )
+
+
+@units("1", returns="rad", latex=r"k\,5°")
+def bush_angles(eps: Array) -> Array:
+    """The angles of the bush's temperatures, from the load, for each eccentricity [-]; [rad]."""
+    return np.asarray(np.broadcast_to(ANGLES, (*np.shape(eps), ANGLES.size)))
+
+
+@on_paper(
+    {
+        ONE: "solved numerically by bracketing the heat balance of ISO 7902-1",
+        FIELD: "solved numerically by finite volumes of the energy equation",
+        FINE: "solved numerically by finite volumes of the energy equation",
+    }
+)
+@units("1", returns="K")
+def in_kelvin(value: Array) -> Array:
+    """A temperature, or a heat over that of 1 K, of a `WarmFilm` [K]."""
+    return value
