@@ -83,7 +83,7 @@ class Answering:
             raise
         if not ended:
             return accepted(await run_in_threadpool(self.jobs.create, question, client, calculation))
-        return PiecesResponse(calculation.future.result(), request.app.state.pace)
+        return PiecesResponse(calculation.future.result(), request.app.state.pace, question.media_type)
 
     def _patience(self, request: Request) -> float:
         """How long the request waits for its answer [s]."""

@@ -4,6 +4,7 @@ QueueFull
  └── TooManyCalculations   as many wait as may
 StepDeferred               an expensive step was not calculated in the time that its caller waits
 InvalidBody                a body that was read in a calculation process is not what the operation takes
+NoArray                    an answer is wanted as an array and does not fit one
 """
 
 from __future__ import annotations
@@ -25,6 +26,10 @@ class TooManyCalculations(QueueFull):
 
 class TooManyValues(Exception):
     """The answer would hold more values than the service gives at once."""
+
+
+class NoArray(Exception):
+    """The outputs do not fit one array of numbers."""
 
 
 class StepDeferred(Exception):

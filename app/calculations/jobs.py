@@ -11,7 +11,7 @@ from concurrent.futures import wait
 
 from sqlalchemy.orm import Session
 
-from app.calculations.errors import InvalidBody, TooManyValues
+from app.calculations.errors import InvalidBody, NoArray, TooManyValues
 from app.calculations.operations import Question, answered
 from app.calculations.pool import Calculation, CalculationPool
 from app.calculations.sources import source_of
@@ -33,7 +33,7 @@ ANSWERS = (CALCULATION, PREVIEW, DECISION, TOLERANCE, SOLUTION, IMPACT, VARIANT)
 """Kinds of jobs whose result is an answer: what a request asked for, and nobody waited for."""
 GLANCE = 0.1  # how often a thread looks whether its job was cancelled [s]
 AGAIN = "again"  # in a payload: the job whose lost answer is calculated again
-FAILURES = (TemplateError, TooManyValues, InvalidBody, CannotRebuild)
+FAILURES = (TemplateError, TooManyValues, InvalidBody, NoArray, CannotRebuild)
 """What the request itself, or the loss of it, brings about."""
 
 
@@ -80,6 +80,8 @@ class CalculationJobs:
         if running is not None and not is_kept:
             self.pool.cancel(running)
         payload = {**vars(question), "body": self.store.put(*question.body)}
+        if question.form == "json":
+            del payload["form"]  # a server of the version before takes the job as well
 
         def unit(session: Session) -> str:
             id = self.jobs.enqueue(session, CALCULATION, payload, client=client)

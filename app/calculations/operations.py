@@ -6,19 +6,19 @@ as long as the calculation itself, so both are done there.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from pydantic import ValidationError
 from pydantic_core import from_json, to_json
 
+from app.calculations.array_files import MEDIA_TYPES, Form, npy
 from app.calculations.errors import InvalidBody
 from app.calculations.schemas import Asked, EvaluateIn, SolveIn
-from app.calculations.service import check_evaluate, check_solve, run_evaluate, run_solve
+from app.calculations.service import check_evaluate, check_solve, evaluated, run_evaluate, run_solve
 from app.calculations.sources import Source, loaded
 from app.calculations.worksheet import run_worksheet
-from app.plain import JsonObject
 from app.presentation.units import System
 from app.workers.pieces import Pieces
 from templates.core.language.template import Template
@@ -26,19 +26,30 @@ from templates.core.language.template import Template
 
 @dataclass(frozen=True)
 class Operation:
-    """What is asked, the model of the body that asks it, and what refuses it without calculating."""
+    """What is asked: the model of the body, the check that calculates nothing, the forms of the answer."""
 
     body: type[Asked]
     check: Callable[[type[Template], Any], None]  # takes an object of `body`
-    run: Callable[[type[Template], Any, System], JsonObject]
+    write: Mapping[Form, Callable[[type[Template], Any, System], bytes]]
 
 
 LARGE = 256 * 1024  # bytes of a body that is read in the process that calculates
 
 OPERATIONS = {
-    "evaluate": Operation(EvaluateIn, check_evaluate, lambda cls, body, system: run_evaluate(cls, body)),
-    "solve": Operation(SolveIn, check_solve, lambda cls, body, system: run_solve(cls, body)),
-    "worksheet": Operation(EvaluateIn, check_evaluate, run_worksheet),
+    "evaluate": Operation(
+        EvaluateIn,
+        check_evaluate,
+        {
+            "json": lambda cls, body, system: to_json(run_evaluate(cls, body)),
+            "npy": lambda cls, body, system: npy(evaluated(cls, body)),
+        },
+    ),
+    "solve": Operation(
+        SolveIn, check_solve, {"json": lambda cls, body, system: to_json(run_solve(cls, body))}
+    ),
+    "worksheet": Operation(
+        EvaluateIn, check_evaluate, {"json": lambda *asked: to_json(run_worksheet(*asked))}
+    ),
 }
 
 
@@ -51,21 +62,30 @@ class Question:
     operation: str
     body: Pieces
     system: System = "si"
+    form: Form = "json"
+    """Of the answer; only `evaluate` gives others than JSON."""
+
+    @property
+    def media_type(self) -> str:
+        """Of the answer."""
+        return MEDIA_TYPES[self.form]
 
 
 def answered(source: Source, question: Question) -> Pieces:
-    """The answer as JSON.
+    """The answer, in the form that the question asks for.
 
     Raises
     ------
     InvalidBody
         If the body is no JSON, or not what the operation takes.
+    NoArray
+        If an array is wanted and the outputs do not fit one.
     TemplateError, TooManyValues
         As the operation itself.
     """
     operation = OPERATIONS[question.operation]
     body = _read(operation.body, question.body.joined())
-    return Pieces.of(to_json(operation.run(loaded(source), body, question.system)))
+    return Pieces.of(operation.write[question.form](loaded(source), body, question.system))
 
 
 def check(cls: type[Template], question: Question) -> None:

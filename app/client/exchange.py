@@ -116,11 +116,16 @@ def awaited(request: Request, on_progress: Progress | None = None) -> Exchange[h
 
 def calculated(model: type[Model], request: Request, on_progress: Progress | None = None) -> Exchange[Model]:
     """The answer of a calculation, from where its job leaves it if it became one."""
+    return read(model, (yield from calculation(request, on_progress)))
+
+
+def calculation(request: Request, on_progress: Progress | None = None) -> Exchange[httpx.Response]:
+    """The response of a calculation, from where its job leaves it if it became one."""
     response = yield request
     if job := job_of(response):
         yield from done(job, on_progress)
         response = yield from awaited(get(f"/evaluations/{job}"), on_progress)
-    return read(model, response)
+    return checked(response)
 
 
 def job_of(response: httpx.Response) -> str | None:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from io import BytesIO
 from typing import TypedDict, Unpack
 
 import httpx
+import numpy as np
+from numpy.typing import NDArray
 
+from app.calculations.array_files import NPY
 from app.client.design_operations import Wanted as Wanted
 from app.client.design_operations import auto_map as auto_map
 from app.client.design_operations import change as change
@@ -37,6 +41,7 @@ from app.client.exchange import (
     answered,
     awaited,
     calculated,
+    calculation,
     followed,
     get,
     listed,
@@ -117,6 +122,24 @@ def evaluate(id: str, version: int, inputs: Values, **options: Unpack[Options]) 
     """Evaluate; options are `outputs`, `level`, `tolerance`, `per_point`, `units`, `limits`."""
     path = f"/templates/{id}/versions/{version}/evaluate"
     return calculated(Evaluation, post(path, {"inputs": inputs, **options}))
+
+
+def evaluate_array(
+    id: str, version: int, inputs: Values, **options: Unpack[Options]
+) -> Exchange[NDArray[np.void]]:
+    """Evaluate; the outputs as fields of one array, `array["minimum_film_thickness"]`.
+
+    The title of a field, in `array.dtype.fields`, adds the unit. Options are those of `evaluate`.
+
+    Raises
+    ------
+    Problem
+        If an output is a text, lacks a value at a point, or has another shape than another output.
+    """
+    path = f"/templates/{id}/versions/{version}/evaluate"
+    response = yield from calculation(post(path, {"inputs": inputs, **options}, {"Accept": NPY}))
+    table: NDArray[np.void] = np.load(BytesIO(response.content), allow_pickle=False)
+    return table
 
 
 def worksheet(id: str, version: int, inputs: Values, **options: Unpack[Options]) -> Exchange[Worksheet]:

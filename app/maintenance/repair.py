@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TypeVar, TypeVarTuple
 
-from app.calculations.errors import InvalidBody, TooManyValues
+from app.calculations.errors import InvalidBody, NoArray, TooManyValues
 from app.calculations.jobs import CALCULATION, place_of_answer, question_of
 from app.calculations.operations import answered
 from app.calculations.sources import source_of
@@ -47,6 +47,7 @@ FAILURES = (
     AnalysisError,
     WorkerError,
     InvalidBody,
+    NoArray,
     TooManyValues,
     ArtifactMissing,
     ArtifactDamaged,

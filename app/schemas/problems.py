@@ -52,6 +52,7 @@ MEANINGS = {
         "another site sent the request"
     ),
     404: "there is nothing of this name, number or version",
+    406: "the answer does not fit the form that Accept names",
     408: "the body came too slowly",
     409: "the state of the job, the design, its approval or the worksheet does not allow it",
     410: "the file is lost and cannot be made again under its hash; the problem says why",

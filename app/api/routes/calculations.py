@@ -20,15 +20,16 @@ from app.api.gate.roles import needs
 from app.api.reading import StrictRequest, StrictRoute
 from app.api.routes.templates import Id, Number
 from app.api.waiting import LATER
+from app.calculations.array_files import NPY, Form, npy
 from app.calculations.cost import EXPENSIVE, estimated_seconds, is_quick, solving_seconds, writing_seconds
-from app.calculations.operations import LARGE, Question
+from app.calculations.operations import LARGE, OPERATIONS, Question
 from app.calculations.schemas import Asked, EvaluateIn, SolveIn
-from app.calculations.service import run_evaluate, run_solve
+from app.calculations.service import evaluated, run_evaluate, run_solve
 from app.calculations.size import points
 from app.calculations.worksheet import run_worksheet
 from app.presentation.units import System
 from app.schemas.evaluations import Evaluation, Solution, Worksheet
-from app.schemas.problems import refusals
+from app.schemas.problems import Responses, refusals
 from app.workers.pieces import Pieces
 
 LONGEST_ID, PLAIN_NUMBER = 64, re.compile("[1-9][0-9]{0,5}")
@@ -36,6 +37,10 @@ FEW = 100  # points and names that are taken in the event loop, if every level i
 SYSTEMS: dict[str | None, System] = {None: "si", "si": "si", "us": "us"}
 
 DECLARED = {**LATER, **refusals(404, 429)}
+ARRAYS = "with `Accept: application/x-npy` the outputs as one structured array, a field for each"
+AS_ARRAY: Responses = {
+    200: {"description": ARRAYS, "content": {NPY: {"schema": {"type": "string", "format": "binary"}}}}
+}
 Prefer = Annotated[
     str | None, Header(description="`wait=5` or `respond-async`, for what takes long: it goes on as a job")
 ]
@@ -57,7 +62,8 @@ class LargeRoute(StrictRoute):
         system, body = _system(request), await request.pieces()
         if system is None or len(body) <= LARGE or not _is_plain(request):
             return None
-        question = Question(*_template(request), self.path.rpartition("/")[2], body, system)
+        operation = self.path.rpartition("/")[2]
+        question = Question(*_template(request), operation, body, system, _form(request, operation))
         return await services_of(request).answering.answer(request, question)
 
 
@@ -112,7 +118,7 @@ router = APIRouter(prefix="/api/v1/templates", tags=["templates"], route_class=P
 @router.post(
     "/{id}/versions/{number}/evaluate",
     response_model=Evaluation,
-    responses=DECLARED,
+    responses={**DECLARED, **AS_ARRAY, **refusals(406)},
     dependencies=[needs("viewer")],
 )
 async def evaluate_template(
@@ -126,10 +132,13 @@ async def evaluate_template(
 ) -> Response:
     """Evaluate a template: inputs in any unit, scalars or arrays; only what is asked for is computed."""
     cls = await to_try(catalogues, id, number)
-    if points(body.inputs) <= FEW and len(body.inputs) <= FEW and is_quick(cls):
+    form = _form(request, "evaluate")
+    if form == "json" and points(body.inputs) <= FEW and len(body.inputs) <= FEW and is_quick(cls):
         return _json(to_json(run_evaluate(cls, body)))
     if estimated_seconds(cls, body.inputs, body.level, body.tolerance, body.outputs) > EXPENSIVE:
         return await answering.answer(request, await _question(request, id, number, "evaluate"))
+    if form == "npy":
+        return Response(await run_in_threadpool(lambda: npy(evaluated(cls, body))), media_type=NPY)
     return _json(await run_in_threadpool(lambda: to_json(run_evaluate(cls, body))))
 
 
@@ -186,7 +195,14 @@ async def write_worksheet(
 async def _question(
     request: Request, id: str, number: int, operation: str, system: System = "si"
 ) -> Question:
-    return Question(id, number, operation, Pieces.of(await request.body()), system)
+    body = Pieces.of(await request.body())
+    return Question(id, number, operation, body, system, _form(request, operation))
+
+
+def _form(request: Request, operation: str) -> Form:
+    """How the client wants to read the answer: as an array if it names that before JSON."""
+    kinds = [kind.partition(";")[0].strip() for kind in request.headers.get("accept", "").split(",")]
+    return "npy" if "npy" in OPERATIONS[operation].write and kinds[0] == NPY else "json"
 
 
 def _json(content: bytes) -> Response:

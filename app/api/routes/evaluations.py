@@ -14,6 +14,7 @@ from app.api.gate.pacing import PiecesResponse
 from app.api.problem_kinds import INTERNAL
 from app.api.stored import UNAVAILABLE, rebuilding
 from app.api.waiting import LATER, accepted, finished
+from app.calculations.array_files import MEDIA_TYPES
 from app.calculations.jobs import ANSWERS, CalculationJobs
 from app.jobs.errors import JobNotFound
 from app.jobs.job import Job
@@ -69,7 +70,8 @@ async def show_evaluation(
             return unavailable
         row = await run_in_threadpool(_calculation, jobs, job)
         stored = await run_in_threadpool(stored_answer, store, row)
-    return PiecesResponse(stored, request.app.state.pace)
+    media_type = MEDIA_TYPES[row.payload.get("form", "json")]
+    return PiecesResponse(stored, request.app.state.pace, media_type)
 
 
 async def _calculated_again(

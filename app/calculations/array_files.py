@@ -1,0 +1,66 @@
+"""Outputs as a file of NumPy: a column for each, without the echo of inputs, notices and estimated errors.
+
+Of 10⁶ values the JSON text takes 20 MB and most of the time of an answer; the file takes 8 MB and a copy.
+"""
+
+from __future__ import annotations
+
+from io import BytesIO
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.calculations.errors import NoArray
+from templates.core.language.evaluate import Answer, Evaluation
+
+NPY = "application/x-npy"
+JSON = "application/json"
+
+Form = Literal["json", "npy"]
+MEDIA_TYPES: dict[Form, str] = {"json": JSON, "npy": NPY}
+
+
+def npy(result: Evaluation) -> bytes:
+    """The outputs as one structured array in NumPy's format.
+
+    Each output is a field of double precision under its name; the field's title adds the unit, such as
+    `minimum_film_thickness [um]`. Outputs of one value fill their column.
+
+    Raises
+    ------
+    NoArray
+        If an output is a text, lacks a value, or has another shape than another output.
+    """
+    columns = {name: _column(name, output) for name, output in result.outputs.items()}
+    shape = _shape(columns)
+    titles = {name: f"{name} [{output.unit or '1'}]" for name, output in result.outputs.items()}
+    table = np.empty(shape, np.dtype([((titles[name], name), "<f8") for name in columns]))
+    for name, column in columns.items():
+        table[name] = column
+    file = BytesIO()
+    np.lib.format.write_array(file, table, allow_pickle=False)
+    return file.getvalue()
+
+
+def _column(name: str, output: Answer) -> NDArray[np.float64]:
+    """The values of an output; raises NoArray."""
+    if isinstance(output.value, str):
+        raise NoArray(f"{name} is a text; a file of NumPy holds numbers")
+    if output.value is None:
+        raise NoArray(f"{name} has no value: {output.reason}; JSON states the reason")
+    if output.reasons is not None:
+        missing = [reason for reason in output.reasons.ravel() if reason is not None]
+        if missing:
+            holes = f"{len(missing)} of {output.reasons.size} points"
+            raise NoArray(f"{name} has no value at {holes} ({missing[0]}); JSON states the reason of each")
+    return np.asarray(output.value, float)
+
+
+def _shape(columns: dict[str, NDArray[np.float64]]) -> tuple[int, ...]:
+    """The shape of all columns of more than one value; raises NoArray if there are two."""
+    shapes = {column.shape: name for name, column in columns.items() if column.ndim}
+    if len(shapes) > 1:
+        (first, one), (second, other), *_ = shapes.items()
+        raise NoArray(f"{one} has the shape {first} and {other} has {second}; name outputs of one shape")
+    return next(iter(shapes), ())
