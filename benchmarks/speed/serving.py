@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import multiprocessing
 import tempfile
 import time
@@ -15,12 +14,17 @@ from statistics import median, quantiles
 
 import httpx
 import numpy as np
+from pydantic_core import to_json
 
+from app.calculations import rendering
+from app.calculations.array_files import NPY, npy
 from app.calculations.schemas import OIL_FILM
 from benchmarks import databases, service, service_cad, service_process
 from benchmarks.processor_time import proportional_megabytes, used
 from benchmarks.service_process import Server
-from benchmarks.speed.figures import Figure
+from benchmarks.speed.figures import Figure, processor_seconds
+from templates.core.language.evaluate import evaluate
+from templates.oil_film.oil_film_v1 import OilFilm
 
 ROUNDS = 5
 CLIENTS, PROCESSES, SECONDS = 32, 4, 6.0
@@ -136,29 +140,22 @@ def regenerations(server: Server, folder: Path) -> list[Figure]:
 
 
 def large_arrays(server: Server, folder: Path) -> list[Figure]:
-    """What an answer of 10⁶ values adds to the same request that returns one."""
-    loads = np.round(np.linspace(6.3, 200, POINTS), 3).tolist()
+    """What it costs to write the answer of 10⁶ values, in both forms, without the calculation."""
+    loads = np.round(np.linspace(6.3, 200, POINTS), 3)
     inputs = {**OIL_FILM, "radial_load": {"value": loads, "unit": "kN"}}
-    rows = []
-    with httpx.Client(base_url=server.url, trust_env=False, timeout=120) as http:
-        for kind in ("application/json", "application/x-npy"):
-            body = json.dumps({"inputs": inputs, "outputs": ["minimum_film_thickness"]}).encode()
-            headers = {"Content-Type": "application/json", "Accept": kind}
-            spent, answer = [], None
-            for _ in range(3):
-                before = server.processor_seconds()
-                answer = http.post(service.EVALUATE, content=body, headers=headers)
-                spent.append(1e3 * (server.processor_seconds() - before))
-            assert answer is not None
-            given = answer.headers.get("Content-Type", "")
-            if given.startswith(kind):
-                size = f"{len(answer.content) / 1e6:.1f} MB, with reading 10⁶ loads and the calculation"
-                rows.append(Figure(f"10⁶ values over REST, {kind}", min(spent), "ms", detail=size))
-    if len(rows) == 1:
-        rows.append(
-            Figure("10⁶ values over REST, application/x-npy", float("nan"), "ms", 10.0, detail="not offered")
+    result = evaluate(OilFilm, inputs, outputs=["minimum_film_thickness"])
+    result.inputs.clear()  # the echo is what was sent
+    forms = {"JSON": (lambda: to_json(rendering.evaluation(result)), None), NPY: (lambda: npy(result), 10.0)}
+    return [
+        Figure(
+            f"10⁶ values as {name}",
+            1e3 * processor_seconds(write),
+            "ms",
+            aim,
+            detail=f"{len(write()) / 1e6:.1f} MB; writing alone",
         )
-    return rows
+        for name, (write, aim) in forms.items()
+    ]
 
 
 def pages(server: Server, folder: Path) -> list[Figure]:
