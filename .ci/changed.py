@@ -28,8 +28,18 @@ ABOUT = {
         "app/*idempotency*.py",
     ),
     "tests/app/test_backup.py": ("app/*maintenance/*.py", "app/*storage/*.py"),
+    "tests/app/test_damage.py": ("app/solids/*.py", "app/*storage/*.py"),
     "tests/app/test_demo.py": ("app/demo.py", "app/cli.py", "app/__main__.py", "app/server.py"),
+    "tests/app/test_designs_http.py": ("app/*jobs/*.py", "app/*workers/*.py"),
     "tests/app/test_embedded_start.py": ("app/*.py", "pyproject.toml"),
+    "tests/app/test_events_resumed.py": ("app/*event*.py", "app/api/resuming.py"),
+    "tests/app/test_report.py": ("app/reports/*.py", "app/presentation/*.py"),
+    "tests/app/test_signed_reports.py": (
+        "app/reports/*.py",
+        "app/approvals/*.py",
+        "app/approval_commands.py",
+    ),
+    "tests/app/test_study_heals.py": ("app/studies/*.py", "app/*maintenance/*.py"),
     "tests/app/test_calculations_in_processes.py": (
         "app/*jobs/*.py",
         "app/*workers/*.py",

@@ -250,6 +250,7 @@ def test_a_job_that_is_cancelled_ends_its_process(http, log):
     problem(http.get(job.replace("/jobs/", "/evaluations/")), 409, "cancelled")
 
 
+@pytest.mark.slow
 def test_a_job_ends_at_its_deadline(http):
     job = ended(http, sleep(http, "60 s", Prefer="wait=1").headers["Location"])
     assert job["state"] == "failed"

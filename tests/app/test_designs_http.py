@@ -292,6 +292,7 @@ class TestWhileAJobLoops:
         assert until(http, job, "failed")["problem"]["detail"] == content["problem"]["detail"]
         assert revision(http, content)["problem"] == content["problem"]
 
+    @pytest.mark.slow
     def test_a_job_that_eats_memory_is_ended_by_its_limit(self, http):
         design = created(http, moody("19.5 mm", "eats"))
         assert design["state"] == "failed"

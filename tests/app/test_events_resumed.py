@@ -108,6 +108,7 @@ class TestJobs:
         assert list(messages(served.url, f"{API}/jobs/{job['id']}/events", 2)) == []
 
 
+@pytest.mark.slow
 def test_a_reader_resumes_after_a_restart(tmp_path):
     settings = Settings(data=tmp_path / "data")
     with serving(settings) as served, httpx.Client(base_url=served.url, timeout=PATIENCE) as http:

@@ -64,8 +64,10 @@ def curves():
     return raw
 
 
+AT_LENGTH = "chained at length"
 DESIGNS = {
-    "chained": (chained(), ("diameter", "width", "clearance", "load"), 36),
+    "chained": (chained(), ("diameter", "width", "clearance", "load"), 12),
+    AT_LENGTH: (chained(), ("diameter", "width", "clearance", "load"), 36),
     "curves": (curves(), ("speed", "factor", "clearance"), 24),  # as many rows as places
     "few rows": (curves(), ("bore", "clearance"), 3),
 }
@@ -113,7 +115,10 @@ def assert_judged_as_designs(raw, varied, count):
     return verdicts
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=pytest.mark.slow if name == AT_LENGTH else ()) for name in DESIGNS],
+)
 def test_property_verdicts_of_rows_equal_those_of_designs(name):
     verdicts = assert_judged_as_designs(*DESIGNS[name])
     assert verdicts.keys() == set(WORST_FIRST) or name == "few rows"

@@ -296,6 +296,7 @@ class TestStates:
             assert "radial_clearance must be" in text
             assert "None" not in text
 
+    @pytest.mark.slow
     def test_several_models_and_a_measured_loop(self, http):
         film = {**PAPER["steps"]["film"], "inputs": {**PAPER["steps"]["film"]["inputs"]}}
         film["inputs"]["bearing_diameter"] = "= 40 mm + ball.mass * 10 mm/kg"

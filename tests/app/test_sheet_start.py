@@ -118,6 +118,7 @@ def test_check_names_broken_worksheets(restarted, data):
     assert {line.split()[1] for line in lines} == {"text", "digest", "record", "lost", "unreadable"}
 
 
+@pytest.mark.slow
 def test_a_backup_holds_worksheets(tmp_path):
     data, archive, copy = tmp_path / "data", tmp_path / "kept.tar.gz", tmp_path / "copy"
     with serving(Settings(data=data)) as server, asking(server.url) as http:

@@ -35,6 +35,12 @@ def printed(room, design):
     return pdf_of(room.author, design)
 
 
+@pytest.fixture(scope="module")
+def unsigned(room, design):
+    """The report of the later revision."""
+    return pdf_of(room.author, design, 2)
+
+
 def pdf_of(http, design, number=1, **query):
     place = f"{API}/designs/{design['id']}/revisions/{number}/report.pdf"
     answer = http.get(place, params=query, headers={"Prefer": "wait=60"})
@@ -81,11 +87,13 @@ def test_a_released_report_says_who_signed_when_and_the_digests(room, design, pr
     assert all(one.digest in html for one in steps)
 
 
-def test_the_head_of_a_report_names_the_author_whether_or_not_anything_is_signed(room, team, design, printed):
+def test_the_head_of_a_report_names_the_author_whether_or_not_anything_is_signed(
+    room, team, design, printed, unsigned
+):
     """In a signed one by the name of that time, so that it stays the same."""
     identity, id = team.identity, team.principals["author"]
     place = f"{API}/designs/{design['id']}/revisions"
-    assert "Author author" in " ".join(text_of(pdf_of(room.author, design, 2)).split())
+    assert "Author author" in text_of(unsigned)
     assert pypdf.PdfReader(io.BytesIO(printed)).metadata.author == "author"
     identity.change(id, Changes(name="renamed"))
     try:
@@ -101,8 +109,8 @@ def test_where_nobody_is_asked_for_a_key_a_report_names_no_author(http):
     assert "<dt>Author</dt>" not in page
 
 
-def test_an_unreleased_report_says_so(room, design):
-    said = text_of(pdf_of(room.author, design, 2))
+def test_an_unreleased_report_says_so(unsigned):
+    said = text_of(unsigned)
     assert "Not released." in said
     assert "Checked: name, date, signature" in said
 
@@ -112,9 +120,8 @@ def test_a_released_report_is_the_same_whatever_follows(room, design, printed):
     assert failures(printed, approvals_of(room.author, design), printed) == []
 
 
-def test_a_changed_page_is_named(room, design, printed):
-    other = pdf_of(room.author, design, 2)
-    pages = pypdf.PdfWriter(clone_from=io.BytesIO(other))
+def test_a_changed_page_is_named(room, design, printed, unsigned):
+    pages = pypdf.PdfWriter(clone_from=io.BytesIO(unsigned))
     pages.root_object["/Names"].get_object().pop("/EmbeddedFiles", None)
     pages.add_attachment(ATTACHMENT, read_block(printed).model_dump_json().encode())
     failed = failures(written(pages), approvals_of(room.author, design), printed)
@@ -142,9 +149,9 @@ def test_an_unknown_digest_and_another_name_are_named(room, design, printed):
     assert "calculated: the file says Eve at" in forged(name="Eve")[0]
 
 
-def test_the_report_of_another_revision_is_named(room, design, printed):
+def test_the_report_of_another_revision_is_named(room, design, printed, unsigned):
     other = with_block(printed, lambda block: block.model_copy(update={"revision": 2}))
-    failed = failures(other, approvals_of(room.author, design, 2), pdf_of(room.author, design, 2))
+    failed = failures(other, approvals_of(room.author, design, 2), unsigned)
     assert "calculated: the service knows no such step of this revision" in failed
     assert "not released: the revision is unsigned" in failed
 
@@ -160,6 +167,7 @@ def test_rows_that_were_changed_are_named(room, design, printed):
     assert failed == ["checked: the signed content was changed: it does not hash to the digest"]
 
 
+@pytest.mark.slow
 def test_a_report_printed_before_the_release_and_a_withdrawn_one_are_named(room):
     fresh = created(room.author, paper(name="early"))
     signing(room.author, fresh, "calculated")

@@ -158,7 +158,7 @@ MASS_CONSERVING = {"inputs": {**OIL_FILM, "speed": SPEEDS}, "level": "mass_conse
 
 @pytest.mark.parametrize(
     "stopped",
-    [*(pytest.param(one, marks=pytest.mark.slow) for one in ("fork server", "its children")), "all"],
+    [pytest.param(one, marks=pytest.mark.slow) for one in ("fork server", "its children", "all")],
 )
 def test_calculations_of_stopped_processes_are_cut(server, stopped):
     """Some are calculated and some wait for a process, all of which ignore every signal but one."""
@@ -179,6 +179,7 @@ def test_calculations_of_stopped_processes_are_cut(server, stopped):
             problem(answer.result(), 503, "stopping")
 
 
+@pytest.mark.slow
 def test_streams_end_and_slow_downloads_are_cut(server):
     with httpx.Client(base_url=server.url, timeout=PATIENCE, trust_env=False) as http:
         design = http.post(DESIGNS, json={"name": "x", "parameters": {"a": "1"}}).json()["id"]

@@ -104,6 +104,7 @@ def test_lost_rows_whose_table_is_lost_too_are_gone(served, http):
     assert "start the study again" in problem(gone, 410, "artifact-gone")["detail"]
 
 
+@pytest.mark.slow
 def test_check_reports_lost_rows_and_the_service_makes_them_again(tmp_path):
     settings = Settings(data=tmp_path / "data")
     body = {"method": "grid", "steps": 5, "vary": CLEARANCE, "outputs": [LOSS]}

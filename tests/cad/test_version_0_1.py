@@ -55,6 +55,7 @@ def test_models_build(id):
     assert build.measures["mass"] > 0
 
 
+@pytest.mark.slow
 def test_a_script_runs():
     script = [sys.executable, str(FOLDER / "check_joint.py"), str(FOLDER)]
     done = subprocess.run(script, capture_output=True, text=True, check=False)

@@ -35,6 +35,7 @@ def test_a_narrow_screen_shows_why_nothing_was_saved_and_goes_to_the_fault(open_
     expect(page.get_by_label("Radial load")).to_be_in_viewport()
 
 
+@pytest.mark.slow
 def test_a_fault_or_a_draft_within_closed_details_opens_them(open_design):
     page = open_design
     field = page.locator('.step details.more [name="film.reference_density"]')
@@ -57,6 +58,7 @@ def test_a_changed_field_that_is_wrong_is_red(open_design):
     expect(load).to_have_css("background-color", "rgb(253, 236, 235)")
 
 
+@pytest.mark.slow
 def test_the_bar_for_saving_covers_no_field_that_has_the_focus(open_design):
     page = open_design
     hidden = "document.activeElement.getBoundingClientRect().bottom - "

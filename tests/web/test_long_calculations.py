@@ -59,6 +59,7 @@ def test_who_leaves_the_page_stops_it(watched, served):
     assert eventually(lambda: served.app.state.services.calculations.running == 0)
 
 
+@pytest.mark.slow
 def test_a_page_whose_address_asks_for_a_long_calculation_follows_it(watched, alarm):
     watched.open(f"{PLACE}?duration=60.2+s")
     progress, value = parts(watched)

@@ -62,6 +62,7 @@ def test_a_slow_save_says_how_far_it_is_and_shows_its_results(watched, place, ht
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_a_slow_save_can_be_cancelled(watched, served, place):
     watched.open(place)
     progress, duration = parts(watched)
@@ -94,6 +95,7 @@ def test_a_slow_preview_says_how_far_it_is_and_shows_its_results(watched, place,
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_who_types_something_else_stops_a_slow_preview(watched, served, place):
     watched.open(place)
     progress, duration = parts(watched)

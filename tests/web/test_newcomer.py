@@ -167,6 +167,7 @@ def test_the_pressure_is_painted_on_the_bore(watched):
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_the_back_button_and_deep_links(watched):
     page = created(watched)
     place = page.url

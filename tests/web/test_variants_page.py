@@ -203,6 +203,7 @@ def test_variants_are_renamed_added_and_removed_in_place(watched, http, two):
     assert list(http.get(f"{API}{two}").json()["variants"]) == ["front", "rear"]
 
 
+@pytest.mark.slow
 def test_five_mains_are_typed_as_a_newcomer_writes_them(watched, http, shell):
     """By a link from the top; a heading in words, names with spaces, loads in the unit of the design."""
     page = watched.page
@@ -246,6 +247,7 @@ def test_a_block_of_a_spreadsheet_is_pasted_into_the_cells(watched, http, two):
     assert variants["main_4"] == {"film.radial_load": "27 kN"}
 
 
+@pytest.mark.slow
 def test_upload_pasting_and_one_more_row_work_without_scripts(plain, http, shell):
     page = plain.page
     plain.open(shell)

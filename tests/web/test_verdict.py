@@ -203,6 +203,7 @@ def test_two_steps_are_short_and_verdict_and_part_stay_in_view(watched, two_step
     assert watched.faults() == []
 
 
+@pytest.mark.slow
 def test_a_link_of_the_verdict_unfolds_its_step_and_the_fold_is_kept(watched, two_steps):
     page = watched.page
     watched.open(two_steps, wait_until="networkidle")  # no preview comes between

@@ -33,7 +33,14 @@ def shaft_of(workplane: Workplane, length: float, mirrors: tuple[str, ...] = ("y
     return read_solid(step, Shaft(0.0, length), mirrors)
 
 
-@pytest.mark.parametrize("level", [level for level in LEVELS if level.name in (DEFAULT_LEVEL, "fine")])
+@pytest.mark.parametrize(
+    "level",
+    [
+        pytest.param(level, marks=pytest.mark.slow if level.name == "fine" else ())
+        for level in LEVELS
+        if level.name in (DEFAULT_LEVEL, "fine")
+    ],
+)
 def test_a_circular_shaft_twists_and_vibrates_as_coulomb_says(level: Level) -> None:
     """K = G I_p / l and f = sqrt(G / rho) / (4 l), exact for a circular section, held and free."""
     solid = shaft_of(Workplane().circle(25).extrude(200), 200)
@@ -64,6 +71,7 @@ def test_sharp_inner_edges_are_found_and_no_others() -> None:
     assert result.radius == pytest.approx(NARROW / 2, rel=0.1)  # by polygons: its ends lie on the edge
 
 
+@pytest.mark.slow
 def test_a_square_bar_has_saint_venants_torsion_constant() -> None:
     """0.140577 a⁴ (de Saint-Venant 1855), from two lengths: what the ends do cancels in the difference."""
     compliance = []
@@ -86,7 +94,10 @@ def test_half_of_a_shaft_is_exactly_half_of_the_mirrored_mesh() -> None:
     assert half == pytest.approx(full, rel=1e-6)
 
 
-@pytest.mark.parametrize("boundary", BOUNDARIES)
+@pytest.mark.parametrize(
+    "boundary",
+    [pytest.param(one, marks=pytest.mark.slow if one == "free_end" else ()) for one in BOUNDARIES],
+)
 def test_half_and_whole_agree_within_what_is_reported(boundary: Boundary) -> None:
     block = write_step((Part("shaft", flat(), 1.0),), Header("shaft", 1, {}, "0" * 64))
     reported = []
