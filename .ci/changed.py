@@ -52,6 +52,7 @@ ABOUT = {
     "tests/app/test_team_templates.py": ("app/catalogue/*.py", "templates/core/checking/*.py"),
     "tests/app/test_stopping.py": ("app/server.py", "app/*jobs/*.py", "app/*workers/*.py"),
     "tests/web/test_foreign_pages.py": ("app/*guard.py", "app/api/gate/*.py"),
+    "tests/app/test_contract_all_at_length.py": HTTP,
     "tests/app/test_contract_at_length.py": HTTP,
     "tests/app/test_interface_at_length.py": HTTP,
     "tests/app/test_openapi_fuzz.py": HTTP,

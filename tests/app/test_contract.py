@@ -1,7 +1,8 @@
 """The service keeps what /openapi.json promises: all checks of schemathesis, on requests made up from it.
 
-CRANKWRIGHT_TEST_SEED chooses other requests; pytest prints the seed of a run that fails.
-test_contract_at_length.py asks many more in the slow lane.
+CRANKWRIGHT_TEST_SEED chooses other requests; pytest prints the seed of a run that fails. In the slow lane
+test_contract_all_at_length.py asks what covers each keyword of each schema, some 8 000 requests, and
+test_contract_at_length.py many more at random.
 """
 
 import re
@@ -21,10 +22,22 @@ from app.api.gate.allow import METHODS
 from app.api.routes.film_pressure import TYPICAL
 
 SEED = seeded(11)
-CONFIGURATION = SchemathesisConfig.from_path(Path(__file__).parents[2] / "schemathesis.toml")
-INTERFACE = schemathesis.openapi.from_dict(description(), config=CONFIGURATION)
+CONFIGURATION = Path(__file__).parents[2] / "schemathesis.toml"
+
+
+def interface(*phases):
+    """What the service says of itself, to be asked in these phases of schemathesis."""
+    described = schemathesis.openapi.from_dict(
+        description(), config=SchemathesisConfig.from_path(CONFIGURATION)
+    )
+    for part in (described.config, *described.config.operations.operations):
+        part.phases.update(phases=list(phases))
+    return described
+
+
+INTERFACE = interface("examples", "fuzzing")
 QUICK = settings(
-    max_examples=5,
+    max_examples=8,
     database=None,
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),
