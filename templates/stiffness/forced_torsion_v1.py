@@ -64,8 +64,8 @@ from templates.physics.torsion.train_modes import mode_shapes, natural_frequenci
 
 CYLINDERS, ANGLE, SPEEDS, ORDERS = "cylinders", "crank_angle", "speeds", "engine_orders"
 RESONANT = (
-    "a speed lies on a resonance without damping: give shaft_damping, loss_factors or absolute_damping, or "
-    "other speeds"
+    "a speed lies on a resonance without damping, or values are out of scale: give shaft_damping, "
+    "loss_factors or absolute_damping, take other speeds, or check the units"
 )
 NO_SECTION = "no section modulus is given"
 

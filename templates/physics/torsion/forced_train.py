@@ -115,10 +115,17 @@ def _solved(matrix: Phasors, w: Array, mass: Array, right: Phasors) -> Phasors:
     try:
         solution = np.linalg.solve(scaled, loads)[..., 0]
     except np.linalg.LinAlgError:  # one of them is singular to the last digit
-        nudged = scaled + 1j * _NUDGE * np.eye(scaled.shape[-1])
-        solution = np.linalg.solve(nudged, loads)[..., 0]
+        solution = _nudged(scaled, loads)
     size, load = np.abs(solution).max(axis=-1), np.abs(loads[..., 0]).max(axis=-1)
     return np.where((size > RESONANT * load)[..., None], np.nan, solution * scale)
+
+
+def _nudged(matrix: Phasors, loads: Phasors) -> Phasors:
+    """Solutions of which those of singular matrices are very large; NaN where even that fails."""
+    try:
+        return np.asarray(np.linalg.solve(matrix + 1j * _NUDGE * np.eye(matrix.shape[-1]), loads)[..., 0])
+    except np.linalg.LinAlgError:
+        return np.full(loads.shape[:-1], complex(np.nan, np.nan))
 
 
 @dataclass(frozen=True)
