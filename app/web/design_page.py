@@ -212,19 +212,22 @@ def _steps_of_revision(revision: RevisionWorksheet) -> dict[str, tuple[str, int]
 
 
 async def _templates(api: Api, steps: Mapping[str, tuple[str, int]]) -> dict[str, Template]:
-    """The template of every step."""
-    return {
-        name: await api.get(f"/templates/{id}/versions/{version}", Template)
-        for name, (id, version) in steps.items()
+    """The template of every step; steps of one version share it."""
+    versions = {
+        (id, version): await api.get(f"/templates/{id}/versions/{version}", Template)
+        for id, version in dict.fromkeys(steps.values())
     }
+    return {name: versions[place] for name, place in steps.items()}
 
 
 async def _models(api: Api, design: Design | RevisionWorksheet) -> dict[str, Model]:
-    """The description of every model."""
-    return {
-        name: await api.get(f"/models/{model.id}/versions/{model.version}", Model)
-        for name, model in design.models.items()
+    """The description of every model; models of one version share it."""
+    places = {name: (model.id, model.version) for name, model in design.models.items()}
+    versions = {
+        (id, version): await api.get(f"/models/{id}/versions/{version}", Model)
+        for id, version in dict.fromkeys(places.values())
     }
+    return {name: versions[place] for name, place in places.items()}
 
 
 async def _analyses(

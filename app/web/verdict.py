@@ -54,37 +54,61 @@ def banner(revision: RevisionWorksheet, *, has_criteria: bool = True) -> Banner:
 
 
 def key_outputs(
-    step: str, outputs: Mapping[str, Output], criteria: Iterable[Criterion], relations: Iterable[str]
+    step: str, outputs: Mapping[str, Output], criteria: Iterable[Criterion], driving: Iterable[str]
 ) -> list[str]:
     """Outputs for the fold line of a step: those judged, those that drive other parts, else the last ones.
 
-    What was not checked comes last, and what has no value is left out where anything else has one.
+    `driving` are the outputs that relations name. What was not checked comes last, and what has no value is
+    left out where anything else has one.
     """
     single = [name for name, output in outputs.items() if not isinstance(output.value, list)]
     ordered = sorted(criteria, key=lambda criterion: criterion.verdict == "not_checked")
-    judged = [
-        tail for criterion in ordered for tail in _tails(step, sides(criterion.require)[0], criterion.name)
-    ]
-    driving = [tail for text in relations for tail in _tails(step, text, "")]
+    judged = [name for criterion in ordered for name in _judged(step, criterion)]
     wanted = [name for name in dict.fromkeys([*judged, *driving]) if name in outputs]
     valued = [name for name in wanted if outputs[name].value is not None]
     return (valued or wanted or single[-3:])[:MOST_KEYS]
 
 
-def _tails(step: str, text: str, name: str) -> list[str]:
-    """The names of a step in a text, without it; bare ones too, in a criterion of the step's template."""
-    own = name.startswith(f"{step}.")
-    names = _NAMES.findall(text)
+def _judged(step: str, criterion: Criterion) -> list[str]:
+    """The outputs of a step that a criterion judges; bare names too, in one of the step's template."""
+    own = criterion.name.startswith(f"{step}.")
+    names = _NAMES.findall(sides(criterion.require)[0])
     return [n.removeprefix(f"{step}.") for n in names if n.startswith(f"{step}.") or (own and "." not in n)]
+
+
+def driving_outputs(design: Design) -> dict[str, list[str]]:
+    """The outputs that relations of a design name, by step."""
+    driving: dict[str, list[str]] = {}
+    for text in texts(design).values():
+        for name in _NAMES.findall(text):
+            step, dot, output = name.partition(".")
+            if dot:
+                driving.setdefault(step, []).append(output)
+    return driving
 
 
 def with_keys(steps: Iterable[StepBlock], revision: RevisionWorksheet, design: Design) -> list[StepBlock]:
     """The steps, each with the outputs of its fold line."""
-    typed = list(texts(design).values())
+    driving, judged = driving_outputs(design), _by_step(revision.criteria or [])
     return [
-        replace(step, keys=key_outputs(step.name, step.result.outputs, revision.criteria or [], typed))
+        replace(
+            step,
+            keys=key_outputs(
+                step.name, step.result.outputs, judged.get(step.name, []), driving.get(step.name, [])
+            ),
+        )
         for step in steps
     ]
+
+
+def _by_step(criteria: Iterable[Criterion]) -> dict[str, list[Criterion]]:
+    """The criteria that name a step, by step: in their own name or in what they compare."""
+    judged: dict[str, list[Criterion]] = {}
+    for criterion in criteria:
+        names = [criterion.name, *_NAMES.findall(sides(criterion.require)[0])]
+        for step in dict.fromkeys(name.split(".", 1)[0] for name in names if "." in name):
+            judged.setdefault(step, []).append(criterion)
+    return judged
 
 
 def opened(names: Sequence[str], verdict: Banner) -> str | None:

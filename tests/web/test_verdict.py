@@ -10,6 +10,7 @@ from serving import API
 
 from app.presentation.criteria import compared, line, margin, step_of, title, tone
 from app.schemas.criteria import Criterion, Verdict
+from app.web import verdict as verdict_of_page
 from app.web.rendering import jinja
 from app.web.verdict import banner, key_outputs
 
@@ -117,7 +118,7 @@ def test_the_fold_line_shows_what_is_judged_or_drives_a_part():
 
     outputs = dict.fromkeys(["minimum_film_thickness", "density", "bearing_diameter", "power_loss"], Output)
     criteria = [criterion(WORST)]
-    keys = key_outputs("film", outputs, criteria, ["= film.bearing_diameter + 1 mm"])
+    keys = key_outputs("film", outputs, criteria, ["bearing_diameter"])
     assert keys == ["minimum_film_thickness", "bearing_diameter"]
     assert key_outputs("other", outputs, [], []) == ["density", "bearing_diameter", "power_loss"]
 
@@ -239,3 +240,16 @@ def test_the_governing_criterion_stands_on_the_first_screen(browser, served, two
     page.locator("[data-all-criteria] summary").click()
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     context.close()
+
+
+def test_relations_drive_the_outputs_that_they_name(monkeypatch):
+    relations = {
+        ".limit": "= 2 * film.density",
+        "film.radial_load": "25 kN",
+        "model.width": "= film.bearing_width + other.power_loss * 1 mm/W",
+    }
+    monkeypatch.setattr(verdict_of_page, "texts", lambda design: relations)
+    assert verdict_of_page.driving_outputs(None) == {
+        "film": ["density", "bearing_width"],
+        "other": ["power_loss"],
+    }
