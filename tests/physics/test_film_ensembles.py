@@ -1,0 +1,57 @@
+"""What stands behind the bounds of `oil_film_cycle` 2: order statistics, samples that have every supply."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from benchmarks.film_cycle_duties import drawn, fed, kept
+from benchmarks.film_cycle_ensemble import bound, lifted, rounded_up
+from benchmarks.supplied_duties import SUPPLIES
+from benchmarks.supplied_orbits import DUTIES, sampled
+
+
+class TestBounds:
+    """One-sided tolerance bounds."""
+
+    def test_example_the_largest_of_59_is_the_first_bound(self):
+        errors = [float(k) for k in range(1, 60)]
+        assert bound(errors) == 59
+        assert bound(errors[:-1]) is None
+
+    def test_example_of_93_one_may_starve(self):
+        errors = [float(k) for k in range(1, 93)]
+        assert bound([*errors, np.inf]) == 92
+        assert bound([*errors[:-1], np.inf, np.inf]) is None
+
+    def test_property_lies_above_the_quantile_as_often_as_stated(self):
+        rng = np.random.default_rng(3)
+        held = [bound(list(rng.random(93))) >= 0.95 for _ in range(1000)]
+        assert np.mean(held) > 0.94
+
+    @pytest.mark.parametrize(
+        ("value", "stated"), [(0.7201, 0.73), (0.72, 0.72), (1.21, 1.3), (1.0, 1.0), (0.0, 0.0), (3e-4, 3e-4)]
+    )
+    def test_example_rounded_up_to_two_digits(self, value, stated):
+        assert rounded_up(value) == pytest.approx(stated, rel=1e-12)
+
+
+def test_property_the_sample_has_each_supply_with_each_kind_of_load_alike():
+    numbers = [number for number in range(DUTIES) if sampled(number)]
+    alike = Counter((SUPPLIES[number // 2 % len(SUPPLIES)], number % 2) for number in numbers)
+    assert len(numbers) == 60
+    assert set(alike.values()) == {6}
+    assert len(alike) == 10
+
+
+def test_example_a_groove_all_around_bears_nothing_at_rest():
+    _, duty = next(drawn(1, "full_groove"))
+    asked = fed(duty)
+    assert lifted(asked).duty.F_x == pytest.approx(asked.duty.F_x, abs=1e-12)
+    _, half = next(drawn(1, "half_groove"))
+    assert not np.allclose(lifted(fed(half)).duty.F_x, fed(half).duty.F_x)
+
+
+def test_property_lines_that_count_are_of_one_release():
+    releases = {(line["kind"], line.get("release")) for line in kept()}
+    assert len(releases) == len({kind for kind, _ in releases})
