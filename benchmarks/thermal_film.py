@@ -1,6 +1,7 @@
 """What one temperature costs in accuracy, and a temperature at every place in time: `thermal_film` 1.
 
 python -m benchmarks.thermal_film           100 random bearings: refusals, times, ratios; some two minutes
+python -m benchmarks.thermal_film report    the same from the kept results
 python -m benchmarks.thermal_film mesh      the first 15 of them at level fine_field too; a minute
 python -m benchmarks.thermal_film picture   docs/pictures/thermal_film.svg; some seconds
 
@@ -52,6 +53,17 @@ def bearing(rng: np.random.Generator) -> dict[str, Any]:
     return raw
 
 
+def wall(raw: dict[str, Any]) -> str:
+    """What is behind its bush."""
+    return (
+        "held"
+        if "held_bush_temperature" in raw
+        else "cooled"
+        if "ambient_temperature" in raw
+        else "adiabatic"
+    )
+
+
 def solved(raw: dict[str, Any], level: str) -> dict[str, float]:
     """The outputs and the processor seconds of one bearing; no outputs where it is refused by name."""
     start = process_time()
@@ -81,15 +93,27 @@ def ensemble() -> None:
 
 
 def report(rows: list[dict[str, float]]) -> None:
-    """Refusals, ratios and times."""
+    """Refusals, ratios and times, of all and by what is behind the bush."""
     borne = [row for row in rows if "film_ratio" in row]
     print(f"{len(rows)} bearings, {len(rows) - len(borne)} refused")
+    rng = np.random.default_rng(SEED)
+    kinds = [wall(bearing(rng)) for _ in rows]
+    for kind in sorted(set(kinds)):
+        own = [row for row, its in zip(rows, kinds, strict=True) if its == kind and row in borne]
+        print(kind, len(own))
+        for name in ("film_ratio", "loss_ratio", "unseen_rise"):
+            print("   ", quantiles(own, name))
     for name in ("film_ratio", "loss_ratio", "unseen_rise", "mesh_error", "mesh_change", "heat_residual"):
         print(quantiles(borne, name))
     print(quantiles(rows, "seconds"))
     unsafe = np.array([row["film_ratio"] for row in borne])
     print(f"film of one temperature thicker by more than 10 %: {np.mean(unsafe > 1.1):.0%}; "
           f"thinner by more than 10 %: {np.mean(unsafe < 0.9):.0%}")  # fmt: skip
+
+
+def again() -> None:
+    """What the kept results say."""
+    report(json.loads(RESULTS.read_text()))
 
 
 def mesh() -> None:
@@ -138,4 +162,4 @@ def picture() -> None:
 
 
 if __name__ == "__main__":
-    {"mesh": mesh, "picture": picture}.get("".join(sys.argv[1:]), ensemble)()
+    {"mesh": mesh, "picture": picture, "report": again}.get("".join(sys.argv[1:]), ensemble)()

@@ -74,7 +74,7 @@ class ThermalFilm(Oil, Template):
     levels = LEVELS
     default_level = ONE
     most_points = {"field": 40, "fine_field": 15}
-    precision = 1e-6
+    precision = 1e-5
     example = {
         "radial_load": "6 kN",
         "diametral_clearance": "0.29 mm",

@@ -18,6 +18,9 @@ FARTHEST = float(np.arctanh(0.9999))
 _STEPS = 40
 _LONGEST = 0.7
 _DIFFERENCE = 1e-5
+_NOISE = 1e-6
+"""What may be lacking where no step leaves less: the films themselves are not solved more closely."""
+_HALVINGS = 8
 _STALE = 0.3
 """A step that leaves more than this share of what was lacking asks for new slopes."""
 
@@ -58,27 +61,44 @@ class Placing:
                 return film
             if self.slopes is None:
                 self.slopes, fresh = self._differences(fluidity, lack), True
-            step = self._newton(lack)
-            step *= min(1.0, _LONGEST / float(np.hypot(*step)))
-            y = self.y + step
-            if not np.hypot(*y) < FARTHEST:
-                raise NoBalance("the journal all but touches")
-            film = self._film(fluidity, y)
-            after = self._lack(film)
-            if np.hypot(*after) > _STALE * size and not fresh:
+            nearer = self._nearer(fluidity, self._newton(lack), size, _HALVINGS if fresh else 1)
+            if nearer is None:
+                if size < _NOISE:
+                    return self._film(fluidity, self.y)
+                if fresh:
+                    raise NoBalance("no place of the journal bears more of the load")
                 self.slopes = None
-            else:
-                change = after - lack - self.slopes @ step
-                self.slopes, fresh = self.slopes + np.outer(change, step) / (step @ step), False
+                continue
+            y, film, after = nearer
+            step = y - self.y
+            change = after - lack - self.slopes @ step
+            self.slopes, fresh = self.slopes + np.outer(change, step) / (step @ step), False
+            if np.hypot(*after) > _STALE * size:
+                self.slopes = None
             self.y, lack = y, after
         raise NoBalance("the journal's place does not settle")
 
+    def _nearer(
+        self, fluidity: Array, step: Array, size: float, tries: int
+    ) -> tuple[Array, Pressed, Array] | None:
+        """The place after a step, or half of it and so on, at which less is lacking; with its film."""
+        for _ in range(tries):
+            y = self.y + step
+            if np.hypot(*y) < FARTHEST:
+                film = self._film(fluidity, y)
+                after = self._lack(film)
+                if np.hypot(*after) < size:
+                    return y, film, after
+            step = step / 2
+        return None
+
     def _newton(self, lack: Array) -> Array:
         """The step of y that would make up for what is lacking."""
-        try:
-            return np.asarray(-np.linalg.solve(np.asarray(self.slopes), lack))
-        except np.linalg.LinAlgError as failure:
-            raise NoBalance("the force does not depend on the journal's place") from failure
+        step = -np.linalg.lstsq(np.asarray(self.slopes), lack, rcond=1e-12)[0]
+        size = float(np.hypot(*step))
+        if not size > 0:
+            raise NoBalance("the force does not depend on the journal's place")
+        return np.asarray(step * min(1.0, _LONGEST / size))
 
     def _film(self, fluidity: Array, y: Array) -> Pressed:
         """The film at a place, kept as the start of the next."""

@@ -26,9 +26,9 @@ FIELD, FINE = "field", "fine_field"
 MESHES = {FIELD: ((24, 4, 8), (48, 8, 12)), FINE: ((48, 8, 12), (96, 16, 24))}
 """Of each level, with the mesh to start from: intervals around, across half the width, strips across."""
 _ROUNDS = 80
-_ACCURACY = 1e-8
+_ACCURACY = 1e-7
 """Change of temperature over its largest rise at which the search ends [-]."""
-_FORCE = 1e-9
+_FORCE = 1e-8
 _LIGHTEST, _HEAVIEST = 0.05, 0.98
 """Eccentricities between which a search begins [-]."""
 
